@@ -1,0 +1,83 @@
+"""What hthor raises: each error says what was wrong, what was given, what is valid, and what to do next."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class HthorError(Exception):
+    """Root of every error that is the user's to mend: the CLI prints no traceback and exits with ``exit_code``."""
+
+    exit_code = 2
+
+
+class UnknownName(HthorError):
+    """A name that nothing answers to.
+
+    Args:
+        what: the sort of name, such as "suite".
+        given: what the user wrote.
+        valid: every name that would have worked.
+        hint: what to do next, a sentence; optional.
+    """
+
+    def __init__(self, what: str, given: str, valid: Iterable[str], hint: str = "") -> None:
+        self.what, self.given, self.valid = what, given, tuple(valid)
+        near = difflib.get_close_matches(given, self.valid, n=1, cutoff=0.5)
+        guess = f" Did you mean '{near[0]}'?" if near else ""
+        listed = ", ".join(self.valid) or "none"
+        super().__init__(f"unknown {what} '{given}'.{guess} Valid: {listed}.{' ' + hint if hint else ''}")
+
+
+class HouseError(HthorError):
+    """A house file that cannot be used: names the file and the field.
+
+    Args:
+        file: the file's name as the user gave it.
+        field: path of the field, such as ``walls[3].polygon[0].x``; ``$`` for the file as a whole.
+        problem: what is wrong there, what was found, what is expected.
+    """
+
+    def __init__(self, file: str, field: str, problem: str) -> None:
+        self.file, self.field, self.problem = file, field, problem
+        super().__init__(f"{file}: {field}: {problem}")
+
+
+class TaskError(HthorError):
+    """A suite or task file that cannot be used: names the file and the field."""
+
+    def __init__(self, file: str, field: str, problem: str) -> None:
+        self.file, self.field, self.problem = file, field, problem
+        super().__init__(f"{file}: {field}: {problem}")
+
+
+class AgentError(HthorError):
+    """An agent file that cannot be loaded or does not follow the contract."""
+
+    exit_code = 4
+
+
+class RunError(HthorError):
+    """A run folder that cannot be used: damaged, or of another evaluation."""
+
+
+class RunLocked(HthorError):
+    """Another process is writing this run."""
+
+    exit_code = 75
+
+
+class MissingExtra(HthorError):
+    """An optional dependency is absent; the message names the extra."""
+
+    def __init__(self, feature: str, extra: str) -> None:
+        super().__init__(f"{feature} needs an optional dependency: pip install 'hthor[{extra}]'.")
+
+
+class RenderingUnavailable(HthorError):
+    """No OpenGL back end could draw a frame."""
+
+
+class StaleObservation(RuntimeError):
+    """An observation was read after the tick it was made for; read pictures, scans and detections inside ``act``."""

@@ -1,0 +1,44 @@
+"""Canonical JSON, content hashes and writes that are all or nothing; knows nothing of what the documents mean."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+_canonical = msgspec.json.Encoder(order="sorted")
+
+
+def canonical(document: Any) -> bytes:
+    """Encode as JSON with sorted keys and no white space: equal documents give equal bytes."""
+    return _canonical.encode(document)
+
+
+def pretty(document: Any) -> bytes:
+    """Encode for people: sorted keys, two spaces, a newline at the end."""
+    return msgspec.json.format(canonical(document), indent=2) + b"\n"
+
+
+def sha256(document: Any) -> str:
+    """Hash of the canonical encoding, 64 hexadecimal digits."""
+    return hashlib.sha256(canonical(document)).hexdigest()
+
+
+def write(path: Path, data: bytes) -> None:
+    """Replace ``path`` by ``data`` in one step: a reader sees the old file or the new one, never a part."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(name, 0o644)
+        os.replace(name, path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise

@@ -1,0 +1,48 @@
+"""The benchmark's own numbers; (P) marks those of the HumanTHOR paper (arXiv 2406.06498), the rest are our choice.
+
+Knows nothing of how they are used. Changing any of them changes `sha256`, which is part of every trial's key.
+"""
+
+from __future__ import annotations
+
+import math
+
+from hthor import jsonio
+
+TICK_S = 0.1
+"""Seconds a tick. Time is counted in ticks and only ever multiplied out for people to read."""
+TIME_LIMIT_S = 90.0
+"""Seconds a task (P)."""
+MOVE_MAX_M = 0.5
+"""Longest move of one action (P)."""
+PITCH_LIMIT_RAD = math.radians(30.0)
+"""A robot's camera pitch, either way (P)."""
+DETECTOR_RANGE_M = 1.5
+"""Range of the ideal detector (P)."""
+FIND_RANGE_M = 1.5
+"""A search succeeds when the person has the target in view within this distance; AI2-THOR's visibility distance."""
+SESSION_TASKS = 10
+"""Tasks that one participant does (P)."""
+TRUST_MIN, TRUST_MAX = 1, 7
+"""The trust scale (P)."""
+TEXT_MAX = 280
+"""Characters of a message that are kept: what a panel in a headset can show at once."""
+GRID_M = 0.05
+"""Cell of the free-space grid."""
+LOG_EVERY_TICKS = 2
+"""Poses are logged at 5 Hz."""
+
+PACE_M_S = 1.0
+"""T*: walking pace of the shortest path, a person's full stick speed, so that nobody can be faster."""
+HANDLING_S = 0.5
+"""T*: least time of one pick, place or open."""
+
+
+def as_dict() -> dict[str, float | int]:
+    """Every constant by name, in order of definition."""
+    return {name: value for name, value in globals().items() if name.isupper() and isinstance(value, (int, float))}
+
+
+def sha256() -> str:
+    """Hash of all constants."""
+    return jsonio.sha256(as_dict())

@@ -1,0 +1,57 @@
+"""Chance by name: a draw depends on what it is for, never on how many draws came before; holds no state.
+
+Two robots therefore meet the same person on the same day: a message that changes the person's path does not shift
+the outcome of anything else.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from statistics import NormalDist
+
+_normal = NormalDist()
+
+Name = str | int
+
+
+def _bits(root: int, names: tuple[Name, ...]) -> int:
+    digest = hashlib.blake2b(repr(names).encode(), key=root.to_bytes(16, "little", signed=True), digest_size=8).digest()
+    return int.from_bytes(digest, "little")
+
+
+def draw(root: int, *names: Name) -> float:
+    """A uniform number in the open interval (0, 1), fixed by ``root`` and ``names``."""
+    return ((_bits(root, names) >> 12) + 0.5) / (1 << 52)
+
+
+def normal(root: int, *names: Name) -> float:
+    """A standard normal number, fixed by ``root`` and ``names``."""
+    return _normal.inv_cdf(draw(root, *names))
+
+
+def derive(root: int, *names: Name) -> int:
+    """A root for draws of its own, 63 bits."""
+    return _bits(root, names) >> 1
+
+
+def choice(weights: Sequence[float], root: int, *names: Name) -> int:
+    """An index with probability proportional to its weight.
+
+    Raises:
+        ValueError: when the weights are empty, negative or all zero.
+    """
+    total = float(sum(weights))
+    if not total > 0.0 or min(weights) < 0.0:
+        raise ValueError(f"weights must be non-negative with a positive sum, got {list(weights)}")
+    mark = draw(root, *names) * total
+    for index, weight in enumerate(weights):
+        mark -= weight
+        if mark < 0.0:
+            return index
+    return max(index for index, weight in enumerate(weights) if weight > 0.0)
+
+
+def shuffled(count: int, root: int, *names: Name) -> list[int]:
+    """``range(count)`` in an order fixed by ``root`` and ``names``."""
+    return sorted(range(count), key=lambda index: _bits(root, (*names, index)))
