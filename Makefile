@@ -1,0 +1,38 @@
+# Two commands do everything: `make demo` runs the main job, `make test` checks the project.
+# Both make their own .venv with the pinned dependencies of constraints.txt.
+
+PYTHON ?= $(shell for p in python3.12 python3.11 python3; do \
+  $$p -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 12))' 2>/dev/null && { echo $$p; break; }; done)
+BIN := .venv/bin
+JOBS ?= $(shell nproc 2>/dev/null || echo 1)
+
+.PHONY: demo test install clean python
+
+demo: .venv/.installed
+	$(BIN)/hthor eval --agent silent --agent frontier --agent oracle --humans proxy --suite smoke --out runs/demo
+
+test: .venv/.installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/pytest -n $(JOBS)
+
+install: .venv/.installed
+
+python:
+	@test -n "$(PYTHON)" || { echo "hthor needs Python 3.11 or 3.12 and found neither on the PATH; install one, or name it: make demo PYTHON=/path/to/python3.12" >&2; exit 2; }
+
+.venv/bin/python: | python
+	$(PYTHON) -m venv .venv
+
+.venv/.installed: pyproject.toml constraints.txt | .venv/bin/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
+	@touch $@
+
+.venv/.installed-dev: pyproject.toml constraints.txt | .venv/bin/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	@touch .venv/.installed $@
+
+clean:
+	rm -rf .venv build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis

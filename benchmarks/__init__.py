@@ -1,0 +1,1 @@
+"""Timings, which belong here and never in a test."""

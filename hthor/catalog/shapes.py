@@ -1,0 +1,199 @@
+"""Parametric furniture without doors: tables, cabinets, shelves, seats, beds; knows nothing of kinds.
+
+Every function builds a thing of any positive size [m] whose parts fill its bounding box; z runs up from the floor and
+y from the back to the front while building (see ``solids``).
+"""
+
+from __future__ import annotations
+
+from hthor.catalog.colours import GREY, IRON, WHITE
+from hthor.catalog.kind import Form
+from hthor.catalog.solids import box, pillar, rest, rounded
+from hthor.types import Part, Rgba, Surface, Vec3
+
+
+def _top(size: Vec3) -> tuple[Surface]:
+    w, d, h = size
+    e = min(0.02, 0.05 * w, 0.05 * d)
+    return (rest(size, "top", (e, e), (w - e, d - e), h),)
+
+
+def _legs(size: Vec3, leg: float, height: float, rgba: Rgba) -> tuple[Part, ...]:
+    w, d, _ = size
+    corners = ((0.0, 0.0), (w - leg, 0.0), (0.0, d - leg), (w - leg, d - leg))
+    return tuple(box(size, (x, y, 0.0), (x + leg, y + leg, height), rgba) for x, y in corners)
+
+
+def table(size: Vec3, *, wood: Rgba, legs: Rgba) -> Form:
+    """A plate on four legs."""
+    w, d, h = size
+    t, leg = min(0.04, 0.3 * h), min(0.06, 0.2 * w, 0.2 * d)
+    plate = box(size, (0.0, 0.0, h - t), (w, d, h), wood)
+    return Form(parts=(plate, *_legs(size, leg, h - t, legs)), surfaces=_top(size))
+
+
+def low_table(size: Vec3, *, wood: Rgba, legs: Rgba) -> Form:
+    """A plate on four legs with a board between them."""
+    w, d, h = size
+    form = table(size, wood=wood, legs=legs)
+    e, z, t = min(0.03, 0.1 * w, 0.1 * d), 0.3 * h, min(0.02, 0.1 * h)
+    return Form(parts=(*form.parts, box(size, (e, e, z), (w - e, d - e, z + t), wood)), surfaces=form.surfaces)
+
+
+def desk(size: Vec3, *, wood: Rgba, body: Rgba) -> Form:
+    """A plate on a side panel and a chest of drawers, closed at the back."""
+    w, d, h = size
+    t, chest = min(0.035, 0.3 * h), min(0.4, 0.35 * w)
+    low, e = h - t, min(0.03, 0.1 * d)
+    front = d - e
+    parts = (
+        box(size, (0.0, 0.0, low), (w, d, h), wood),
+        box(size, (0.0, 0.0, 0.0), (min(0.04, 0.1 * w), front, low), body),
+        box(size, (w - chest, 0.0, 0.0), (w, front - 0.5 * e, low), body),
+        box(size, (w - 0.95 * chest, front - 0.5 * e, 0.06 * h), (w - 0.05 * chest, front, 0.48 * low), wood),
+        box(size, (w - 0.95 * chest, front - 0.5 * e, 0.52 * low), (w - 0.05 * chest, front, 0.97 * low), wood),
+        box(size, (0.0, 0.0, 0.35 * h), (w - chest, min(0.02, 0.1 * d), low), body),
+    )
+    return Form(parts=parts, surfaces=_top(size))
+
+
+def counter(size: Vec3, *, body: Rgba, top: Rgba) -> Form:
+    """A kitchen base cabinet under a worktop, with a toe kick and two fronts."""
+    w, d, h = size
+    t, toe, e = min(0.04, 0.2 * h), min(0.1, 0.2 * h), min(0.02, 0.05 * d)
+    parts = (
+        box(size, (0.0, 0.0, h - t), (w, d, h), top),
+        box(size, (0.0, 0.0, toe), (w, d - 2 * e, h - t), body),
+        box(size, (0.0, 0.0, 0.0), (w, 0.88 * d, toe), IRON),
+        box(size, (0.02 * w, d - 2 * e, toe), (0.49 * w, d - e, h - 1.5 * t), body),
+        box(size, (0.51 * w, d - 2 * e, toe), (0.98 * w, d - e, h - 1.5 * t), body),
+    )
+    return Form(parts=parts, surfaces=_top(size))
+
+
+def dresser(size: Vec3, *, body: Rgba, fronts: Rgba) -> Form:
+    """A chest with three drawers one above the other."""
+    w, d, h = size
+    e, t = min(0.02, 0.1 * d), min(0.03, 0.1 * h)
+    drawers = tuple(
+        box(size, (0.03 * w, d - e, (0.05 + 0.3 * i) * h), (0.97 * w, d, (0.32 + 0.3 * i) * h), fronts)
+        for i in range(3)
+    )
+    carcass = box(size, (0.0, 0.0, 0.0), (w, d - e, h - t), body)
+    return Form(parts=(box(size, (0.0, 0.0, h - t), (w, d, h), body), carcass, *drawers), surfaces=_top(size))
+
+
+def tv_stand(size: Vec3, *, wood: Rgba) -> Form:
+    """A low cabinet, open in front, parted in the middle."""
+    w, d, h = size
+    t, b = min(0.03, 0.15 * h, 0.1 * w), min(0.015, 0.1 * d)
+    parts = (
+        box(size, (0.0, 0.0, h - t), (w, d, h), wood),
+        box(size, (0.0, 0.0, 0.0), (w, d, t), wood),
+        box(size, (0.0, 0.0, t), (t, d, h - t), wood),
+        box(size, (w - t, 0.0, t), (w, d, h - t), wood),
+        box(size, ((w - t) / 2, b, t), ((w + t) / 2, d, h - t), wood),
+        box(size, (t, 0.0, t), (w - t, b, h - t), IRON),
+    )
+    return Form(parts=parts, surfaces=_top(size))
+
+
+def shelf(size: Vec3, *, wood: Rgba) -> Form:
+    """A bookcase with a board about every 0.38 m; its top counts as a board while a person can see onto it."""
+    w, d, h = size
+    t, b = min(0.025, 0.05 * h, 0.1 * w), min(0.012, 0.1 * d)
+    gaps = max(1, min(5, round(h / 0.38)))
+    step = (h - t) / gaps
+    boards = tuple(box(size, (t, b, i * step), (w - t, d, i * step + t), wood) for i in range(gaps))
+    shell = (
+        box(size, (0.0, 0.0, h - t), (w, d, h), wood),
+        box(size, (0.0, 0.0, 0.0), (t, d, h - t), wood),
+        box(size, (w - t, 0.0, 0.0), (w, d, h - t), wood),
+        box(size, (t, 0.0, 0.0), (w - t, b, h - t), wood),
+    )
+    rests = tuple(
+        rest(size, f"board {i + 1}", (t, b), (w - t, d), i * step + t, step - t) for i in range(gaps) if step - t > 0.0
+    )
+    return Form(parts=(*shell, *boards), surfaces=(*rests, *_top(size)) if h <= 1.4 else rests)
+
+
+def bed(size: Vec3, *, frame: Rgba, blanket: Rgba) -> Form:
+    """A mattress in a frame, its headboard at the back."""
+    w, d, h = size
+    head, low, top = min(0.08, 0.1 * d), 0.28 * h, 0.55 * h
+    fold = head + 0.3 * (d - head)
+    parts = (
+        box(size, (0.0, 0.0, 0.0), (w, head, h), frame),
+        box(size, (0.0, head, 0.0), (w, d, low), frame),
+        box(size, (0.02 * w, head, low), (0.98 * w, fold, top), WHITE),
+        box(size, (0.0, fold, low), (w, d, top), blanket),
+    )
+    e = min(0.05, 0.05 * w, 0.05 * d)
+    return Form(parts=parts, surfaces=(rest(size, "mattress", (e, head + e), (w - e, d - e), top),))
+
+
+def sofa(size: Vec3, *, fabric: Rgba, cushion: Rgba, seats: int) -> Form:
+    """A seat of one or more cushions between a back and two arms."""
+    w, d, h = size
+    arm, back = min(0.16, 0.16 * w), min(0.24, 0.28 * d)
+    base, seat, rail = 0.3 * h, 0.52 * h, 0.74 * h
+    width = (w - 2 * arm) / seats
+    parts = (
+        box(size, (0.0, 0.0, 0.0), (w, back, h), fabric),
+        box(size, (0.0, back, 0.0), (arm, d, rail), fabric),
+        box(size, (w - arm, back, 0.0), (w, d, rail), fabric),
+        box(size, (arm, back, 0.04 * h), (w - arm, d, base), fabric),
+        *(
+            box(size, (arm + (i + 0.01) * width, back, base), (arm + (i + 0.99) * width, d, seat), cushion)
+            for i in range(seats)
+        ),
+    )
+    e = min(0.03, 0.05 * d)
+    return Form(parts=parts, surfaces=(rest(size, "seat", (arm + e, back + e), (w - arm - e, d - e), seat),))
+
+
+def chair(size: Vec3, *, wood: Rgba, seat: Rgba) -> Form:
+    """A seat on four legs with an upright back."""
+    w, d, h = size
+    z, t, back, leg = 0.5 * h, min(0.04, 0.1 * h), min(0.04, 0.15 * d), min(0.04, 0.2 * w, 0.2 * d)
+    parts = (
+        box(size, (0.0, 0.0, z - t), (w, d, z), seat),
+        box(size, (0.0, 0.0, z), (w, back, h), wood),
+        *_legs(size, leg, z - t, wood),
+    )
+    e = min(0.02, 0.05 * w, 0.05 * d)
+    return Form(parts=parts, surfaces=(rest(size, "seat", (e, back + e), (w - e, d - e), z),))
+
+
+def stool(size: Vec3, *, seat: Rgba, legs: Rgba) -> Form:
+    """A seat on a column and a foot."""
+    w, d, h = size
+    t, r = min(0.06, 0.25 * h), 0.12 * min(w, d)
+    parts = (
+        rounded(size, (0.0, 0.0, h - t), (w, d, h), seat),
+        pillar(size, (w / 2, d / 2), r, 0.0, h - t, legs),
+        rounded(size, (0.1 * w, 0.1 * d, 0.0), (0.9 * w, 0.9 * d, 0.06 * h), legs),
+    )
+    a = 0.15
+    return Form(parts=parts, surfaces=(rest(size, "seat", (a * w, a * d), ((1 - a) * w, (1 - a) * d), h),))
+
+
+def ottoman(size: Vec3, *, fabric: Rgba) -> Form:
+    """A padded block."""
+    w, d, h = size
+    low = box(size, (0.04 * w, 0.04 * d, 0.0), (0.96 * w, 0.96 * d, 0.3 * h), IRON)
+    return Form(parts=(low, box(size, (0.0, 0.0, 0.3 * h), (w, d, h), fabric)), surfaces=_top(size))
+
+
+def washer(size: Vec3, *, body: Rgba) -> Form:
+    """A front loader; its round window is drawn square because cylinders stand upright."""
+    w, d, h = size
+    e = min(0.02, 0.05 * d)
+    parts = (
+        box(size, (0.0, 0.0, 0.0), (w, d - e, h), body),
+        box(size, (0.2 * w, d - e, 0.2 * h), (0.8 * w, d, 0.68 * h), GREY),
+        box(size, (0.05 * w, d - e, 0.85 * h), (0.95 * w, d - 0.5 * e, 0.95 * h), IRON),
+    )
+    return Form(parts=parts, surfaces=_top(size))
+
+

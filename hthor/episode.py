@@ -1,0 +1,216 @@
+"""The umpire: one clock, one mailbox, one goal, one event list; knows nothing of engines, files or statistics."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Protocol, TypeVar
+
+from msgspec import Struct
+
+from hthor import plugins, rules
+from hthor.comms.mailbox import Mailbox
+from hthor.humans.model import HumanModel
+from hthor.types import (
+    HUMAN,
+    Action,
+    BodySpec,
+    Briefing,
+    Event,
+    HouseSpec,
+    Mind,
+    Motion,
+    Observation,
+    Outcome,
+    Pose,
+    Send,
+    Senses,
+    Snapshot,
+    TaskSpec,
+    ThingState,
+    TrialSpec,
+)
+
+_T = TypeVar("_T")
+
+
+class Stage(Protocol):
+    """What the umpire asks of a world."""
+
+    @property
+    def seats(self) -> Sequence[str]: ...
+    @property
+    def bodies(self) -> Mapping[str, BodySpec]: ...
+    @property
+    def house(self) -> HouseSpec: ...
+    @property
+    def tick(self) -> int: ...
+    def reset(self, task: TaskSpec) -> None: ...
+    def idle(self, seat: str) -> bool: ...
+    def start(self, seat: str, motion: Motion) -> None: ...
+    def outcome(self, seat: str) -> Outcome | None: ...
+    def advance(self) -> tuple[Event, ...]: ...
+    def pose(self, seat: str) -> Pose: ...
+    def holding(self, seat: str) -> str: ...
+    def room(self, seat: str) -> str: ...
+    def senses(self, seat: str) -> Senses: ...
+    def truth(self) -> tuple[ThingState, ...]: ...
+    def snapshot(self) -> Snapshot: ...
+    def frame(self, seat: str) -> Callable[[], Any]: ...
+
+
+class Fault(Struct, frozen=True, kw_only=True):
+    """A robot's mind failed at ``tick``; the trial went on without it. ``detail`` is its traceback or what it did."""
+
+    seat: str
+    kind: str
+    tick: int
+    detail: str
+
+
+class EpisodeLog(Struct, frozen=True, kw_only=True):
+    """What one trial left behind.
+
+    ``paths`` holds, for each seat and every `rules.LOG_EVERY_TICKS` ticks from tick 0, [x, y, yaw] in whole
+    millimetres and milliradians. ``ticks`` is the trial's length; ``trust`` the person's rating, None without a robot.
+    """
+
+    events: tuple[Event, ...]
+    paths: dict[str, list[tuple[int, int, int]]]
+    ticks: int
+    met: bool
+    trust: int | None
+    faults: tuple[Fault, ...]
+
+
+def play(trial: TrialSpec, world: Stage, human: HumanModel, robots: Mapping[str, Mind]) -> EpisodeLog:
+    """Run one trial from reset to its end.
+
+    Args:
+        trial: what to play; its task decides house, start, goal and time limit.
+        world: built for the task's house, with a body for every seat of ``robots``.
+        human: the person, who may remember earlier trials of the session.
+        robots: a mind for each robot's seat.
+    """
+    return _Episode(trial, world, human, robots).run()
+
+
+class _Episode:
+    def __init__(self, trial: TrialSpec, world: Stage, human: HumanModel, robots: Mapping[str, Mind]) -> None:
+        self.task, self.world, self.human = trial.task, world, human
+        self.minds: dict[str, Mind] = {HUMAN: human, **robots}
+        self.privileges = {robot.seat: robot.agent.privileges for robot in trial.robots}
+        self.kind = plugins.load("task kind", self.task.kind)
+        self.limit = round(self.task.time_limit / rules.TICK_S)
+        self.mailbox = Mailbox(robots=tuple(robots))
+        self.events: list[Event] = []
+        self.faults: list[Fault] = []
+        self.paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in self.minds}
+
+    def run(self) -> EpisodeLog:
+        self.world.reset(self.task)
+        self._trace()
+        for seat, mind in tuple(self.minds.items()):
+            self._guarded(seat, lambda mind=mind, seat=seat: mind.begin(self._briefing(seat)))
+        met = False
+        while not met and self.world.tick < self.limit:
+            self._tick()
+            met = self.kind.met(self.task, self.world.snapshot())
+        ticks = self.world.tick
+        self.events.append(Event(tick=ticks, seat=HUMAN, kind="success" if met else "timeout"))
+        trust = self.human.rate(met, ticks)
+        return EpisodeLog(
+            events=tuple(self.events), paths=self.paths, ticks=ticks, met=met, trust=trust, faults=tuple(self.faults)
+        )
+
+    def _tick(self) -> None:
+        """Every seat that is asked sees the same moment; only then do their actions take effect."""
+        actions = [(seat, self._ask(seat)) for seat in tuple(self.minds) if self._is_asked(seat)]
+        for seat, action in actions:
+            if action is None:
+                continue
+            if action.say is not None:
+                self._say(seat, action)
+            if self.world.idle(seat):
+                self.world.start(seat, action.motion)
+        self.events.extend(self.world.advance())
+        self._trace()
+
+    def _is_asked(self, seat: str) -> bool:
+        return self.world.idle(seat) or self.mailbox.changed(seat)
+
+    def _ask(self, seat: str) -> Action | None:
+        observation, mind = self._observe(seat), self.minds[seat]
+        return self._guarded(seat, lambda: _checked(mind.act(observation)))
+
+    def _observe(self, seat: str) -> Observation:
+        world, tick = self.world, self.world.tick
+        inbox = self.mailbox.inbox(seat)
+        if inbox:
+            self.events.extend(self.mailbox.shown(tick))
+        return Observation(
+            tick=tick,
+            pose=world.pose(seat),
+            idle=world.idle(seat),
+            senses=world.senses(seat),
+            room=world.room(seat),
+            holding=world.holding(seat),
+            outcome=world.outcome(seat),
+            inbox=inbox,
+            receipt=self.mailbox.receipt(seat),
+            truth=world.truth() if "object_poses" in self.privileges.get(seat, ()) else (),
+        )
+
+    def _say(self, seat: str, action: Action) -> None:
+        tick, say = self.world.tick, action.say
+        if isinstance(say, Send):
+            self.events.extend(self.mailbox.send(tick, seat, say, self.world.frame(seat)))
+        elif say is not None:
+            self.events.extend(self.mailbox.reply(tick, seat, say))
+
+    def _briefing(self, seat: str) -> Briefing:
+        goal, granted = self.task.goal, self.privileges.get(seat, ())
+        return Briefing(
+            seat=seat,
+            instruction=self.task.instruction,
+            target=goal.target,
+            destination=goal.destination,
+            relation=goal.relation,
+            body=self.world.bodies[seat],
+            tick_s=rules.TICK_S,
+            time_limit=self.task.time_limit,
+            teammates=tuple(other for other in self.minds if other != seat),
+            privileges=granted,
+            house=self.world.house if "house_map" in granted else None,
+        )
+
+    def _guarded(self, seat: str, call: Callable[[], _T]) -> _T | None:
+        """A robot's failure ends its part in the trial, not the trial; a human model's failure is ours to see."""
+        if seat == HUMAN:
+            return call()
+        try:
+            return call()
+        except Exception as error:
+            self._retire(seat, error)
+            return None
+
+    def _retire(self, seat: str, error: Exception) -> None:
+        """Take a failed mind out of the trial: its body stays where it is, and what it did wrong is on record."""
+        tick, kind = self.world.tick, str(getattr(error, "kind", type(error).__name__))
+        detail = str(getattr(error, "detail", "")) or "".join(traceback.format_exception(error, limit=-4))
+        self.faults.append(Fault(seat=seat, kind=kind, tick=tick, detail=detail))
+        self.events.append(Event(tick=tick, seat=seat, kind="fault", data={"kind": kind}))
+        del self.minds[seat]
+
+    def _trace(self) -> None:
+        if self.world.tick % rules.LOG_EVERY_TICKS:
+            return
+        for seat, path in self.paths.items():
+            pose = self.world.pose(seat)
+            path.append((round(pose.x * 1000), round(pose.y * 1000), round(pose.yaw * 1000)))
+
+
+def _checked(action: object) -> Action:
+    if not isinstance(action, Action):
+        raise TypeError(f"act must return an hthor.types.Action, got {type(action).__name__}")
+    return action

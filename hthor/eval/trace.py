@@ -1,0 +1,57 @@
+"""Reading one trial's log for drawing: where a seat was, what was said and what came of it; draws nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hthor import rules
+from hthor.episode import EpisodeLog
+from hthor.types import HUMAN, Event, Vec2
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# Okabe and Ito's palette, which colour-blind readers can tell apart.
+PERSON, ROBOTS, TARGET, MESSAGE, FAILED = "#0072B2", ("#D55E00", "#CC79A7", "#E69F00"), "#009E73", "#7a3b8f", "#b00020"
+INK = "#2b2f36"
+
+ACTS = {"picked": ("^", "picks"), "placed": ("v", "places"), "opened": ("D", "opens")}
+"""Marker and verb of each deed that is drawn."""
+
+
+def colour(seat: str) -> str:
+    """The colour of a seat's path."""
+    if seat == HUMAN:
+        return PERSON
+    return ROBOTS[(int(seat.removeprefix("robot") or 1) - 1) % len(ROBOTS)]
+
+
+def points(log: EpisodeLog, seat: str) -> np.ndarray:
+    """(N, 2) [m], where the seat was at every logged tick."""
+    return np.array(log.paths[seat], dtype=float)[:, :2] / 1000.0
+
+
+def at(log: EpisodeLog, seat: str, tick: int) -> Vec2:
+    """Where the seat was at ``tick`` [m], to the nearest logged pose."""
+    path = log.paths[seat]
+    x, y, _ = path[min(tick // rules.LOG_EVERY_TICKS, len(path) - 1)]
+    return (x / 1000.0, y / 1000.0)
+
+
+def messages(log: EpisodeLog) -> list[Event]:
+    """The messages that were sent, in order."""
+    return [event for event in log.events if event.kind == "sent"]
+
+
+def fate(log: EpisodeLog, message: int) -> str:
+    """What became of a message: confirmed, declined, covered, shown or sent."""
+    kinds = {event.kind for event in log.events if event.data.get("message") == message}
+    return next((kind for kind in ("confirmed", "declined", "covered", "shown") if kind in kinds), "sent")
+
+
+def badge(ax: Axes, place: Vec2, text: str) -> None:
+    """A message's number in a disc."""
+    box = {"boxstyle": "circle,pad=0.22", "facecolor": MESSAGE, "edgecolor": "white", "lw": 0.8}
+    ax.text(*place, text, fontsize=7, color="white", weight="bold", ha="center", va="center", bbox=box, zorder=14)

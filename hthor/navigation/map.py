@@ -1,0 +1,127 @@
+"""A map that grows as range scans come in; knows nothing of bodies, goals or what the obstacles are."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hthor.navigation import kernels
+from hthor.types import Scan
+
+CELL_M = 0.05
+UNKNOWN, FREE, OCCUPIED = 0, 1, 2
+_CHUNK = 64
+
+
+class GridMap:
+    """Cells of 5 cm that are unknown, free or occupied, on a lattice fixed to the house frame.
+
+    Attributes:
+        cells: (ny, nx) uint8, row = y. Replaced by a larger array when the map grows.
+        near: (ny, nx) uint8, 1 where a free cell was looked at from close by (see `integrate`).
+        left, bottom: lattice index of column 0 and row 0; cell (row, column) has its centre at
+            ``((left + column + 0.5) * 0.05, (bottom + row + 0.5) * 0.05)`` metres.
+        bounds: (4,) int64, first and last known column, first and last known row.
+        version: grows with every change.
+
+    Occupied cells stay occupied: furniture does not walk, and bodies are not in range scans.
+    """
+
+    def __init__(self, x: float = 0.0, y: float = 0.0, extent_m: float = 12.8) -> None:
+        """Start around (``x``, ``y``) [m] with ``extent_m`` metres either way in all; the map grows when needed."""
+        half = math.ceil(extent_m / CELL_M / 2.0)
+        self.left, self.bottom = math.floor(x / CELL_M) - half, math.floor(y / CELL_M) - half
+        self.cells: NDArray[np.uint8] = np.zeros((2 * half, 2 * half), dtype=np.uint8)
+        self.near: NDArray[np.uint8] = np.zeros_like(self.cells)
+        self.bounds: NDArray[np.int64] = np.array([half, half, half, half], dtype=np.int64)
+        self.version = 0
+        self._obstacles: NDArray[np.int32] = np.empty((1024, 2), dtype=np.int32)
+        self._count = 0
+
+    @property
+    def obstacles(self) -> NDArray[np.int32]:
+        """(N, 2) lattice indices (x, y) of the occupied cells in the order they were found; only ever appended to."""
+        return self._obstacles[: self._count]
+
+    def integrate(self, scan: Scan, look_m: float = 1.1, look_rad: float = math.pi) -> None:
+        """Add what a range scan shows.
+
+        Args:
+            scan: bearings must run upwards.
+            look_m: free cells within this distance count as looked at from close by.
+            look_rad: and within this angle either side of the heading.
+        """
+        origin, margin = scan.origin, scan.limit + 0.2
+        self._cover(origin.x - margin, origin.y - margin, origin.x + margin, origin.y + margin)
+        self._reserve(16 * len(scan.ranges) + 64)
+        self._count = kernels.integrate(
+            self.cells,
+            self.near,
+            self.left,
+            self.bottom,
+            CELL_M,
+            origin.x,
+            origin.y,
+            origin.yaw,
+            np.ascontiguousarray(scan.bearings, dtype=np.float64),
+            np.ascontiguousarray(scan.ranges, dtype=np.float64),
+            scan.limit,
+            look_m,
+            look_rad,
+            self.bounds,
+            self._obstacles,
+            self._count,
+        )
+        self.version += 1
+
+    def mark_blocked(self, x: float, y: float) -> None:
+        """Make the cell at (``x``, ``y``) [m] occupied: something stopped the body there that no scan showed."""
+        self._cover(x, y, x, y)
+        self._reserve(1)
+        column, row = self._index(x, y)
+        if self.cells[row, column] == OCCUPIED:
+            return
+        self.cells[row, column] = OCCUPIED
+        self._obstacles[self._count] = (column + self.left, row + self.bottom)
+        self._count += 1
+        box = self.bounds
+        box[0], box[1] = min(int(box[0]), column), max(int(box[1]), column)
+        box[2], box[3] = min(int(box[2]), row), max(int(box[3]), row)
+        self.version += 1
+
+    def at(self, x: float, y: float) -> int:
+        """State of the cell at (``x``, ``y``) [m]; `UNKNOWN` outside the map."""
+        column, row = self._index(x, y)
+        if not (0 <= row < self.cells.shape[0] and 0 <= column < self.cells.shape[1]):
+            return UNKNOWN
+        return int(self.cells[row, column])
+
+    def _index(self, x: float, y: float) -> tuple[int, int]:
+        return math.floor(x / CELL_M) - self.left, math.floor(y / CELL_M) - self.bottom
+
+    def _reserve(self, room: int) -> None:
+        if self._count + room > len(self._obstacles):
+            larger = np.empty((2 * (self._count + room), 2), dtype=np.int32)
+            larger[: self._count] = self.obstacles
+            self._obstacles = larger
+
+    def _cover(self, x0: float, y0: float, x1: float, y1: float) -> None:
+        """Grow by whole chunks until the rectangle [m] lies inside, one cell of border included."""
+        ny, nx = self.cells.shape
+        column0, row0 = self._index(x0, y0)
+        column1, row1 = self._index(x1, y1)
+        left, bottom = _chunks(1 - column0), _chunks(1 - row0)
+        right, top = _chunks(column1 + 2 - nx), _chunks(row1 + 2 - ny)
+        if not (left or bottom or right or top):
+            return
+        widths = ((bottom, top), (left, right))
+        self.cells, self.near = np.pad(self.cells, widths), np.pad(self.near, widths)
+        self.bounds += np.array([left, left, bottom, bottom], dtype=np.int64)
+        self.left, self.bottom = self.left - left, self.bottom - bottom
+        self.version += 1
+
+
+def _chunks(missing: int) -> int:
+    return 0 if missing <= 0 else math.ceil(missing / _CHUNK) * _CHUNK
