@@ -20,13 +20,14 @@ def fridge(size: Vec3, *, body: Rgba, inner: Rgba) -> Form:
     w, d, h = size
     t, leaf, grip = min(0.05, 0.1 * w, 0.05 * h), min(0.06, 0.12 * d), min(0.03, 0.06 * d)
     front = d - leaf - grip
-    step, board = (h - 2 * t) / 3, min(0.015, 0.02 * h)
-    floors = (t, t + step, t + 2 * step)
+    low, board = min(0.15, 0.09 * h), min(0.015, 0.02 * h)
+    step = (h - t - low) / 3
+    floors = (low, low + step, low + 2 * step)
     parts = (
         box(size, (0.0, 0.0, 0.0), (w, t, h), body),
         box(size, (0.0, t, 0.0), (t, front, h), body),
         box(size, (w - t, t, 0.0), (w, front, h), body),
-        box(size, (t, t, 0.0), (w - t, front, t), inner),
+        box(size, (t, t, 0.0), (w - t, front, low), inner),
         box(size, (t, t, h - t), (w - t, front, h), inner),
         *(box(size, (t, t, z - board), (w - t, 0.92 * front, z), inner) for z in floors[1:]),
         box(size, (0.0, front, 0.0), (w, front + leaf, h), body, moves=True),
@@ -41,7 +42,9 @@ def fridge(size: Vec3, *, body: Rgba, inner: Rgba) -> Form:
     return Form(parts=parts, surfaces=rests, hinge=hinge)
 
 
-def _basin(size: Vec3, floor: float, rim: float, side: float, back: float, front: float, rgba: Rgba) -> tuple[Part, ...]:
+def _basin(
+    size: Vec3, floor: float, rim: float, side: float, back: float, front: float, rgba: Rgba
+) -> tuple[Part, ...]:
     w, d, _ = size
     return (
         box(size, (0.0, 0.0, floor), (w, back, rim), rgba),

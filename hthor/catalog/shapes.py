@@ -195,5 +195,3 @@ def washer(size: Vec3, *, body: Rgba) -> Form:
         box(size, (0.05 * w, d - e, 0.85 * h), (0.95 * w, d - 0.5 * e, 0.95 * h), IRON),
     )
     return Form(parts=parts, surfaces=_top(size))
-
-

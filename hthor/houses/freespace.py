@@ -51,7 +51,9 @@ class FreeSpace:
 
     def __init__(self, house: HouseSpec, radius: float, height: float = 1.8) -> None:
         if not (radius >= 0.0 and height > STEP_M and math.isfinite(radius)):
-            raise HthorError(f"a body needs radius >= 0 and height > {STEP_M} m, got radius {radius} and height {height}")
+            raise HthorError(
+                f"a body needs radius >= 0 and height > {STEP_M} m, got radius {radius} and height {height}"
+            )
         if not house.rooms:
             raise HthorError(f"house '{house.id}' has no rooms, so nobody can stand anywhere; add a room to its file")
         self.house, self.radius, self.height, self.cell = house, radius, height, rules.GRID_M
@@ -121,16 +123,15 @@ class FreeSpace:
 
     def component(self, x: float, y: float) -> Bools:
         """(ny, nx) mask of the cells that can be reached from the place; all false where it is not free."""
-        row, column = self.cell_of(x, y)
-        for j, i in ((row, column), (row - 1, column), (row, column - 1), (row - 1, column - 1)):
-            ny, nx = self.free.shape
-            if 0 <= j < ny and 0 <= i < nx and self.free[j, i] and self.is_free(x, y):
-                touching = abs(self.centre_of(j, i)[0] - x) + abs(self.centre_of(j, i)[1] - y) < self.cell + _EPS_M
-                if touching:
-                    label = int(self.components[j, i])
-                    mask: Bools = self.components == label
-                    return mask
-        return np.zeros(self.free.shape, dtype=bool)
+        label = self.label(x, y)
+        mask: Bools = (self.components == label) & (label > 0)
+        return mask
+
+    def label(self, x: float, y: float) -> int:
+        """The number of the place's component, 0 where it is not free."""
+        return int(
+            _label_at(self.free, self.components, (x - self.origin[0]) / self.cell, (y - self.origin[1]) / self.cell)
+        )
 
     @functools.cached_property
     def components(self) -> NDArray[np.int32]:
@@ -146,7 +147,7 @@ class FreeSpace:
 
 
 def obstacles(house: HouseSpec, height: float) -> Floats:
-    """(N, 5) rectangles that stand in the way of a body ``height`` [m] tall: centre x, y, half width, half depth, yaw."""
+    """(N, 5) rectangles in the way of a body ``height`` [m] tall: centre x, y, half width, half depth [m], yaw."""
     slabs = [*solids.walls(house), *(slab for _, slab in solids.furniture(house))]
     rows = [
         (*slab.centre, slab.size[0] / 2, slab.size[1] / 2, slab.yaw)
@@ -254,11 +255,22 @@ def _stand(free: Any, x: float, y: float) -> bool:
     j0, j1 = math.floor(y - eps), math.floor(y + eps)
     a, d = _cell(free, i0, j0), _cell(free, i1, j1)
     if i0 == i1 or j0 == j1:
-        return a or d
+        return bool(a or d)
     b, c = _cell(free, i1, j0), _cell(free, i0, j1)
     if a == d and b == c and a != b:
         return False
-    return a or b or c or d
+    return bool(a or b or c or d)
+
+
+@numba.njit(cache=True)
+def _label_at(free: Any, labels: Any, x: float, y: float) -> int:
+    eps = 2e-5
+    if _stand(free, x, y):
+        for j in (math.floor(y - eps), math.floor(y + eps)):
+            for i in (math.floor(x - eps), math.floor(x + eps)):
+                if _cell(free, i, j):
+                    return int(labels[j, i])
+    return 0
 
 
 @numba.njit(cache=True)
@@ -273,7 +285,6 @@ def _walk(free: Any, ax: float, ay: float, bx: float, by: float) -> float:
         return 1.0
     far = 1e30
     sx, sy = (1 if dx > 0.0 else -1), (1 if dy > 0.0 else -1)
-    # A direction that drifts less than the slack over the whole segment never crosses a line of the grid in earnest.
     nextx = (math.floor(ax) + 1.0) if sx > 0 else (math.ceil(ax) - 1.0)
     nexty = (math.floor(ay) + 1.0) if sy > 0 else (math.ceil(ay) - 1.0)
     tx = (nextx - ax) / dx if dx != 0.0 else far
@@ -285,11 +296,14 @@ def _walk(free: Any, ax: float, ay: float, bx: float, by: float) -> float:
         u = min(tx, ty, 1.0)
         if (u - t) * length > eps:
             m = 0.5 * (t + u)
-            if not _stand(free, ax + m * dx, ay + m * dy):
+            x, y = ax + m * dx, ay + m * dy
+            i, j = math.floor(x), math.floor(y)
+            if not (_cell(free, i, j) or _stand(free, x, y)):
                 return t
         if u >= 1.0:
             break
-        if not _stand(free, ax + u * dx, ay + u * dy):
+        x, y = ax + u * dx, ay + u * dy
+        if abs(x - round(x)) <= eps and abs(y - round(y)) <= eps and not _stand(free, x, y):
             return t
         if tx == u:
             tx += stepx

@@ -1,4 +1,4 @@
-"""What stands in the way: walls cut at their doorways and furniture, as upright boxes; knows nothing of bodies or grids."""
+"""What stands in the way, as upright boxes: walls cut at doorways, and furniture; knows nothing of bodies."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from hthor.types import HouseSpec, Opening, Thing, Vec2, Wall
 WALL_M = 0.10
 """Thickness of every wall, half of it on either side of the line that the house file gives."""
 _LINE_M = 0.08
-"""How far a doorway's ends may lie from a wall's line and still cut it: the two faces of a wall may be a little apart."""
+"""How far a doorway's ends may lie from a wall's line and still cut it, for a wall's two faces may be apart."""
 _SHORT_M = 1e-6
 
 
 class Slab(NamedTuple):
-    """An upright box: ``centre`` and full ``size`` [m] of its footprint, turned by ``yaw``, from ``low`` to ``high``."""
+    """An upright box: ``centre`` and full ``size`` of its footprint, its ``yaw``, and how high it reaches, all [m]."""
 
     centre: Vec2
     size: Vec2
@@ -104,3 +104,21 @@ def _slab(wall: Wall, along: Vec2, begin: float, end: float, low: float, high: f
         middle = (begin + end) / 2
         centre = (wall.a[0] + along[0] * middle, wall.a[1] + along[1] * middle)
         yield Slab(centre, (end - begin, WALL_M), math.atan2(along[1], along[0]), low, high)
+
+
+def overlap(one: Slab, two: Slab) -> float:
+    """How deep [m] two boxes are in one another, by the least sideways shift that parts them; 0 when they are apart."""
+    if one.low >= two.high or two.low >= one.high:
+        return 0.0
+    depth = math.inf
+    dx, dy = two.centre[0] - one.centre[0], two.centre[1] - one.centre[1]
+    for yaw in (one.yaw, one.yaw + math.pi / 2, two.yaw, two.yaw + math.pi / 2):
+        ux, uy = math.cos(yaw), math.sin(yaw)
+        depth = min(depth, _spread(one, ux, uy) + _spread(two, ux, uy) - abs(dx * ux + dy * uy))
+    return max(depth, 0.0)
+
+
+def _spread(slab: Slab, ux: float, uy: float) -> float:
+    """Half the extent of a footprint along a unit direction."""
+    cos, sin = math.cos(slab.yaw), math.sin(slab.yaw)
+    return (abs(cos * ux + sin * uy) * slab.size[0] + abs(cos * uy - sin * ux) * slab.size[1]) / 2

@@ -75,7 +75,7 @@ def integrate(
 ) -> int:
     """March every beam, and beams between neighbours so that no cell is skipped; returns the count of obstacles."""
     px, py = x / cell - left, y / cell - bottom
-    row, column = int(math.floor(py)), int(math.floor(px))
+    row, column = math.floor(py), math.floor(px)
     for j in range(row - 2, row + 3):
         for i in range(column - 2, column + 3):
             _open(cells, j, i, bounds)
@@ -91,13 +91,13 @@ def integrate(
         t = 0.0
         end = reach - 0.3 if hit else reach
         while t < end:
-            j, i = int(math.floor(py + t * uy)), int(math.floor(px + t * ux))
+            j, i = math.floor(py + t * uy), math.floor(px + t * ux)
             _open(cells, j, i, bounds)
             if looking and t <= look:
                 near[j, i] = 1
             t += 1.0
         if hit:
-            j, i = int(math.floor(py + (reach + 0.2) * uy)), int(math.floor(px + (reach + 0.2) * ux))
+            j, i = math.floor(py + (reach + 0.2) * uy), math.floor(px + (reach + 0.2) * ux)
             count = _fill(cells, j, i, left, bottom, bounds, found, count)
         # Between this beam and the next: free as far as the shorter one, from where a gap could open.
         m = k + 1 if k + 1 < n else 0
@@ -106,13 +106,13 @@ def integrate(
             continue
         other = ranges[m] / cell
         shorter = min(reach, other) - 1.0
-        between = int(math.ceil(shorter * gap)) - 1
+        between = math.ceil(shorter * gap) - 1
         for s in range(1, between + 1):
             angle = yaw + bearings[k] + gap * s / (between + 1)
             vx, vy = math.cos(angle), math.sin(angle)
             t = 1.0 / gap
             while t < shorter:
-                _open(cells, int(math.floor(py + t * vy)), int(math.floor(px + t * vx)), bounds)
+                _open(cells, math.floor(py + t * vy), math.floor(px + t * vx), bounds)
                 t += 1.0
         # Two hits closer together than any body is wide belong to one obstacle.
         if hit and ranges[m] < limit - 1e-6:
@@ -123,7 +123,7 @@ def integrate(
             if 1.0 < apart < 6.0:
                 for s in range(1, int(apart) + 1):
                     f = s / (int(apart) + 1)
-                    j, i = int(math.floor(ay + f * (by - ay))), int(math.floor(ax + f * (bx - ax)))
+                    j, i = math.floor(ay + f * (by - ay)), math.floor(ax + f * (bx - ax))
                     count = _fill(cells, j, i, left, bottom, bounds, found, count)
     return count
 
@@ -198,8 +198,8 @@ def search(
             cost[j, i] = FAR
             came[j, i] = 0
     heads = np.full(BUCKETS, -1, dtype=np.int32)
-    slack = int(math.ceil(within * 108.24)) if within > 0.0 else 0
-    gx, gy = int(math.floor(goal_x)), int(math.floor(goal_y))
+    slack = math.ceil(within * 108.24) if within > 0.0 else 0
+    gx, gy = math.floor(goal_x), math.floor(goal_y)
     near2 = within * within
     used, waiting = 1, 1
     item[0] = row * nx + column
@@ -226,7 +226,7 @@ def search(
         if aimed:
             ex, ey = i + 0.5 - goal_x, j + 0.5 - goal_y
             if (i == gx and j == gy) or ex * ex + ey * ey <= near2:
-                return here
+                return int(here)
         base = cost[j, i]
         for d in range(8):
             a, b = i + _DX[d], j + _DY[d]
@@ -263,7 +263,7 @@ def line_cost(cells: Any, level: Any, optimistic: bool, ax: float, ay: float, bx
     tight = 0
     for s in range(1, n + 1):
         f = s / n
-        i, j = int(math.floor(ax + f * (bx - ax))), int(math.floor(ay + f * (by - ay)))
+        i, j = math.floor(ax + f * (bx - ax)), math.floor(ay + f * (by - ay))
         if not (0 <= i < nx and 0 <= j < ny) or level[j, i] >= 2 or not (optimistic or cells[j, i] == 1):
             return -1.0
         tight += level[j, i]
@@ -283,7 +283,8 @@ def pull(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep:
         best, misses = here + 1, 0
         for k in range(here + 2, n):
             line = line_cost(cells, level, optimistic, points[here, 0], points[here, 1], points[k, 0], points[k, 1])
-            if line >= 0.0 and line <= cost[k] - cost[here] + 30.0:
+            spare = 100.0 if here == 0 or k == n - 1 else 30.0  # the ends lie anywhere in their cells
+            if line >= 0.0 and line <= cost[k] - cost[here] + spare:
                 best, misses = k, 0
             else:
                 misses += 1
@@ -295,16 +296,14 @@ def pull(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep:
     return kept
 
 
-@numba.njit(
-    "int64(uint8[:,::1], uint8[:,::1], int32[:,::1], int64[::1], uint8[:,::1], int32[::1], int64[:,::1])", cache=True
-)
-def clusters(cells: Any, level: Any, cost: Any, window: Any, mask: Any, stack: Any, out: Any) -> int:
+@numba.njit("int64(int32[:,::1], int64[::1], uint8[:,::1], int32[::1], int64[:,::1])", cache=True)
+def clusters(cost: Any, window: Any, mask: Any, stack: Any, out: Any) -> int:
     """Group the marked cells that were reached; every row of ``out`` is row, column, size, least cost.
 
     ``mask`` is used up. The cell given is the member nearest to the middle of its group.
     """
     x0, x1, y0, y1 = window[0], window[1], window[2], window[3]
-    ny, nx = cells.shape
+    nx = cost.shape[1]
     groups = 0
     for row in range(y0, y1 + 1):
         for column in range(x0, x1 + 1):
@@ -357,3 +356,17 @@ def mark(cells: Any, level: Any, near: Any, cost: Any, window: Any, edges: bool,
                 mask[j, i] = 1 if unknown else 0
             else:
                 mask[j, i] = 1 if level[j, i] == 1 and near[j, i] == 0 else 0
+
+
+@numba.njit("int64(int8[:,::1], int64, int64, int64[::1])", cache=True)
+def trace(came: Any, start: int, end: int, out: Any) -> int:
+    """Flat indices from ``end`` back to ``start`` into ``out``; returns how many."""
+    nx = came.shape[1]
+    here, count = end, 0
+    out[0] = here
+    while here != start and count < len(out) - 1:
+        d = came[here // nx, here % nx] & 7
+        here -= _DY[d] * nx + _DX[d]
+        count += 1
+        out[count] = here
+    return count + 1

@@ -1,0 +1,51 @@
+"""Every kind of thing once: size, mass, affordances, form; knows nothing of houses, tasks or engines."""
+
+from __future__ import annotations
+
+import re
+
+from hthor.catalog import background, receptacles, targets
+from hthor.catalog.kind import Family, Form, Kind
+from hthor.errors import UnknownName
+from hthor.types import Vec3
+
+__all__ = ["RECEPTACLES", "TARGETS", "Family", "Form", "Kind", "kind", "names", "own_asset"]
+
+RECEPTACLES = tuple(kind.name for kind in receptacles.KINDS)
+"""The benchmark's eight receptacles, by name."""
+TARGETS = tuple(kind.name for kind in targets.KINDS)
+"""The benchmark's six target objects, by name."""
+
+_KINDS = {kind.name: kind for kind in (*receptacles.KINDS, *targets.KINDS, *background.KINDS)}
+_ASSET = re.compile(r"hthor_([a-z_]+?)(?:_(\d+)x(\d+)x(\d+))?")
+
+
+def names() -> tuple[str, ...]:
+    """Every kind's name: receptacles, targets, background."""
+    return tuple(_KINDS)
+
+
+def kind(name: str) -> Kind:
+    """The kind of that name.
+
+    Raises:
+        UnknownName: when there is none.
+    """
+    try:
+        return _KINDS[name]
+    except KeyError:
+        raise UnknownName("kind of thing", name, _KINDS) from None
+
+
+def own_asset(asset: str) -> tuple[Kind, Vec3] | None:
+    """Kind and size [m] of one of our own asset ids, None for an id that is not ours.
+
+    Ours are ``hthor_<kind>``, and ``hthor_<kind>_<width>x<depth>x<height>`` with whole centimetres for another size.
+    """
+    match = _ASSET.fullmatch(asset)
+    if match is None or match[1] not in _KINDS:
+        return None
+    found = _KINDS[match[1]]
+    if match[2] is None:
+        return found, found.size
+    return found, (int(match[2]) / 100.0, int(match[3]) / 100.0, int(match[4]) / 100.0)

@@ -1,0 +1,175 @@
+"""Foreign assets: which of our kinds stands in for each ProcTHOR object type; ships no asset and knows no house."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from msgspec import Struct
+
+from hthor.errors import HouseError
+from hthor.types import Vec3
+
+KIND_OF = {
+    "AlarmClock": "alarm_clock",
+    "Apple": "apple",
+    "ArmChair": "armchair",
+    "BaseballBat": "bat",
+    "BasketBall": "basketball",
+    "Bathtub": "bathtub",
+    "BathtubBasin": "bathtub",
+    "Bed": "bed",
+    "Blinds": "curtain",
+    "Book": "book",
+    "Boots": "boots",
+    "Bottle": "bottle",
+    "Bowl": "bowl",
+    "Box": "box",
+    "Bread": "bread",
+    "ButterKnife": "cutlery",
+    "CD": "disc",
+    "Candle": "candle",
+    "Cart": "cart",
+    "CellPhone": "phone",
+    "Chair": "chair",
+    "Cloth": "cloth",
+    "ClothesDryer": "washing_machine",
+    "CoffeeMachine": "coffee_machine",
+    "CoffeeTable": "coffee_table",
+    "CounterTop": "counter_top",
+    "CreditCard": "card",
+    "Cup": "cup",
+    "Desk": "desk",
+    "DeskLamp": "lamp",
+    "Desktop": "computer",
+    "DiningTable": "dining_table",
+    "DishSponge": "sponge",
+    "DogBed": "dog_bed",
+    "Dresser": "dresser",
+    "Dumbbell": "dumbbell",
+    "Egg": "egg",
+    "Faucet": "faucet",
+    "FloorLamp": "floor_lamp",
+    "Footstool": "stool",
+    "Fork": "cutlery",
+    "Fridge": "fridge",
+    "GarbageBag": "bin",
+    "GarbageCan": "bin",
+    "HandTowel": "towel",
+    "HandTowelHolder": "towel_holder",
+    "HousePlant": "house_plant",
+    "Kettle": "kettle",
+    "KeyChain": "keys",
+    "Knife": "cutlery",
+    "Ladle": "cooking_spoon",
+    "Laptop": "laptop",
+    "LaundryHamper": "laundry_hamper",
+    "Lettuce": "lettuce",
+    "LightSwitch": "light_switch",
+    "Microwave": "microwave",
+    "Mug": "mug",
+    "Newspaper": "newspaper",
+    "Ottoman": "ottoman",
+    "Painting": "painting",
+    "Pan": "pan",
+    "PaperTowelRoll": "paper_roll",
+    "Pen": "pen",
+    "Pencil": "pen",
+    "PepperShaker": "shaker",
+    "Pillow": "pillow",
+    "Plate": "plate",
+    "Plunger": "brush",
+    "Pot": "pot",
+    "Potato": "potato",
+    "RemoteControl": "remote_control",
+    "RoomDecor": "furniture",
+    "Safe": "safe",
+    "SaltShaker": "shaker",
+    "ScrubBrush": "brush",
+    "ShelvingUnit": "shelf",
+    "Shelf": "shelf",
+    "ShowerCurtain": "curtain",
+    "ShowerHead": "shower_head",
+    "SideTable": "side_table",
+    "Sink": "sink",
+    "SoapBar": "soap",
+    "SoapBottle": "soap_bottle",
+    "Sofa": "sofa",
+    "Spatula": "cooking_spoon",
+    "Spoon": "cutlery",
+    "SprayBottle": "soap_bottle",
+    "Statue": "statue",
+    "Stool": "stool",
+    "TVStand": "tv_stand",
+    "TableTopDecor": "statue",
+    "TeddyBear": "teddy_bear",
+    "Television": "television",
+    "TennisRacket": "racket",
+    "TissueBox": "tissue_box",
+    "Toaster": "toaster",
+    "Toilet": "toilet",
+    "ToiletPaper": "toilet_paper",
+    "ToiletPaperHanger": "towel_holder",
+    "Tomato": "tomato",
+    "Towel": "towel",
+    "TowelHolder": "towel_holder",
+    "VacuumCleaner": "vacuum_cleaner",
+    "Vase": "vase",
+    "WashingMachine": "washing_machine",
+    "Watch": "watch",
+    "WateringCan": "watering_can",
+    "WineBottle": "bottle",
+}
+"""Object types without a row become "object" when they can be picked up, else "furniture"."""
+
+
+class Asset(Struct, frozen=True, kw_only=True):
+    """A foreign asset: the kind that stands in for it, and its size (width, depth, height) [m]."""
+
+    kind: str
+    size: Vec3
+
+
+class _Box(Struct):
+    x: float
+    y: float
+    z: float
+
+
+class _Row(Struct, rename="camel"):
+    asset_id: str
+    object_type: str
+    bounding_box: _Box | None = None
+    primary_property: str | None = None
+
+
+def kind_of(object_type: str, *, pickable: bool) -> str:
+    """The name of the kind that stands in for a ProcTHOR object type."""
+    return KIND_OF.get(object_type, "object" if pickable else "furniture")
+
+
+def read(path: Path) -> dict[str, Asset]:
+    """Every asset of a ProcTHOR asset database (a JSON object: type to list of assets), by asset id.
+
+    Assets without a bounding box are left out.
+
+    Raises:
+        HouseError: when the file is absent or is no such database.
+    """
+    try:
+        types: dict[str, list[_Row]] = msgspec.json.decode(path.read_bytes(), type=dict[str, list[_Row]])
+    except OSError as error:
+        raise HouseError(str(path), "$", f"cannot read the asset database: {error.strerror or error}") from None
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise HouseError(str(path), "$", f"not a ProcTHOR asset database: {error}") from None
+    rows = (row for group in types.values() for row in group)
+    return {row.asset_id: _asset(path, row, row.bounding_box) for row in rows if row.bounding_box is not None}
+
+
+def _asset(path: Path, row: _Row, box: Any) -> Asset:
+    size = (box.x, box.z, box.y)  # y is up there
+    if not all(0.0 < extent < 100.0 for extent in size):
+        problem = f"a size must be positive and below 100 m, got {size}"
+        raise HouseError(str(path), f"{row.object_type}: {row.asset_id}.boundingBox", problem)
+    return Asset(kind=kind_of(row.object_type, pickable=row.primary_property == "CanPickup"), size=size)

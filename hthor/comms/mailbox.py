@@ -1,0 +1,149 @@
+"""The one mailbox of a trial: robots send, the person confirms or declines; knows nothing of worlds or minds.
+
+A message lives as sent, then shown, and ends as confirmed, declined or covered; one that nobody answers stays sent or
+shown. At most one message is open: a new one, from whichever robot, covers it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from hthor import rules
+from hthor.comms import text
+from hthor.types import HUMAN, Event, Message, Receipt, Reply, Send, Status, Vec3
+
+_OPEN = ("sent", "shown")
+_NAME_MAX = 80
+
+
+class Mailbox:
+    """Keeps every message of a trial. Nothing that a mind can say makes it raise: what it cannot take, it refuses.
+
+    Args:
+        robots: the seats that may send.
+    """
+
+    def __init__(self, robots: Sequence[str]) -> None:
+        self._robots = tuple(robots)
+        self._messages: list[Message] = []
+        self._status: list[Receipt] = []
+        self._last: dict[str, int] = {}
+        self._news: set[str] = set()
+
+    def send(self, tick: int, sender: str, send: Send, image: Callable[[], Any] | None = None) -> tuple[Event, ...]:
+        """Put a message in the person's inbox, over the one that is open.
+
+        Args:
+            image: renders the sender's own frame of this tick when called; it is not called here.
+
+        Returns:
+            "covered" for the message that was open, then "sent"; or one "refused" with its reason.
+        """
+        reason = self._objection(sender, send)
+        if reason:
+            return (self._refused(tick, sender, reason),)
+        events = self._cover(tick, sender)
+        number = len(self._messages)
+        written, cut = text.tidy(send.text, rules.TEXT_MAX)
+        name, _ = text.tidy(send.object, _NAME_MAX)
+        position = None if send.position is None else text.point(send.position)
+        self._messages.append(
+            Message(id=number, sender=sender, tick=tick, text=written, object=name, position=position, image=image)
+        )
+        self._status.append(Receipt(message=number, status="sent", tick=tick))
+        self._last[sender] = number
+        self._news.update((HUMAN, sender))
+        data: dict[str, Any] = {"message": number, "text": written, "object": name, "position": _plain(position)}
+        if cut:
+            data["cut"] = cut
+        return (*events, Event(tick=tick, seat=sender, kind="sent", data=data))
+
+    def inbox(self, seat: str) -> tuple[Message, ...]:
+        """The open message, for the person; empty for robots. Reading it settles `changed`."""
+        if seat != HUMAN:
+            return ()
+        self._news.discard(seat)
+        number = self._open()
+        return () if number is None else (self._messages[number],)
+
+    def shown(self, tick: int) -> tuple[Event, ...]:
+        """The person was shown the inbox."""
+        number = self._open()
+        if number is None or self._status[number].status != "sent":
+            return ()
+        return (self._turn(tick, number, "shown", HUMAN),)
+
+    def reply(self, tick: int, seat: str, reply: Reply) -> tuple[Event, ...]:
+        """The person's answer to the open message: "confirmed" or "declined", or "refused" with its reason."""
+        reason = self._protest(seat, reply)
+        if reason:
+            return (self._refused(tick, seat, reason, message=reply.message),)
+        return (self._turn(tick, reply.message, "confirmed" if reply.accept else "declined", seat),)
+
+    def receipt(self, seat: str) -> Receipt | None:
+        """What became of the last message of this robot, None before its first. Reading it settles `changed`."""
+        number = self._last.get(seat)
+        if number is None:
+            return None
+        self._news.discard(seat)
+        return self._status[number]
+
+    def changed(self, seat: str) -> bool:
+        """Whether the person's inbox, or the robot's receipt, is news to this seat since it last read it."""
+        return seat in self._news
+
+    @property
+    def messages(self) -> tuple[tuple[Message, Receipt], ...]:
+        """Every message sent so far, with what became of it."""
+        return tuple(zip(self._messages, self._status, strict=True))
+
+    def _open(self) -> int | None:
+        number = len(self._messages) - 1
+        return number if number >= 0 and self._status[number].status in _OPEN else None
+
+    def _cover(self, tick: int, sender: str) -> tuple[Event, ...]:
+        number = self._open()
+        if number is None:
+            return ()
+        return (self._turn(tick, number, "covered", sender, by=number + 1),)
+
+    def _turn(self, tick: int, number: int, status: Status, seat: str, **more: int) -> Event:
+        """Move a message on to its next status."""
+        self._status[number] = Receipt(message=number, status=status, tick=tick)
+        sender = self._messages[number].sender
+        if self._last[sender] == number:
+            self._news.add(sender)
+        return Event(tick=tick, seat=seat, kind=status, data={"message": number, "sender": sender, **more})
+
+    def _objection(self, sender: str, send: Send) -> str:
+        if sender not in self._robots:
+            return f"only robots send messages, this trial's are: {', '.join(self._robots) or 'none'}"
+        written: tuple[Any, Any] = (send.text, send.object)
+        if not all(isinstance(part, str) for part in written):
+            return "text and object must be str"
+        if send.position is not None and text.point(send.position) is None:
+            return "position must be None or three finite numbers x, y, z in metres of the house frame"
+        return ""
+
+    def _protest(self, seat: str, reply: Reply) -> str:
+        if seat != HUMAN:
+            return "only the person replies"
+        number: Any = reply.message
+        if not isinstance(number, int) or isinstance(number, bool) or not isinstance(reply.accept, bool):
+            return "message must be a number and accept a bool"
+        if not 0 <= number < len(self._messages):
+            return "there is no such message"
+        status = self._status[number].status
+        return "" if status in _OPEN else f"the message is already {status}"
+
+    @staticmethod
+    def _refused(tick: int, seat: str, reason: str, message: object = None) -> Event:
+        number = message if isinstance(message, int) else None
+        data = {"reason": reason} if number is None else {"reason": reason, "message": number}
+        return Event(tick=tick, seat=seat, kind="refused", data=data)
+
+
+def _plain(position: Vec3 | None) -> list[float] | None:
+    """Millimetres are all that a log needs of a belief."""
+    return None if position is None else [round(number, 3) for number in position]

@@ -1,0 +1,34 @@
+"""What a robot may write, made fit to be shown and logged; knows nothing of who reads it."""
+
+from __future__ import annotations
+
+import math
+import unicodedata
+from collections.abc import Sequence
+from typing import Any
+
+from hthor.types import Vec3
+
+
+def tidy(text: str, limit: int) -> tuple[str, int]:
+    """The text on one line, without control and formatting characters, at most ``limit`` characters long.
+
+    Returns:
+        the text, and how many characters were cut from its end.
+    """
+    spaced = "".join(" " if char.isspace() else char for char in text)
+    plain = " ".join("".join(char for char in spaced if unicodedata.category(char)[0] != "C").split())
+    plain = unicodedata.normalize("NFC", plain)
+    kept = plain[:limit].rstrip()
+    return kept, len(plain) - len(kept)
+
+
+def point(value: Any) -> Vec3 | None:
+    """The three finite numbers of a position as plain floats, or None when it is something else."""
+    if isinstance(value, (str, bytes)) or not (isinstance(value, Sequence) or hasattr(value, "__array__")):
+        return None
+    try:
+        x, y, z = (float(number) for number in value)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return (x, y, z) if math.isfinite(x) and math.isfinite(y) and math.isfinite(z) else None

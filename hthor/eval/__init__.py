@@ -1,0 +1,1 @@
+"""Running many trials, keeping their logs, scoring and publishing them."""

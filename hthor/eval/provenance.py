@@ -1,0 +1,47 @@
+"""What can move a score, as hashes and version numbers; knows nothing of trials."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import platform
+from collections.abc import Iterator
+from importlib import metadata
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[1]
+_ABOVE = ("cli", "__main__.py", "eval")
+_HASHED_BY_CONTENT = ("houses/data", "tasks/suites")  # each trial names the hash of its own house and suite
+_COUNTED = ("eval/cast.py", "eval/metrics.py")  # the two files of eval that decide what a trial is worth
+_SUFFIXES = (".py", ".json", ".txt", ".xml", ".csv")
+
+
+@functools.cache
+def code_sha256() -> str:
+    """Hash of every file of the package that can move a trial's course or its metrics."""
+    digest = hashlib.sha256()
+    for path in _files():
+        data = path.read_bytes()
+        digest.update(f"{path.relative_to(PACKAGE).as_posix()} {len(data)}\n".encode())
+        digest.update(data)
+    return digest.hexdigest()
+
+
+def _files() -> Iterator[Path]:
+    for path in sorted(PACKAGE.rglob("*")):
+        name = path.relative_to(PACKAGE).as_posix()
+        if path.suffix in _SUFFIXES and (name in _COUNTED or not _left_out(name)):
+            yield path
+
+
+def _left_out(name: str) -> bool:
+    folders = name.split("/")
+    return folders[0] in _ABOVE or "__pycache__" in folders or any(name.startswith(f"{f}/") for f in _HASHED_BY_CONTENT)
+
+
+def versions() -> dict[str, str]:
+    """Versions of hthor, of Python and of the libraries that compute, without importing them."""
+    found = {name: metadata.version(name) for name in ("mujoco", "dm_control", "numba", "numpy")}
+    from hthor import __version__
+
+    return {"hthor": __version__, "python": platform.python_version(), **found}

@@ -1,0 +1,107 @@
+"""One trial as one line of JSON, the same bytes wherever and whenever it is written; knows nothing of files."""
+
+from __future__ import annotations
+
+import zlib
+from typing import Any
+
+import msgspec
+from msgspec import Struct
+
+from hthor import jsonio
+from hthor.episode import EpisodeLog, Fault
+from hthor.eval.metrics import TrialMetrics, measure
+from hthor.types import Event, TrialSpec
+
+_DIGITS = 4  # metres, radians and seconds in events: a tenth of a millimetre
+_encoder = msgspec.json.Encoder(order="deterministic")
+_CHECK = b',"check":"%08x"}\n'
+_CHECK_LENGTH = len(_CHECK % 0)
+
+
+class Record(Struct, frozen=True, kw_only=True):
+    """A trial's specification, everything that happened in it, and its metrics. ``key`` is the hash of ``spec``."""
+
+    key: str
+    spec: TrialSpec
+    metrics: TrialMetrics
+    ticks: int
+    met: bool
+    trust: int | None
+    faults: tuple[Fault, ...]
+    events: tuple[Event, ...]
+    paths: dict[str, list[tuple[int, int, int]]]
+
+    @property
+    def log(self) -> EpisodeLog:
+        """What the umpire left behind, for drawing and for scoring again."""
+        return EpisodeLog(
+            events=self.events, paths=self.paths, ticks=self.ticks, met=self.met, trust=self.trust, faults=self.faults
+        )
+
+
+_decoder = msgspec.json.Decoder(Record)
+
+
+class Damaged(ValueError):
+    """A line that is not the record it was. ``field`` names the place, ``problem`` what is wrong there."""
+
+    def __init__(self, field: str, problem: str) -> None:
+        self.field, self.problem = field, problem
+        super().__init__(f"{field}: {problem}")
+
+
+def key(spec: TrialSpec) -> str:
+    """The trial's name: 16 hexadecimal digits that everything that decides its course goes into."""
+    return jsonio.sha256(spec)[:16]
+
+
+def of(spec: TrialSpec, log: EpisodeLog) -> Record:
+    """The record of a trial that was played."""
+    events = tuple(msgspec.structs.replace(event, data=_rounded(event.data)) for event in log.events)
+    return Record(
+        key=key(spec),
+        spec=spec,
+        metrics=measure(spec, log),
+        ticks=log.ticks,
+        met=log.met,
+        trust=log.trust,
+        faults=log.faults,
+        events=events,
+        paths=log.paths,
+    )
+
+
+def encode(record: Record) -> bytes:
+    """The record's line, with its checksum as the last field and a newline."""
+    body = _encoder.encode(record)[:-1]
+    return body + _CHECK % zlib.crc32(body)
+
+
+def decode(line: bytes) -> Record:
+    """The record of a whole line.
+
+    Raises:
+        Damaged: names the field that is not as it was written.
+    """
+    body, check = line[:-_CHECK_LENGTH], line[-_CHECK_LENGTH:]
+    try:
+        record = _decoder.decode(line)
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:  # ValidationError is a DecodeError
+        problem, _, place = str(error).partition(" - at `")
+        raise Damaged(place.rstrip("`") or "$", problem) from None
+    if check != _CHECK % zlib.crc32(body):
+        raise Damaged("check", f"{check[10:18].decode('ascii', 'replace')} is not the line's checksum")
+    if record.key != key(record.spec):
+        raise Damaged("key", f"'{record.key}' is not the key of the trial in 'spec', '{key(record.spec)}'")
+    return record
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return round(value, _DIGITS) + 0.0  # never -0.0
+    if isinstance(value, dict):
+        return {name: _rounded(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_rounded(part) for part in value]
+    return value

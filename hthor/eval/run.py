@@ -1,0 +1,142 @@
+"""One run from its configuration to its result: claim the folder, play what is missing, score; prints nothing."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import Protocol
+
+from hthor import jsonio
+from hthor.errors import HthorError, RunError
+from hthor.eval import record, runner, score, setup
+from hthor.eval.log import Log
+from hthor.eval.runner import Make
+from hthor.eval.score import Effort, Result
+from hthor.eval.session import Session
+from hthor.eval.setup import Setup
+from hthor.eval.worker import Finished, Played
+
+
+class Watcher(Protocol):
+    """Who wants to know how a run goes."""
+
+    def begin(self, total: int, kept: int) -> None:
+        """The run has ``total`` trials, of which ``kept`` were played by an earlier command."""
+
+    def played(self, met: bool, faulty: bool) -> None:
+        """A trial was played."""
+
+    def beat(self) -> None:
+        """Some time passed."""
+
+    def note(self, text: str) -> None:
+        """Something that the user should read."""
+
+
+class Interrupted(HthorError):
+    """The user stopped the run; what was played is kept."""
+
+    exit_code = 130
+
+
+def evaluate(plan: Setup, sessions: Sequence[Session], make: Make, *, folder: Path, jobs: int, watch: Watcher) -> Result:
+    """Play what a run still lacks, and score it.
+
+    Args:
+        plan: the configuration. sessions: its trials.
+        make: picklable; called in each worker, gives what plays a session.
+        folder: the run's folder; made when absent, finished when it holds a part of this run.
+        jobs: number of worker processes.
+
+    Raises:
+        RunLocked: when another process writes this run.
+        RunError: when the folder holds another run or is damaged, or a worker died again and again.
+        Interrupted: on Ctrl-C or SIGTERM.
+    """
+    began = time.monotonic()
+    with Log(folder) as book:
+        setup.claim(folder, plan)
+        wanted = {record.key(trial): session for session in sessions for trial in session.trials}
+        left = [session for session in sessions if any(record.key(t) not in book.lines for t in session.trials)]
+        watch.begin(len(wanted), len(wanted) - sum(key not in book.lines for key in wanted))
+        if book.torn:
+            watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")
+        effort = _play(book, left, make, jobs, watch) if left else None
+        missing = [key for key in wanted if key not in book.lines]
+        if missing:
+            raise RunError(f"{folder}: {len(missing)} trials were not played, {missing[0]} is one. Run it again.")
+    return _finish(folder, plan, effort and Effort(wall_s=_seconds(time.monotonic() - began), **effort))
+
+
+def _play(book: Log, sessions: Sequence[Session], make: Make, jobs: int, watch: Watcher) -> dict[str, float]:
+    """Play sessions and write down what is new."""
+    cpu_s, new, other = 0.0, 0, 0
+    with _stoppable() as stop:
+        try:
+            for news in runner.perform(sessions, make, jobs=jobs):
+                if isinstance(news, Played):
+                    if book.append(news.key, news.line):
+                        new += 1
+                        watch.played(news.met, news.faulty)
+                    else:
+                        other += book.lines[news.key] != news.line
+                elif isinstance(news, Finished):
+                    cpu_s += news.cpu_s
+                book.sync(due=True)
+                watch.beat()
+                if stop.is_set():
+                    raise Interrupted(f"interrupted after {len(book.lines)} trials; resume with the same command.")
+        except runner.SessionFailed as failure:
+            if failure.detail:
+                jsonio.write(book.path.with_name("error.txt"), failure.detail.encode())
+                raise InternalFailure(f"{failure}. The traceback is in {book.path.with_name('error.txt')}.") from None
+            raise
+    if other:
+        watch.note(f"{other} trials went otherwise when they were played again: something here does not repeat itself")
+    return {"cpu_s": _seconds(cpu_s + sum(os.times()[:2])), "trials": new}
+
+
+class InternalFailure(HthorError):
+    """A trial failed by our own fault."""
+
+    exit_code = 1
+
+
+def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
+    lines, records = score.records(folder, plan)
+    stored = score.load(folder)
+    result = score.summarise(plan, lines, records, effort or (stored.effort if stored else None))
+    if result != stored:
+        score.store(folder, result)
+    return result
+
+
+def _seconds(value: float) -> float:
+    return round(value, 3)
+
+
+@contextmanager
+def _stoppable() -> Iterator[threading.Event]:
+    """Turn the first Ctrl-C or SIGTERM into a flag; a second one ends at once."""
+    flag = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield flag
+        return
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        if flag.is_set():
+            raise KeyboardInterrupt
+        flag.set()
+
+    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield flag
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

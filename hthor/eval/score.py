@@ -1,0 +1,187 @@
+"""A run's result from its log: metrics with intervals, counts and hashes; knows nothing of how trials are played."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from hthor import jsonio
+from hthor.errors import RunError
+from hthor.eval import log, metrics, setup, stats
+from hthor.eval.record import Record
+from hthor.eval.setup import Setup, SuiteRef
+from hthor.eval.stats import Estimate
+from hthor.types import AgentRef
+
+SCHEMA = "hthor.result/1"
+
+
+class Scores(Struct, frozen=True, kw_only=True):
+    """The run's metrics as fractions, seconds and trust points; see `hthor.eval.metrics` for each trial's."""
+
+    sr: Estimate
+    twsr: Estimate
+    adoption: Estimate
+    time_s: Estimate
+    trust: Estimate
+
+
+class Counts(Struct, frozen=True, kw_only=True):
+    """How much there is: trials, distinct tasks, successes, messages sent by robots, and trials with a fault."""
+
+    trials: int
+    tasks: int
+    successes: int
+    messages: int
+    faults: int
+
+
+class Hashes(Struct, frozen=True, kw_only=True):
+    """Hashes of what decides the records, and of the records themselves, whatever their order in the log."""
+
+    run: str
+    human: str
+    rules: str
+    code: str
+    trials: str
+
+
+class Effort(Struct, frozen=True, kw_only=True):
+    """What it took the command that finished the run: time on the wall, CPU time, and how many trials it played."""
+
+    wall_s: float
+    cpu_s: float
+    trials: int
+
+
+class Result(Struct, frozen=True, kw_only=True):
+    """The run's `result.json`."""
+
+    schema: str = SCHEMA
+    agent: AgentRef
+    robot: str
+    human: str
+    suite: SuiteRef
+    seed: int
+    participants: int
+    metrics: Scores
+    by_kind: dict[str, Scores]
+    counts: Counts
+    versions: dict[str, str]
+    hashes: Hashes
+    effort: Effort | None = None
+
+
+def records(folder: Path, plan: Setup) -> tuple[list[bytes], list[Record]]:
+    """Every line of a run's log and its record, in the order of people and their trials.
+
+    Raises:
+        RunError: when a line is damaged, or is a trial of another run.
+    """
+    found = sorted(log.read(folder / "trials.jsonl"), key=lambda pair: (pair[1].spec.participant, pair[1].spec.index))
+    for _, record in found:
+        _check_origin(folder, record, plan)
+    if len({record.key for _, record in found}) < len(found):
+        raise RunError(f"{folder / 'trials.jsonl'}: the same trial is there twice. Delete one of the two lines.")
+    return [line for line, _ in found], [record for _, record in found]
+
+
+def _check_origin(folder: Path, record: Record, plan: Setup) -> None:
+    spec = record.spec
+    pairs = {
+        "seed": (spec.seed, plan.seed),
+        "human_sha256": (spec.human_sha256, plan.human_sha256),
+        "suite_sha256": (spec.suite_sha256, plan.suite.sha256),
+        "rules_sha256": (spec.rules_sha256, plan.rules_sha256),
+        "code_sha256": (spec.code_sha256, plan.code_sha256),
+        "robots": ([seat.agent for seat in spec.robots], [plan.agent] if plan.robot else []),
+    }
+    for field, (here, there) in pairs.items():
+        if here != there:
+            raise RunError(
+                f"{folder / 'trials.jsonl'}: trial {record.key}: spec.{field} is not the one in run.json. "
+                "The line belongs to another run; delete it."
+            )
+
+
+def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], effort: Effort | None = None) -> Result:
+    """The result of the records of a run, whole or not."""
+    kinds = sorted({record.spec.task.kind for record in records})
+    return Result(
+        agent=plan.agent,
+        robot=plan.robot,
+        human=plan.human,
+        suite=plan.suite,
+        seed=plan.seed,
+        participants=plan.participants,
+        metrics=scores(records),
+        by_kind={kind: scores([record for record in records if record.spec.task.kind == kind]) for kind in kinds},
+        counts=Counts(
+            trials=len(records),
+            tasks=len({record.spec.task.id for record in records}),
+            successes=sum(record.met for record in records),
+            messages=sum(event.kind == "sent" for record in records for event in record.events),
+            faults=sum(bool(record.faults) for record in records),
+        ),
+        versions=plan.versions,
+        hashes=Hashes(
+            run=plan.sha256,
+            human=plan.human_sha256,
+            rules=plan.rules_sha256,
+            code=plan.code_sha256,
+            trials=hashlib.sha256(b"".join(lines)).hexdigest(),
+        ),
+        effort=effort,
+    )
+
+
+def scores(records: Sequence[Record]) -> Scores:
+    """Means and intervals of every metric; trials for which a metric has no value do not count for it."""
+    return Scores(**{name: _score(records, name) for name in metrics.NAMES})
+
+
+def _score(records: Sequence[Record], name: str) -> Estimate:
+    measured = [(getattr(record.metrics, name), record.spec) for record in records]
+    held = [(float(value), spec) for value, spec in measured if value is not None]
+    return stats.estimate(
+        [value for value, _ in held],
+        [spec.task.id for _, spec in held],
+        [spec.participant for _, spec in held],
+        name=name,
+    )
+
+
+def rescore(folder: Path) -> tuple[Setup, Result, Result | None]:
+    """Score a run again from its log alone: its configuration, the new result, and the stored one if there is any.
+
+    Every trial's metrics are worked out anew from its events. The stored effort is kept, as no log has it.
+    """
+    plan = setup.load(folder)
+    lines, kept = records(folder, plan)
+    fresh = [msgspec.structs.replace(record, metrics=metrics.measure(record.spec, record.log)) for record in kept]
+    stored = load(folder)
+    return plan, summarise(plan, lines, fresh, stored.effort if stored else None), stored
+
+
+def load(folder: Path) -> Result | None:
+    """The stored result of a run, None when there is none.
+
+    Raises:
+        RunError: when it cannot be read.
+    """
+    path = folder / "result.json"
+    if not path.is_file():
+        return None
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=Result)
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise RunError(f"{path}: {error}. Delete the file; 'hthor score {folder}' writes it anew.") from None
+
+
+def store(folder: Path, result: Result) -> None:
+    """Write `result.json`."""
+    jsonio.write(folder / "result.json", jsonio.pretty(result))

@@ -1,0 +1,98 @@
+"""Dealing tasks to people: who does which ten tasks in which order; knows nothing of robots' minds or of results."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from msgspec import Struct
+
+from hthor import humans, rules, seeds
+from hthor.eval import cast, provenance
+from hthor.tasks import Suite
+from hthor.types import TaskSpec, TrialSpec
+
+
+class Session(Struct, frozen=True, kw_only=True):
+    """One person's trials in order. The person remembers earlier ones, so a session is played whole, by one process."""
+
+    participant: int
+    trials: tuple[TrialSpec, ...]
+
+
+def people_for(tasks: int) -> int:
+    """How many people it takes for everyone to do `rules.SESSION_TASKS` tasks and every task to be done once."""
+    return max(1, math.ceil(tasks / rules.SESSION_TASKS))
+
+
+def sessions(
+    suite: Suite,
+    *,
+    agent: str | cast.Character,
+    robot: str = "scout",
+    human: str = "proxy",
+    seed: int = 0,
+    participants: int | None = None,
+) -> tuple[Session, ...]:
+    """The sessions of a run.
+
+    Who does what depends on suite, seed and participant alone, never on the agent, so that agents meet the same people
+    at the same tasks.
+
+    Args:
+        agent: a built-in agent's name, an agent file, or what `cast.introduce` made of either.
+        participants: how many people; by default as many as let every task be done exactly once.
+    """
+    character = cast.introduce(agent) if isinstance(agent, str) else agent
+    seats, fingerprint = character.seats(robot), humans.fingerprint(human)
+    rules_hash, code_hash = rules.sha256(), provenance.code_sha256()
+
+    def trial(task: TaskSpec, participant: int, index: int) -> TrialSpec:
+        return TrialSpec(
+            task=task,
+            robots=seats,
+            human=human,
+            human_sha256=fingerprint,
+            participant=participant,
+            index=index,
+            seed=seed,
+            suite_sha256=suite.sha256,
+            rules_sha256=rules_hash,
+            code_sha256=code_hash,
+        )
+
+    count = people_for(len(suite.tasks)) if participants is None else participants
+    return tuple(
+        Session(
+            participant=participant,
+            trials=tuple(
+                trial(suite.tasks[number], participant, index)
+                for index, number in enumerate(deal(suite.tasks, seed, participant))
+            ),
+        )
+        for participant in range(count)
+    )
+
+
+def deal(tasks: Sequence[TaskSpec], seed: int, participant: int) -> list[int]:
+    """Indices of the tasks that a participant does, in order.
+
+    The tasks are a deck, dealt out in hands of at most `rules.SESSION_TASKS`; when it is used up it is mixed anew. The
+    houses alternate in the deck, so that each hand has its share of every house.
+    """
+    hands = people_for(len(tasks))
+    round_, hand = divmod(participant, hands)
+    deck = _deck(tasks, seed, round_)
+    held = deck[hand * len(deck) // hands : (hand + 1) * len(deck) // hands]
+    return [held[place] for place in seeds.shuffled(len(held), seed, "order", participant)]
+
+
+def _deck(tasks: Sequence[TaskSpec], seed: int, round_: int) -> list[int]:
+    by_house: dict[str, list[int]] = {}
+    for number, task in enumerate(tasks):
+        by_house.setdefault(task.house, []).append(number)
+    places: list[tuple[float, int]] = []
+    for house, numbers in by_house.items():
+        mixed = seeds.shuffled(len(numbers), seed, "deal", round_, house)
+        places += [((rank + 0.5) / len(numbers), numbers[place]) for rank, place in enumerate(mixed)]
+    return [number for _, number in sorted(places)]

@@ -1,0 +1,139 @@
+"""What a run was asked for, as `run.json`: everything that decides its records; knows nothing of how far it came."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from msgspec import Struct
+
+from hthor import humans, jsonio, rules
+from hthor.errors import RunError
+from hthor.eval import cast, provenance
+from hthor.eval.session import people_for
+from hthor.tasks import Suite
+from hthor.types import AgentRef
+
+SCHEMA = "hthor.run/1"
+
+
+class SuiteRef(Struct, frozen=True, kw_only=True):
+    """Which tasks: a suite's name and version, and the hash of its content."""
+
+    name: str
+    version: str
+    sha256: str
+
+
+class Setup(Struct, frozen=True, kw_only=True):
+    """A run's configuration. ``robot`` is empty without a robot; ``trials`` is how many there are in a whole run."""
+
+    schema: str = SCHEMA
+    agent: AgentRef
+    robot: str
+    human: str
+    human_sha256: str
+    suite: SuiteRef
+    seed: int
+    participants: int
+    trials: int
+    rules_sha256: str
+    code_sha256: str
+    versions: dict[str, str]
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the whole configuration."""
+        return jsonio.sha256(self)
+
+    @property
+    def folder_name(self) -> str:
+        """The run's folder when none is given: equal configurations share one, so that the same command resumes."""
+        return f"{self.agent.name}-{self.suite.name}-{self.sha256[:10]}"
+
+
+def settle(
+    suite: Suite, character: cast.Character, *, robot: str, human: str, seed: int, participants: int | None
+) -> Setup:
+    """The configuration of a run, every default resolved."""
+    hands = people_for(len(suite.tasks))
+    people = hands if participants is None else participants
+    whole, rest = divmod(people, hands)
+    size = len(suite.tasks)
+    return Setup(
+        agent=character.ref,
+        robot="" if character.absent else robot,
+        human=human,
+        human_sha256=humans.fingerprint(human),
+        suite=SuiteRef(name=suite.name, version=str(suite.version), sha256=suite.sha256),
+        seed=seed,
+        participants=people,
+        trials=whole * size + rest * size // hands,
+        rules_sha256=rules.sha256(),
+        code_sha256=provenance.code_sha256(),
+        versions=provenance.versions(),
+    )
+
+
+def load(folder: Path) -> Setup:
+    """The configuration of the run in a folder.
+
+    Raises:
+        RunError: when the folder holds no run, or its `run.json` is damaged.
+    """
+    path = folder / "run.json"
+    if not path.is_file():
+        raise RunError(f"{folder} is not a run's folder: it has no run.json. 'hthor eval' makes one.")
+    try:
+        setup = msgspec.json.decode(path.read_bytes(), type=Setup)
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise RunError(f"{path}: {error}. The file was changed after it was written.") from None
+    if setup.schema != SCHEMA:
+        raise RunError(f"{path}: schema is '{setup.schema}', this version reads '{SCHEMA}'.")
+    return setup
+
+
+def claim(folder: Path, setup: Setup) -> None:
+    """Make a folder the run's own: write `run.json` once, or see that the one there is the same.
+
+    Raises:
+        RunError: when the folder belongs to another run, naming what differs, or holds other files.
+    """
+    path = folder / "run.json"
+    if not path.exists():
+        strangers = sorted(entry.name for entry in folder.iterdir() if entry.name != ".lock" and entry.name[0] != ".")
+        if [name for name in strangers if name != "trials.jsonl"] or _has_bytes(folder / "trials.jsonl"):
+            raise RunError(
+                f"{folder} is not empty and holds no run ({strangers[0]}, ...). Choose another folder with --out."
+            )
+        jsonio.write(path, jsonio.pretty(setup))
+        return
+    there = load(folder)
+    if there != setup:
+        raise RunError(
+            f"{folder} holds another run: {'; '.join(_differences(there, setup))}. "
+            "Choose another folder with --out, or delete this one."
+        )
+
+
+def _has_bytes(path: Path) -> bool:
+    return path.exists() and path.stat().st_size > 0
+
+
+def _differences(there: Setup, here: Setup) -> list[str]:
+    before, now = _flat(msgspec.to_builtins(there)), _flat(msgspec.to_builtins(here))
+    names = [name for name in {**before, **now} if before.get(name) != now.get(name)]
+    return [f"{name} is {_short(before.get(name))} there and {_short(now.get(name))} here" for name in names]
+
+
+def _flat(document: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for name, value in document.items():
+        flat |= _flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value}
+    return flat
+
+
+def _short(value: object) -> str:
+    text = "absent" if value is None else str(value)
+    return text[:10] if len(text) == 64 else text

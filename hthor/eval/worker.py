@@ -1,0 +1,104 @@
+"""What happens in a worker process: sessions in, lines of trials out; knows nothing of the run they belong to."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import sys
+import traceback
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+from msgspec import Struct
+
+from hthor.errors import HthorError
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+    from hthor.eval.record import Record
+    from hthor.eval.session import Session
+
+ONE_THREAD = {
+    name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+}
+"""One thread a worker: more would only fight over the cores, and sums of floats would depend on their number."""
+
+
+class Played(Struct, frozen=True, kw_only=True):
+    """A trial is over. ``line`` is its whole record."""
+
+    key: str
+    line: bytes
+    met: bool
+    faulty: bool
+
+
+class Finished(Struct, frozen=True, kw_only=True):
+    """A session is over; ``cpu_s`` [s] is what it cost, with its agents' processes."""
+
+    cpu_s: float
+
+
+class Failed(Struct, frozen=True, kw_only=True):
+    """A session cannot be played: ``exit_code`` and ``message`` for the user, ``detail`` a traceback when it is a bug."""
+
+    exit_code: int
+    message: str
+    detail: str
+
+
+News = Played | Finished | Failed
+
+
+def work(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Record]]], parent: int) -> None:
+    """Play every session that comes through the pipe, until it says None or closes.
+
+    Args:
+        make: called once, here: gives what plays a session. Must be picklable.
+        parent: id of the process that started this one; this one ends with it.
+    """
+    _end_with(parent)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides what it means
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    try:
+        _serve(pipe, make)
+    except (EOFError, BrokenPipeError, ConnectionResetError):
+        return  # the parent is gone, and so is the reason to go on
+    except Exception as error:
+        pipe.send(_failure(error))
+
+
+def _serve(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Record]]]) -> None:
+    from hthor.eval import record
+
+    began = _cpu_s()
+    perform = make()
+    for session in iter(pipe.recv, None):
+        for done in perform(session):
+            line = record.encode(done)
+            pipe.send(Played(key=done.key, line=line, met=done.met, faulty=bool(done.faults)))
+        now = _cpu_s()
+        pipe.send(Finished(cpu_s=now - began))
+        began = now
+
+
+def _failure(error: Exception) -> Failed:
+    if isinstance(error, HthorError):
+        return Failed(exit_code=error.exit_code, message=str(error), detail="")
+    summary = "".join(traceback.format_exception_only(error)).strip()
+    return Failed(exit_code=1, message=summary, detail="".join(traceback.format_exception(error)))
+
+
+def _end_with(parent: int) -> None:
+    """Ask the kernel to kill this process when its parent ends, so that no run leaves orphans."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(1, int(signal.SIGKILL), 0, 0, 0)  # 1 is PR_SET_PDEATHSIG
+    if os.getppid() != parent:
+        os._exit(1)  # it ended before the kernel was asked
+
+
+def _cpu_s() -> float:
+    times = os.times()
+    return times.user + times.system + times.children_user + times.children_system

@@ -1,0 +1,133 @@
+"""What host and guest say to one another, as length-prefixed msgpack; knows nothing of processes.
+
+A frame is a little-endian 32-bit length and as many bytes. Arrays travel as ``{"__nd__": dtype, "s": shape, "d":
+bytes}``, from host to guest only.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+
+from hthor.types import Action, Briefing, Observation
+
+MOST_BYTES = 64 << 10
+"""Longest frame that a guest may send."""
+NAME_MAX = 200
+"""Longest id, seat or thing's name in an action, in characters."""
+
+
+class Load(Struct, tag="load", frozen=True, kw_only=True):
+    """Host: import this file; ``cls`` picks a class, empty for the only one."""
+
+    path: str
+    cls: str
+
+
+class Begin(Struct, tag="begin", frozen=True, kw_only=True):
+    """Host: a trial begins. The guest makes a new agent."""
+
+    briefing: Briefing
+
+
+class Look(Struct, tag="look", frozen=True, kw_only=True):
+    """Host: act. ``senses`` of the observation and the images of its messages are left out, to be asked for."""
+
+    observation: Observation
+
+
+class Given(Struct, tag="given", frozen=True, kw_only=True):
+    """Host: what was asked for, encoded."""
+
+    value: msgspec.Raw
+
+
+class End(Struct, tag="end", frozen=True, kw_only=True):
+    """Host: the trial is over."""
+
+
+class Ready(Struct, tag="ready", frozen=True, kw_only=True):
+    """Guest: loaded; what the class says of itself."""
+
+    name: str
+    privileges: tuple[str, ...]
+    robots: tuple[str, ...]
+    absent: bool
+    doc: str
+
+
+class Done(Struct, tag="done", frozen=True, kw_only=True):
+    """Guest: ready for the trial."""
+
+
+class Ask(Struct, tag="ask", frozen=True, kw_only=True):
+    """Guest: needs one of rgb, depth, segmentation, scan, detections, or the image of message ``which``."""
+
+    what: str
+    which: int = -1
+
+
+class Acted(Struct, tag="acted", frozen=True, kw_only=True):
+    """Guest: its action."""
+
+    action: Action
+
+
+class Failed(Struct, tag="failed", frozen=True, kw_only=True):
+    """Guest: something went wrong; ``kind`` as in `GuestFault`."""
+
+    kind: str
+    detail: str
+    traceback: str = ""
+
+
+ToGuest = Load | Begin | Look | Given | End
+ToHost = Ready | Done | Ask | Acted | Failed
+
+
+def _encode_array(value: object) -> object:
+    if isinstance(value, np.ndarray):
+        plain = np.ascontiguousarray(value)
+        return {"__nd__": plain.dtype.str, "s": list(plain.shape), "d": plain.tobytes()}
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"cannot send a {type(value).__name__}")
+
+
+def decode_array(value: dict[str, Any]) -> Any:
+    """The array that a plain dictionary stands for."""
+    return np.frombuffer(value["d"], dtype=np.dtype(value["__nd__"])).reshape(value["s"])
+
+
+_encoder = msgspec.msgpack.Encoder(enc_hook=_encode_array)
+
+
+def encode(message: object) -> bytes:
+    """One message or value, without its length; arrays and NumPy numbers included."""
+    return _encoder.encode(message)
+
+
+def frame(message: ToGuest | ToHost) -> bytes:
+    """One message with its length in front."""
+    body = encode(message)
+    return len(body).to_bytes(4, "little") + body
+
+
+def objection(action: Action) -> tuple[str, str] | None:
+    """What is wrong with an action, as a fault's kind and detail; None when it is sound."""
+    for part in (action.motion, action.say):
+        if part is None:
+            continue
+        for name in part.__struct_fields__:
+            value = getattr(part, name)
+            field = f"{type(part).__name__}.{name}"
+            numbers = value if isinstance(value, tuple) else (value,)
+            if any(isinstance(number, float) and not math.isfinite(number) for number in numbers):
+                return "not_finite", f"{field} must be finite, got {value}"
+            if isinstance(value, str) and name != "text" and len(value) > NAME_MAX:
+                return "oversized", f"{field} has {len(value)} characters, at most {NAME_MAX} are taken"
+    return None

@@ -1,0 +1,87 @@
+"""From an asset's id to its kind and size, ours or out of an asset database; knows nothing of where things stand."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from hthor import catalog
+from hthor.catalog import procthor
+from hthor.catalog.procthor import Asset
+from hthor.errors import HouseError
+
+VARIABLE = "HTHOR_ASSETS"
+_NAME = "asset-database.json"
+_HINT = (
+    f"give one with assets=..., set {VARIABLE} to its path, or put '{_NAME}' or 'databases/{_NAME}' beside the house "
+    "file; it comes with ProcTHOR's databases"
+)
+
+
+class Assets:
+    """Finds kind and size by asset id; reads an asset database only when a foreign id is asked for.
+
+    Args:
+        beside: the house file, whose folder and parent folders are searched.
+        given: a database, or a folder with one, that takes precedence; None to search.
+    """
+
+    def __init__(self, beside: Path, given: Path | None = None) -> None:
+        self._beside, self._given = beside, given
+        self._rows: dict[str, Asset] | None = None
+        self._source: Path | None = None
+
+    def find(self, asset: str, file: str, field: str) -> Asset:
+        """Kind and size [m].
+
+        Raises:
+            HouseError: naming ``file`` and ``field`` when the id is nobody's, or its size is not positive; naming the
+                database when that is damaged.
+        """
+        own = catalog.own_asset(asset)
+        if own is not None:
+            kind, size = own
+            if min(size) <= 0.0:
+                raise HouseError(file, field, f"the size in '{asset}' must be positive in all three directions")
+            return Asset(kind=kind.name, size=size)
+        rows = self._database()
+        if asset in rows:
+            return rows[asset]
+        if self._source is None:
+            raise HouseError(file, field, f"unknown asset '{asset}', and no asset database was found; {_HINT}")
+        raise HouseError(file, field, f"unknown asset '{asset}': neither ours nor in {self._source}")
+
+    def _database(self) -> dict[str, Asset]:
+        if self._rows is None:
+            self._source = self._given_database() or next(filter(Path.is_file, _places(self._beside)), None)
+            self._rows = procthor.read(self._source) if self._source is not None else {}
+        return self._rows
+
+    def _given_database(self) -> Path | None:
+        """The database that the caller or the environment names; one that is named must exist."""
+        variable = os.environ.get(VARIABLE, "")
+        named = self._given if self._given is not None else Path(variable) if variable else None
+        if named is None:
+            return None
+        path = next(filter(Path.is_file, (named, *_inside(named))), None)
+        if path is None:
+            origin = "assets" if self._given is not None else VARIABLE
+            raise HouseError(str(named), "$", f"no asset database there, though {origin} names it")
+        return path
+
+
+def _inside(folder: Path) -> tuple[Path, Path]:
+    return folder / "databases" / _NAME, folder / _NAME
+
+
+def _places(house: Path) -> Iterator[Path]:
+    for folder in house.resolve().parents:
+        yield from _inside(folder)
+    here = Path.cwd()
+    for folder in (here, *here.parents):
+        yield folder / "shared" / "houses" / "databases" / _NAME
+    spec = importlib.util.find_spec("procthor")
+    for place in (spec.submodule_search_locations or ()) if spec is not None else ():
+        yield from _inside(Path(place))

@@ -1,0 +1,147 @@
+"""From a house file to a `HouseSpec`: frames turned, names given, doors judged; knows nothing of paths or engines.
+
+Unity's (x, y up, z) becomes the house frame's (x, z, y), and its clockwise yaw a counter-clockwise one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from importlib import resources
+from pathlib import Path
+
+from hthor import jsonio
+from hthor.errors import HouseError, UnknownName
+from hthor.geometry import signed_area, wrap
+from hthor.houses import schema, validate
+from hthor.houses.assets import Assets
+from hthor.houses.schema import Agent, HouseFile, OpeningRow, RoomRow, WallRow
+from hthor.houses.validate import EXTERIOR, ROOM_KINDS
+from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec3, Wall
+
+_DATA = Path(str(resources.files("hthor.houses").joinpath("data")))
+
+
+def names() -> tuple[str, ...]:
+    """The houses that come with hthor."""
+    return tuple(sorted(path.stem for path in _DATA.glob("*.json")))
+
+
+def load(name_or_path: str | Path, assets: Path | None = None) -> HouseSpec:
+    """A house by name, or from a ProcTHOR house file, JSON schema 1.0.0.
+
+    Args:
+        name_or_path: one of `names`, or the path of a file.
+        assets: a ProcTHOR asset database, or the folder it lies in, for files with foreign assets. Without it the
+            database is looked for where the environment variable HTHOR_ASSETS says, then beside the file and in the
+            folders above, in ``shared/houses/databases`` of any folder above the current one, and in an installed
+            ``procthor`` package.
+
+    Raises:
+        UnknownName: when it is neither a name nor a file.
+        HouseError: when the file cannot be used; names the file and the field.
+    """
+    path, file = _locate(str(name_or_path))
+    document, house = schema.read(path, file)
+    validate.validate(house, file)
+    return _build(house, path.stem, jsonio.sha256(document), file, Assets(path, assets))
+
+
+def _locate(given: str) -> tuple[Path, str]:
+    if given in names():
+        return _DATA / f"{given}.json", f"{given}.json"
+    path = Path(given)
+    if path.suffix == ".json" or path.is_file():
+        return path, given
+    raise UnknownName("house", given, names(), "Or give the path of a ProcTHOR house file (.json).")
+
+
+def _build(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) -> HouseSpec:
+    walls = {wall.id: wall for wall in house.walls}
+    found = validate.start(house)
+    if found is None:
+        raise HouseError(file, "metadata.agent", "is missing")
+    return HouseSpec(
+        id=name,
+        sha256=sha256,
+        rooms=_rooms(house.rooms),
+        walls=tuple(_wall(wall) for wall in house.walls if not wall.empty),
+        openings=(
+            *(_opening(row, walls[row.wall0], door=True) for row in house.doors),
+            *(_opening(row, walls[row.wall0], door=False) for row in house.windows),
+        ),
+        things=_things(house, file, assets),
+        height=max(high for _, high in map(validate.wall_heights, house.walls)),
+        start=_pose(found[1]),
+    )
+
+
+def _rooms(rows: list[RoomRow]) -> tuple[Room, ...]:
+    """Rooms named by their kind, numbered where a kind comes more than once: kitchen, bedroom 1, bedroom 2."""
+    total = Counter(row.room_type for row in rows)
+    seen: Counter[str] = Counter()
+    rooms = []
+    for row in rows:
+        seen[row.room_type] += 1
+        kind = ROOM_KINDS[row.room_type]
+        title = kind.replace("_", " ")
+        number = f" {seen[row.room_type]}" if total[row.room_type] > 1 else ""
+        corners = validate.floor(row)
+        polygon = corners if signed_area(corners) > 0.0 else corners[::-1]
+        rooms.append(Room(id=row.id, kind=kind, name=title + number, polygon=polygon, floor=row.floor_material.name))
+    return tuple(rooms)
+
+
+def _wall(row: WallRow) -> Wall:
+    a, b = validate.wall_line(row)
+    low, high = validate.wall_heights(row)
+    colour = row.material.color
+    rgb: Vec3 | None = None if colour is None else (colour.r, colour.g, colour.b)
+    return Wall(id=row.id, room=row.room_id, a=a, b=b, height=high - low, material=row.material.name, rgb=rgb)
+
+
+def _opening(row: OpeningRow, wall: WallRow, *, door: bool) -> Opening:
+    start, end = validate.wall_line(wall)
+    length = math.dist(start, end)
+    ux, uy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
+    near, far = sorted(corner.x for corner in row.hole_polygon)
+    low, high = sorted(corner.y for corner in row.hole_polygon)
+    beyond = EXTERIOR if row.room1 == row.room0 else row.room1
+    indoors = EXTERIOR not in (row.room0, beyond)
+    return Opening(
+        id=row.id,
+        kind="door" if door else "window",
+        rooms=(row.room0, beyond),
+        a=(start[0] + ux * near, start[1] + uy * near),
+        b=(start[0] + ux * far, start[1] + uy * far),
+        low=low,
+        high=high,
+        # Door frames carry no openness: nothing hangs in them.
+        passable=door and indoors and (row.openness is None or row.openness > 0.0),
+    )
+
+
+def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
+    rooms = [(room.id, validate.floor(room)) for room in house.rooms]
+    things = []
+    for where, row, parent in validate.objects(house):
+        asset = assets.find(row.asset_id, file, f"{where}.assetId")
+        at = row.position
+        things.append(
+            Thing(
+                id=row.id,
+                kind=asset.kind,
+                asset=row.asset_id,
+                centre=(at.x, at.z, at.y),
+                size=asset.size,
+                yaw=wrap(-math.radians(row.rotation.y)),
+                room=validate.room_at((at.x, at.z), rooms) or "",
+                parent=parent,
+            )
+        )
+    return tuple(things)
+
+
+def _pose(agent: Agent) -> Pose:
+    heading = wrap(math.pi / 2 - math.radians(agent.rotation.y))
+    return Pose(x=agent.position.x, y=agent.position.z, yaw=heading, pitch=-math.radians(agent.horizon))

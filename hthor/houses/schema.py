@@ -1,0 +1,219 @@
+"""ProcTHOR's house file, schema 1.0.0, as records: reading, finiteness and structure; knows nothing of geometry.
+
+Only the keys that hthor uses are declared; others are let through unread. Lengths are metres and angles degrees in
+Unity's left-handed frame: x right, y up, z forward, yaw clockwise seen from above.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from msgspec import Struct, field
+
+from hthor.errors import HouseError
+
+VERSION = "1.0.0"
+_LIMIT = 1e9
+
+
+class Corner(Struct, frozen=True):
+    """A point; ``y`` is up."""
+
+    x: float
+    z: float
+    y: float = 0.0
+
+
+class Hole(Struct, frozen=True):
+    """A corner of an opening on its wall: ``x`` along the wall from its first corner, ``y`` up."""
+
+    x: float
+    y: float
+
+
+class Position(Struct, frozen=True):
+    """A point of which all three coordinates count."""
+
+    x: float
+    y: float
+    z: float
+
+
+class Rotation(Struct, frozen=True):
+    """Euler angles; only the yaw ``y`` is heeded."""
+
+    y: float = 0.0
+
+
+class Colour(Struct, frozen=True):
+    """Red, green, blue, 0 to 1."""
+
+    r: float
+    g: float
+    b: float
+
+
+class Material(Struct, frozen=True):
+    """A surface's look."""
+
+    name: str = ""
+    color: Colour | None = None
+
+
+class RoomRow(Struct, frozen=True, rename="camel"):
+    """One entry of ``rooms``."""
+
+    id: str
+    room_type: str
+    floor_polygon: list[Corner]
+    floor_material: Material = field(default_factory=Material)
+
+
+class WallRow(Struct, frozen=True, rename="camel"):
+    """One entry of ``walls``; an ``empty`` one stands where two rooms are open to each other."""
+
+    id: str
+    room_id: str
+    polygon: list[Corner]
+    material: Material = field(default_factory=Material)
+    empty: bool = False
+
+
+class OpeningRow(Struct, frozen=True, rename="camel"):
+    """One entry of ``doors`` or ``windows``; door frames have neither ``openable`` nor ``openness``."""
+
+    id: str
+    room0: str
+    room1: str
+    wall0: str
+    hole_polygon: list[Hole]
+    wall1: str | None = None
+    openable: bool | None = None
+    openness: float | None = None
+
+
+class ObjectRow(Struct, frozen=True, rename="camel"):
+    """One entry of ``objects``, or of another one's ``children``; ``position`` is the bounding box's centre."""
+
+    id: str
+    asset_id: str
+    position: Position
+    rotation: Rotation = field(default_factory=Rotation)
+    openness: float | None = None
+    children: list[ObjectRow] = field(default_factory=list)
+
+
+class Agent(Struct, frozen=True):
+    """Where a body starts; ``horizon`` is how far the camera looks down."""
+
+    position: Position
+    rotation: Rotation = field(default_factory=Rotation)
+    horizon: float = 0.0
+
+
+class Metadata(Struct, frozen=True, rename="camel"):
+    """The file's version and start pose; newer files give one pose for each robot instead of a single one."""
+
+    schema: str
+    agent: Agent | None = None
+    agent_poses: dict[str, Agent] = field(default_factory=dict)
+
+
+class HouseFile(Struct, frozen=True):
+    """A whole house file."""
+
+    rooms: list[RoomRow]
+    walls: list[WallRow]
+    doors: list[OpeningRow]
+    objects: list[ObjectRow]
+    metadata: Metadata
+    windows: list[OpeningRow] = field(default_factory=list)
+
+
+def read(path: Path, file: str) -> tuple[Any, HouseFile]:
+    """The file's JSON document, and the same as records.
+
+    Args:
+        path: where the file is.
+        file: its name as the user gave it, for errors.
+
+    Raises:
+        HouseError: when the file cannot be read, is not JSON, holds a number that is not finite, is of another
+            version, or lacks a key or has a value of the wrong type.
+    """
+    document = _document(path, file)
+    _check_version(document, file)
+    try:
+        return document, msgspec.convert(document, HouseFile)
+    except msgspec.ValidationError as error:
+        raise _structural(str(error), file) from None
+
+
+def _document(path: Path, file: str) -> Any:
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise HouseError(file, "$", f"cannot read the file: {error.strerror or error}") from None
+    except UnicodeDecodeError as error:
+        raise HouseError(file, "$", f"not a text file: byte {error.start} is not UTF-8") from None
+    try:
+        document = json.loads(text)
+        for where, number in _numbers(document, ""):
+            if not abs(number) < _LIMIT:
+                raise HouseError(file, where, f"must be a finite number, got {number!r:.24}")
+    except json.JSONDecodeError as error:
+        ends = " (the text ends there: is the file truncated?)" if not text[error.pos :].strip() else ""
+        problem = f"not valid JSON at line {error.lineno}, column {error.colno}: {error.msg}{ends}"
+        raise HouseError(file, "$", problem) from None
+    except (RecursionError, ValueError) as error:
+        raise HouseError(file, "$", f"not a house file: {error}") from None
+    return document
+
+
+def _numbers(value: Any, where: str) -> Iterator[tuple[str, float]]:
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from _numbers(item, f"{where}.{key}" if where else str(key))
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            yield from _numbers(item, f"{where}[{index}]")
+    elif isinstance(value, int | float):
+        yield where or "$", value
+
+
+def _check_version(document: Any, file: str) -> None:
+    metadata = document.get("metadata") if isinstance(document, dict) else None
+    version = metadata.get("schema", VERSION) if isinstance(metadata, dict) else VERSION
+    if version != VERSION:
+        raise HouseError(file, "metadata.schema", f"only schema {VERSION} can be read, got {version!r}")
+
+
+_WHERE = re.compile(r"^(?P<what>.*?)(?: - at `\$\.?(?P<field>.*)`)?$", re.DOTALL)
+_MISSING = re.compile(r"Object missing required field `(?P<key>[^`]*)`")
+_TYPE = re.compile(r"Expected `(?P<wanted>[^`]*)`, got `(?P<got>[^`]*)`")
+_WORDS = {
+    "float": "a number",
+    "int": "a number",
+    "str": "a text",
+    "bool": "true or false",
+    "array": "a list",
+    "object": "an object",
+    "null": "null",
+}
+
+
+def _structural(message: str, file: str) -> HouseError:
+    """The error of a structural fault, from msgspec's words for it."""
+    match = _WHERE.match(message)
+    what, where = (match["what"], match["field"] or "") if match else (message, "")
+    if missing := _MISSING.match(what):
+        return HouseError(file, f"{where}.{missing['key']}" if where else missing["key"], "is missing")
+    if types := _TYPE.match(what):
+        wanted = " or ".join(_WORDS.get(name, name) for name in types["wanted"].split(" | "))
+        what = f"expected {wanted}, got {_WORDS.get(types['got'], types['got'])}"
+    return HouseError(file, where or "$", what)

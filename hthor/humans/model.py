@@ -1,0 +1,32 @@
+"""The seam where a person sits: what every human model can do; knows nothing of any one model.
+
+A human model is one file in ``hthor/humans/models`` that defines ``class Model``. It is made once a session from a
+`Person` and what is left of earlier trials, and goes through the trials of the session in order: ``begin``, ``act`` until
+the trial ends, ``rate``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from hthor.types import Action, Briefing, Observation
+
+
+class HumanModel(Protocol):
+    """One person through one session."""
+
+    def begin(self, briefing: Briefing) -> None:
+        """A trial begins. Everything but the person's own state is new to them."""
+
+    def act(self, observation: Observation) -> Action:
+        """What to do and say now; the motion is heeded only when ``observation.idle``."""
+        ...
+
+    def rate(self, met: bool, tick: int) -> int | None:
+        """The trial ended at ``tick``, well when ``met``: trust in the robots from 1 to 7, None when there was none."""
+        ...
+
+    def state(self) -> Mapping[str, Any]:
+        """What carries over to the next trial, as plain JSON values; a model made from it goes on as this one would."""
+        ...

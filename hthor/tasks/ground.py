@@ -1,0 +1,142 @@
+"""The floor an all-knowing person walks on: where they can stand to see, to reach and to put down; knows no goals.
+
+Places are told by cells of the free-space grid. A person anywhere in a cell counts as standing at its middle, so every
+range is widened and every leg of a walk shortened by half a cell's diagonal: what comes out is never too long.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hthor import catalog, rules
+from hthor.geometry import to_house
+from hthor.houses.freespace import FreeSpace
+from hthor.houses.geodesic import Field, Geodesics
+from hthor.tasks.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
+from hthor.tasks.sight import Sight
+from hthor.types import HouseSpec, Placement, Thing, Vec2
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+
+SLACK_M = rules.GRID_M * math.sqrt(0.5)
+
+
+class Ground:
+    """A house's floor for the person's avatar. Masks are (ny, nx) bool over the cells of ``space``, free cells only."""
+
+    def __init__(self, house: HouseSpec) -> None:
+        self.house = house
+        self.space = FreeSpace.of(house, RADIUS_M, HEIGHT_M)
+        self.paths = Geodesics.of(self.space)
+
+    @staticmethod
+    @functools.lru_cache(maxsize=32)
+    def of(house: HouseSpec) -> Ground:
+        """The same as the constructor, worked out once a process."""
+        return Ground(house)
+
+    def seeing(self, placement: Placement, opened: frozenset[str] = frozenset()) -> Bools:
+        """Where the object is within `rules.FIND_RANGE_M` of the eyes (in space, not on the plan) and in sight.
+
+        In sight means that nothing opaque lies between the eyes and the object's centre or the top of it.
+        """
+        x, y, z = placement.position
+        mask = self._disc((x, y), rules.FIND_RANGE_M + SLACK_M)
+        places = self.space.centres(mask)
+        eyes = np.column_stack((places, np.full(len(places), EYE_M)))
+        lit = np.linalg.norm(eyes - placement.position, axis=1) <= rules.FIND_RANGE_M + SLACK_M
+        top = z + catalog.kind(placement.kind).size[2] / 2
+        sight = Sight.of(self.house, opened)
+        lit &= sight.seen(eyes, placement.position) | sight.seen(eyes, (x, y, top))
+        mask[mask] = lit
+        return mask
+
+    def touching(self, placement: Placement) -> Bools:
+        """Where the object's centre is within reach."""
+        return self._disc((placement.position[0], placement.position[1]), REACH_M + SLACK_M)
+
+    def beside(self, thing: Thing) -> Bools:
+        """Where the nearest edge of the thing is within reach."""
+        return self._around(thing.centre[:2], thing.size[:2], thing.yaw)
+
+    def serving(self, kind: str) -> Bools:
+        """Where the nearest point of any surface of any thing of the kind is within reach."""
+        mask = np.zeros(self.space.free.shape, dtype=bool)
+        for thing in self.house.things:
+            if thing.kind == kind:
+                for surface in catalog.kind(kind).surfaces(thing.size):
+                    x, y, _ = to_house(surface.centre, thing.centre, thing.yaw)
+                    mask |= self._around((x, y), (2 * surface.half[0], 2 * surface.half[1]), thing.yaw)
+        return mask
+
+    def walk(self, stops: Sequence[Bools]) -> Walk:
+        """The shortest walk through one cell of each mask in turn."""
+        return Walk(self, stops)
+
+    def _disc(self, centre: Vec2, radius: float) -> Bools:
+        return self._around(centre, (0.0, 0.0), 0.0, radius)
+
+    def _around(self, centre: Vec2, size: Vec2, yaw: float, radius: float = REACH_M + SLACK_M) -> Bools:
+        """Free cells with their middle within ``radius`` of a turned rectangle."""
+        columns, rows = self._axes
+        dx, dy = columns[None, :] - centre[0], rows[:, None] - centre[1]
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        u = np.maximum(np.abs(cos * dx + sin * dy) - size[0] / 2, 0.0)
+        v = np.maximum(np.abs(cos * dy - sin * dx) - size[1] / 2, 0.0)
+        mask: Bools = self.space.free & (u * u + v * v <= radius * radius)
+        return mask
+
+    @functools.cached_property
+    def _axes(self) -> tuple[Floats, Floats]:
+        ny, nx = self.space.free.shape
+        x, y = self.space.centre_of(0, 0)
+        return x + np.arange(nx) * self.space.cell, y + np.arange(ny) * self.space.cell
+
+
+class Walk:
+    """The shortest walk from anywhere through one cell of each of several masks in turn."""
+
+    def __init__(self, ground: Ground, stops: Sequence[Bools]) -> None:
+        self._space, self._stops = ground.space, tuple(stops)
+        self._fields: list[Field] = []
+        for number in reversed(range(len(self._stops))):
+            rim = ground.space.centres(_rim(self._stops[number], ground.space.free))
+            self._fields.insert(0, ground.paths.field(rim, self._to_go(rim, number + 1)))
+
+    def lengths(self, starts: ArrayLike) -> Floats:
+        """(N,) [m] for ``starts`` (N, 2), less the grid's slack; inf where there is no such walk."""
+        slack = (2 * len(self._stops) - 1) * SLACK_M
+        return np.maximum(self._to_go(np.asarray(starts, dtype=float).reshape(-1, 2), 0, 0) - slack, 0.0)
+
+    def _to_go(self, places: Floats, stop: int, first: int = -1) -> Floats:
+        """What is left of the walk at ``places`` before ``stop``; ``_fields`` then starts with that of ``stop``."""
+        if stop == len(self._stops):
+            return np.zeros(len(places))
+        field = self._fields[stop if first == 0 else 0]
+        lengths = field.at(places)
+        there = np.array([self._holds(stop, x, y) for x, y in places], dtype=bool)
+        if there.any():
+            lengths[there] = self._to_go(places[there], stop + 1, first)
+        return lengths
+
+    def _holds(self, stop: int, x: float, y: float) -> bool:
+        row, column = self._space.cell_of(x, y)
+        ny, nx = self._space.free.shape
+        return 0 <= row < ny and 0 <= column < nx and bool(self._stops[stop][row, column])
+
+
+def _rim(mask: Bools, free: Bools) -> Bools:
+    """The cells of a mask through which one enters it."""
+    out = np.zeros_like(mask)
+    outside = free & ~mask
+    out[1:, :] |= outside[:-1, :]
+    out[:-1, :] |= outside[1:, :]
+    out[:, 1:] |= outside[:, :-1]
+    out[:, :-1] |= outside[:, 1:]
+    return out & mask

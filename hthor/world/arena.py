@@ -1,0 +1,105 @@
+"""The empty stage: floors, walls, openings and everything in a house that never moves; knows nothing of tasks.
+
+All of it is geoms of the world body, so that the engine has no bodies to sort through for what stands still.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from hthor import catalog, geometry
+from hthor.types import HouseSpec, Room, Thing
+from hthor.world import geoms, paint, walls
+from hthor.world.engine import Arena
+
+_SLAB_M = 0.01
+_LIGHT = {"ambient": (0.45, 0.45, 0.45), "diffuse": (0.38, 0.38, 0.37), "specular": (0.05, 0.05, 0.05)}
+_SUN = {"diffuse": (0.28, 0.27, 0.25), "specular": (0.0, 0.0, 0.0), "ambient": (0.0, 0.0, 0.0)}
+
+
+class HouseArena(Arena):
+    """A house without its movable things.
+
+    Attributes:
+        owners: name of each geom -> id of the thing, room, wall or opening it belongs to.
+    """
+
+    def _build(self, house: HouseSpec, statics: Iterable[Thing]) -> None:  # type: ignore[override]
+        super()._build(name="house")
+        self.owners: dict[str, str] = {}
+        self._serial = itertools.count()
+        self._settings()
+        self._floors(house)
+        self._walls(house)
+        for thing in statics:
+            self._thing(thing)
+
+    def _settings(self) -> None:
+        """Options as measured: long steps, sleeping islands, a headlight that leaves no corner black."""
+        root = self.mjcf_model
+        root.compiler.fusestatic = True
+        root.option.timestep = 0.02
+        root.option.sleep_tolerance = 5e-3
+        root.option.flag.sleep = "enable"
+        root.visual.headlight.set_attributes(active=1, **_LIGHT)
+        root.visual.quality.set_attributes(shadowsize=0, offsamples=4, numslices=24, numstacks=12)
+        root.visual.map.set_attributes(znear=0.002, zfar=8.0)
+        root.statistic.set_attributes(extent=10.0)
+        root.worldbody.add("light", directional=True, castshadow=False, pos=(0, 0, 10), dir=(0.3, 0.5, -1.0), **_SUN)
+
+    def _name(self, owner: str) -> str:
+        name = f"{owner.replace('/', '|')}:{next(self._serial)}"
+        self.owners[name] = owner
+        return name
+
+    def _floors(self, house: HouseSpec) -> None:
+        world = self.mjcf_model.worldbody
+        hidden: dict[str, Any] = {"group": 5, "rgba": (0, 0, 0, 0)}
+        world.add("geom", name=self._name("ground"), type="plane", size=(50, 50, 1), **geoms.STATIC, **hidden)
+        for room in house.rooms:
+            for x0, y0, x1, y1 in _rectangles(room):
+                half = ((x1 - x0) / 2, (y1 - y0) / 2, _SLAB_M / 2)
+                for name, z, rgba, group in (
+                    (f"floor of {room.id}", -_SLAB_M / 2, paint.floor(room.floor), geoms.FURNITURE),
+                    (f"ceiling of {room.id}", house.height + _SLAB_M / 2, paint.CEILING, geoms.CEILINGS),
+                ):
+                    centre = ((x0 + x1) / 2, (y0 + y1) / 2, z)
+                    geoms.add_box(world, self._name(name), centre, half, 0.0, rgba, group=group, **geoms.GHOST)
+
+    def _walls(self, house: HouseSpec) -> None:
+        for panel in walls.panels(house):
+            geoms.add_box(
+                self.mjcf_model.worldbody,
+                self._name(panel.name),
+                panel.centre,
+                panel.half,
+                panel.yaw,
+                panel.rgba,
+                group=geoms.WALLS,
+                **geoms.STATIC,
+            )
+
+    def _thing(self, thing: Thing) -> None:
+        for part in catalog.kind(thing.kind).parts(thing.size):
+            if not part.moves:
+                name = self._name(thing.id)
+                bits = geoms.STATIC
+                geoms.add_part(
+                    self.mjcf_model.worldbody, name, part, thing.centre, thing.yaw, group=geoms.FURNITURE, **bits
+                )
+
+
+def _rectangles(room: Room) -> Iterator[tuple[float, float, float, float]]:
+    """The room's floor in strips from west to east; exact for rooms with square corners."""
+    xs, ys = (sorted({round(corner[axis], 4) for corner in room.polygon}) for axis in (0, 1))
+    for y0, y1 in itertools.pairwise(ys):
+        begin = None
+        for x0, x1 in [*itertools.pairwise(xs), (xs[-1], xs[-1])]:
+            covered = x1 > x0 and geometry.inside(((x0 + x1) / 2, (y0 + y1) / 2), room.polygon)
+            if covered and begin is None:
+                begin = x0
+            elif not covered and begin is not None:
+                yield (begin, y0, x0, y1)
+                begin = None

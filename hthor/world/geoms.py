@@ -1,0 +1,54 @@
+"""Turning parts into geoms: shapes, colours, collision bits and draw groups; knows nothing of kinds or rooms."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from hthor.geometry import to_house
+from hthor.types import Part, Rgba, Vec3
+
+FURNITURE, WALLS, OBJECTS, BODIES, CEILINGS = range(5)
+"""Draw groups."""
+
+STATIC = {"contype": 1, "conaffinity": 0}
+MOVABLE = {"contype": 2, "conaffinity": 3}
+GHOST = {"contype": 0, "conaffinity": 0}
+"""Collision bits: movable things meet each other and what is static; ghosts (bodies, doors) meet nothing."""
+
+
+def quaternion(yaw: float) -> tuple[float, float, float, float]:
+    """The turn by ``yaw`` [rad] about z, as (w, x, y, z)."""
+    return (math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2))
+
+
+def size(part: Part) -> tuple[float, ...]:
+    """A part's half extents as MuJoCo counts them for its shape."""
+    if part.shape == "sphere":
+        return (part.half[0],)
+    return (part.half[0], part.half[2]) if part.shape == "cylinder" else part.half
+
+
+def volume(part: Part) -> float:
+    """Volume [m3]."""
+    x, y, z = part.half
+    return {"box": 8.0, "cylinder": 2.0 * math.pi, "sphere": 4.0 / 3.0 * math.pi}[part.shape] * x * y * z
+
+
+def add_part(body: Any, name: str, part: Part, centre: Vec3 = (0.0, 0.0, 0.0), yaw: float = 0.0, **more: Any) -> Any:
+    """Add a part of a thing that stands at ``centre`` [m] turned by ``yaw`` [rad], in the frame of ``body``."""
+    return body.add(
+        "geom",
+        name=name,
+        type=part.shape,
+        size=size(part),
+        pos=to_house(part.centre, centre, yaw),
+        quat=quaternion(yaw),
+        rgba=part.rgba,
+        **more,
+    )
+
+
+def add_box(body: Any, name: str, centre: Vec3, half: Vec3, yaw: float, rgba: Rgba, **more: Any) -> Any:
+    """Add a box that stands upright."""
+    return body.add("geom", name=name, type="box", size=half, pos=centre, quat=quaternion(yaw), rgba=rgba, **more)
