@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec import Struct
 
 from hthor import plugins
-from hthor.errors import AgentError, UnknownName
+from hthor.errors import UnknownName
 from hthor.types import AgentRef, Mind, RobotSeat, TrialSpec
 
 if TYPE_CHECKING:
@@ -18,24 +19,31 @@ if TYPE_CHECKING:
     from hthor.eval.session import Session
     from hthor.world import World
 
-DEFAULT_CLASS = "Agent"
-
 
 class Character(Struct, frozen=True, kw_only=True):
     """A robot's mind before the curtain: who it is, and the file it comes from when it is not one of ours.
 
-    ``absent`` means that there is no robot in the world at all. The path stays out of ``ref``, which is part of every
-    trial's key, so that a run reads the same wherever the agent's file lies.
+    ``path`` is ``file.py`` or ``file.py:Class``, empty for a built-in agent. It stays out of ``ref``, which is part of
+    every trial's key, so that a run reads the same wherever the file lies. ``bodies`` names the robots that it is made
+    for (empty: any); ``absent`` means that there is no robot in the world at all.
     """
 
     ref: AgentRef
-    absent: bool = False
     path: str = ""
-    class_name: str = DEFAULT_CLASS
+    bodies: tuple[str, ...] = ()
+    absent: bool = False
 
     def seats(self, robot: str) -> tuple[RobotSeat, ...]:
-        """The robots of a trial with this mind in the body ``robot``."""
-        return () if self.absent else (RobotSeat(seat="robot", robot=robot, agent=self.ref),)
+        """The robots of a trial with this mind in the body ``robot``.
+
+        Raises:
+            UnknownName: when it is not made for that body.
+        """
+        if self.absent:
+            return ()
+        if self.bodies and robot not in self.bodies:
+            raise UnknownName(f"robot for the agent {self.ref.name}", robot, self.bodies, "Choose one with --robot.")
+        return (RobotSeat(seat="robot", robot=robot, agent=self.ref),)
 
 
 def introduce(agent: str) -> Character:
@@ -51,53 +59,56 @@ def introduce(agent: str) -> Character:
     known = plugins.names("agent")
     if agent in known:
         return _own(agent)
-    path, _, class_name = agent.partition(":")
-    if not path.endswith(".py"):
-        raise UnknownName("agent", agent, known, "Or give the path of a Python file, such as my_agent.py.")
-    return _guest(Path(path), class_name or DEFAULT_CLASS)
+    if agent.endswith(".py") or ".py:" in agent:
+        return _guest(agent)
+    raise UnknownName("agent", agent, known, "Or give the path of a Python file, such as my_agent.py.")
 
 
 def _own(name: str) -> Character:
     made: Any = plugins.load("agent", name)
-    source = plugins.__file__ and Path(plugins.__file__).with_name("agents") / f"{name}.py"
+    file = Path(plugins.__file__).with_name("agents") / f"{name}.py"
     ref = AgentRef(
         name=name,
         source=f"hthor.agents.{name}",
-        sha256=hashlib.sha256(source.read_bytes()).hexdigest(),
+        sha256=hashlib.sha256(file.read_bytes()).hexdigest(),
         privileges=tuple(getattr(made, "privileges", ())),
     )
-    return Character(ref=ref, absent=bool(getattr(made, "absent", False)))
+    return Character(ref=ref, bodies=tuple(getattr(made, "robots", ())), absent=bool(getattr(made, "absent", False)))
 
 
-def _guest(path: Path, class_name: str) -> Character:
-    from hthor.guest import Guest
+def _guest(path: str) -> Character:
+    from hthor.guest import load_info
 
-    if not path.is_file():
-        raise AgentError(f"agent file '{path}' does not exist. 'hthor agent new {path}' writes one to start from.")
-    plain = class_name == DEFAULT_CLASS
-    guest = Guest(str(path) if plain else f"{path}:{class_name}")
-    try:
-        ref = AgentRef(
-            name=path.stem if plain else f"{path.stem}.{class_name}",
-            source=path.name if plain else f"{path.name}:{class_name}",
-            sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
-            privileges=tuple(guest.privileges),
-        )
-    finally:
-        guest.close()
-    return Character(ref=ref, path=str(path.resolve()), class_name=class_name)
+    info = load_info(path)
+    file, colon, class_name = path.rpartition(":") if ".py:" in path else (path, "", "")
+    ref = AgentRef(
+        name=_tidy(info.name),
+        source=Path(file).name + colon + class_name,
+        sha256=info.sha256,
+        privileges=tuple(info.privileges),
+    )
+    return Character(
+        ref=ref,
+        path=str(Path(file).resolve()) + colon + class_name,
+        bodies=tuple(info.robots),
+        absent=info.absent,
+    )
+
+
+def _tidy(name: str) -> str:
+    """A name that can be part of a file's name."""
+    return re.sub(r"[^A-Za-z0-9_+-]+", "-", name).strip("-")[:60] or "agent"
 
 
 class Stage:
     """Makes worlds and companies, and keeps worlds for the next trial in the same house.
 
     Args:
-        path: the agent's file, for an agent that is not one of ours.
-        class_name: the class in it.
+        path: the agent's ``file.py`` or ``file.py:Class``, for an agent that is not one of ours.
     """
 
-    def __init__(self, path: str = "", class_name: str = DEFAULT_CLASS) -> None:
-        self._path, self._class_name = path, class_name
+    def __init__(self, path: str = "") -> None:
+        self._path = path
         self._worlds: dict[object, World] = {}
 
     def enter(self, session: Session) -> Company:
@@ -124,7 +135,7 @@ class Stage:
             return mind
         from hthor.guest import Guest
 
-        return Guest(self._path if self._class_name == DEFAULT_CLASS else f"{self._path}:{self._class_name}")
+        return Guest(self._path)
 
 
 class Company:
@@ -160,12 +171,12 @@ class Company:
             mind.close()
 
 
-def player(path: str = "", class_name: str = DEFAULT_CLASS) -> Callable[[Session], Iterator[Record]]:
-    """What a worker does with each session: play its trials in order. Called in the worker, imports everything heavy."""
+def player(path: str = "") -> Callable[[Session], Iterator[Record]]:
+    """What a worker does with each session: play its trials in order. Called in the worker; imports what is heavy."""
     from hthor.episode import play
     from hthor.eval import record
 
-    stage = Stage(path, class_name)
+    stage = Stage(path)
 
     def perform(session: Session) -> Iterator[Record]:
         with stage.enter(session) as company:

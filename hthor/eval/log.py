@@ -1,4 +1,4 @@
-"""The run's log, `trials.jsonl`: append-only, one writer, whole lines or nothing; knows nothing of what a trial is worth."""
+"""The run's log, `trials.jsonl`: append-only, one writer, whole lines; knows nothing of what a trial is worth."""
 
 from __future__ import annotations
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import threading
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from types import FrameType
 from typing import Protocol
@@ -45,7 +44,9 @@ class Interrupted(HthorError):
     exit_code = 130
 
 
-def evaluate(plan: Setup, sessions: Sequence[Session], make: Make, *, folder: Path, jobs: int, watch: Watcher) -> Result:
+def evaluate(
+    plan: Setup, sessions: Sequence[Session], make: Make, *, folder: Path, jobs: int, watch: Watcher
+) -> Result:
     """Play what a run still lacks, and score it.
 
     Args:
@@ -60,26 +61,31 @@ def evaluate(plan: Setup, sessions: Sequence[Session], make: Make, *, folder: Pa
         Interrupted: on Ctrl-C or SIGTERM.
     """
     began = time.monotonic()
+    setup.examine(folder, plan)
     with Log(folder) as book:
-        setup.claim(folder, plan)
+        setup.write(folder, plan)
         wanted = {record.key(trial): session for session in sessions for trial in session.trials}
         left = [session for session in sessions if any(record.key(t) not in book.lines for t in session.trials)]
         watch.begin(len(wanted), len(wanted) - sum(key not in book.lines for key in wanted))
         if book.torn:
             watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")
-        effort = _play(book, left, make, jobs, watch) if left else None
+        cost = _play(book, left, make, jobs, watch) if left else None
         missing = [key for key in wanted if key not in book.lines]
         if missing:
             raise RunError(f"{folder}: {len(missing)} trials were not played, {missing[0]} is one. Run it again.")
-    return _finish(folder, plan, effort and Effort(wall_s=_seconds(time.monotonic() - began), **effort))
+    if cost is None:
+        return _finish(folder, plan, None)
+    cpu_s, trials = cost
+    wall_s = time.monotonic() - began
+    return _finish(folder, plan, Effort(wall_s=round(wall_s, 3), cpu_s=round(cpu_s, 3), trials=trials))
 
 
-def _play(book: Log, sessions: Sequence[Session], make: Make, jobs: int, watch: Watcher) -> dict[str, float]:
-    """Play sessions and write down what is new."""
+def _play(book: Log, sessions: Sequence[Session], make: Make, jobs: int, watch: Watcher) -> tuple[float, int]:
+    """Play sessions and write down what is new; CPU time [s] and the number of new trials."""
     cpu_s, new, other = 0.0, 0, 0
-    with _stoppable() as stop:
+    with _stoppable() as stop, closing(runner.perform(sessions, make, jobs=jobs)) as stream:
         try:
-            for news in runner.perform(sessions, make, jobs=jobs):
+            for news in stream:
                 if isinstance(news, Played):
                     if book.append(news.key, news.line):
                         new += 1
@@ -99,7 +105,7 @@ def _play(book: Log, sessions: Sequence[Session], make: Make, jobs: int, watch: 
             raise
     if other:
         watch.note(f"{other} trials went otherwise when they were played again: something here does not repeat itself")
-    return {"cpu_s": _seconds(cpu_s + sum(os.times()[:2])), "trials": new}
+    return cpu_s, new
 
 
 class InternalFailure(HthorError):
@@ -117,10 +123,6 @@ def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
     return result
 
 
-def _seconds(value: float) -> float:
-    return round(value, 3)
-
-
 @contextmanager
 def _stoppable() -> Iterator[threading.Event]:
     """Turn the first Ctrl-C or SIGTERM into a flag; a second one ends at once."""
@@ -129,7 +131,7 @@ def _stoppable() -> Iterator[threading.Event]:
         yield flag
         return
 
-    def stop(number: int, frame: FrameType | None) -> None:
+    def stop(_number: int, _frame: FrameType | None) -> None:
         if flag.is_set():
             raise KeyboardInterrupt
         flag.set()

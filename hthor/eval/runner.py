@@ -6,7 +6,7 @@ import multiprocessing
 import os
 import signal
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from multiprocessing.connection import Connection, wait
 from typing import TYPE_CHECKING
@@ -33,7 +33,7 @@ class SessionFailed(HthorError):
         super().__init__(failed.message)
 
 
-def perform(sessions: Sequence[Session], make: Make, *, jobs: int, beat_s: float = 0.25) -> Iterator[News | None]:
+def perform(sessions: Sequence[Session], make: Make, *, jobs: int, beat_s: float = 0.25) -> Generator[News | None]:
     """Play sessions in worker processes and tell what happens, at least once for every trial.
 
     A trial is told of again when its session had to be started again. Closing the iterator ends the workers.

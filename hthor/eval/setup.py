@@ -16,6 +16,7 @@ from hthor.tasks import Suite
 from hthor.types import AgentRef
 
 SCHEMA = "hthor.run/1"
+_MADE_FIRST = (".lock", "trials.jsonl")  # a command that was killed early leaves these alone
 
 
 class SuiteRef(Struct, frozen=True, kw_only=True):
@@ -50,7 +51,7 @@ class Setup(Struct, frozen=True, kw_only=True):
     @property
     def folder_name(self) -> str:
         """The run's folder when none is given: equal configurations share one, so that the same command resumes."""
-        return f"{self.agent.name}-{self.suite.name}-{self.sha256[:10]}"
+        return f"{self.agent.name}-{Path(self.suite.name).name}-{self.sha256[:10]}"
 
 
 def settle(
@@ -94,27 +95,34 @@ def load(folder: Path) -> Setup:
     return setup
 
 
-def claim(folder: Path, setup: Setup) -> None:
-    """Make a folder the run's own: write `run.json` once, or see that the one there is the same.
+def examine(folder: Path, plan: Setup) -> None:
+    """See that a folder is free for a run: absent, empty, or holding a part of the same run.
 
     Raises:
         RunError: when the folder belongs to another run, naming what differs, or holds other files.
     """
-    path = folder / "run.json"
-    if not path.exists():
-        strangers = sorted(entry.name for entry in folder.iterdir() if entry.name != ".lock" and entry.name[0] != ".")
-        if [name for name in strangers if name != "trials.jsonl"] or _has_bytes(folder / "trials.jsonl"):
-            raise RunError(
-                f"{folder} is not empty and holds no run ({strangers[0]}, ...). Choose another folder with --out."
-            )
-        jsonio.write(path, jsonio.pretty(setup))
+    if not folder.exists():
+        return
+    if not folder.is_dir():
+        raise RunError(f"{folder} is a file; a run needs a folder. Choose another with --out.")
+    if not (folder / "run.json").exists():
+        strangers = sorted(entry.name for entry in folder.iterdir() if entry.name not in _MADE_FIRST)
+        if strangers or _has_bytes(folder / "trials.jsonl"):
+            listed = strangers[0] if strangers else "trials.jsonl"
+            raise RunError(f"{folder} is not empty and holds no run ({listed}). Choose another folder with --out.")
         return
     there = load(folder)
-    if there != setup:
+    if there != plan:
         raise RunError(
-            f"{folder} holds another run: {'; '.join(_differences(there, setup))}. "
+            f"{folder} holds another run: {'; '.join(_differences(there, plan))}. "
             "Choose another folder with --out, or delete this one."
         )
+
+
+def write(folder: Path, plan: Setup) -> None:
+    """Write `run.json`, unless it is there."""
+    if not (folder / "run.json").exists():
+        jsonio.write(folder / "run.json", jsonio.pretty(plan))
 
 
 def _has_bytes(path: Path) -> bool:

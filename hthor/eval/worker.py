@@ -20,9 +20,7 @@ if TYPE_CHECKING:
     from hthor.eval.record import Record
     from hthor.eval.session import Session
 
-ONE_THREAD = {
-    name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-}
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 """One thread a worker: more would only fight over the cores, and sums of floats would depend on their number."""
 
 
@@ -42,7 +40,7 @@ class Finished(Struct, frozen=True, kw_only=True):
 
 
 class Failed(Struct, frozen=True, kw_only=True):
-    """A session cannot be played: ``exit_code`` and ``message`` for the user, ``detail`` a traceback when it is a bug."""
+    """A session cannot be played: ``exit_code`` and ``message`` for the user, ``detail`` a traceback of a bug."""
 
     exit_code: int
     message: str

@@ -23,19 +23,8 @@ from hthor.guest import wire
 from hthor.types import Action, Briefing, Observation
 
 _ROOT = Path(__file__).resolve().parents[2]
-_PASSED_ON = [
-    "PATH",
-    "HOME",
-    "LANG",
-    "LC_ALL",
-    "TZ",
-    "TMPDIR",
-    "VIRTUAL_ENV",
-    "LD_LIBRARY_PATH",
-    "NUMBA_CACHE_DIR",
-    "CUDA_VISIBLE_DEVICES",
-]
-_THREADS = ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"]
+_PASSED_ON = ("PATH", "HOME", "LANG", "LC_ALL", "TZ", "TMPDIR", "VIRTUAL_ENV", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _LOG_BYTES = 16 << 10
 _PIPE_BYTES = 1 << 20
 _F_SETPIPE_SZ = 1031

@@ -144,4 +144,4 @@ def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
 
 def _pose(agent: Agent) -> Pose:
     heading = wrap(math.pi / 2 - math.radians(agent.rotation.y))
-    return Pose(x=agent.position.x, y=agent.position.z, yaw=heading, pitch=-math.radians(agent.horizon))
+    return Pose(x=agent.position.x, y=agent.position.z, yaw=heading, pitch=0.0 - math.radians(agent.horizon))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -89,7 +90,7 @@ def overlap_area(p: Polygon, q: Polygon) -> float:
         return 0.0
     cuts = {x for x, _ in (*p, *q)} | {x for a in edges(p) for b in edges(q) for x in _crossing_x(a, b)}
     marks = sorted({low, high} | {x for x in cuts if low < x < high})
-    return sum((b - a) * _shared((a + b) / 2, p, q) for a, b in zip(marks, marks[1:], strict=False))
+    return sum((b - a) * _shared((a + b) / 2, p, q) for a, b in itertools.pairwise(marks))
 
 
 def _crossing_x(a: tuple[Vec2, Vec2], b: tuple[Vec2, Vec2]) -> list[float]:

@@ -9,13 +9,19 @@ from hthor.catalog import priors
 
 
 @cache
-def supports(target: str) -> dict[str, float]:
-    """Share of common knowledge on each of the eight receptacles; adds up to 1, uniform for an unknown target.
+def holders() -> tuple[str, ...]:
+    """Kinds of furniture that things are put on or in, in the catalogue's order: what people search."""
+    return tuple(name for name in catalog.names() if catalog.kind(name).receptacle)
 
-    A target *near* another object is where that object would be; references that are neither are left out.
+
+@cache
+def supports(target: str) -> dict[str, float]:
+    """Share of common knowledge on each of `holders`; adds up to 1, uniform for an unknown target.
+
+    A target *near* another object is where that object would be, or at the furniture it is near to; references that
+    are neither are left out.
     """
-    kinds = catalog.RECEPTACLES
-    mass = dict.fromkeys(kinds, 0.0)
+    mass = dict.fromkeys(holders(), 0.0)
     for (relation, reference), weight in _weights(target).items():
         if reference in mass:
             mass[reference] += weight
@@ -23,11 +29,11 @@ def supports(target: str) -> dict[str, float]:
             for kind, share in _direct(reference).items():
                 mass[kind] += weight * share
     total = sum(mass.values())
-    return {kind: mass[kind] / total if total > 0.0 else 1.0 / len(kinds) for kind in kinds}
+    return {kind: share / total if total > 0.0 else 1.0 / len(mass) for kind, share in mass.items()}
 
 
 def expectation(target: str, w_prior: float) -> dict[str, float]:
-    """Belief in each kind of receptacle: ``w_prior`` of `supports`, the rest uniform; adds up to 1."""
+    """Belief in each kind of furniture: ``w_prior`` of `supports`, the rest uniform; adds up to 1."""
     known = supports(target)
     return {kind: w_prior * share + (1.0 - w_prior) / len(known) for kind, share in known.items()}
 
@@ -37,7 +43,7 @@ def _weights(target: str) -> dict[tuple[str, str], float]:
 
 
 def _direct(target: str) -> dict[str, float]:
-    """Share of each receptacle among those that a target lies on or in; empty for what is no target."""
-    found = {ref: weight for (_, ref), weight in _weights(target).items() if ref in catalog.RECEPTACLES}
+    """Share of each kind of furniture among those that a target lies on or in; empty for what is no target."""
+    found = {ref: weight for (_, ref), weight in _weights(target).items() if ref in holders()}
     total = sum(found.values())
     return {ref: weight / total for ref, weight in found.items()}

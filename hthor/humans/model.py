@@ -1,8 +1,8 @@
 """The seam where a person sits: what every human model can do; knows nothing of any one model.
 
 A human model is one file in ``hthor/humans/models`` that defines ``class Model``. It is made once a session from a
-`Person` and what is left of earlier trials, and goes through the trials of the session in order: ``begin``, ``act`` until
-the trial ends, ``rate``.
+`Person` and what is left of earlier trials, and goes through the trials of the session in order: ``begin``, ``act``
+until the trial ends, ``rate``.
 """
 
 from __future__ import annotations

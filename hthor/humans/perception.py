@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 
-from hthor import catalog, seeds
+from hthor import seeds
 from hthor.geometry import wrap
+from hthor.humans.beliefs import holders
 from hthor.humans.memory import Memory, Place
 from hthor.humans.parameters import Parameters
 from hthor.types import HUMAN, Detection, Observation, Vec3
@@ -18,14 +19,13 @@ from hthor.types import HUMAN, Detection, Observation, Vec3
 GLIMPSE_TICKS = 3
 """People fixate about three times a second."""
 _LONGEST_S = 0.6
-_SEARCHED = frozenset(catalog.RECEPTACLES)
 
 
 class Eyes:
     """Turns detections into what the person knows.
 
-    ``target`` is where the target was noticed last, None while it is not known. ``attention`` is what is being searched:
-    a place, a spot, or nothing in particular.
+    ``target`` is where the target was noticed last, at tick ``seen_at``; None while it is not known. ``attention``
+    is what is being searched: a place, a spot, or nothing in particular.
     """
 
     def __init__(self, traits: Parameters, root: int, target: str, memory: Memory, tick_s: float) -> None:
@@ -33,6 +33,8 @@ class Eyes:
         self.target: Detection | None = None
         self.attention: Place | Vec3 | None = None
         self.at = -1
+        self.seen_at = -1
+        self._holders = frozenset(holders())
         self._gathered: dict[str, float] = {}
         self._threshold: dict[str, float] = {}
         self._lost = 0
@@ -47,7 +49,7 @@ class Eyes:
         self.at = now.tick
         for seen in now.detections:
             if seen.family == "furniture":
-                if seen.kind in _SEARCHED:
+                if seen.kind in self._holders:
                     self._furniture(seen, now, seconds)
             elif seen.family == "doorway":
                 self.memory.keep_doorway(seen, (now.pose.x, now.pose.y), now.room)
@@ -66,7 +68,7 @@ class Eyes:
             rate = self._rate(seen, now) * (self.traits.focus if self._attended(seen) else 1.0)
             if not self._notice(self.wanted, rate * seconds, self._lost):
                 return
-        self.target = seen
+        self.target, self.seen_at = seen, now.tick
 
     def _furniture(self, seen: Detection, now: Observation, seconds: float) -> None:
         traits, known = self.traits, seen.id in self.memory.places

@@ -9,17 +9,19 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hthor.navigation.courtesy import Courtesy
+    from hthor.navigation.courtesy import Courtesy, lookout
     from hthor.navigation.follow import Follower, face
-    from hthor.navigation.frontier import Frontier, frontiers, unvisited
+    from hthor.navigation.frontier import Frontier, Survey, frontiers, unvisited
     from hthor.navigation.map import FREE, OCCUPIED, UNKNOWN, GridMap
     from hthor.navigation.planner import Field, Planner
 
 _HOMES = {
     "Courtesy": "courtesy",
+    "lookout": "courtesy",
     "Follower": "follow",
     "face": "follow",
     "Frontier": "frontier",
+    "Survey": "frontier",
     "frontiers": "frontier",
     "unvisited": "frontier",
     "FREE": "map",
@@ -40,8 +42,10 @@ __all__ = [
     "Frontier",
     "GridMap",
     "Planner",
+    "Survey",
     "face",
     "frontiers",
+    "lookout",
     "unvisited",
 ]
 

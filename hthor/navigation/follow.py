@@ -35,6 +35,11 @@ class Follower:
         """The last way point [m]."""
         return self.path[-1] if self.path else None
 
+    @property
+    def ahead(self) -> Vec2 | None:
+        """The way point [m] that it is heading for."""
+        return None if self.done else self.path[self._next]
+
     def next(self, pose: Pose) -> Motion | None:
         """The next motion from ``pose``, or None when the path is done."""
         while not self.done and math.dist(self.path[self._next], (pose.x, pose.y)) <= self.arrived_m:

@@ -36,10 +36,17 @@ def unvisited(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.3) -
     return _groups(grid, _known(planner, pose), planner, False, least)
 
 
-def both(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> tuple[list[Frontier], list[Frontier]]:
-    """`frontiers` and `unvisited` by one search."""
-    field = _known(planner, pose)
-    return _groups(grid, field, planner, True, least), _groups(grid, field, planner, False, least)
+class Survey:
+    """Both kinds of place by one search, with the ways to them."""
+
+    def __init__(self, grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> None:
+        self._field = _known(planner, pose)
+        self.frontiers = _groups(grid, self._field, planner, True, least)
+        self.unvisited = _groups(grid, self._field, planner, False, least)
+
+    def path(self, place: Frontier) -> tuple[Vec2, ...] | None:
+        """The way to a place, through what is known to be free; ask before the map grows."""
+        return self._field.path(place.centre)
 
 
 def _known(planner: Planner, pose: Pose) -> Field:

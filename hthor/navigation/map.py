@@ -98,6 +98,16 @@ class GridMap:
             return UNKNOWN
         return int(self.cells[row, column])
 
+    def was_near(self, x: float, y: float) -> bool:
+        """Whether the free cell at (``x``, ``y``) [m] was looked at from close by."""
+        column, row = self._index(x, y)
+        inside = 0 <= row < self.cells.shape[0] and 0 <= column < self.cells.shape[1]
+        return inside and bool(self.near[row, column])
+
+    def forget_near(self) -> None:
+        """Count every cell as not yet looked at from close by."""
+        self.near[:] = 0
+
     def _index(self, x: float, y: float) -> tuple[int, int]:
         return math.floor(x / CELL_M) - self.left, math.floor(y / CELL_M) - self.bottom
 

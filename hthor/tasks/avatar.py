@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 RADIUS_M = 0.20
-HEIGHT_M = 1.8
+HEIGHT_M = 1.75
 EYE_M = 1.6
 REACH_M = 1.2
 """Horizontal reach [m] from the body's axis, to an object's centre or to the nearest point of a surface."""

@@ -96,7 +96,9 @@ class Ground:
     def _axes(self) -> tuple[Floats, Floats]:
         ny, nx = self.space.free.shape
         x, y = self.space.centre_of(0, 0)
-        return x + np.arange(nx) * self.space.cell, y + np.arange(ny) * self.space.cell
+        columns: Floats = x + np.arange(nx, dtype=np.float64) * self.space.cell
+        rows: Floats = y + np.arange(ny, dtype=np.float64) * self.space.cell
+        return columns, rows
 
 
 class Walk:
@@ -104,25 +106,24 @@ class Walk:
 
     def __init__(self, ground: Ground, stops: Sequence[Bools]) -> None:
         self._space, self._stops = ground.space, tuple(stops)
-        self._fields: list[Field] = []
+        self._fields: dict[int, Field] = {}
         for number in reversed(range(len(self._stops))):
             rim = ground.space.centres(_rim(self._stops[number], ground.space.free))
-            self._fields.insert(0, ground.paths.field(rim, self._to_go(rim, number + 1)))
+            self._fields[number] = ground.paths.field(rim, self._left(rim, number + 1))
 
     def lengths(self, starts: ArrayLike) -> Floats:
         """(N,) [m] for ``starts`` (N, 2), less the grid's slack; inf where there is no such walk."""
         slack = (2 * len(self._stops) - 1) * SLACK_M
-        return np.maximum(self._to_go(np.asarray(starts, dtype=float).reshape(-1, 2), 0, 0) - slack, 0.0)
+        return np.maximum(self._left(np.asarray(starts, dtype=float).reshape(-1, 2), 0) - slack, 0.0)
 
-    def _to_go(self, places: Floats, stop: int, first: int = -1) -> Floats:
-        """What is left of the walk at ``places`` before ``stop``; ``_fields`` then starts with that of ``stop``."""
+    def _left(self, places: Floats, stop: int) -> Floats:
+        """What is left of the walk at ``places`` when the stops before ``stop`` are done."""
         if stop == len(self._stops):
             return np.zeros(len(places))
-        field = self._fields[stop if first == 0 else 0]
-        lengths = field.at(places)
+        lengths = self._fields[stop].at(places)
         there = np.array([self._holds(stop, x, y) for x, y in places], dtype=bool)
         if there.any():
-            lengths[there] = self._to_go(places[there], stop + 1, first)
+            lengths[there] = self._left(places[there], stop + 1)
         return lengths
 
     def _holds(self, stop: int, x: float, y: float) -> bool:

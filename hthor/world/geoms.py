@@ -14,7 +14,9 @@ FURNITURE, WALLS, OBJECTS, BODIES, CEILINGS = range(5)
 STATIC = {"contype": 1, "conaffinity": 0}
 MOVABLE = {"contype": 2, "conaffinity": 3}
 GHOST = {"contype": 0, "conaffinity": 0}
-"""Collision bits: movable things meet each other and what is static; ghosts (bodies, doors) meet nothing."""
+"""Collision bits: movable things meet each other and what is static; ghosts (bodies, floors' looks) meet nothing."""
+LEAF = {"contype": 4, "conaffinity": 0}
+"""A door's leaf meets nothing either, but unlike a ghost it counts as solid: it hides what is behind it."""
 
 
 def quaternion(yaw: float) -> tuple[float, float, float, float]:

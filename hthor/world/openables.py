@@ -28,7 +28,7 @@ class Door(Entity):
         for index, part in enumerate(kind.parts(thing.size)):
             if part.moves:
                 centre = (-axis[0], -axis[1], 0.0)
-                bits = geoms.GHOST
+                bits = geoms.LEAF
                 geoms.add_part(leaf, f"part:{index}", part, centre, mass=4.0, group=geoms.FURNITURE, **bits)
 
     @property

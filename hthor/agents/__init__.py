@@ -1,0 +1,35 @@
+"""The robots' minds, one file an agent, and the template for a new one; knows nothing of worlds or scores.
+
+An agent file defines ``class Agent`` with ``begin(briefing)`` and ``act(observation) -> Action``. Optional class
+attributes: ``privileges`` (of "ideal_detector", "object_poses", "house_map"; they are printed with every result),
+``robots`` (names of the bodies it is made for; empty: any), ``absent`` (True: there is no robot at all).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hthor import jsonio
+from hthor.errors import AgentError
+
+_TEMPLATE = Path(__file__).with_name("_template.py.txt")
+
+
+def template() -> str:
+    """The text of a small agent that works as it is."""
+    return _TEMPLATE.read_text(encoding="utf-8")
+
+
+def write_template(path: str | Path, force: bool = False) -> Path:
+    """Write the template to ``path`` and return it.
+
+    Raises:
+        AgentError: when the name does not end in .py, or the file exists and ``force`` is not given.
+    """
+    path = Path(path)
+    if path.suffix != ".py":
+        raise AgentError(f"an agent is one Python file, its name must end in .py, got '{path.name}'.")
+    if path.exists() and not force:
+        raise AgentError(f"{path} exists already. Choose another name, or overwrite it with --force.")
+    jsonio.write(path, template().encode())
+    return path

@@ -1,0 +1,125 @@
+"""Exploring a house with a map of one's own; knows nothing of what is looked for, nor of messages."""
+
+from __future__ import annotations
+
+import math
+
+from hthor.navigation.follow import Follower
+from hthor.navigation.frontier import Frontier, Survey
+from hthor.navigation.map import CELL_M, UNKNOWN, GridMap
+from hthor.navigation.planner import Planner
+from hthor.types import BodySpec, Motion, Observation, Pose, Rotate, Vec2
+
+CLOSE_M = 0.9
+"""From this far every thing on a table's near half is within the detector's range."""
+_DETOUR_M = 1.5
+"""How much farther a frontier may be than furniture not yet looked at, and still go first."""
+_SIZE_GAIN, _SIZE_MOST = 0.5, 2.0
+_TRIES = 4
+_LOW_M, _HIGH_M, _ASIDE_M = 0.4, 1.1, 1.0
+
+
+class Explorer:
+    """Looks around, then goes to the cheapest of frontiers and places never seen from close by."""
+
+    def __init__(self, body: BodySpec) -> None:
+        self.body = body
+        self.grid: GridMap | None = None
+        self.follower = Follower(step=0.5)
+        self._turns = math.ceil(2.0 * math.pi / (0.9 * body.fov[0]))
+        self._integrated: Pose | None = None
+        self._place: Frontier | None = None
+        self._is_edge = False
+        self._tries: dict[tuple[int, int], int] = {}
+
+    def see(self, observation: Observation) -> None:
+        """Bring the map up to date; call at every act."""
+        pose = observation.pose
+        if self.grid is None:
+            self.grid = GridMap(pose.x, pose.y)
+            self.planner = Planner(self.grid, self.body.radius, optimistic=False)
+        if self._integrated != pose:
+            self.grid.integrate(observation.scan, CLOSE_M, 0.45 * self.body.fov[0])
+            self._integrated = pose
+        outcome = observation.outcome
+        if outcome is not None and not outcome.ok and outcome.motion == "move" and not _is_seat(outcome.by):
+            self._bumped(pose)
+
+    def motion(self, observation: Observation) -> Motion:
+        """The next motion of the exploration."""
+        if self._turns:
+            return self._look_around(observation.pose)
+        if self._place is None or self.follower.done or not self._is_open(self._place.centre):
+            self._choose(observation.pose)
+        step = self.follower.next(observation.pose)
+        if step is None:
+            self._place = None
+            return Rotate(yaw=0.9 * self.body.fov[0])
+        return step
+
+    def fits(self, a: Vec2, b: Vec2) -> bool:
+        """Whether the body can go straight from ``a`` to ``b``, as far as the map tells."""
+        return self.planner.straight(a, b)
+
+    def drop(self) -> None:
+        """Forget where it was going."""
+        self._place = None
+        self.follower.take(None)
+
+    def _look_around(self, pose: Pose) -> Motion:
+        self._turns -= 1
+        return Rotate(yaw=0.9 * self.body.fov[0], pitch=gaze(self.body) - pose.pitch)
+
+    def _is_open(self, centre: Vec2) -> bool:
+        """Whether there is still something to learn at the place."""
+        assert self.grid is not None
+        x, y = centre
+        if self._is_edge:
+            around = ((CELL_M, 0.0), (-CELL_M, 0.0), (0.0, CELL_M), (0.0, -CELL_M))
+            return any(self.grid.at(x + dx, y + dy) == UNKNOWN for dx, dy in around)
+        return not self.grid.was_near(x, y)
+
+    def _choose(self, pose: Pose) -> None:
+        assert self.grid is not None
+        self.drop()
+        survey = Survey(self.grid, self.planner, pose)
+        ranked = [(_cost(place), True, place) for place in survey.frontiers]
+        ranked += [(_cost(place) + _DETOUR_M, False, place) for place in survey.unvisited]
+        ranked.sort(key=lambda entry: (entry[0], entry[2].centre))
+        for _, is_edge, place in ranked:
+            key = (round(place.centre[0] / 0.2), round(place.centre[1] / 0.2))
+            if self._tries.get(key, 0) >= _TRIES:
+                continue
+            self._tries[key] = self._tries.get(key, 0) + 1
+            path = survey.path(place)
+            if path is not None:
+                self._place, self._is_edge = place, is_edge
+                self.follower.take(path)
+                return
+        self.grid.forget_near()  # all seen: go round once more
+        self._tries.clear()
+
+    def _bumped(self, pose: Pose) -> None:
+        """Something that the scan does not show stopped the body: close the cell in front, and think again."""
+        assert self.grid is not None
+        goal = self.follower.ahead
+        if goal is None:
+            return
+        angle = math.atan2(goal[1] - pose.y, goal[0] - pose.x)
+        reach = self.body.radius + CELL_M
+        self.grid.mark_blocked(pose.x + reach * math.cos(angle), pose.y + reach * math.sin(angle))
+        self.drop()
+
+
+def gaze(body: BodySpec) -> float:
+    """Camera pitch [rad] that keeps the tops of tables in view from a metre away."""
+    low, high = (math.atan2(height - body.eye, _ASIDE_M) for height in (_LOW_M, _HIGH_M))
+    return max(-body.pitch_limit, min(body.pitch_limit, (low + high) / 2.0))
+
+
+def _cost(place: Frontier) -> float:
+    return place.distance - _SIZE_GAIN * min(place.size, _SIZE_MOST)
+
+
+def _is_seat(name: str) -> bool:
+    return name == "human" or name.startswith("robot")

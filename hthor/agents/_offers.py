@@ -1,0 +1,49 @@
+"""When to speak, again or not at all, and in which words; knows nothing of where things are."""
+
+from __future__ import annotations
+
+from hthor.types import Briefing, Detection, Observation, Receipt
+
+AGAIN_S = 10.0
+"""How long to leave the person alone after a message was declined or covered."""
+
+
+class Offers:
+    """Counts what was said about one thing: once, and again some time after it was turned down."""
+
+    def __init__(self, briefing: Briefing, most: int) -> None:
+        """``most`` messages are sent at the very most."""
+        self.most, self.sent = most, 0
+        self._again = round(AGAIN_S / briefing.tick_s)
+        self._mark = 0
+
+    def due(self, tick: int, receipt: Receipt | None) -> bool:
+        """Whether to speak now."""
+        if self.sent == 0:
+            return True
+        if self.sent >= self.most or tick < self._mark + self._again or receipt is None:
+            return False
+        return receipt.status in ("declined", "covered") and tick >= receipt.tick + self._again
+
+    def note(self, tick: int) -> None:
+        """A message was sent."""
+        self.sent, self._mark = self.sent + 1, tick
+
+
+def title(kind: str) -> str:
+    """A kind's name in a sentence, such as "the dining table"."""
+    return "the " + kind.replace("_", " ")
+
+
+def sighting(seen: Detection, observation: Observation) -> str:
+    """What a robot says of an object in its view."""
+    support = next((thing for thing in observation.detections if thing.id == seen.support), None)
+    if support is None:
+        return f"I found {title(seen.kind)} in front of me."
+    where = "in" if support.state else "on"
+    return f"I found {title(seen.kind)} {where} {title(support.kind)} in front of me."
+
+
+def spot(observation: Observation, name: str) -> Detection | None:
+    """The object of this id, when it is in view."""
+    return next((seen for seen in observation.detections if seen.id == name and seen.family == "object"), None)

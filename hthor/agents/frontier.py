@@ -1,0 +1,72 @@
+"""The frontier robot of the paper: explores with a detector for what is near, and tells; knows nothing of the house."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from hthor.agents._offers import Offers, sighting, spot
+from hthor.types import HUMAN, Action, Briefing, Detection, Motion, Observation, Send, Vec2, Wait
+
+if TYPE_CHECKING:
+    from hthor.agents._explorer import Explorer
+    from hthor.navigation.courtesy import Courtesy
+
+
+class Agent:
+    """Frontier exploration with an ideal detector within 1.5 m.
+
+    Says once where the target is when it sees it, and once more ten seconds after being turned down. Then it watches
+    the target from where it stands in nobody's way.
+    """
+
+    privileges = ("ideal_detector",)
+    robots: tuple[str, ...] = ()
+
+    def begin(self, briefing: Briefing) -> None:
+        """Start with an empty map."""
+        from hthor.agents._explorer import Explorer
+        from hthor.navigation.courtesy import Courtesy
+
+        self.briefing = briefing
+        self.offers = Offers(briefing, most=2)
+        self.explorer: Explorer = Explorer(briefing.body)
+        self.courtesy: Courtesy = Courtesy(briefing.body, self.explorer.fits)
+        self.target: Detection | None = None
+        self.retreated = False
+
+    def act(self, observation: Observation) -> Action:
+        """Look, tell, and go on."""
+        self.explorer.see(observation)
+        seen = spot(observation, self.briefing.target)
+        if seen is not None:
+            self.target = seen
+        say = self._say(observation, seen)
+        if not observation.idle:
+            return Action(say=say)
+        seconds = observation.tick * self.briefing.tick_s
+        yielding = self.courtesy.motion(observation, seconds)
+        if yielding is not None:
+            return Action(motion=yielding, say=say)
+        return Action(motion=self._watch(observation) if self.target else self.explorer.motion(observation), say=say)
+
+    def _say(self, observation: Observation, seen: Detection | None) -> Send | None:
+        """The message, when the target is in view, not in the person's hand, and it is time to speak."""
+        if seen is None or seen.held_by == HUMAN or not self.offers.due(observation.tick, observation.receipt):
+            return None
+        self.offers.note(observation.tick)
+        return Send(text=sighting(seen, observation), object=seen.id, position=seen.position)
+
+    def _watch(self, observation: Observation) -> Motion:
+        """Stand aside once, then keep the target in view."""
+        from hthor.navigation.courtesy import lookout
+        from hthor.navigation.follow import face, shift
+
+        assert self.target is not None
+        pose, where = observation.pose, self.target.position
+        if not self.retreated:
+            self.retreated = True
+            aside: Vec2 | None = lookout((pose.x, pose.y), (where[0], where[1]), self.explorer.fits)
+            if aside is not None and math.dist((pose.x, pose.y), (where[0], where[1])) < 1.0:
+                return shift(pose, aside)
+        return face(pose, where, self.briefing.body.eye, self.briefing.body.pitch_limit) or Wait(seconds=0.5)

@@ -1,0 +1,141 @@
+"""The oracle robot of the paper: knows where everything is and walks there; knows nothing of the person's plans."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from hthor import geometry, rules
+from hthor.agents._offers import Offers, sighting, spot, title
+from hthor.types import HUMAN, Action, Briefing, Motion, Observation, Send, Thing, ThingState, Vec2, Vec3, Wait
+
+if TYPE_CHECKING:
+    from hthor.agents._routes import Routes
+    from hthor.navigation.courtesy import Courtesy
+    from hthor.navigation.follow import Follower
+
+
+class Agent:
+    """Walks the shortest way to the target and speaks only when it is close enough to detect it.
+
+    Behind a closed door it cannot detect, and says so from in front of the door. When the person has the target in
+    hand it goes on to the destination, and tells where that is.
+    """
+
+    privileges = ("house_map", "ideal_detector", "object_poses")
+    robots: tuple[str, ...] = ()
+
+    def begin(self, briefing: Briefing) -> None:
+        """Prepare the shortest ways of this house."""
+        from hthor.agents._routes import Routes
+        from hthor.navigation.courtesy import Courtesy
+        from hthor.navigation.follow import Follower
+
+        assert briefing.house is not None, "the oracle needs the privilege house_map"
+        self.briefing, self.house = briefing, briefing.house
+        self.routes: Routes = Routes(briefing.house, briefing.body)
+        self.courtesy: Courtesy = Courtesy(briefing.body, self.routes.fits)
+        self.follower: Follower = Follower(step=0.5)
+        self.offers = {"target": Offers(briefing, most=3), "destination": Offers(briefing, most=3)}
+        self.goal: Vec3 | None = None
+        self.misses: list[Vec2] = []
+        self.spoken_about = ""
+
+    def act(self, observation: Observation) -> Action:
+        """Tell when it is time, and go to where the errand is."""
+        target = next(thing for thing in observation.truth if thing.id == self.briefing.target)
+        errand, place = self._errand(target)
+        say = self._say(observation, target, errand, place)
+        if not observation.idle:
+            return Action(say=say)
+        yielding = self.courtesy.motion(observation, observation.tick * self.briefing.tick_s)
+        motion = yielding if yielding is not None else self._go(observation, errand, place)
+        return Action(motion=motion, say=say)
+
+    def _errand(self, target: ThingState) -> tuple[str, Vec3]:
+        """What to show now, the target or the destination, and where it is [m]."""
+        if target.held_by == HUMAN:
+            thing = self._destination(target)
+            if thing is not None:
+                return "destination", thing.centre
+        return "target", target.position
+
+    def _destination(self, target: ThingState) -> Thing | None:
+        """The thing of the wanted kind that is nearest to the target by the floor."""
+        things = [thing for thing in self.house.things if thing.kind == self.briefing.destination]
+        if not things:
+            return None
+        here = (target.position[0], target.position[1])
+        return min(things, key=lambda thing: (self.routes.near(here, thing.centre), thing.id))
+
+    def _say(self, observation: Observation, target: ThingState, errand: str, place: Vec3) -> Send | None:
+        offers = self.offers[errand]
+        receipt = observation.receipt if self.spoken_about == errand else None
+        if not offers.due(observation.tick, receipt):
+            return None
+        message = (
+            self._destined(observation, target, place) if errand == "destination" else self._found(observation, target)
+        )
+        if message is not None:
+            offers.note(observation.tick)
+            self.spoken_about = errand
+        return message
+
+    def _found(self, observation: Observation, target: ThingState) -> Send | None:
+        seen = spot(observation, target.id)
+        if seen is not None and seen.held_by != HUMAN:
+            return Send(text=sighting(seen, observation), object=seen.id, position=seen.position)
+        support = next((thing for thing in observation.truth if thing.id == target.support), None)
+        if support is None or support.open or not self._is_close(observation, support.id):
+            return None
+        text = f"{title(target.kind).capitalize()} is in {title(support.kind)}."
+        return Send(text=text, object=target.id, position=target.position)
+
+    def _destined(self, observation: Observation, target: ThingState, place: Vec3) -> Send | None:
+        thing = self._destination(target)
+        if thing is None or not self._is_close(observation, thing.id):
+            return None
+        return Send(text=f"{title(thing.kind).capitalize()} is here.", object=thing.id, position=place)
+
+    def _is_close(self, observation: Observation, name: str) -> bool:
+        """Whether the robot is within the detector's range of a thing's outline, in the same room."""
+        thing = next((thing for thing in self.house.things if thing.id == name), None)
+        if thing is None:
+            return False
+        here = (observation.pose.x, observation.pose.y)
+        apart = geometry.distance_to_rectangle(
+            here, (thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw
+        )
+        return apart <= rules.DETECTOR_RANGE_M and self.routes.same_room(here, thing.centre)
+
+    def _go(self, observation: Observation, errand: str, place: Vec3) -> Motion:
+        """Walk to where the place is in range, face it, then stand aside; try another spot when it is not seen."""
+        from hthor.navigation.follow import face
+
+        if self.goal is None or math.dist(self.goal, place) > 0.3:
+            self.goal, self.misses = place, []
+            self._route(observation, place)
+        step = self.follower.next(observation.pose)
+        if step is not None:
+            return step
+        body = self.briefing.body
+        turn = face(observation.pose, place, body.eye, body.pitch_limit)
+        if turn is not None:
+            return turn
+        if self.offers[errand].sent == 0 and len(self.misses) < 8:
+            self.misses.append((observation.pose.x, observation.pose.y))
+            self._route(observation, place)
+            return self.follower.next(observation.pose) or Wait(seconds=0.5)
+        return self._stand_aside(observation, place)
+
+    def _route(self, observation: Observation, place: Vec3) -> None:
+        here = (observation.pose.x, observation.pose.y)
+        self.follower.take(self.routes.to_view(here, place, self.misses))
+
+    def _stand_aside(self, observation: Observation, place: Vec3) -> Motion:
+        from hthor.navigation.courtesy import lookout
+        from hthor.navigation.follow import shift
+
+        here = (observation.pose.x, observation.pose.y)
+        aside = lookout(here, (place[0], place[1]), self.routes.fits) if math.dist(here, place[:2]) < 1.0 else None
+        return Wait(seconds=0.5) if aside is None else shift(observation.pose, aside)

@@ -1,0 +1,62 @@
+"""The commands' names, what they share, and how errors look; a command's work is imported when it is called."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import Annotated
+
+import typer
+
+from hthor import __version__
+from hthor.cli import boards, lists, runs
+from hthor.errors import HthorError
+
+EPILOG = (
+    "Exit codes: 0 done; 1 a house is unsound, or an error of our own; 2 wrong usage or input; 3 done, but the agent "
+    "failed in some trials; 4 the agent's file does not load; 75 the run is being written by another process; "
+    "130 interrupted, the same command resumes."
+)
+
+app = typer.Typer(
+    name="hthor",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    epilog=EPILOG,
+    rich_markup_mode=None if os.environ.get("TERM") == "dumb" else "rich",
+)
+app.command("eval")(runs.evaluate)
+app.command("score")(runs.score)
+app.command("replay")(runs.replay)
+app.add_typer(boards.app, name="leaderboard")
+for _name, _group in lists.GROUPS.items():
+    app.add_typer(_group, name=_name)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"hthor {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """Evaluate robots that help people in a shared house."""
+
+
+def run() -> None:
+    """Run the command of this process, and turn the user's errors into one clear line."""
+    try:
+        app()
+    except HthorError as error:
+        sys.stderr.write(f"error: {error}\n")
+        sys.exit(error.exit_code)
+    except BrokenPipeError:
+        # Whoever read our output has gone, as `head` does. Python would complain once more at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(0)

@@ -1,0 +1,195 @@
+"""`hthor houses`, `tasks`, `agents`, `agent`, `humans` and `robots`: what there is; evaluates nothing."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from hthor.cli import screen
+from hthor.cli.runs import Json
+
+houses = typer.Typer(no_args_is_help=True, help="Floor plans.")
+tasks = typer.Typer(no_args_is_help=True, help="Suites of tasks.")
+agents = typer.Typer(no_args_is_help=True, help="Robots' minds that ship with hthor.")
+agent = typer.Typer(no_args_is_help=True, help="Your own robot's mind.")
+humans = typer.Typer(no_args_is_help=True, help="Human models.")
+robots = typer.Typer(no_args_is_help=True, help="Robots' bodies.")
+
+GROUPS = {"houses": houses, "tasks": tasks, "agents": agents, "agent": agent, "humans": humans, "robots": robots}
+
+for _group in GROUPS.values():
+    _group.callback()(lambda: None)  # a group of one command would otherwise swallow the command's name
+
+
+@houses.command("list")
+def list_houses(json: Json = False) -> None:
+    """The houses that ship with hthor."""
+    from hthor import houses as rooms
+
+    found = [(name, rooms.load(name)) for name in rooms.names()]
+    rows = [
+        {
+            "name": name,
+            "rooms": [room.name or room.kind for room in house.rooms],
+            "things": len(house.things),
+            "sha256": house.sha256,
+        }
+        for name, house in found
+    ]
+    _put(rows, json, short=("sha256",))
+
+
+@houses.command("check")
+def check_house(
+    file: Annotated[str, typer.Argument(metavar="HOUSE", help="A house file (ProcTHOR's JSON), or a house's name.")],
+    radius: Annotated[
+        float, typer.Option(min=0.01, max=2.0, help="Radius of the body that shall live in it [m].")
+    ] = 0.2,
+    json: Json = False,
+) -> None:
+    """Say whether a house is sound for a body: exit code 1 when it is not, 2 when the file is broken."""
+    from hthor import houses as rooms
+
+    findings = rooms.check(rooms.load(file), radius)
+    errors = sum(finding.severity == "error" for finding in findings)
+    if json:
+        screen.put_json({"house": file, "radius": radius, "sound": not errors, "findings": findings})
+    else:
+        for finding in findings:
+            sys.stdout.write(f"{finding}\n")
+        warnings = len(findings) - errors
+        verdict = "unsound" if errors else "sound"
+        sys.stdout.write(f"{file}: {verdict} for a radius of {radius} m ({errors} errors, {warnings} warnings)\n")
+    if errors:
+        raise typer.Exit(1)
+
+
+@tasks.command("list")
+def list_tasks(
+    suite: Annotated[str | None, typer.Option(help="List the tasks of this suite.")] = None, json: Json = False
+) -> None:
+    """The suites, or the tasks of one."""
+    from hthor import tasks as rooms
+
+    if suite is None:
+        _put([_suite_row(rooms.suite(name)) for name in rooms.suites()], json, short=("sha256",))
+        return
+    rows = [
+        {
+            "id": task.id,
+            "kind": task.kind,
+            "house": task.house,
+            "instruction": task.instruction,
+            "t_star_s": round(task.t_star, 1),
+        }
+        for task in rooms.suite(suite).tasks
+    ]
+    _put(rows, json)
+
+
+@agents.command("list")
+def list_agents(json: Json = False) -> None:
+    """The robots' minds that ship with hthor, and the privileges that they declare."""
+    rows = []
+    for name, purpose in _purposes("agent"):
+        row: dict[str, Any] = {"name": name, "privileges": [], "purpose": purpose}
+        made = _loaded("agent", name)
+        row["privileges"] = list(getattr(made, "privileges", ()))
+        rows.append(row)
+    _put(rows, json)
+
+
+@agent.command("new")
+def new_agent(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The file to write, such as my_agent.py.")],
+    force: Annotated[bool, typer.Option("--force", help="Write over a file that is there.")] = False,
+) -> None:
+    """Write a small complete mind to start from."""
+    from hthor import agents as minds
+
+    minds.write_template(file, force)
+    sys.stdout.write(f"{file}\n")
+    sys.stderr.write(f"next:  hthor eval --agent {file} --humans proxy\n")
+
+
+@humans.command("list")
+def list_humans(json: Json = False) -> None:
+    """The human models."""
+    from hthor.humans import fingerprint
+
+    rows = [
+        {"name": name, "purpose": purpose, "sha256": fingerprint(name)} for name, purpose in _purposes("human model")
+    ]
+    _put(rows, json, short=("sha256",))
+
+
+@robots.command("list")
+def list_robots(json: Json = False) -> None:
+    """The robots' bodies."""
+    from hthor import plugins
+
+    rows = []
+    for name in plugins.names("robot"):
+        spec = plugins.load("robot", name)
+        rows.append(
+            {
+                "name": name,
+                "title": spec.title,
+                "radius_m": spec.radius,
+                "height_m": spec.height,
+                "speed_m_s": spec.speed,
+                "sight_m": spec.sight_range,
+                "can": sorted(spec.capabilities),
+            }
+        )
+    _put(rows, json)
+
+
+def _suite_row(suite: Any) -> dict[str, Any]:
+    kinds, homes = sorted({task.kind for task in suite.tasks}), sorted({task.house for task in suite.tasks})
+    return {
+        "name": suite.name,
+        "version": str(suite.version),
+        "tasks": len(suite.tasks),
+        "kinds": kinds,
+        "houses": homes,
+        "sha256": suite.sha256,
+    }
+
+
+def _purposes(sort: str) -> list[tuple[str, str]]:
+    """Every plug-in of a sort and the first sentence of its file, without importing any."""
+    from hthor import plugins
+
+    folder = Path(plugins.__file__).parent / {"agent": "agents", "human model": "humans/models"}[sort]
+    return [(name, _first_sentence(folder / f"{name}.py")) for name in plugins.names(sort)]
+
+
+def _first_sentence(file: Path) -> str:
+    text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+    return " ".join(text.split("\n\n")[0].split()).split("; ")[0].rstrip(".")
+
+
+def _loaded(sort: str, name: str) -> Any:
+    """The plug-in, None when what it needs is not installed."""
+    from hthor import plugins
+    from hthor.errors import MissingExtra
+
+    try:
+        return plugins.load(sort, name)
+    except (ImportError, MissingExtra):
+        return None
+
+
+def _put(rows: Sequence[dict[str, Any]], json: bool, short: Sequence[str] = ()) -> None:
+    """Rows as JSON in full, or as a table with long hashes cut short."""
+    if json:
+        screen.put_json(rows)
+        return
+    headings = list(rows[0]) if rows else ["nothing"]
+    screen.put_table(headings, [[row[name][:10] if name in short else row[name] for name in headings] for row in rows])

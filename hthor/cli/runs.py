@@ -1,0 +1,157 @@
+"""`hthor eval`, `score` and `replay`; knows what the user types, not how any of it is done."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hthor.cli import screen
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from hthor.eval.campaign import ClosableWatcher, Done
+
+Run = Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder, such as runs/demo/frontier.")]
+Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output; words go to standard error.")]
+
+_FAULTS_EXIT = 3
+
+
+def evaluate(
+    agent: Annotated[
+        list[str],
+        typer.Option(
+            help="Who is evaluated: a built-in agent's name ('hthor agents list'), or a Python file, my_agent.py or "
+            "my_agent.py:MyClass. Repeat it to compare several.",
+        ),
+    ],
+    humans: Annotated[str, typer.Option(help="The human model that the people are ('hthor humans list').")] = "proxy",
+    suite: Annotated[str, typer.Option(help="The tasks ('hthor tasks list').")] = "smoke",
+    robot: Annotated[str, typer.Option(help="The robot's body ('hthor robots list').")] = "scout",
+    seed: Annotated[int, typer.Option(help="Equal seeds give equal people, dealt the same tasks.")] = 0,
+    participants: Annotated[
+        int | None,
+        typer.Option(min=1, help="How many people, ten tasks each. [default: so many that every task is done once]"),
+    ] = None,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one a CPU]")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="The run's folder; with several agents the folder of their folders. [default: runs/AGENT-SUITE-HASH]"
+        ),
+    ] = None,
+    json: Json = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+) -> None:
+    """Evaluate robots' minds with people over a suite of tasks.
+
+    The same command resumes an interrupted run, and only scores a finished one. The same seed gives the same records,
+    byte for byte, with any number of jobs.
+    """
+    from hthor.eval import campaign, progress, report
+
+    talk = screen.console(talk=True)
+
+    def watcher(name: str) -> ClosableWatcher:
+        if quiet:
+            return progress.Silent()
+        return progress.Live(talk, name) if screen.live() else progress.Plain(talk, name)
+
+    options = campaign.Options(
+        agents=tuple(agent),
+        human=humans,
+        suite=suite,
+        robot=robot,
+        seed=seed,
+        participants=participants,
+        jobs=jobs,
+        out=out,
+    )
+    paper = talk if json else screen.console()
+    done: list[Done] = []
+    for one in campaign.conduct(options, watcher):
+        done.append(one)
+        if len(agent) == 1 or not quiet:
+            _show(paper if len(agent) == 1 else talk, one)
+    if len(done) > 1:
+        paper.print(report.comparison_table([one.result for one in done]))
+        for one in done:
+            paper.print(f"{one.plan.agent.name}: {one.folder}/", markup=False, highlight=False, soft_wrap=True)
+    if json:
+        results = [one.result for one in done]
+        screen.put_json(results[0] if len(results) == 1 else results)
+    if any(one.result.counts.faults for one in done):
+        raise typer.Exit(_FAULTS_EXIT)
+
+
+def score(run: Run, json: Json = False) -> None:
+    """Work out a run's metrics again from its log alone; nothing is simulated."""
+    from hthor.eval import report
+    from hthor.eval import score as scoring
+
+    plan, result, stored = scoring.rescore(run)
+    talk = screen.console(talk=True)
+    if json:
+        screen.put_json(result)
+    else:
+        screen.console().print(report.result_table(result))
+    missing = plan.trials - result.counts.trials
+    if missing:
+        _say(talk, f"{missing} of {plan.trials} trials are missing, so this is no result yet and was not stored.")
+        return
+    if stored is None:
+        _say(talk, f"stored as {run / 'result.json'}.")
+    elif stored != result:
+        _say(talk, f"differs from {run / 'result.json'} in {_difference(stored, result)}; stored anew.")
+    else:
+        _say(talk, f"the same as {run / 'result.json'}.")
+        return
+    scoring.store(run, result)
+
+
+def replay(
+    run: Run,
+    trial: Annotated[
+        str, typer.Argument(metavar="TRIAL", help="A key or its start, a task's id, or a number counted from 0.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="The file to write. [default: RUN/replays/TASK-KEY.png, or .mp4]")
+    ] = None,
+    video: Annotated[bool, typer.Option("--video", help="Write a film instead of a picture.")] = False,
+) -> None:
+    """Draw one trial from above: the paths, the messages and what came of them."""
+    from hthor.eval import find, redraw
+
+    record = find.trial(run, trial)
+    path = out or run / "replays" / f"{record.spec.task.id}-{record.key}.{'mp4' if video else 'png'}"
+    redraw.draw(record, path, video=video)
+    sys.stdout.write(f"{path}\n")
+
+
+def _show(console: Console, one: Done) -> None:
+    """A run's table, its first fault, where its files are, and what to do with them."""
+    from hthor.eval import find, report
+
+    result, folder = one.result, one.folder
+    console.print(report.result_table(result))
+    if result.counts.faults:
+        faulty, many = find.first_fault(folder), f"{result.counts.faults} of {result.counts.trials}"
+        _say(console, f"The agent failed in {many} trials; there the person went on alone.")
+        _say(console, f"First in trial {faulty.key} ({faulty.spec.task.id}), {find.fault_words(faulty)}")
+    _say(console, f"files: {folder}/run.json, trials.jsonl, result.json")
+    _say(console, f"next:  hthor replay {folder} 0    hthor leaderboard add {folder}")
+
+
+def _say(console: Console, text: str) -> None:
+    console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def _difference(stored: object, result: object) -> str:
+    import msgspec
+
+    before, now = msgspec.to_builtins(stored), msgspec.to_builtins(result)
+    return ", ".join(name for name in now if before.get(name) != now[name])

@@ -1,0 +1,60 @@
+"""Where words go: data to standard output, talk to standard error; knows nothing of what they say."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, TextIO
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+_PIPE_COLUMNS = 120
+
+
+def console(*, talk: bool = False) -> Console:
+    """A console on standard output, or on standard error for ``talk``.
+
+    NO_COLOR and FORCE_COLOR are heeded. Where nobody can see how wide it is, it is wide enough for our tables.
+    """
+    from rich.console import Console
+
+    stream: TextIO = sys.stderr if talk else sys.stdout
+    wide = None if stream.isatty() or "COLUMNS" in os.environ else _PIPE_COLUMNS
+    return Console(file=stream, width=wide)
+
+
+def live() -> bool:
+    """Whether somebody watches standard error on a terminal that can be redrawn."""
+    return sys.stderr.isatty() and os.environ.get("TERM") != "dumb" and not os.environ.get("CI")
+
+
+def put_json(document: Any) -> None:
+    """Write a document to standard output as JSON for people and programs alike."""
+    from hthor import jsonio
+
+    sys.stdout.write(jsonio.pretty(document).decode())
+    sys.stdout.flush()
+
+
+def put_table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """Write a table to standard output."""
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    held = [[_word(cell) for cell in row] for row in rows]
+    for column, heading in enumerate(headings):
+        numeric = all(isinstance(row[column], (int, float)) for row in held) if held else False
+        table.add_column(heading, justify="right" if numeric else "left", overflow="fold")
+    for row in held:
+        table.add_row(*(Text(str(cell)) for cell in row))
+    console().print(table)
+
+
+def _word(cell: object) -> object:
+    if isinstance(cell, (tuple, list, frozenset)):
+        return ", ".join(str(part) for part in cell)
+    return cell

@@ -1,0 +1,103 @@
+"""The leaderboard: one file an entry, and a list of them in canonical form; knows nothing of how runs are played."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from hthor import jsonio
+from hthor.errors import RunError
+from hthor.eval import score
+from hthor.eval.score import Counts, Hashes, Scores
+from hthor.eval.setup import Setup, SuiteRef
+from hthor.types import AgentRef
+
+ENTRY_SCHEMA = "hthor.entry/1"
+SCHEMA = "hthor.leaderboard/1"
+
+
+class Entry(Struct, frozen=True, kw_only=True):
+    """A whole run on the board. ``id`` is its file's name without the ending."""
+
+    schema: str = ENTRY_SCHEMA
+    id: str
+    agent: AgentRef
+    robot: str
+    human: str
+    suite: SuiteRef
+    seed: int
+    participants: int
+    metrics: Scores
+    counts: Counts
+    versions: dict[str, str]
+    hashes: Hashes
+
+
+class Board(Struct, frozen=True, kw_only=True):
+    """Every entry, by suite and then by success, best first."""
+
+    schema: str = SCHEMA
+    entries: tuple[Entry, ...]
+
+
+def add(folder: Path, board: Path) -> tuple[Entry, Path]:
+    """Put a run on the board, scored anew from its log: its entry and the entry's file. Twice is the same as once.
+
+    Raises:
+        RunError: when the run is not whole.
+    """
+    plan, result, _ = score.rescore(folder)
+    missing = plan.trials - result.counts.trials
+    if missing:
+        raise RunError(
+            f"{folder} lacks {missing} of its {plan.trials} trials, and only whole runs go on the board. Finish it: "
+            f"{command(folder, plan)}"
+        )
+    entry = Entry(
+        id=plan.folder_name,
+        agent=result.agent,
+        robot=result.robot,
+        human=result.human,
+        suite=result.suite,
+        seed=result.seed,
+        participants=result.participants,
+        metrics=result.metrics,
+        counts=result.counts,
+        versions=result.versions,
+        hashes=result.hashes,
+    )
+    path = board / "entries" / f"{entry.id}.json"
+    jsonio.write(path, jsonio.pretty(entry))
+    rebuild(board)
+    return entry, path
+
+
+def rebuild(board: Path) -> Board:
+    """Write `leaderboard.json` from the entries' files: the same files give the same bytes."""
+    entries = [_read(path) for path in sorted((board / "entries").glob("*.json"))]
+    entries.sort(key=lambda entry: (entry.suite.name, entry.suite.sha256, -(entry.metrics.sr.mean or 0.0), entry.id))
+    document = Board(entries=tuple(entries))
+    jsonio.write(board / "leaderboard.json", jsonio.pretty(document))
+    return document
+
+
+def _read(path: Path) -> Entry:
+    try:
+        entry = msgspec.json.decode(path.read_bytes(), type=Entry)
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise RunError(f"{path}: {error}. Delete the file, or add its run again.") from None
+    if entry.id != path.stem:
+        raise RunError(f"{path}: id is '{entry.id}', but must be the file's name, '{path.stem}'.")
+    return entry
+
+
+def command(folder: Path, plan: Setup) -> str:
+    """The command that finishes a run."""
+    agent = plan.agent.name if plan.agent.source.startswith("hthor.agents.") else plan.agent.source
+    robot = f" --robot {plan.robot}" if plan.robot else ""
+    return (
+        f"hthor eval --agent {agent} --humans {plan.human} --suite {plan.suite.name}{robot} --seed {plan.seed} "
+        f"--participants {plan.participants} --out {folder}"
+    )

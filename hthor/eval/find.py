@@ -1,0 +1,62 @@
+"""Finding one trial of a run by whatever the user calls it; knows nothing of drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from hthor import rules
+from hthor.errors import RunError, UnknownName
+from hthor.eval import score, setup
+from hthor.eval.record import Record
+
+
+def trial(folder: Path, name: str) -> Record:
+    """The trial of a run that ``name`` stands for.
+
+    Args:
+        name: the start of a key, a task's id, or a number: the trial's place among all trials, counted from 0.
+
+    Raises:
+        UnknownName: when nothing answers to it.
+        RunError: when more than one trial does, or the run cannot be read.
+    """
+    _, records = score.records(folder, setup.load(folder))
+    by_task = [record for record in records if record.spec.task.id == name]
+    if by_task:
+        return _only(by_task, name)
+    if name.isdecimal() and int(name) < len(records):
+        return records[int(name)]
+    by_key = [record for record in records if name and record.key.startswith(name)]
+    if by_key:
+        return _only(by_key, name)
+    raise UnknownName(
+        "trial",
+        name,
+        [record.spec.task.id for record in records],
+        f"A number from 0 to {len(records) - 1} or the start of a key does as well." if records else "",
+    )
+
+
+def _only(found: Sequence[Record], name: str) -> Record:
+    if len(found) > 1:
+        listed = ", ".join(f"{record.key} (participant {record.spec.participant})" for record in found[:10])
+        raise RunError(f"'{name}' stands for {len(found)} trials: {listed}. Give a key, or more of it.")
+    return found[0]
+
+
+def first_fault(folder: Path) -> Record:
+    """The first trial of a run in which the agent failed.
+
+    Raises:
+        LookupError: when it never did.
+    """
+    _, records = score.records(folder, setup.load(folder))
+    return next(record for record in records if record.faults)
+
+
+def fault_words(record: Record) -> str:
+    """A trial's first fault in words: when, what, and the last line of its detail."""
+    fault = record.faults[0]
+    last = fault.detail.strip().splitlines()[-1] if fault.detail.strip() else ""
+    return f"after {fault.tick * rules.TICK_S:.1f} s: {fault.kind}" + (f": {last}" if last else "")

@@ -1,0 +1,38 @@
+"""A logged trial as a picture or a film in a file; simulates nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hthor import houses
+from hthor.errors import HthorError
+from hthor.eval.record import Record
+
+PICTURES = (".png", ".svg", ".pdf")
+
+
+def draw(record: Record, path: Path, *, video: bool) -> None:
+    """Write the picture or the film of a trial.
+
+    Raises:
+        HthorError: when the file's name does not fit, or the house has changed since.
+    """
+    valid = (".mp4",) if video else PICTURES
+    if path.suffix.lower() not in valid:
+        raise HthorError(f"{path}: the name of a {'film' if video else 'picture'} must end in {' or '.join(valid)}.")
+    task = record.spec.task
+    house = houses.load(task.house)
+    if house.sha256 != task.house_sha256:
+        raise HthorError(
+            f"the house '{task.house}' has changed since this trial was played (its hash was {task.house_sha256[:10]} "
+            f"and is {house.sha256[:10]}); a picture of it would be wrong."
+        )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if video:
+        from hthor.eval import video as film
+
+        film.write(path, record.spec, record.log, house)
+    else:
+        from hthor.eval import picture
+
+        picture.figure(record.spec, record.log, house).savefig(path)

@@ -1,0 +1,1 @@
+"""Human models, one file each; a file's name is the model's name."""

@@ -1,0 +1,116 @@
+"""What a person thinks of doing next while they look for something, and which of it they choose.
+
+Knows nothing of how they get there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+
+from msgspec import Struct
+
+from hthor.humans import standing
+from hthor.humans.memory import Doorway, Memory, Place
+from hthor.humans.subject import Subject
+from hthor.humans.walking import Walker
+from hthor.types import Vec2
+
+_STALE_TICKS = 100
+_DOOR_S = 2.0
+_SETTLE_S = 1.0
+
+
+class Option(Struct, frozen=True, kw_only=True):
+    """Search ``place``, or go through ``doorway``; ``value`` is what it promises for its time, ``spot`` where to go."""
+
+    name: str
+    value: float
+    spot: Vec2
+    place: Place | None = None
+    doorway: Doorway | None = None
+
+
+class Search:
+    """Weighs and chooses.
+
+    Args:
+        hope: belief in each kind of receptacle, adding up to 1; empty when the thing wanted would have been seen.
+    """
+
+    def __init__(self, me: Subject, memory: Memory, walker: Walker, hope: Mapping[str, float], name: str) -> None:
+        self.me, self.memory, self.walker, self.hope, self.name = me, memory, walker, hope, name
+        self._spots: dict[str, tuple[int, list[Vec2]]] = {}
+        self._choices = 0
+
+    def choose(self) -> Option | None:
+        """The next thing to do: chance follows value^beta (Luce), with its own luck for each option."""
+        options, number = self.options(), self._choices
+        self._choices += 1
+        beta = self.me.traits.beta
+
+        def utility(option: Option) -> float:
+            luck = -math.log(-math.log(self.me.draw("choose", self.name, number, option.name)))
+            return beta * math.log(max(option.value, 1e-12)) + luck
+
+        return max(options, key=utility, default=None)
+
+    def options(self) -> list[Option]:
+        """Everything that can be thought of from here."""
+        doorways = [door for door in self.memory.doorways.values() if door.sides and not door.spent]
+        beliefs = self.beliefs(bool(doorways))
+        places = [place for place in self.memory.places.values() if beliefs.get(place.id, 0.0) > 0.0]
+        spots = [self.spots(place) for place in places]
+        distances = self._distances([*(spot for some in spots for spot in some), *(door.beyond for door in doorways)])
+        found = []
+        for place, some in zip(places, spots, strict=True):
+            option = self._searching(place, beliefs[place.id], some, [next(distances) for _ in some])
+            found += [option] if option else []
+        ahead = self._ahead(beliefs)
+        for door in doorways:
+            seconds = next(distances) / self.me.traits.v_pace + _DOOR_S
+            if math.isfinite(seconds):
+                value = ahead / len(doorways) / seconds**self.me.traits.kappa
+                found.append(Option(name=f"door {door.id}", value=value, spot=door.beyond, doorway=door))
+        return found
+
+    def beliefs(self, more: bool) -> dict[str, float]:
+        """Belief that the target is at each known place, before it was searched.
+
+        Args:
+            more: whether there may be further places of each kind behind doorways.
+        """
+        kinds = [place.kind for place in self.memory.places.values()]
+        unseen = self.me.traits.unseen if more else 0.0
+        return {
+            place.id: self.hope.get(place.kind, 0.0) / (kinds.count(place.kind) + unseen)
+            for place in self.memory.places.values()
+        }
+
+    def spots(self, place: Place) -> list[Vec2]:
+        """Where to stand to search a place; worked out anew after ten seconds."""
+        tick, known = self._spots.get(place.id, (-_STALE_TICKS, []))
+        if self.me.now.tick - tick >= _STALE_TICKS or not known:
+            known = standing.at(place, self.walker, front=bool(place.state))
+            self._spots[place.id] = (self.me.now.tick, known)
+        return known
+
+    def _distances(self, points: Sequence[Vec2]) -> Iterator[float]:
+        return iter(self.walker.planner.distances(self.me.here, points) if points else ())
+
+    def _ahead(self, beliefs: Mapping[str, float]) -> float:
+        """Belief that the target is behind doorways not yet passed."""
+        return max(self.me.traits.spare, 1.0 - sum(beliefs.values()))
+
+    def _searching(
+        self, place: Place, belief: float, spots: Sequence[Vec2], distances: Sequence[float]
+    ) -> Option | None:
+        least = min(distances, default=math.inf)
+        if not math.isfinite(least):
+            return None
+        traits = self.me.traits
+        seconds = least / traits.v_pace + traits.t_dwell + _SETTLE_S
+        if place.state == "closed":
+            seconds += traits.t_manip
+        value = belief * math.exp(-self.memory.exposure(place, self.me.now.tick)) / seconds**traits.kappa
+        return Option(name=place.id, value=value, spot=spots[list(distances).index(least)], place=place)

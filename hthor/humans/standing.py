@@ -1,0 +1,82 @@
+"""Where to stand to look at a place or to reach an object; knows nothing of why."""
+
+from __future__ import annotations
+
+import math
+
+from hthor.geometry import to_house, to_local
+from hthor.humans.memory import Place
+from hthor.humans.walking import Walker
+from hthor.navigation.map import FREE, OCCUPIED
+from hthor.types import Vec2, Vec3
+
+GAP_M = 0.42
+"""From the edge of a place to the middle of who stands at it."""
+_SPACING_M = 0.6
+_RING_M = (0.6, 0.8, 1.0)
+_DIRECTIONS = 12
+_MARGIN_M = 0.12
+
+
+def at(place: Place, walker: Walker, front: bool = False) -> list[Vec2]:
+    """Spots [m] along the edges of a place, ``front`` only or all round, where the person could stand and see it."""
+    return _usable(_around(place, front), place, walker)
+
+
+def near(point: Vec3, support: Place | None, walker: Walker, reach: float) -> list[Vec2]:
+    """Spots [m] within ``reach`` metres of an object that lies on ``support``, if anything."""
+    x, y = point[0], point[1]
+    ring = [
+        (x + r * math.cos(a), y + r * math.sin(a))
+        for r in _RING_M
+        if r <= reach
+        for a in (2.0 * math.pi * k / _DIRECTIONS for k in range(_DIRECTIONS))
+    ]
+    return _usable(ring, support or _speck(point), walker)
+
+
+def in_reach(spots: list[Vec2], point: Vec3, reach: float) -> list[Vec2]:
+    """Those from which an object is at most ``reach`` metres away."""
+    return [spot for spot in spots if math.dist(spot, point[:2]) <= reach]
+
+
+def _around(place: Place, front: bool) -> list[Vec2]:
+    half = (place.size[0] / 2.0, place.size[1] / 2.0)
+    deep = half[1] + GAP_M
+    local = [(s, deep) for s in _spread(half[0], front)]
+    if not front:
+        local += [(s, -deep) for s in _spread(half[0], front)]
+        local += [(side * (half[0] + GAP_M), s) for side in (-1.0, 1.0) for s in _spread(half[1], front)]
+    return [to_house((x, y, 0.0), place.centre, place.yaw)[:2] for x, y in local]
+
+
+def _spread(half: float, wide: bool) -> list[float]:
+    """Positions along a side, the middle among them; ``wide`` adds some past its ends."""
+    count = max(0, math.floor(half / _SPACING_M)) + (1 if wide else 0)
+    return [k * _SPACING_M * (0.6 if wide else 1.0) for k in range(-count, count + 1)]
+
+
+def _usable(spots: list[Vec2], place: Place, walker: Walker) -> list[Vec2]:
+    """Spots known to be free; when there is none, those that might be."""
+    open_to = [spot for spot in spots if walker.planner.fits(*spot) and _clear(spot, place, walker)]
+    known = [spot for spot in open_to if walker.grid.at(*spot) == FREE]
+    return known or open_to
+
+
+def _clear(spot: Vec2, place: Place, walker: Walker) -> bool:
+    """Whether nothing on the map stands between a spot and the nearest edge of the place: no wall, above all."""
+    x, y, _ = to_local((spot[0], spot[1], 0.0), place.centre, place.yaw)
+    w, d = place.size[0] / 2.0, place.size[1] / 2.0
+    edge = to_house((max(-w, min(w, x)), max(-d, min(d, y)), 0.0), place.centre, place.yaw)
+    apart = math.dist(spot, edge[:2])
+    steps = int((apart - _MARGIN_M) / 0.05)
+    for k in range(1, steps + 1):
+        share = k * 0.05 / apart
+        if walker.grid.at(spot[0] + share * (edge[0] - spot[0]), spot[1] + share * (edge[1] - spot[1])) == OCCUPIED:
+            return False
+    return True
+
+
+def _speck(point: Vec3) -> Place:
+    """A place as large as furniture usually reaches around an object."""
+    return Place(id="", kind="", centre=point, size=(0.5, 0.5, 0.0), yaw=0.0)

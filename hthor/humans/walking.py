@@ -1,0 +1,130 @@
+"""How a person gets about: on a map of their own, at their own pace, hopeful about what they have not seen.
+
+Knows nothing of why they go.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+
+from hthor.geometry import turn, wrap
+from hthor.humans.subject import GAZE_PITCH, Deed, Subject
+from hthor.navigation.follow import toward
+from hthor.navigation.map import GridMap
+from hthor.navigation.planner import Planner
+from hthor.types import Motion, Move, Rotate, Vec2, Wait
+
+_TURN_RAD = math.radians(12.0)
+_MAP_EVERY_M, _MAP_EVERY_RAD = 0.2, 0.35
+_ARRIVED_M = 0.03
+_CHECK_TICKS = 5
+_GIVE_UP = 12
+_POLITE_S = 0.5
+_SIDESTEP_M = 0.35
+
+
+def never() -> bool:
+    """Never stop early."""
+    return False
+
+
+class Walker:
+    """Legs and the map in the head.
+
+    ``haste`` scales the pace: below 1 while reading or following a map. A person's stick gives the pace directly, one
+    short move a tick, so the mean speed on a straight way is exactly the pace.
+    """
+
+    def __init__(self, me: Subject, x: float, y: float) -> None:
+        self.me, self.haste = me, 1.0
+        self.grid = GridMap(x, y)
+        self.planner = Planner(self.grid, me.body.radius, optimistic=True)
+        self._mapped: tuple[float, float, float] | None = None
+
+    def sense(self) -> None:
+        """Bring the map up to date, when the view has changed enough."""
+        pose, last = self.me.now.pose, self._mapped
+        if last is not None:
+            near = math.hypot(pose.x - last[0], pose.y - last[1]) < _MAP_EVERY_M
+            if near and abs(wrap(pose.yaw - last[2])) < _MAP_EVERY_RAD:
+                return
+        self._mapped = (pose.x, pose.y, pose.yaw)
+        self.grid.integrate(self.me.now.scan)
+
+    def go(self, goal: Vec2, within: float = 0.0, stop: Callable[[], bool] = never) -> Deed:
+        """Walk to ``goal`` [m], or to where it is within ``within`` metres; False when there is no way.
+
+        Args:
+            stop: asked before each motion; the walk ends, well, when it says so.
+        """
+        for bumps in range(_GIVE_UP):
+            path = self.planner.path(self.me.here, goal, within)
+            if path is None:
+                return False
+            ended = yield from self._follow(path, stop, bumps)
+            if ended:
+                return True
+        return False
+
+    def _follow(self, path: tuple[Vec2, ...], stop: Callable[[], bool], bumps: int) -> Deed:
+        """Walk the path; False when it turns out to be blocked."""
+        ahead, checked = list(path), self.me.now.tick
+        while not stop():
+            while ahead and math.dist(ahead[0], self.me.here) <= _ARRIVED_M:
+                ahead.pop(0)
+            if not ahead:
+                return True
+            if self.me.now.tick - checked >= _CHECK_TICKS:
+                checked = self.me.now.tick
+                if not self._open(ahead):
+                    return False
+            motion = toward(self.me.now.pose, ahead[0], self._pace() * self.me.tick_s, _TURN_RAD)
+            yield self._measured(motion)
+            if isinstance(motion, Move) and self._bumped():
+                yield from self._give_way(motion, bumps)
+                return False
+        return True
+
+    def _pace(self) -> float:
+        return min(self.me.traits.v_pace * self.haste, self.me.body.speed)
+
+    def _measured(self, motion: Motion) -> Motion:
+        if isinstance(motion, Rotate):
+            return self.me.turn(motion.yaw, GAZE_PITCH - self.me.now.pose.pitch)
+        return motion
+
+    def _open(self, ahead: list[Vec2]) -> bool:
+        """Whether the rest of the way still looks free."""
+        way = (self.me.here, *ahead)
+        return all(self.planner.straight(a, b) for a, b in pairwise(way))
+
+    def _bumped(self) -> bool:
+        outcome = self.me.now.outcome
+        return outcome is not None and outcome.motion == "move" and not outcome.ok
+
+    def _give_way(self, motion: Move, bumps: int) -> Deed:
+        """Wait for a body in the way, then step aside; put anything else on the map."""
+        outcome, pose = self.me.now.outcome, self.me.now.pose
+        dx, dy = turn((motion.forward, motion.left), pose.yaw)
+        length = math.hypot(dx, dy) or 1.0
+        if outcome is not None and outcome.by.startswith("robot"):
+            yield Wait(seconds=_POLITE_S)
+            if bumps % 2:
+                yield from self._aside(dx / length, dy / length)
+        else:
+            ahead = (self.me.body.radius + 0.05) / length
+            self.grid.mark_blocked(pose.x + dx * ahead, pose.y + dy * ahead)
+        return True
+
+    def _aside(self, ux: float, uy: float) -> Deed:
+        """A step to the right or else to the left of the direction (``ux``, ``uy``)."""
+        (x, y), pose = self.me.here, self.me.now.pose
+        for side in (-1.0, 1.0):
+            sx, sy = -uy * side * _SIDESTEP_M, ux * side * _SIDESTEP_M
+            if self.planner.straight((x, y), (x + sx, y + sy)):
+                forward, left = turn((sx, sy), -pose.yaw)
+                yield Move(forward=forward, left=left)
+                return True
+        return False

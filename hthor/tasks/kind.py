@@ -1,0 +1,56 @@
+"""What a kind of task is: how it is told, when it is done, and the least time it takes; knows no kind in particular."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from hthor.types import Goal, HouseSpec, Placement, Snapshot, TaskSpec
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+LeastTimes = Callable[[Any], "NDArray[np.float64]"]
+"""Maps starts (N, 2) [m] to T* (N,) [s]; inf where the goal cannot be met from."""
+
+
+class TaskKind(ABC):
+    """A kind of task. One file in ``hthor/tasks/kinds`` defines one as ``KIND``; its name is the file's.
+
+    ``short`` is the word that stands for it in the ids of tasks.
+    """
+
+    name: str
+    short: str
+
+    @abstractmethod
+    def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
+        """Every goal of the benchmark that makes sense in the house, in a fixed order."""
+
+    @abstractmethod
+    def objection(self, goal: Goal, house: HouseSpec) -> str:
+        """What is wrong with a goal of this kind in the house, in words; empty when nothing is."""
+
+    @abstractmethod
+    def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
+        """The sentence that the person and the robots are given."""
+
+    @abstractmethod
+    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
+        """Whether the goal is met at the snapshot's tick."""
+
+    @abstractmethod
+    def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
+        """Whether the arrangement meets the goal before anybody has moved."""
+
+    @abstractmethod
+    def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
+        """T* as a function of where the person starts."""
+
+    def t_star(self, task: TaskSpec, house: HouseSpec) -> float:
+        """T* [s] of a task, rounded to a millisecond; inf when it cannot be done."""
+        times = self.least_times(house, task.objects, task.goal)([(task.human_start.x, task.human_start.y)])
+        return round(float(times[0]), 3) if math.isfinite(times[0]) else math.inf

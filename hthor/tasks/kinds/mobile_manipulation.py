@@ -1,0 +1,91 @@
+"""Pick an object and place it in or on a thing of a kind: done when it rests there; knows nothing of hands.
+
+T*, the least time, is that of a person who knows where everything is:
+
+- a walk at `rules.PACE_M_S` along the shortest path of a body of the avatar's radius, from the start by way of a cell
+  within the avatar's reach of the target (horizontally, to its centre) to a cell within reach of the nearest point of
+  any surface of any thing of the destination's kind; the two cells are chosen together;
+- `rules.HANDLING_S` each to pick and to place, and to open a fridge that the target lies in, or must go into;
+- less the slack of the 5 cm grid (half a cell's diagonal a range and a leg), so that it is a lower bound.
+
+Turning, recognising and reading cost nothing, and lines of sight do not matter.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from hthor import catalog, rules
+from hthor.tasks.kind import LeastTimes, TaskKind
+from hthor.types import Goal, HouseSpec, Placement, Snapshot, TaskSpec
+
+_FOOD = ("fridge", "counter_top", "dining_table")
+TEMPLATES: dict[str, tuple[str, ...]] = {
+    "apple": _FOOD,
+    "tomato": _FOOD,
+    "lettuce": _FOOD,
+    "book": ("bed", "desk", "sofa", "coffee_table"),
+    "remote_control": ("sofa", "tv_stand", "bed"),
+    "mug": ("counter_top", "dining_table", "desk"),
+}
+"""The 19 task templates: where each target is to be placed."""
+
+
+class MobileManipulation(TaskKind):
+    """ "Pick an apple and place it in a fridge." """
+
+    name = "mobile_manipulation"
+    short = "manipulation"
+
+    def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
+        present = {thing.kind for thing in house.things}
+        return tuple(
+            Goal(target=target, relation=_relation(destination), destination=destination)
+            for target in catalog.TARGETS
+            for destination in TEMPLATES[target]
+            if destination in present
+        )
+
+    def objection(self, goal: Goal, house: HouseSpec) -> str:
+        present = {thing.kind for thing in house.things if catalog.kind(thing.kind).receptacle}
+        if goal.destination not in present:
+            return f"no thing of kind '{goal.destination}' to place it; the house has {', '.join(sorted(present))}"
+        if goal.relation != _relation(goal.destination):
+            return f"relation is '{goal.relation}', expected '{_relation(goal.destination)}' for '{goal.destination}'"
+        return ""
+
+    def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
+        target = catalog.kind(next(placement.kind for placement in objects if placement.id == goal.target))
+        destination = catalog.kind(goal.destination)
+        return f"Pick {target.indefinite} and place it {goal.relation} {destination.indefinite}."
+
+    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
+        target = snapshot.things[task.goal.target]
+        return not target.held_by and _kind_of(target.support, house) == task.goal.destination
+
+    def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
+        support = next(placement.support for placement in objects if placement.id == goal.target)
+        return _kind_of(support, house) == goal.destination
+
+    def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
+        from hthor.tasks.ground import Ground
+
+        target = next(placement for placement in objects if placement.id == goal.target)
+        opening = [_kind_of(target.support, house) if target.relation == "in" else "", goal.destination]
+        doors = sum(1 for kind in opening if kind and catalog.kind(kind).openable)
+        ground = Ground.of(house)
+        walk = ground.walk([ground.touching(target), ground.serving(goal.destination)])
+        handling = (2 + doors) * rules.HANDLING_S
+        return lambda starts: walk.lengths(starts) / rules.PACE_M_S + handling
+
+
+def _relation(destination: str) -> Literal["on", "in"]:
+    return catalog.kind(destination).relation
+
+
+def _kind_of(thing_id: str, house: HouseSpec) -> str:
+    """The kind of the house's thing with this id, empty when there is none."""
+    return next((thing.kind for thing in house.things if thing.id == thing_id), "") if thing_id else ""
+
+
+KIND = MobileManipulation()

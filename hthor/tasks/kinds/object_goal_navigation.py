@@ -1,0 +1,65 @@
+"""Find an object: done when the person has it in view from close by; knows nothing of how people search.
+
+T*, the least time, is that of a person who knows where everything is:
+
+- a walk at `rules.PACE_M_S` along the shortest path of a body of the avatar's radius, from the start to the first
+  standing cell from which the target is seen: its centre is at most `rules.FIND_RANGE_M` from the eyes, measured in
+  space, and no wall or furniture lies between the eyes and its centre or top;
+- for a target in a closed fridge: by way of a cell within reach of the fridge, plus `rules.HANDLING_S` to open it, and
+  the target is then seen as if the fridge had no door;
+- less the slack of the 5 cm grid (half a cell's diagonal a range and a leg), so that it is a lower bound.
+
+Turning, recognising and reading cost nothing.
+"""
+
+# ruff: noqa: ARG002 - a search asks nothing of the house; the signatures are those of every kind
+
+from __future__ import annotations
+
+from hthor import catalog, rules
+from hthor.tasks.kind import LeastTimes, TaskKind
+from hthor.types import HUMAN, Goal, HouseSpec, Placement, Snapshot, TaskSpec
+
+
+class ObjectGoalNavigation(TaskKind):
+    """ "Find an apple." """
+
+    name = "object_goal_navigation"
+    short = "navigation"
+
+    def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
+        return tuple(Goal(target=target, relation="find") for target in catalog.TARGETS)
+
+    def objection(self, goal: Goal, house: HouseSpec) -> str:
+        if goal.relation != "find" or goal.destination:
+            return f"a search has relation 'find' and no destination, got '{goal.relation}' and '{goal.destination}'"
+        return ""
+
+    def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
+        return f"Find {_kind(goal, objects).indefinite}."
+
+    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
+        return task.goal.target in snapshot.in_view.get(HUMAN, ())
+
+    def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
+        return False
+
+    def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
+        from hthor.tasks.ground import Ground
+
+        target = next(placement for placement in objects if placement.id == goal.target)
+        ground = Ground.of(house)
+        holder = next((thing for thing in house.things if thing.id == target.support), None)
+        if holder is not None and target.relation == "in" and catalog.kind(holder.kind).openable:
+            stops = [ground.beside(holder), ground.seeing(target, frozenset({holder.id}))]
+            walk, handling = ground.walk(stops), rules.HANDLING_S
+        else:
+            walk, handling = ground.walk([ground.seeing(target)]), 0.0
+        return lambda starts: walk.lengths(starts) / rules.PACE_M_S + handling
+
+
+def _kind(goal: Goal, objects: tuple[Placement, ...]) -> catalog.Kind:
+    return catalog.kind(next(placement.kind for placement in objects if placement.id == goal.target))
+
+
+KIND = ObjectGoalNavigation()

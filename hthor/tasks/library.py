@@ -1,0 +1,92 @@
+"""Suites of tasks: frozen files, read and judged; knows nothing of how tasks are made or run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from hthor import jsonio
+from hthor.errors import TaskError, UnknownName
+from hthor.types import TaskSpec
+
+_FOLDER = Path(__file__).parent / "suites"
+
+
+class Suite(Struct, frozen=True, kw_only=True):
+    """A named list of tasks. ``sha256`` is the hash of the tasks' canonical JSON."""
+
+    name: str
+    version: int
+    sha256: str
+    tasks: tuple[TaskSpec, ...]
+
+
+def suites() -> tuple[str, ...]:
+    """Names of the suites that come with hthor."""
+    return tuple(sorted(path.stem for path in _FOLDER.glob("*.json")))
+
+
+def suite(name_or_path: str | Path) -> Suite:
+    """A suite by name, or from a file, verified and validated.
+
+    Raises:
+        UnknownName: when no suite has that name.
+        TaskError: when the file cannot be read, was changed after it was frozen, or holds a task that cannot be run.
+    """
+    from hthor.tasks.validate import validate
+
+    path, shown = _locate(name_or_path)
+    found = _decode(path, shown)
+    digest = digest_of(found.tasks)
+    if digest != found.sha256:
+        problem = f"the tasks hash to {digest}, the file says {found.sha256}, so it was changed after it was frozen"
+        raise TaskError(shown, "sha256", f"{problem}; restore it, or rebuild it with python -m hthor.tasks.generate")
+    validate(found, shown)
+    return found
+
+
+def frozen(name: str, version: int, tasks: tuple[TaskSpec, ...]) -> Suite:
+    """A suite with the hash of its tasks."""
+    return Suite(name=name, version=version, sha256=digest_of(tasks), tasks=tasks)
+
+
+def digest_of(tasks: tuple[TaskSpec, ...]) -> str:
+    """Hash of the tasks' canonical JSON, 64 hexadecimal digits."""
+    return jsonio.sha256(tasks)
+
+
+def encode(found: Suite) -> bytes:
+    """The suite's file: one task a line, so that a change of one task is a change of one line."""
+    head = jsonio.canonical({"name": found.name, "sha256": found.sha256, "version": found.version})
+    lines = b",\n".join(jsonio.canonical(task) for task in found.tasks)
+    return head[:-1] + b',"tasks":[\n' + lines + b"\n]}\n"
+
+
+def path_of(name: str) -> Path:
+    """Where the suite of that name lies, or would lie."""
+    return _FOLDER / f"{name}.json"
+
+
+def _locate(name_or_path: str | Path) -> tuple[Path, str]:
+    if isinstance(name_or_path, str) and name_or_path in suites():
+        return path_of(name_or_path), name_or_path
+    path = Path(name_or_path)
+    if path.suffix != ".json" and not path.exists():
+        raise UnknownName("suite", str(name_or_path), suites(), "A path to a suite file (.json) works too.")
+    return path, str(name_or_path)
+
+
+def _decode(path: Path, shown: str) -> Suite:
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise TaskError(shown, "$", f"cannot be read: {error.strerror}") from None
+    try:
+        return msgspec.json.decode(data, type=Suite)
+    except msgspec.ValidationError as error:
+        problem, _, field = str(error).partition(" - at `$")
+        raise TaskError(shown, field.strip("`.") or "$", problem) from None
+    except msgspec.DecodeError as error:
+        raise TaskError(shown, "$", f"is not JSON: {error}") from None

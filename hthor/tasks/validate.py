@@ -1,0 +1,123 @@
+"""Can every task of a suite be run? The first thing that is wrong, by file and field; knows nothing of generation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from hthor import catalog, houses, plugins
+from hthor.errors import HouseError, HthorError, TaskError, UnknownName
+from hthor.houses.freespace import FreeSpace
+from hthor.houses.solids import overlap
+from hthor.tasks.avatar import HEIGHT_M, RADIUS_M
+from hthor.tasks.kind import TaskKind
+from hthor.tasks.library import Suite
+from hthor.tasks.placing import Shelves, footprint, stands
+from hthor.types import HouseSpec, Placement, TaskSpec
+
+_ALOFT_M = 0.01
+"""How far an object's bottom may be from the surface it claims to rest on."""
+
+
+def validate(suite: Suite, file: str) -> None:
+    """Check every task against its kind, its house and the catalogue.
+
+    Raises:
+        TaskError: for the first fault.
+    """
+    if not suite.tasks:
+        raise TaskError(file, "tasks", "is empty; a suite needs at least one task")
+    seen: set[str] = set()
+    loaded: dict[str, HouseSpec] = {}
+    for index, task in enumerate(suite.tasks):
+        where = f"tasks[{index}]"
+        if task.id in seen:
+            raise TaskError(file, f"{where}.id", f"'{task.id}' is the id of an earlier task; ids must be distinct")
+        seen.add(task.id)
+        if task.house not in loaded:
+            loaded[task.house] = _house(task.house, file, where)
+        for field, problem in faults(task, loaded[task.house]):
+            raise TaskError(file, f"{where}.{field}", problem)
+
+
+def faults(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
+    """Everything that is wrong with a task in its house: pairs of a field and a problem."""
+    if task.house_sha256 != house.sha256:
+        yield "house_sha256", f"the task was made for {task.house_sha256}, the house '{task.house}' is {house.sha256}"
+        return
+    yield from _objects(task, house)
+    yield from _goal(task, house)
+    yield from _starts(task, house)
+    for field, value in (("time_limit", task.time_limit), ("t_star", task.t_star)):
+        if not (math.isfinite(value) and value > 0.0):
+            yield field, f"must be a positive number of seconds, got {value}"
+
+
+def _house(name: str, file: str, where: str) -> HouseSpec:
+    try:
+        return houses.load(name)
+    except (UnknownName, HouseError) as error:
+        raise TaskError(file, f"{where}.house", str(error)) from None
+
+
+def _objects(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
+    shelves, ids = Shelves.of(house), {thing.id for thing in house.things}
+    taken: set[str] = set()
+    for number, placement in enumerate(task.objects):
+        where = f"objects[{number}]"
+        if placement.id in taken or placement.id in ids:
+            yield f"{where}.id", f"'{placement.id}' is taken; ids must be distinct from other objects' and the house's"
+        taken.add(placement.id)
+        try:
+            kind = catalog.kind(placement.kind)
+        except UnknownName as error:
+            yield f"{where}.kind", str(error)
+            continue
+        if not kind.pickable:
+            yield f"{where}.kind", f"'{placement.kind}' cannot be picked up, so it cannot be an object of a task"
+        yield from _support(where, placement, shelves, ids)
+        for other in task.objects[:number]:
+            if other.kind in catalog.names() and _crowded(placement, other):
+                yield f"{where}.position", f"'{placement.id}' and '{other.id}' are in one another"
+
+
+def _support(where: str, placement: Placement, shelves: Shelves, ids: set[str]) -> Iterator[tuple[str, str]]:
+    if placement.support not in ids:
+        yield f"{where}.support", f"the house has no thing '{placement.support}'; valid: {', '.join(sorted(ids))}"
+        return
+    rests = [rest for rest in shelves.all if rest.thing.id == placement.support]
+    if not any(stands(placement, rest, _ALOFT_M) for rest in rests):
+        yield f"{where}.position", f"'{placement.id}' rests on no surface of '{placement.support}'"
+
+
+def _crowded(one: Placement, two: Placement) -> bool:
+    return overlap(footprint(one), footprint(two)) > _ALOFT_M
+
+
+def _goal(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
+    try:
+        kind: TaskKind = plugins.load("task kind", task.kind)
+    except UnknownName as error:
+        yield "kind", str(error)
+        return
+    ids = [placement.id for placement in task.objects]
+    if task.goal.target not in ids:
+        yield "goal.target", f"'{task.goal.target}' is none of the task's objects; valid: {', '.join(ids)}"
+        return
+    try:
+        objection = kind.objection(task.goal, house)
+    except HthorError as error:
+        objection = str(error)
+    if objection:
+        yield "goal", objection
+    elif kind.solved(task.goal, task.objects, house):
+        yield "goal", "is met before anybody has moved"
+
+
+def _starts(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
+    space = FreeSpace.of(house, RADIUS_M, HEIGHT_M)
+    starts = [("human_start", task.human_start)]
+    starts += [(f"robot_starts[{number}]", pose) for number, pose in enumerate(task.robot_starts)]
+    for field, pose in starts:
+        if not space.is_free(pose.x, pose.y):
+            yield field, f"({pose.x:g}, {pose.y:g}) is in a wall or furniture, or less than {RADIUS_M} m from it"

@@ -1,0 +1,99 @@
+"""The compiled model's geoms as plain arrays: who owns each, which of them hide what; knows nothing of eyes or hands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+
+from hthor.rays import blocked
+from hthor.types import Vec3
+from hthor.world import geoms
+from hthor.world.engine import mujoco
+from hthor.world.env import FastEnv
+from hthor.world.task import HouseTask
+
+_CLEAR = 0.5
+"""What is less opaque than this, glass, hides nothing."""
+
+
+class Scene:
+    """Boxes around all solids, laid out as `hthor.rays` wants them, and the list of those that hide.
+
+    Attributes:
+        half: (N, 3) half extents [m]. pos: (N, 3) centres. mat: (N, 9) rotations; both are live views of the engine.
+        radius: (N,) bounding radii [m]. owner: id of each geom's thing, seat, room, wall or opening.
+        ids: indices of what hides, largest first; carried objects are not among them.
+        span: owner -> [first, last + 1) of its geoms; of a thing with a door, those that do not move.
+    """
+
+    def __init__(self, env: FastEnv, task: HouseTask) -> None:
+        model, data = env.model, env.data
+        self.half = _halves(model)
+        self.pos, self.mat = data.geom_xpos, data.geom_xmat.reshape(-1, 9)
+        self.radius = np.linalg.norm(self.half, axis=1)
+        self.owner = tuple(_owners(model, task))
+        self.span = _spans(self.owner)
+        self.solid = np.isin(model.geom_group, (geoms.FURNITURE, geoms.WALLS, geoms.OBJECTS))
+        self.solid &= model.geom_contype != 0
+        self.solid &= model.geom_rgba[:, 3] >= _CLEAR
+        self.solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)
+        self.ids = np.zeros(0, np.int64)
+        self.hide_all_but(())
+
+    def hide_all_but(self, ghosts: Iterable[str]) -> None:
+        """Say which objects hide nothing for now: those that someone carries."""
+        solid = self.solid.copy()
+        for id in ghosts:
+            solid[slice(*self.span[id])] = False
+        ids = np.flatnonzero(solid)
+        self.ids = ids[np.argsort(-self.radius[ids], kind="stable")]
+
+    def hidden(self, eye: Vec3, point: Vec3, ignore: str = "") -> bool:
+        """Whether something other than ``ignore`` stands between the two points [m]."""
+        begin, end = self.span.get(ignore, (0, 0))
+        ends = np.array(eye), np.array(point)
+        return bool(blocked(*ends, self.half, self.pos, self.mat, self.radius, self.ids, begin, end))
+
+    def boxes(self, without: str) -> tuple[Any, Any]:
+        """Centres (M, 3) and half extents (M, 3) [m] of the upright boxes around all solids but those of ``without``."""
+        keep = self.ids
+        if without in self.span:
+            begin, end = self.span[without]
+            keep = keep[(keep < begin) | (keep >= end)]
+        rotation = np.abs(self.mat[keep].reshape(-1, 3, 3))
+        return self.pos[keep], np.einsum("nij,nj->ni", rotation, self.half[keep])
+
+
+def _halves(model: Any) -> Any:
+    half = np.array(model.geom_size)
+    sphere = model.geom_type == int(mujoco.mjtGeom.mjGEOM_SPHERE)
+    cylinder = model.geom_type == int(mujoco.mjtGeom.mjGEOM_CYLINDER)
+    half[sphere] = half[sphere][:, :1]
+    half[cylinder] = half[cylinder][:, [0, 0, 1]]
+    return half
+
+
+def _owners(model: Any, task: HouseTask) -> Iterator[str]:
+    scopes = {f"{entity.mjcf_model.model}/": name for entity, name in _entities(task)}
+    for geom in range(model.ngeom):
+        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_GEOM, geom)
+        scope, slash, _ = name.rpartition("/")
+        yield scopes[scope + slash] if slash else task.root_entity.owners[name]
+
+
+def _entities(task: HouseTask) -> Iterator[tuple[Any, str]]:
+    yield from ((prop, prop.id) for prop in task.props)
+    yield from ((door, door.id) for door in task.doors)
+    yield from ((body, body.seat) for body in task.bodies)
+
+
+def _spans(owners: tuple[str, ...]) -> dict[str, tuple[int, int]]:
+    spans: dict[str, tuple[int, int]] = {}
+    for geom, owner in enumerate(owners):
+        first, end = spans.get(owner, (geom, geom))
+        if end == geom:
+            spans[owner] = (first, geom + 1)
+    return spans
+

@@ -1,0 +1,143 @@
+"""Sessions, logs and a player that need no engine, for the tests of `hthor.eval`; workers import it by its name."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from hthor import seeds
+from hthor.episode import EpisodeLog, Fault
+from hthor.eval import cast, record, session, setup
+from hthor.eval.record import Record
+from hthor.eval.session import Session
+from hthor.eval.setup import Setup
+from hthor.tasks import Suite
+from hthor.tasks.library import frozen
+from hthor.types import AgentRef, Event, Goal, Placement, Pose, TaskSpec, TrialSpec
+
+HOUSES = ("attic", "barn", "cottage")
+
+
+def task(number: int = 0) -> TaskSpec:
+    return TaskSpec(
+        id=f"t{number:03d}",
+        kind=("find", "place")[number % 2],
+        house=HOUSES[number % 3],
+        house_sha256="ab" * 32,
+        human_start=Pose(x=1.0, y=2.5),
+        robot_starts=(Pose(x=0.1, y=-0.3, yaw=1.5),),
+        objects=(Placement(id="apple", kind="apple", position=(1.0, 2.0, 0.9), support="table"),),
+        goal=Goal(target="apple", relation="find"),
+        instruction="Find the apple.",
+        time_limit=90.0,
+        t_star=8.0 + number % 7,
+    )
+
+
+def suite(count: int = 60) -> Suite:
+    return frozen("fake", 1, tuple(task(number) for number in range(count)))
+
+
+def character(name: str = "helper", *, absent: bool = False) -> cast.Character:
+    return cast.Character(ref=AgentRef(name=name, source=f"{name}.py", sha256="cd" * 32), absent=absent)
+
+
+def run_of(
+    count: int = 30, *, name: str = "helper", absent: bool = False, seed: int = 0
+) -> tuple[Setup, tuple[Session, ...]]:
+    tasks, who = suite(count), character(name, absent=absent)
+    plan = setup.settle(tasks, who, robot="scout", human="proxy", seed=seed, participants=None)
+    return plan, session.sessions(tasks, agent=who, seed=seed)
+
+
+def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
+    """A log that depends on the trial and on how many trials came before it in the session."""
+    names = (trial.task.id, trial.participant, trial.index, memory)
+    met = seeds.draw(trial.seed, "met", *names) < 0.7
+    ticks = 100 + int(600 * seeds.draw(trial.seed, "ticks", *names)) if met else 900
+    events = []
+    paths = {"human": [(i, 2 * i, 0) for i in range(ticks // 2)]}
+    faults: tuple[Fault, ...] = ()
+    if trial.robots:
+        paths["robot"] = [(0, 0, i) for i in range(ticks // 2)]
+        claim = [seeds.draw(trial.seed, "claim", *names), 1.0 / 3.0, 0.5]
+        events.append(Event(tick=40, seat="robot", kind="sent", data={"message": 0, "text": "here", "position": claim}))
+        if seeds.draw(trial.seed, "confirms", *names) < 0.6:
+            events.append(Event(tick=60, seat="human", kind="confirmed", data={"message": 0, "sender": "robot"}))
+        if trial.robots[0].agent.name == "clumsy" and trial.index == 3:
+            faults = (Fault(seat="robot", kind="raised", tick=70, detail="Traceback\n  ...\nValueError: no"),)
+    events.append(Event(tick=ticks, seat="human", kind="success" if met else "timeout"))
+    return EpisodeLog(
+        events=tuple(events), paths=paths, ticks=ticks, met=met, trust=5 if trial.robots else None, faults=faults
+    )
+
+
+def player() -> Callable[[Session], Iterator[Record]]:
+    """Plays a session in no time; the fake person counts the trials so far, so sessions cannot be cut in pieces."""
+
+    def perform(session_: Session) -> Iterator[Record]:
+        for memory, trial in enumerate(session_.trials):
+            yield record.of(trial, episode(trial, memory))
+
+    return perform
+
+
+def slow_player(seconds: float = 0.05) -> Callable[[Session], Iterator[Record]]:
+    def perform(session_: Session) -> Iterator[Record]:
+        for played in player()(session_):
+            time.sleep(seconds)
+            yield played
+
+    return perform
+
+
+def dying_player(folder: str, deaths: int = 1) -> Callable[[Session], Iterator[Record]]:
+    """Kills its own process in the middle of sessions, ``deaths`` times for every session of an even participant."""
+
+    def perform(session_: Session) -> Iterator[Record]:
+        for number, played in enumerate(player()(session_)):
+            mark = Path(folder, f"died-{session_.participant}")
+            died = len(mark.read_text()) if mark.exists() else 0
+            if session_.participant % 2 == 0 and number == 2 + 3 * died and died < deaths:
+                mark.write_text("x" * (died + 1))
+                os.kill(os.getpid(), signal.SIGKILL)
+            yield played
+
+    return perform
+
+
+def failing_player(error: str) -> Callable[[Session], Iterator[Record]]:
+    def perform(session_: Session) -> Iterator[Record]:
+        yield from list(player()(session_))[:2]
+        from hthor.errors import AgentError
+
+        raise AgentError("the agent is no good") if error == "user" else ZeroDivisionError("our own")
+
+    return perform
+
+
+def run_in(folder: Path, *, count: int = 60, jobs: int = 2, seconds: float = 0.02) -> None:
+    """A whole run as a command does it."""
+    import functools
+
+    from hthor.eval import progress, run
+
+    plan, dealt = run_of(count)
+    make = functools.partial(slow_player, seconds)
+    run.evaluate(plan, dealt, make, folder=folder, jobs=jobs, watch=progress.Silent())
+
+
+if __name__ == "__main__":
+    from hthor.errors import HthorError
+
+    try:
+        import eval_fakes
+
+        eval_fakes.run_in(Path(sys.argv[1]))
+    except HthorError as error:
+        sys.stderr.write(f"{error}\n")
+        sys.exit(error.exit_code)

@@ -1,0 +1,76 @@
+"""The person's path is the same with any robot as with none, until a message is shown or the robot is in the way."""
+
+from __future__ import annotations
+
+import pytest
+
+from hthor import rules, tasks
+from hthor.episode import EpisodeLog, play
+from hthor.eval import cast
+from hthor.eval.session import sessions
+from hthor.types import HUMAN, Action, Briefing, Move, Observation, Rotate
+
+PEOPLE = 4
+
+
+class Wanderer:
+    """Walks about and says nothing."""
+
+    def begin(self, briefing: Briefing) -> None:
+        self.turn = 0.9
+
+    def act(self, observation: Observation) -> Action:
+        if observation.outcome is not None and not observation.outcome.ok:
+            return Action(motion=Rotate(yaw=self.turn))
+        return Action(motion=Move(forward=0.4, left=0.1))
+
+
+@pytest.fixture(scope="module")
+def alone() -> list[EpisodeLog]:
+    return first_trials("silent")
+
+
+def first_trials(agent: str, mind: object = None) -> list[EpisodeLog]:
+    """The first trial of each of a few people, with fresh minds."""
+    stage, logs = cast.Stage(), []
+    for session in sessions(tasks.suite("smoke"), agent=agent)[:PEOPLE]:
+        with stage.enter(session) as company:
+            trial = session.trials[0]
+            robots = {"robot": mind} if mind else company.robots()
+            logs.append(play(trial, stage.world(trial), company.human, robots))
+    return logs
+
+
+def meeting(log: EpisodeLog) -> int:
+    """The first tick at which the robot can have made a difference; the trial's end if it never did."""
+    return min(
+        (
+            event.tick
+            for event in log.events
+            if event.kind == "shown" or (event.kind == "in_way" and event.seat == HUMAN)
+        ),
+        default=log.ticks,
+    )
+
+
+@pytest.mark.parametrize("agent", ["frontier", "oracle"])
+def test_until_they_meet_the_person_is_alone(agent: str, alone: list[EpisodeLog]) -> None:
+    apart = 0
+    for without, together in zip(alone, first_trials(agent), strict=True):
+        until = min(meeting(together), without.ticks)
+        same = until // rules.LOG_EVERY_TICKS
+        assert together.paths[HUMAN][: same + 1] == without.paths[HUMAN][: same + 1]
+        before = [event for event in together.events if event.seat == HUMAN and event.tick < until]
+        assert before == [event for event in without.events if event.seat == HUMAN and event.tick < until]
+        apart += until
+    assert apart > PEOPLE * 20, "they met at once every time, so this test showed nothing"
+
+
+def test_a_robot_that_is_never_in_the_way_changes_nothing_at_all(alone: list[EpisodeLog]) -> None:
+    undisturbed = 0
+    for without, together in zip(alone, first_trials("frontier", Wanderer()), strict=True):
+        if meeting(together) >= together.ticks:
+            assert together.paths[HUMAN] == without.paths[HUMAN]
+            assert together.ticks == without.ticks
+            undisturbed += 1
+    assert undisturbed, "the wanderer got in everybody's way, so this test showed nothing"
