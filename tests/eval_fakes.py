@@ -8,10 +8,11 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from unittest import mock
 
-from hthor import seeds
+from hthor import humans, seeds
 from hthor.episode import EpisodeLog, Fault
-from hthor.eval import cast, record, session, setup
+from hthor.eval import cast, provenance, record, session, setup
 from hthor.eval.record import Record
 from hthor.eval.session import Session
 from hthor.eval.setup import Setup
@@ -50,8 +51,12 @@ def run_of(
     count: int = 30, *, name: str = "helper", absent: bool = False, seed: int = 0
 ) -> tuple[Setup, tuple[Session, ...]]:
     tasks, who = suite(count), character(name, absent=absent)
-    plan = setup.settle(tasks, who, robot="scout", human="proxy", seed=seed, participants=None)
-    return plan, session.sessions(tasks, agent=who, seed=seed)
+    with (
+        mock.patch.object(humans, "fingerprint", return_value="12" * 32),  # the real one imports the whole proxy
+        mock.patch.object(provenance, "code_sha256", return_value="34" * 32),
+    ):
+        plan = setup.settle(tasks, who, robot="scout", human="proxy", seed=seed, participants=None)
+        return plan, session.sessions(tasks, agent=who, seed=seed)
 
 
 def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
@@ -82,6 +87,16 @@ def player() -> Callable[[Session], Iterator[Record]]:
     def perform(session_: Session) -> Iterator[Record]:
         for memory, trial in enumerate(session_.trials):
             yield record.of(trial, episode(trial, memory))
+
+    return perform
+
+
+def forgetful_player() -> Callable[[Session], Iterator[Record]]:
+    """Plays every trial otherwise than `player`."""
+
+    def perform(session_: Session) -> Iterator[Record]:
+        for trial in session_.trials:
+            yield record.of(trial, episode(trial, memory=99))
 
     return perform
 
@@ -135,7 +150,7 @@ if __name__ == "__main__":
     from hthor.errors import HthorError
 
     try:
-        import eval_fakes
+        import eval_fakes  # workers must find its functions under this name, not under __main__
 
         eval_fakes.run_in(Path(sys.argv[1]))
     except HthorError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -130,7 +131,7 @@ def test_a_path_keeps_its_distance_and_goes_through_the_door(known: GridMap) -> 
     assert path is not None
     assert path[0] == (1.0, 1.0)
     assert path[-1] == (7.3, 0.7)
-    for a, b in zip(path, path[1:], strict=False):
+    for a, b in itertools.pairwise(path):
         for k in range(101):
             x, y = a[0] + (b[0] - a[0]) * k / 100, a[1] + (b[1] - a[1]) * k / 100
             assert clearance(x, y) > RADIUS - CELL_M / 2
@@ -352,11 +353,11 @@ def samples_of_houses(request: pytest.FixtureRequest) -> list:
 
 
 def test_paths_are_at_most_eight_percent_longer_than_the_shortest(real: FreeSpace) -> None:
-    """In a real house, on a map that knows the walls, against exact any-angle paths."""
-    grid, planner = drawn(real), None
-    planner = Planner(grid, RADIUS)
-    ways, (x, y) = Geodesics(real), (real.house.start.x, real.house.start.y)
-    cells = real.centres(real.component(*real.nearest_free(x, y)))
+    """In a real house, on a map that knows the walls, against exact any-angle paths of the same clearance."""
+    planner = Planner(drawn(real), RADIUS)
+    wider = FreeSpace(real.house, RADIUS + CELL_M / 2, 1.0)
+    ways, (x, y) = Geodesics(wider), (real.house.start.x, real.house.start.y)
+    cells = wider.centres(wider.component(*wider.nearest_free(x, y)))
     spots = [tuple(float(c) for c in cell) for cell in cells[:: max(1, len(cells) // 12)]]
     ratios = []
     for a in spots:
@@ -366,8 +367,9 @@ def test_paths_are_at_most_eight_percent_longer_than_the_shortest(real: FreeSpac
                 assert path is not None
                 ratios.append(length(path) / best)
     assert len(ratios) > 50
-    assert np.mean(ratios) < 1.04
+    assert np.mean(ratios) < 1.03
     assert np.quantile(ratios, 0.95) < 1.08
+    assert max(ratios) < 1.12
 
 
 def drawn(space: FreeSpace) -> GridMap:

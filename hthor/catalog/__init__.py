@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 
-from hthor.catalog import background, receptacles, targets
+from hthor.catalog import background, priors, receptacles, targets
 from hthor.catalog.kind import Family, Form, Kind
 from hthor.errors import UnknownName
 from hthor.types import Vec3
 
-__all__ = ["RECEPTACLES", "TARGETS", "Family", "Form", "Kind", "kind", "names", "own_asset"]
+__all__ = ["RECEPTACLES", "TARGETS", "Family", "Form", "Kind", "kind", "names", "own_asset", "priors"]
 
 RECEPTACLES = tuple(kind.name for kind in receptacles.KINDS)
 """The benchmark's eight receptacles, by name."""

@@ -15,6 +15,11 @@ def _stands(name: str, size: Vec3, mass: float, shape: Shape, title: str = "") -
     return Kind(name=name, title=words, family="background", size=size, mass=mass, shape=shape)
 
 
+def _holds(name: str, size: Vec3, mass: float, shape: Shape) -> Kind:
+    words = name.replace("_", " ")
+    return Kind(name=name, title=words, family="background", size=size, mass=mass, shape=shape, relation="in")
+
+
 def _hangs(name: str, size: Vec3, mass: float, shape: Shape) -> Kind:
     words = name.replace("_", " ")
     return Kind(name=name, title=words, family="background", size=size, mass=mass, shape=shape, wall_mounted=True)
@@ -38,9 +43,9 @@ _FURNITURE = (
 )
 
 _FIXTURES = (
-    _stands("sink", (0.8, 0.6, 1.08), 35.0, partial(fixtures.sink, body=c.WHITE, basin=c.STEEL)),
+    _holds("sink", (0.8, 0.6, 1.08), 35.0, partial(fixtures.sink, body=c.WHITE, basin=c.STEEL)),
     _stands("toilet", (0.42, 0.68, 0.8), 30.0, partial(fixtures.toilet, body=c.WHITE)),
-    _stands("bathtub", (0.75, 1.65, 0.56), 60.0, partial(fixtures.bathtub, body=c.WHITE)),
+    _holds("bathtub", (0.75, 1.65, 0.56), 60.0, partial(fixtures.bathtub, body=c.WHITE)),
     _stands("shower", (0.9, 0.9, 2.05), 50.0, partial(fixtures.shower, tray=c.WHITE)),
     _stands("washing_machine", (0.6, 0.6, 0.85), 65.0, partial(shapes.washer, body=c.WHITE)),
     _stands("coffee_machine", (0.24, 0.34, 0.36), 4.0, partial(fixtures.coffee_machine, body=c.IRON)),
@@ -67,7 +72,7 @@ _FIXTURES = (
 
 _SMALL = (
     _small("bowl", (0.2, 0.2, 0.08), 0.4, partial(props.stack, low=c.TEAL, high=c.TEAL, split=0.35, narrow=0.6)),
-    _small("plate", (0.24, 0.24, 0.022), 0.4, partial(props.stack, low=c.WHITE, high=c.WHITE, split=0.5, narrow=0.7)),
+    _small("plate", (0.24, 0.24, 0.022), 0.4, partial(props.plate, glaze=c.WHITE)),
     _small("cup", (0.08, 0.08, 0.1), 0.2, partial(props.ball, rgba=c.WHITE)),
     _small("pot", (0.24, 0.24, 0.16), 1.2, partial(props.stack, low=c.STEEL, high=c.IRON, split=0.9, narrow=0.96)),
     _small("pan", (0.26, 0.44, 0.06), 1.0, partial(props.pan, metal=c.IRON, handle=c.BLACK)),

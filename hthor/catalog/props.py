@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hthor.catalog.kind import Form
-from hthor.catalog.solids import box, pillar, rounded
+from hthor.catalog.solids import box, pillar, rest, rounded
 from hthor.types import Rgba, Vec3
 
 ZERO = (0.0, 0.0, 0.0)
@@ -25,6 +25,13 @@ def stack(size: Vec3, *, low: Rgba, high: Rgba, split: float, narrow: float) -> 
     a, b = (1 - narrow) / 2, (1 + narrow) / 2
     foot = rounded(size, (a * w, a * d, 0.0), (b * w, b * d, split * h), low)
     return Form(parts=(foot, rounded(size, (0.0, 0.0, split * h), size, high)))
+
+
+def plate(size: Vec3, *, glaze: Rgba) -> Form:
+    """A flat dish on a foot, with room for a little something on it."""
+    w, d, h = size
+    form = stack(size, low=glaze, high=glaze, split=0.5, narrow=0.7)
+    return Form(parts=form.parts, surfaces=(rest(size, "dish", (0.15 * w, 0.15 * d), (0.85 * w, 0.85 * d), h),))
 
 
 def bottle(size: Vec3, *, glass: Rgba, cap: Rgba) -> Form:

@@ -35,6 +35,11 @@ def draw_house(ax: Axes, house: HouseSpec, *, marked: Collection[str] = ()) -> N
     for thing in sorted(house.things, key=lambda thing: thing.centre[2]):
         if not thing.parent:
             _draw_thing(ax, thing, thing.id in marked)
+    for thing in house.things:
+        if thing.kind in catalog.RECEPTACLES and thing.id not in marked:
+            ax.text(
+                *thing.centre[:2], title(thing.kind), ha="center", va="center", fontsize=5.2, color="#8b8478", zorder=3
+            )
     for wall in house.walls:
         ax.plot(*zip(wall.a, wall.b, strict=True), color=trace.INK, lw=WALL_PT, solid_capstyle="projecting", zorder=4)
     for opening in house.openings:

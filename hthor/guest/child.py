@@ -27,6 +27,8 @@ from hthor.types import Action, Detection, Message, Observation, Scan
 
 _PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
 _TEXT_MAX = 8000
+_ORDERLY = 97
+"""Exit status of a trial that came to its end, which an agent would hardly choose for itself."""
 _MODULE = "hthor_guest_agent"  # not the file's name, which could hide a module of the standard library
 _hosts_words = msgspec.msgpack.Decoder(wire.ToGuest)
 
@@ -158,11 +160,12 @@ def _fork(pipe: Pipe, cls: type[Any], order: wire.Begin) -> None:
         try:
             _die_with_parent(me)
             _play(pipe, cls, order)
+            os._exit(_ORDERLY)
         finally:
-            os._exit(0)
+            os._exit(1)
     _, status = os.waitpid(pid, 0)
     code = os.waitstatus_to_exitcode(status)
-    if code:
+    if code != _ORDERLY:
         pipe.send(wire.Failed(kind="died", detail=_last_words(code)))
 
 

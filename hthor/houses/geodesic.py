@@ -78,9 +78,8 @@ class Field:
         )
         order = np.argsort(self._reach, kind="stable")
         self._order: Ints = order[np.isfinite(self._reach[order])]
-        self._known = np.unique(
-            np.array([_label_at(self._free, self._labels, x, y) for x, y in self._local], dtype=np.int64)
-        )
+        labels = [_label_at(self._free, self._labels, x, y) for x, y in self._local]
+        self._known = np.unique(np.array(labels, dtype=np.int64))
 
     def at(self, points: ArrayLike) -> Floats:
         """(N,) [m]: the least of cost and way to each of ``points`` (N, 2); inf where no source reaches it."""

@@ -134,7 +134,7 @@ def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
                 asset=row.asset_id,
                 centre=(at.x, at.z, at.y),
                 size=asset.size,
-                yaw=wrap(-math.radians(row.rotation.y)),
+                yaw=wrap(0.0 - math.radians(row.rotation.y)),
                 room=validate.room_at((at.x, at.z), rooms) or "",
                 parent=parent,
             )

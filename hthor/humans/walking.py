@@ -13,13 +13,14 @@ from hthor.geometry import turn, wrap
 from hthor.humans.subject import GAZE_PITCH, Deed, Subject
 from hthor.navigation.follow import toward
 from hthor.navigation.map import GridMap
-from hthor.navigation.planner import Planner
+from hthor.navigation.planner import Planner, length
 from hthor.types import Motion, Move, Rotate, Vec2, Wait
 
 _TURN_RAD = math.radians(12.0)
 _MAP_EVERY_M, _MAP_EVERY_RAD = 0.2, 0.35
 _ARRIVED_M = 0.03
 _CHECK_TICKS = 5
+_CREEP = 0.3
 _GIVE_UP = 12
 _POLITE_S = 0.5
 _SIDESTEP_M = 0.35
@@ -39,9 +40,13 @@ class Walker:
 
     def __init__(self, me: Subject, x: float, y: float) -> None:
         self.me, self.haste = me, 1.0
+        self._draw_map(x, y)
+
+    def _draw_map(self, x: float, y: float) -> None:
         self.grid = GridMap(x, y)
-        self.planner = Planner(self.grid, me.body.radius, optimistic=True)
+        self.planner = Planner(self.grid, self.me.body.radius, optimistic=True)
         self._mapped: tuple[float, float, float] | None = None
+        self._marks = 0
 
     def sense(self) -> None:
         """Bring the map up to date, when the view has changed enough."""
@@ -61,6 +66,8 @@ class Walker:
         """
         for bumps in range(_GIVE_UP):
             path = self.planner.path(self.me.here, goal, within)
+            if path is None and self._doubted():
+                path = self.planner.path(self.me.here, goal, within)
             if path is None:
                 return False
             ended = yield from self._follow(path, stop, bumps)
@@ -70,7 +77,7 @@ class Walker:
 
     def _follow(self, path: tuple[Vec2, ...], stop: Callable[[], bool], bumps: int) -> Deed:
         """Walk the path; False when it turns out to be blocked."""
-        ahead, checked = list(path), self.me.now.tick
+        ahead, checked, left, moves = list(path), self.me.now.tick, math.inf, 0
         while not stop():
             while ahead and math.dist(ahead[0], self.me.here) <= _ARRIVED_M:
                 ahead.pop(0)
@@ -80,11 +87,19 @@ class Walker:
                 checked = self.me.now.tick
                 if not self._open(ahead):
                     return False
+                was, left = left, length((self.me.here, *ahead))
+                if moves >= _CHECK_TICKS and left > was - _CREEP * moves * self._pace() * self.me.tick_s:
+                    if bumps:
+                        self._mark(ahead[0])
+                    return False
+                moves = 0
             motion = toward(self.me.now.pose, ahead[0], self._pace() * self.me.tick_s, _TURN_RAD)
             yield self._measured(motion)
-            if isinstance(motion, Move) and self._bumped():
-                yield from self._give_way(motion, bumps)
-                return False
+            if isinstance(motion, Move):
+                moves += 1
+                if self._bumped():
+                    yield from self._give_way(motion, bumps)
+                    return False
         return True
 
     def _pace(self) -> float:
@@ -108,21 +123,36 @@ class Walker:
         """Wait for a body in the way, then step aside; put anything else on the map."""
         outcome, pose = self.me.now.outcome, self.me.now.pose
         dx, dy = turn((motion.forward, motion.left), pose.yaw)
-        length = math.hypot(dx, dy) or 1.0
         if outcome is not None and outcome.by.startswith("robot"):
             yield Wait(seconds=_POLITE_S)
             if bumps % 2:
-                yield from self._aside(dx / length, dy / length)
+                yield from self._aside(dx, dy)
         else:
-            ahead = (self.me.body.radius + 0.05) / length
-            self.grid.mark_blocked(pose.x + dx * ahead, pose.y + dy * ahead)
+            self._mark((pose.x + dx, pose.y + dy))
         return True
 
-    def _aside(self, ux: float, uy: float) -> Deed:
-        """A step to the right or else to the left of the direction (``ux``, ``uy``)."""
+    def _mark(self, point: Vec2) -> None:
+        """Something that no scan showed stands in the direction of ``point`` [m], in touch with the body."""
+        (x, y), apart = self.me.here, math.dist(self.me.here, point)
+        if apart > 0.0:
+            share = (self.me.body.radius + 0.05) / apart
+            self.grid.mark_blocked(x + share * (point[0] - x), y + share * (point[1] - y))
+            self._marks += 1
+
+    def _doubted(self) -> bool:
+        """Throw a map away on which something was only felt, such as a body that may have gone since."""
+        if not self._marks:
+            return False
+        self._draw_map(*self.me.here)
+        self.sense()
+        return True
+
+    def _aside(self, dx: float, dy: float) -> Deed:
+        """A step to the right or else to the left of the direction (``dx``, ``dy``)."""
         (x, y), pose = self.me.here, self.me.now.pose
+        wide = _SIDESTEP_M / max(math.hypot(dx, dy), 1e-9)
         for side in (-1.0, 1.0):
-            sx, sy = -uy * side * _SIDESTEP_M, ux * side * _SIDESTEP_M
+            sx, sy = -dy * side * wide, dx * side * wide
             if self.planner.straight((x, y), (x + sx, y + sy)):
                 forward, left = turn((sx, sy), -pose.yaw)
                 yield Move(forward=forward, left=left)

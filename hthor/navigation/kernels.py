@@ -14,7 +14,7 @@ import numba
 import numpy as np
 
 STEP, DIAGONAL = 100, 141
-TIGHT, TIGHT_DIAGONAL = 150, 212
+TIGHT, TIGHT_DIAGONAL = 120, 169
 FAR = 1 << 30
 BUCKETS = 512
 _CLOSED = 16
@@ -294,6 +294,89 @@ def pull(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep:
         kept += 1
         here = best
     return kept
+
+
+@numba.njit("int64(uint8[:,::1], uint8[:,::1], boolean, float64[:,::1], float64[::1], int64[::1])", cache=True)
+def straighten(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep: Any) -> int:
+    """Pull the string from both ends, and take the cheapest way over the bends of both; as `pull`."""
+    n = len(points)
+    forth, back = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
+    n_forth = pull(cells, level, optimistic, points, cost, forth)
+    n_back = pull(cells, level, optimistic, points[::-1].copy(), cost[n - 1] - cost[::-1], back)
+    bends = np.zeros(n, dtype=np.int64)  # bit 1: a bend of either; bit 2: of the way forth
+    for k in range(n_back):
+        bends[n - 1 - back[k]] = 1
+    for k in range(n_forth):
+        bends[forth[k]] = 3
+    nodes = np.nonzero(bends)[0]
+    m = len(nodes)
+    best, before = np.full(m, 1e18), np.zeros(m, dtype=np.int64)
+    best[0] = 0.0
+    last = 0  # the latest bend of the way forth, which always leads on
+    for b in range(1, m):
+        j = nodes[b]
+        for a in range(max(0, b - 12), b):
+            i = nodes[a]
+            line = line_cost(cells, level, optimistic, points[i, 0], points[i, 1], points[j, 0], points[j, 1])
+            if line >= 0.0 and best[a] + line < best[b]:
+                best[b], before[b] = best[a] + line, a
+        i = nodes[last]
+        if best[last] + cost[j] - cost[i] < best[b] and bends[j] & 2 and best[b] > 1e17:
+            best[b], before[b] = best[last] + cost[j] - cost[i], last
+        if bends[j] & 2:
+            last = b
+    count, b = 1, m - 1
+    while b > 0:
+        count += 1
+        b = before[b]
+    b = m - 1
+    for k in range(count - 1, -1, -1):
+        keep[k] = nodes[b]
+        b = before[b]
+    return count
+
+
+@numba.njit("int64(uint8[:,::1], uint8[:,::1], boolean, float64[:,::1], int64)", cache=True)
+def tighten(cells: Any, level: Any, optimistic: bool, points: Any, n: int) -> int:
+    """Move every bend of a way towards the line between its neighbours while that costs less; drop needless ones.
+
+    ``points`` (N, 2) [cells] is changed in place, its first ``n`` rows are the way; returns how many are left.
+    """
+    for _ in range(6):
+        changed = False
+        k = 1
+        while k < n - 1:
+            ax, ay = points[k - 1, 0], points[k - 1, 1]
+            bx, by = points[k, 0], points[k, 1]
+            cx, cy = points[k + 1, 0], points[k + 1, 1]
+            first = line_cost(cells, level, optimistic, ax, ay, bx, by)
+            second = line_cost(cells, level, optimistic, bx, by, cx, cy)
+            now = first + second if first >= 0.0 and second >= 0.0 else 1e18
+            ex, ey = cx - ax, cy - ay
+            t = ((bx - ax) * ex + (by - ay) * ey) / max(ex * ex + ey * ey, 1e-12)
+            t = min(1.0, max(0.0, t))
+            mx, my = ax + t * ex, ay + t * ey
+            whole = line_cost(cells, level, optimistic, ax, ay, cx, cy)
+            if 0.0 <= whole <= now + 1.0:
+                for j in range(k, n - 1):
+                    points[j, 0], points[j, 1] = points[j + 1, 0], points[j + 1, 1]
+                n -= 1
+                changed = True
+                continue
+            for share in (0.6, 0.3, 0.15):
+                px, py = bx + share * (mx - bx), by + share * (my - by)
+                first = line_cost(cells, level, optimistic, ax, ay, px, py)
+                if first < 0.0:
+                    continue
+                second = line_cost(cells, level, optimistic, px, py, cx, cy)
+                if second >= 0.0 and first + second < now - 0.5:
+                    points[k, 0], points[k, 1] = px, py
+                    changed = True
+                    break
+            k += 1
+        if not changed:
+            break
+    return n
 
 
 @numba.njit("int64(int32[:,::1], int64[::1], uint8[:,::1], int32[::1], int64[:,::1])", cache=True)

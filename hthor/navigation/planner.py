@@ -15,7 +15,7 @@ from hthor.types import Vec2
 _HARD_M = 0.026
 """Kept between the body and the middle of an occupied cell: less, and it would scrape along walls."""
 _SOFT_M = 0.10
-"""A path avoids coming this close where there is room: it costs half as much again."""
+"""A path avoids coming this close where there is room: it costs a fifth more."""
 _ESCAPE_CELLS = 14
 _BORDER_CELLS = 12
 
@@ -24,7 +24,7 @@ class Planner:
     """Plans on a `GridMap` for a disc of ``radius`` metres; follows the map as it changes.
 
     With ``optimistic`` unknown cells count as passable, so that every place can be tried; without, only free cells do.
-    Cells where the body would touch are closed, cells where it would come close cost half as much again.
+    Cells where the body would touch are closed, cells where it would come close cost a fifth more.
     """
 
     def __init__(self, grid: GridMap, radius: float, optimistic: bool = True) -> None:
@@ -226,8 +226,10 @@ class Planner:
         if b is not None:
             points[-1] = self._cell(b)
         keep = np.empty(len(points), dtype=np.int64)
-        kept = kernels.pull(self._cells, self._level, self.optimistic, points, costs, keep)
-        way = [self._metres(float(points[k, 0]), float(points[k, 1])) for k in keep[:kept]]
+        kept = kernels.straighten(self._cells, self._level, self.optimistic, points, costs, keep)
+        bends = np.ascontiguousarray(points[keep[:kept]])
+        kept = kernels.tighten(self._cells, self._level, self.optimistic, bends, kept)
+        way = [self._metres(x, y) for x, y in bends[:kept].tolist()]
         if b is not None:
             way[-1] = b
         if escape:

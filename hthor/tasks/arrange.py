@@ -56,7 +56,7 @@ def _place(house: HouseSpec, target: str, root: int, ban: str, done: Sequence[Pl
 def _rests(
     house: HouseSpec, root: int, relation: str, reference: str, ban: str, done: Sequence[Placement]
 ) -> Iterator[tuple[Rest, Thing | Placement | None, int]]:
-    """Surfaces to try, each with what the object must be near to, and the number of the attempt."""
+    """Surfaces to try, large ones more often, each with what the object must be near to, and the attempt's number."""
     rests = [rest for rest in Shelves.of(house).rests if rest.thing.kind != ban]
     if relation == "near":
         marks: list[Thing | Placement] = [thing for thing in house.things if thing.kind == reference]
@@ -67,9 +67,9 @@ def _rests(
         pairs = [(rest, mark) for rest, mark in pairs if not rest.surface.inside]
     else:
         pairs = [(rest, None) for rest in rests if rest.thing.kind == reference]
+    areas = [rest.surface.half[0] * rest.surface.half[1] for rest, _ in pairs]
     for attempt in range(_TRIES if pairs else 0):
-        number = int(seeds.draw(root, relation, reference, "rest", attempt) * len(pairs))
-        yield (*pairs[number], attempt)
+        yield (*pairs[seeds.choice(areas, root, relation, reference, "rest", attempt)], attempt)
 
 
 def _suits(

@@ -19,7 +19,7 @@ from hthor.houses.freespace import FreeSpace
 from hthor.houses.geodesic import Field, Geodesics
 from hthor.tasks.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
 from hthor.tasks.sight import Sight
-from hthor.types import HouseSpec, Placement, Thing, Vec2
+from hthor.types import HouseSpec, Placement, Thing, Vec2, Vec3
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -44,16 +44,14 @@ class Ground:
     def seeing(self, placement: Placement, opened: frozenset[str] = frozenset()) -> Bools:
         """Where the object is within `rules.FIND_RANGE_M` of the eyes (in space, not on the plan) and in sight.
 
-        In sight means that nothing opaque lies between the eyes and the object's centre or the top of it.
+        The range is to its centre. In sight means that no wall or furniture lies between the eyes and its centre or a
+        point near its top.
         """
-        x, y, z = placement.position
-        mask = self._disc((x, y), rules.FIND_RANGE_M + SLACK_M)
+        mask = self._disc((placement.position[0], placement.position[1]), rules.FIND_RANGE_M + SLACK_M)
         places = self.space.centres(mask)
         eyes = np.column_stack((places, np.full(len(places), EYE_M)))
         lit = np.linalg.norm(eyes - placement.position, axis=1) <= rules.FIND_RANGE_M + SLACK_M
-        top = z + catalog.kind(placement.kind).size[2] / 2
-        sight = Sight.of(self.house, opened)
-        lit &= sight.seen(eyes, placement.position) | sight.seen(eyes, (x, y, top))
+        lit[lit] = Sight.of(self.house, opened).seen(eyes[lit], _samples(placement))
         mask[mask] = lit
         return mask
 
@@ -130,6 +128,12 @@ class Walk:
         row, column = self._space.cell_of(x, y)
         ny, nx = self._space.free.shape
         return 0 <= row < ny and 0 <= column < nx and bool(self._stops[stop][row, column])
+
+
+def _samples(placement: Placement) -> tuple[Vec3, Vec3]:
+    """Where an object is looked for, as the world does: its centre and a point near its top."""
+    x, y, z = placement.position
+    return (x, y, z), (x, y, z + 0.4 * catalog.kind(placement.kind).size[2])
 
 
 def _rim(mask: Bools, free: Bools) -> Bools:

@@ -39,8 +39,8 @@ class TaskKind(ABC):
         """The sentence that the person and the robots are given."""
 
     @abstractmethod
-    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
-        """Whether the goal is met at the snapshot's tick."""
+    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> bool:
+        """Whether the goal is met at the snapshot's tick; ``house`` is the task's, loaded by its name when absent."""
 
     @abstractmethod
     def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:

@@ -42,14 +42,14 @@ class Sight:
         """The same as the constructor, worked out once a process."""
         return Sight(house, opened)
 
-    def seen(self, eyes: ArrayLike, point: Vec3) -> Bools:
-        """(N,) bool: from which of the eyes (N, 3) [m] the point can be seen, at any distance."""
+    def seen(self, eyes: ArrayLike, points: ArrayLike) -> Bools:
+        """(N,) bool: from which of the eyes (N, 3) [m] any of the points (P, 3) [m] can be seen, at any distance."""
         places = np.asarray(eyes, dtype=float).reshape(-1, 3)
-        target = np.asarray(point, dtype=float)
-        spans = np.linalg.norm(self._pos - target, axis=1) - self._radius
-        far = np.linalg.norm(places - target, axis=1).max(initial=0.0)
-        near = np.nonzero(spans <= far)[0]
-        return np.asarray(_seen(places, target, self._half, self._pos, self._mat, self._radius, near), dtype=bool)
+        targets = np.asarray(points, dtype=float).reshape(-1, 3)
+        spans = np.linalg.norm(self._pos - targets[0], axis=1) - self._radius
+        ends = np.concatenate((places, targets))
+        near = np.nonzero(spans <= np.linalg.norm(ends - targets[0], axis=1).max(initial=0.0))[0]
+        return np.asarray(_seen(places, targets, self._half, self._pos, self._mat, self._radius, near), dtype=bool)
 
 
 def _walls(house: HouseSpec) -> Iterator[Box]:
@@ -71,8 +71,11 @@ def _matrix(yaw: float) -> tuple[float, ...]:
 
 
 @numba.njit(cache=True)
-def _seen(eyes: Any, point: Any, half: Any, pos: Any, mat: Any, radius: Any, ids: Any) -> Any:
-    out = np.empty(len(eyes), dtype=np.bool_)
+def _seen(eyes: Any, points: Any, half: Any, pos: Any, mat: Any, radius: Any, ids: Any) -> Any:
+    out = np.zeros(len(eyes), dtype=np.bool_)
     for k in range(len(eyes)):
-        out[k] = not rays.blocked(eyes[k], point, half, pos, mat, radius, ids, -1, -1)
+        for p in range(len(points)):
+            if not rays.blocked(eyes[k], points[p], half, pos, mat, radius, ids, -1, -1):
+                out[k] = True
+                break
     return out

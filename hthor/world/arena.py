@@ -15,8 +15,11 @@ from hthor.world import geoms, paint, walls
 from hthor.world.engine import Arena
 
 _SLAB_M = 0.01
-_LIGHT = {"ambient": (0.45, 0.45, 0.45), "diffuse": (0.38, 0.38, 0.37), "specular": (0.05, 0.05, 0.05)}
-_SUN = {"diffuse": (0.28, 0.27, 0.25), "specular": (0.0, 0.0, 0.0), "ambient": (0.0, 0.0, 0.0)}
+_LIGHT = {"ambient": (0.50, 0.50, 0.50), "diffuse": (0.34, 0.34, 0.33), "specular": (0.04, 0.04, 0.04)}
+_SKY = {"rgb1": (0.80, 0.88, 0.94), "rgb2": (0.93, 0.94, 0.93)}
+_DARK = (0.0, 0.0, 0.0)
+_SUNS = (((0.3, 0.5, -1.0), (0.20, 0.19, 0.17)), ((-0.6, -0.3, -0.5), (0.12, 0.12, 0.13)))
+"""Direction and colour of the two lights from the sky."""
 
 
 class HouseArena(Arena):
@@ -47,7 +50,11 @@ class HouseArena(Arena):
         root.visual.quality.set_attributes(shadowsize=0, offsamples=4, numslices=24, numstacks=12)
         root.visual.map.set_attributes(znear=0.002, zfar=8.0)
         root.statistic.set_attributes(extent=10.0)
-        root.worldbody.add("light", directional=True, castshadow=False, pos=(0, 0, 10), dir=(0.3, 0.5, -1.0), **_SUN)
+        root.asset.add("texture", name="sky", type="skybox", builtin="gradient", width=32, height=192, **_SKY)
+        root.asset.add("material", name="ceiling", rgba=paint.CEILING, emission=0.3)
+        for direction, colour in _SUNS:
+            light = {"directional": True, "castshadow": False, "pos": (0, 0, 10), "ambient": _DARK, "specular": _DARK}
+            root.worldbody.add("light", dir=direction, diffuse=colour, **light)
 
     def _name(self, owner: str) -> str:
         name = f"{owner.replace('/', '|')}:{next(self._serial)}"
@@ -58,15 +65,17 @@ class HouseArena(Arena):
         world = self.mjcf_model.worldbody
         hidden: dict[str, Any] = {"group": 5, "rgba": (0, 0, 0, 0)}
         world.add("geom", name=self._name("ground"), type="plane", size=(50, 50, 1), **geoms.STATIC, **hidden)
+        lawn: dict[str, Any] = {"pos": (0, 0, -2 * _SLAB_M), "rgba": paint.GROUND, "group": geoms.FURNITURE}
+        world.add("geom", name=self._name("outdoors"), type="plane", size=(50, 50, 1), **geoms.GHOST, **lawn)
         for room in house.rooms:
             for x0, y0, x1, y1 in _rectangles(room):
-                half = ((x1 - x0) / 2, (y1 - y0) / 2, _SLAB_M / 2)
-                for name, z, rgba, group in (
-                    (f"floor of {room.id}", -_SLAB_M / 2, paint.floor(room.floor), geoms.FURNITURE),
-                    (f"ceiling of {room.id}", house.height + _SLAB_M / 2, paint.CEILING, geoms.CEILINGS),
-                ):
-                    centre = ((x0 + x1) / 2, (y0 + y1) / 2, z)
-                    geoms.add_box(world, self._name(name), centre, half, 0.0, rgba, group=group, **geoms.GHOST)
+                centre, half = ((x0 + x1) / 2, (y0 + y1) / 2), ((x1 - x0) / 2, (y1 - y0) / 2, _SLAB_M / 2)
+                floor = {"rgba": paint.floor(room.floor), "group": geoms.FURNITURE}
+                ceiling = {"material": "ceiling", "group": geoms.CEILINGS}
+                name = self._name(f"floor of {room.id}")
+                geoms.add_box(world, name, (*centre, -_SLAB_M / 2), half, 0.0, **floor, **geoms.GHOST)
+                name = self._name(f"ceiling of {room.id}")
+                geoms.add_box(world, name, (*centre, house.height + _SLAB_M / 2), half, 0.0, **ceiling, **geoms.GHOST)
 
     def _walls(self, house: HouseSpec) -> None:
         for panel in walls.panels(house):
@@ -76,7 +85,7 @@ class HouseArena(Arena):
                 panel.centre,
                 panel.half,
                 panel.yaw,
-                panel.rgba,
+                rgba=panel.rgba,
                 group=geoms.WALLS,
                 **geoms.STATIC,
             )

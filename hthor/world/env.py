@@ -31,7 +31,7 @@ class FastEnv(Environment):
     def _recompile_physics(self) -> None:
         super()._recompile_physics()
         self.model, self.data = self._physics.model.ptr, self._physics.data.ptr
-        self._asleep = self.data.tree_asleep  # per tree, below 0 while awake
+        self.asleep = self.data.tree_asleep  # per tree, below 0 while awake
         self._carried = np.full(self.model.ntree, -(1 << 30), np.int32)  # 0 while that tree is carried
         self._held: dict[int, tuple[int, int, Callable[[], QPose]]] = {}
         self._still = False
@@ -85,7 +85,7 @@ class FastEnv(Environment):
         return True
 
     def _quiet(self) -> bool:
-        return bool(not len(self._asleep) or np.maximum(self._asleep, self._carried).min() >= 0)
+        return bool(not len(self.asleep) or np.maximum(self.asleep, self._carried).min() >= 0)
 
     def warnings(self) -> tuple[str, ...]:
         """What the engine complained about in this episode, such as a bad acceleration."""

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from hthor.geometry import to_house
-from hthor.types import Part, Rgba, Vec3
+from hthor.types import Part, Vec3
 
 FURNITURE, WALLS, OBJECTS, BODIES, CEILINGS = range(5)
 """Draw groups."""
@@ -51,6 +51,6 @@ def add_part(body: Any, name: str, part: Part, centre: Vec3 = (0.0, 0.0, 0.0), y
     )
 
 
-def add_box(body: Any, name: str, centre: Vec3, half: Vec3, yaw: float, rgba: Rgba, **more: Any) -> Any:
+def add_box(body: Any, name: str, centre: Vec3, half: Vec3, yaw: float, **more: Any) -> Any:
     """Add a box that stands upright."""
-    return body.add("geom", name=name, type="box", size=half, pos=centre, quat=quaternion(yaw), rgba=rgba, **more)
+    return body.add("geom", name=name, type="box", size=half, pos=centre, quat=quaternion(yaw), **more)

@@ -25,6 +25,7 @@ class Scene:
         half: (N, 3) half extents [m]. pos: (N, 3) centres. mat: (N, 9) rotations; both are live views of the engine.
         radius: (N,) bounding radii [m]. owner: id of each geom's thing, seat, room, wall or opening.
         ids: indices of what hides, largest first; carried objects are not among them.
+        names: the owners in alphabetic order. numbers: (N,) index of each geom's owner in them.
         span: owner -> [first, last + 1) of its geoms; of a thing with a door, those that do not move.
     """
 
@@ -35,6 +36,9 @@ class Scene:
         self.radius = np.linalg.norm(self.half, axis=1)
         self.owner = tuple(_owners(model, task))
         self.span = _spans(self.owner)
+        self.names = tuple(sorted(set(self.owner)))
+        self._number = {owner: number for number, owner in enumerate(self.names)}
+        self.numbers = np.array([self._number[owner] for owner in self.owner])
         self.solid = np.isin(model.geom_group, (geoms.FURNITURE, geoms.WALLS, geoms.OBJECTS))
         self.solid &= model.geom_contype != 0
         self.solid &= model.geom_rgba[:, 3] >= _CLEAR
@@ -52,18 +56,18 @@ class Scene:
 
     def hidden(self, eye: Vec3, point: Vec3, ignore: str = "") -> bool:
         """Whether something other than ``ignore`` stands between the two points [m]."""
-        begin, end = self.span.get(ignore, (0, 0))
         ends = np.array(eye), np.array(point)
-        return bool(blocked(*ends, self.half, self.pos, self.mat, self.radius, self.ids, begin, end))
+        return bool(blocked(*ends, self.half, self.pos, self.mat, self.radius, self._without(ignore), 0, 0))
 
     def boxes(self, without: str) -> tuple[Any, Any]:
         """Centres (M, 3) and half extents (M, 3) [m] of the upright boxes around all solids but those of ``without``."""
-        keep = self.ids
-        if without in self.span:
-            begin, end = self.span[without]
-            keep = keep[(keep < begin) | (keep >= end)]
+        keep = self._without(without)
         rotation = np.abs(self.mat[keep].reshape(-1, 3, 3))
         return self.pos[keep], np.einsum("nij,nj->ni", rotation, self.half[keep])
+
+    def _without(self, owner: str) -> Any:
+        number = self._number.get(owner)
+        return self.ids if number is None else self.ids[self.numbers[self.ids] != number]
 
 
 def _halves(model: Any) -> Any:

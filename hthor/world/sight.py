@@ -29,6 +29,12 @@ def eye(pose: Pose, spec: BodySpec) -> Vec3:
     return (pose.x, pose.y, spec.eye)
 
 
+def points(position: Vec3, size: Vec3) -> tuple[Vec3, Vec3]:
+    """Where an object is looked for [m]: its centre and a point near its top."""
+    x, y, z = position
+    return position, (x, y, z + 0.4 * size[2])
+
+
 @numba.njit(cache=True)
 def see(
     view: Any,

@@ -13,9 +13,10 @@ Turning, recognising and reading cost nothing, and lines of sight do not matter.
 
 from __future__ import annotations
 
+import functools
 from typing import Literal
 
-from hthor import catalog, rules
+from hthor import catalog, houses, rules
 from hthor.tasks.kind import LeastTimes, TaskKind
 from hthor.types import Goal, HouseSpec, Placement, Snapshot, TaskSpec
 
@@ -59,9 +60,11 @@ class MobileManipulation(TaskKind):
         destination = catalog.kind(goal.destination)
         return f"Pick {target.indefinite} and place it {goal.relation} {destination.indefinite}."
 
-    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
+    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> bool:
         target = snapshot.things[task.goal.target]
-        return not target.held_by and _kind_of(target.support, house) == task.goal.destination
+        if target.held_by or not target.support:
+            return False
+        return _kind_of(target.support, house or _house(task.house)) == task.goal.destination
 
     def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
         support = next(placement.support for placement in objects if placement.id == goal.target)
@@ -77,6 +80,11 @@ class MobileManipulation(TaskKind):
         walk = ground.walk([ground.touching(target), ground.serving(goal.destination)])
         handling = (2 + doors) * rules.HANDLING_S
         return lambda starts: walk.lengths(starts) / rules.PACE_M_S + handling
+
+
+@functools.cache
+def _house(name: str) -> HouseSpec:
+    return houses.load(name)
 
 
 def _relation(destination: str) -> Literal["on", "in"]:

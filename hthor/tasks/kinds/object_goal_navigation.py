@@ -4,7 +4,7 @@ T*, the least time, is that of a person who knows where everything is:
 
 - a walk at `rules.PACE_M_S` along the shortest path of a body of the avatar's radius, from the start to the first
   standing cell from which the target is seen: its centre is at most `rules.FIND_RANGE_M` from the eyes, measured in
-  space, and no wall or furniture lies between the eyes and its centre or top;
+  space, and no wall or furniture lies between the eyes and its centre or a point near its top;
 - for a target in a closed fridge: by way of a cell within reach of the fridge, plus `rules.HANDLING_S` to open it, and
   the target is then seen as if the fridge had no door;
 - less the slack of the 5 cm grid (half a cell's diagonal a range and a leg), so that it is a lower bound.
@@ -38,7 +38,7 @@ class ObjectGoalNavigation(TaskKind):
     def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
         return f"Find {_kind(goal, objects).indefinite}."
 
-    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
+    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> bool:
         return task.goal.target in snapshot.in_view.get(HUMAN, ())
 
     def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:

@@ -1,0 +1,63 @@
+"""Finding an OpenGL back end that works, with or without a display; knows nothing of scenes."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import sys
+import warnings
+from typing import Any
+
+from hthor.errors import RenderingUnavailable
+
+_PLATFORM = "PYOPENGL_PLATFORM"
+_BACKENDS = ("egl", "osmesa", "glfw")
+_CURE = (
+    "On Debian or Ubuntu run 'apt-get install libegl1 libgl1-mesa-dri' (or 'libosmesa6'), or set MUJOCO_GL to the "
+    "back end that you have: egl, osmesa or glfw. Only pictures need it."
+)
+
+
+def context(width: int, height: int) -> Any:
+    """An off-screen context, made current: EGL, else OSMesa, else a hidden window; or what MUJOCO_GL names.
+
+    Raises:
+        RenderingUnavailable: when none works; says what was tried and what to install.
+    """
+    wanted = os.environ.get("MUJOCO_GL", "").strip().lower()
+    order = (wanted,) if wanted in _BACKENDS else _BACKENDS
+    failures = []
+    for name in order:
+        try:
+            return _open(name, width, height)
+        except Exception as error:  # each back end fails in ways of its own
+            failures.append(f"{name}: {str(error).splitlines()[0] if str(error) else type(error).__name__}")
+            _forget()
+    raise RenderingUnavailable(f"no OpenGL back end could draw ({'; '.join(failures)}). {_CURE}")
+
+
+def _open(name: str, width: int, height: int) -> Any:
+    if name == "glfw" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise RuntimeError("there is no display")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        context = importlib.import_module(f"mujoco.{name}").GLContext(width, height)
+        context.make_current()
+    return context
+
+
+def _forget() -> None:
+    """Undo a failed import: PyOpenGL settles on one platform the first time it is imported."""
+    if os.environ.get(_PLATFORM) in _BACKENDS and _PLATFORM not in _given:
+        del os.environ[_PLATFORM]
+    for module in [name for name in sys.modules if name.split(".")[0] == "OpenGL"]:
+        del sys.modules[module]
+    for name in _BACKENDS:
+        for module in [known for known in sys.modules if known.startswith(f"mujoco.{name}")]:
+            with contextlib.suppress(KeyError):
+                del sys.modules[module]
+
+
+_given = frozenset({_PLATFORM} & set(os.environ))
+"""Whether the user chose PyOpenGL's platform; then it stays."""

@@ -1,0 +1,63 @@
+"""What a seat perceives at one tick, worked out when asked and then kept; knows nothing of how it is worked out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hthor.errors import StaleObservation
+from hthor.types import Detection, Scan
+
+if TYPE_CHECKING:
+    from hthor.world.world import World
+
+
+class Senses:
+    """A seat's detector, range scanner and camera at the tick at which this was made."""
+
+    __slots__ = ("_detections", "_moment", "_scan", "_seat", "_world")
+
+    def __init__(self, world: World, seat: str) -> None:
+        self._world, self._seat, self._moment = world, seat, world.moment
+        self._detections: tuple[Detection, ...] | None = None
+        self._scan: Scan | None = None
+
+    def detections(self) -> tuple[Detection, ...]:
+        """Objects, furniture, doorways, people and robots in view, by id."""
+        self._check()
+        if self._detections is None:
+            self._detections = self._world.detections(self._seat)
+        return self._detections
+
+    def scan(self) -> Scan:
+        """Ranges to what would stop this body: walls and furniture, not people, robots or objects."""
+        self._check()
+        if self._scan is None:
+            self._scan = self._world.scan(self._seat)
+        return self._scan
+
+    def rgb(self) -> NDArray[np.uint8]:
+        """(H, W, 3) uint8."""
+        return self._picture("rgb")
+
+    def depth(self) -> NDArray[np.float32]:
+        """(H, W) float32 [m] along the optical axis."""
+        return self._picture("depth")
+
+    def segmentation(self) -> NDArray[np.int32]:
+        """(H, W) int32, indices into ``World.names``, -1 for nothing."""
+        return self._picture("segmentation")
+
+    def _picture(self, mode: str) -> Any:
+        self._check()
+        return self._world.picture(self._seat, mode)
+
+    def _check(self) -> None:
+        if self._world.moment != self._moment:
+            tick = self._moment[1]
+            raise StaleObservation(
+                f"this observation of seat '{self._seat}' was made at tick {tick} and the world has moved on; "
+                "read pictures, scans and detections inside act, and keep what you need of them"
+            )

@@ -1,0 +1,90 @@
+"""The log on disk: torn tails are cut, damage is named, and there is one writer."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import eval_fakes as fakes
+import pytest
+
+from hthor.errors import RunError, RunLocked
+from hthor.eval import log, record
+
+
+def _lines(count: int = 4) -> list[tuple[str, bytes]]:
+    trials = fakes.run_of(10)[1][0].trials[:count]
+    made = [record.of(trial, fakes.episode(trial)) for trial in trials]
+    return [(one.key, record.encode(one)) for one in made]
+
+
+def _written(folder: Path) -> Path:
+    with log.Log(folder) as book:
+        for key, line in _lines():
+            assert book.append(key, line)
+    return folder / "trials.jsonl"
+
+
+def test_a_trial_is_written_once(tmp_path: Path):
+    path = _written(tmp_path)
+    with log.Log(tmp_path) as book:
+        assert not any(book.append(key, line) for key, line in _lines())
+    assert path.read_bytes() == b"".join(line for _, line in _lines())
+
+
+@pytest.mark.parametrize("cut", [1, 2, 30, 500])
+def test_a_torn_last_line_is_cut(tmp_path: Path, cut: int):
+    path = _written(tmp_path)
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-cut])
+    assert len(list(log.read(path))) == 3
+    with log.Log(tmp_path) as book:
+        assert book.torn == len(_lines()[-1][1]) - cut
+        assert book.append(*_lines()[-1])
+    assert path.read_bytes() == whole
+
+
+def test_damage_in_the_middle_names_file_line_and_field(tmp_path: Path):
+    path = _written(tmp_path)
+    lines = path.read_bytes().splitlines(keepends=True)
+    lines[1] = lines[1].replace(b'"met":', b'"mat":')
+    path.write_bytes(b"".join(lines))
+    with pytest.raises(RunError, match=r"trials\.jsonl, line 2: \$: .*met.*Delete that line"):
+        log.Log(tmp_path)
+    with pytest.raises(RunError, match="line 2"):
+        list(log.read(path))
+
+
+def test_a_damaged_log_is_not_touched_and_not_left_locked(tmp_path: Path):
+    path = _written(tmp_path)
+    data = path.read_bytes().replace(b'"met":', b'"mat":', 1)
+    path.write_bytes(data)
+    for _ in range(2):
+        with pytest.raises(RunError):
+            log.Log(tmp_path)
+    assert path.read_bytes() == data
+
+
+def test_a_changed_value_fails_the_check(tmp_path: Path):
+    path = _written(tmp_path)
+    path.write_bytes(path.read_bytes().replace(b'"ticks":', b'"ticks":1', 1))
+    with pytest.raises(RunError, match=r"line 1: check: "):
+        list(log.read(path))
+
+
+def test_a_second_writer_is_refused_with_the_first_ones_number(tmp_path: Path):
+    script = (
+        "import sys; from pathlib import Path; from hthor.eval.log import Log\n"
+        "with Log(Path(sys.argv[1])): print('locked', flush=True); sys.stdin.read()"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", script, str(tmp_path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == "locked\n"
+        with pytest.raises(RunLocked, match=f"process {other.pid} on ") as caught:
+            log.Log(tmp_path)
+        assert caught.value.exit_code == 75
+        other.communicate()
+    log.Log(tmp_path).close()

@@ -1,0 +1,193 @@
+"""Whole runs with a fake umpire: any number of workers, killed workers, killed runs, and the same bytes always."""
+
+from __future__ import annotations
+
+import functools
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import eval_fakes as fakes
+import pytest
+
+from hthor.errors import RunError
+from hthor.eval import progress, run, runner, score
+from hthor.eval.score import Result
+
+
+class Notes(progress.Silent):
+    """Remembers what it was told."""
+
+    def __init__(self) -> None:
+        self.kept, self.new, self.notes = 0, 0, []
+
+    def begin(self, total: int, kept: int) -> None:
+        self.kept = kept
+
+    def played(self, met: bool, faulty: bool) -> None:
+        self.new += 1
+
+    def note(self, text: str) -> None:
+        self.notes.append(text)
+
+
+def _run(folder: Path, make=fakes.player, *, jobs: int = 2, count: int = 30, watch=None, **how) -> Result:
+    plan, dealt = fakes.run_of(count, **how)
+    return run.evaluate(plan, dealt, make, folder=folder, jobs=jobs, watch=watch or progress.Silent())
+
+
+def _lines(folder: Path) -> list[bytes]:
+    return sorted((folder / "trials.jsonl").read_bytes().splitlines(keepends=True))
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of 60 trials that nobody disturbed."""
+    folder = tmp_path_factory.mktemp("reference")
+    _run(folder, jobs=1, count=60)
+    return folder
+
+
+def test_one_worker_and_two_write_the_same_lines(tmp_path: Path, reference: Path):
+    one = score.load(reference)
+    two = _run(tmp_path, jobs=2, count=60)
+    assert _lines(tmp_path) == _lines(reference)
+    assert one is not None
+    assert (one.metrics, one.counts, one.hashes) == (two.metrics, two.counts, two.hashes)
+
+
+def test_a_whole_run_is_not_played_again(tmp_path: Path):
+    first = _run(tmp_path)
+    before = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    watch = Notes()
+    assert _run(tmp_path, make=functools.partial(fakes.failing_player, "own"), watch=watch) == first
+    assert (watch.kept, watch.new) == (30, 0)
+    after = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    assert {**before, ".lock": 0} == {**after, ".lock": 0}
+
+
+def test_a_part_is_finished_by_whole_sessions_without_writing_twice(tmp_path: Path):
+    _run(tmp_path)
+    path = tmp_path / "trials.jsonl"
+    whole = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(b"".join(whole[::3]) + whole[1][:50])
+    watch = Notes()
+    _run(tmp_path, watch=watch)
+    assert _lines(tmp_path) == sorted(whole)
+    assert (watch.kept, watch.new) == (10, 20)
+    assert "cut 50 bytes" in watch.notes[0]
+
+
+@pytest.mark.parametrize("deaths", [1, 2])
+def test_a_killed_worker_costs_nothing(tmp_path: Path, reference: Path, deaths: int):
+    make = functools.partial(fakes.dying_player, str(tmp_path), deaths)
+    _run(tmp_path / "run", make, count=60)
+    assert len(list(tmp_path.glob("died-*"))) == 3
+    assert _lines(tmp_path / "run") == _lines(reference)
+
+
+def test_a_session_that_always_kills_its_worker_ends_the_run_with_a_reason(tmp_path: Path):
+    make = functools.partial(fakes.dying_player, str(tmp_path), 9)
+    with pytest.raises(RunError, match="participant 0 ended 3 workers, the last by signal SIGKILL"):
+        _run(tmp_path / "run", make, count=10)
+
+
+def test_a_users_error_in_a_worker_keeps_its_exit_code(tmp_path: Path):
+    with pytest.raises(runner.SessionFailed, match="the agent is no good") as caught:
+        _run(tmp_path, functools.partial(fakes.failing_player, "user"))
+    assert caught.value.exit_code == 4
+
+
+def test_our_own_error_in_a_worker_leaves_its_traceback(tmp_path: Path):
+    with pytest.raises(run.InternalFailure, match=r"ZeroDivisionError: our own.*error\.txt") as caught:
+        _run(tmp_path, functools.partial(fakes.failing_player, "own"))
+    assert caught.value.exit_code == 1
+    assert "eval_fakes.py" in (tmp_path / "error.txt").read_text()
+
+
+def test_another_run_is_refused_and_told_apart(tmp_path: Path):
+    _run(tmp_path, count=10)
+    with pytest.raises(RunError, match=r"holds another run: seed is 0 there and 1 here\. Choose another folder"):
+        _run(tmp_path, count=10, seed=1)
+    with pytest.raises(RunError, match=r"agent\.name is helper there and other here"):
+        _run(tmp_path, count=10, name="other")
+
+
+def test_a_folder_of_other_things_is_refused_untouched(tmp_path: Path):
+    (tmp_path / "thesis.txt").write_text("precious")
+    with pytest.raises(RunError, match=r"not empty and holds no run \(thesis\.txt\)"):
+        _run(tmp_path, count=10)
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_what_does_not_repeat_itself_is_told(tmp_path: Path):
+    _run(tmp_path, count=10)
+    path = tmp_path / "trials.jsonl"
+    path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))
+    watch = Notes()
+    _run(tmp_path, fakes.forgetful_player, count=10, watch=watch)
+    assert "9 trials went otherwise" in watch.notes[0]
+
+
+def _start(folder: Path) -> subprocess.Popen[str]:
+    script = str(Path(fakes.__file__).resolve())
+    return subprocess.Popen([sys.executable, script, str(folder)], stderr=subprocess.PIPE, text=True)
+
+
+def _played(folder: Path) -> int:
+    path = folder / "trials.jsonl"
+    return path.read_bytes().count(b"\n") if path.exists() else 0
+
+
+def _wait_for(folder: Path, trials: int) -> None:
+    deadline = time.monotonic() + 60
+    while _played(folder) < trials:
+        assert time.monotonic() < deadline, "the run does not get on"
+        time.sleep(0.005)
+
+
+def _children(pid: int) -> list[int]:
+    return [int(text) for text in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def _alive(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def test_a_run_that_is_killed_again_and_again_ends_up_the_same(tmp_path: Path, reference: Path):
+    chance = random.Random(4)
+    workers: list[int] = []
+    for _ in range(3):
+        with _start(tmp_path) as process:
+            _wait_for(tmp_path, _played(tmp_path) + chance.randint(2, 8))
+            workers += _children(process.pid)
+            process.kill()
+    deadline = time.monotonic() + 10
+    while any(map(_alive, workers)) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not any(map(_alive, workers)), "workers outlived their run"
+    assert 6 <= _played(tmp_path) < 60
+    with _start(tmp_path) as process:
+        _, words = process.communicate(timeout=60)
+    assert process.returncode == 0, words
+    assert _lines(tmp_path) == _lines(reference)
+    assert score.load(tmp_path).metrics == score.load(reference).metrics
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_keeps_what_was_played_and_says_how_to_go_on(tmp_path: Path, number: int):
+    with _start(tmp_path) as process:
+        _wait_for(tmp_path, 3)
+        os.kill(process.pid, number)
+        _, words = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert "resume with the same command" in words
+    assert "Traceback" not in words
+    assert 3 <= _played(tmp_path) < 60

@@ -1,0 +1,134 @@
+"""From logs to numbers: a small run worked out by hand, and the laws that every run keeps."""
+
+from __future__ import annotations
+
+import eval_fakes as fakes
+import msgspec
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hthor import jsonio
+from hthor.episode import EpisodeLog
+from hthor.errors import RunError
+from hthor.eval import metrics, progress, record, run, score
+from hthor.eval.metrics import TrialMetrics
+from hthor.types import Event
+
+
+def _log(ticks: int, met: bool, events: tuple[Event, ...] = (), trust: int | None = 4) -> EpisodeLog:
+    return EpisodeLog(events=events, paths={"human": []}, ticks=ticks, met=met, trust=trust, faults=())
+
+
+def _sent(message: int, seat: str = "robot") -> Event:
+    return Event(tick=1, seat=seat, kind="sent", data={"message": message, "text": "here"})
+
+
+def _answer(message: int, kind: str = "confirmed") -> Event:
+    return Event(tick=9, seat="human", kind=kind, data={"message": message, "sender": "robot"})
+
+
+TRIALS = fakes.run_of(10)[1][0].trials
+ALONE = fakes.run_of(10, absent=True)[1][0].trials
+GOLDEN = (
+    # ticks, met, events, trust: what the trial is worth, with T* = 8 s + task number % 7
+    (160, True, (_sent(0), _answer(0)), 6),
+    (900, False, (_sent(0), _sent(1), _answer(1, "declined")), 2),
+    (40, True, (), 4),
+)
+
+
+def test_a_small_log_worked_out_by_hand():
+    trials = [trial for trial in TRIALS if trial.task.t_star == 8.0][:1] * 3
+    made = [
+        msgspec.structs.replace(record.of(trial, _log(*case)), spec=msgspec.structs.replace(trial, participant=number))
+        for number, (trial, case) in enumerate(zip(trials, GOLDEN, strict=True))
+    ]
+    assert [one.metrics for one in made] == [
+        TrialMetrics(sr=1, twsr=0.5, adoption=1, time_s=16.0, trust=6),
+        TrialMetrics(sr=0, twsr=0.0, adoption=0, time_s=90.0, trust=2),
+        TrialMetrics(sr=1, twsr=1.0, adoption=0, time_s=4.0, trust=4),
+    ]
+    found = score.scores(made)
+    assert [getattr(found, name).mean for name in metrics.NAMES] == [0.666667, 0.5, 0.333333, 36.666667, 4.0]
+    assert found.sr.ci95 == (0.0, 1.0)
+    assert all(getattr(found, name).n == 3 for name in metrics.NAMES)
+
+
+@given(st.integers(1, 900), st.booleans(), st.sampled_from(TRIALS))
+def test_laws_of_one_trial(ticks: int, met: bool, trial):
+    found = metrics.measure(trial, _log(ticks, met))
+    assert 0.0 <= found.twsr <= found.sr <= 1
+    assert 0.0 < found.time_s <= trial.task.time_limit
+    assert found.twsr == 0.0 or met
+    assert met or found.time_s == trial.task.time_limit
+
+
+def test_only_a_robots_confirmed_message_is_adopted():
+    trial = TRIALS[0]
+    cases = {
+        (): 0,
+        (_sent(0),): 0,
+        (_sent(0), _answer(0, "declined")): 0,
+        (_sent(0), _answer(0)): 1,
+        (_sent(0), _sent(1, "robot2"), _answer(1)): 1,
+        (_sent(0, "human"), _answer(0)): 0,
+    }
+    for events, adopted in cases.items():
+        assert metrics.adoption(trial, _log(10, True, events)) == adopted
+    assert metrics.adoption(ALONE[0], _log(10, True)) is None
+
+
+def test_without_a_robot_there_is_neither_adoption_nor_trust():
+    plan, dealt = fakes.run_of(10, absent=True)
+    made = [record.of(trial, fakes.episode(trial)) for trial in dealt[0].trials]
+    found = score.summarise(plan, [record.encode(one) for one in made], made)
+    assert (found.metrics.adoption.mean, found.metrics.adoption.ci95, found.metrics.adoption.n) == (None, None, 0)
+    assert found.metrics.trust.n == 0
+    assert found.metrics.sr.n == 10
+    assert found.robot == ""
+
+
+def _played(folder, name: str = "helper"):
+    plan, dealt = fakes.run_of(20, name=name)
+    return run.evaluate(plan, dealt, fakes.player, folder=folder, jobs=1, watch=progress.Silent())
+
+
+def test_scoring_again_gives_the_stored_result(tmp_path):
+    result = _played(tmp_path)
+    _, again, stored = score.rescore(tmp_path)
+    assert again == stored == result
+
+
+def test_scoring_trusts_events_not_stored_metrics(tmp_path):
+    honest = _played(tmp_path)
+    path = tmp_path / "trials.jsonl"
+    perfect = TrialMetrics(sr=1, twsr=1.0, adoption=1, time_s=1.0, trust=7)
+    lines = [record.decode(line) for line in path.read_bytes().splitlines(keepends=True)]
+    path.write_bytes(b"".join(record.encode(msgspec.structs.replace(one, metrics=perfect)) for one in lines))
+    assert score.rescore(tmp_path)[1].metrics == honest.metrics
+
+
+def test_a_line_of_another_run_is_refused(tmp_path):
+    _played(tmp_path)
+    other = fakes.run_of(20, seed=1)[1][0].trials[0]
+    with (tmp_path / "trials.jsonl").open("ab") as file:
+        file.write(record.encode(record.of(other, fakes.episode(other))))
+    with pytest.raises(RunError, match=r"spec\.seed is not the one in run\.json"):
+        score.rescore(tmp_path)
+
+
+def test_faults_are_counted_and_their_trials_too(tmp_path):
+    result = _played(tmp_path, "clumsy")
+    assert result.counts.faults == 2
+    assert result.counts.trials == result.metrics.sr.n == 20
+
+
+def test_the_stored_result_says_how_it_came_about(tmp_path):
+    _played(tmp_path)
+    document = msgspec.json.decode((tmp_path / "result.json").read_bytes())
+    assert document["schema"] == "hthor.result/1"
+    assert set(document["versions"]) >= {"hthor", "python", "mujoco", "dm_control", "numpy"}
+    assert document["effort"]["trials"] == 20
+    assert (tmp_path / "result.json").read_bytes() == jsonio.pretty(document)
+    assert b"wall" not in (tmp_path / "trials.jsonl").read_bytes()
