@@ -66,15 +66,15 @@ def test_laws_of_one_trial(ticks: int, met: bool, trial):
 
 def test_only_a_robots_confirmed_message_is_adopted():
     trial = TRIALS[0]
-    cases = {
-        (): 0,
-        (_sent(0),): 0,
-        (_sent(0), _answer(0, "declined")): 0,
-        (_sent(0), _answer(0)): 1,
-        (_sent(0), _sent(1, "robot2"), _answer(1)): 1,
-        (_sent(0, "human"), _answer(0)): 0,
-    }
-    for events, adopted in cases.items():
+    cases = (
+        ((), 0),
+        ((_sent(0),), 0),
+        ((_sent(0), _answer(0, "declined")), 0),
+        ((_sent(0), _answer(0)), 1),
+        ((_sent(0), _sent(1, "robot2"), _answer(1)), 1),
+        ((_sent(0, "human"), _answer(0)), 0),
+    )
+    for events, adopted in cases:
         assert metrics.adoption(trial, _log(10, True, events)) == adopted
     assert metrics.adoption(ALONE[0], _log(10, True)) is None
 

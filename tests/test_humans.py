@@ -1,8 +1,9 @@
-"""The human proxy's laws: it is the same person every time, sees no robots until one speaks, and gets its tasks done."""
+"""The human proxy's laws: the same person every time, blind to robots until one speaks, who gets tasks done."""
 
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import pytest
 from fake_flat import BODY, DOORWAY, FURNITURE, Flat, play
@@ -132,7 +133,7 @@ def test_carries_the_target_where_it_belongs(support, destination, place):
 def test_walks_at_their_pace():
     flat = Flat("Bed|1")
     model, trace, _ = trial(flat, until=flat.found)
-    steps = [math.dist(a[:2], b[:2]) for a, b in zip(trace, trace[1:], strict=False)]
+    steps = [math.dist(a[:2], b[:2]) for a, b in pairwise(trace)]
     moving = [step for step in steps if step > 1e-6]
     assert max(moving) <= model.traits.v_pace * 0.1 + 1e-9
     assert sorted(moving)[len(moving) // 2] == pytest.approx(model.traits.v_pace * 0.1)
@@ -180,7 +181,7 @@ def believed(position, support="Fridge|1", until=None, ticks=900):
 
 
 def test_goes_where_a_confirmed_message_says():
-    model, flat, said = believed(Flat("Bed|1").apple, "Bed|1", until=Flat.found)
+    model, flat, _ = believed(Flat("Bed|1").apple, "Bed|1", until=Flat.found)
     assert flat.found()
     before = model.trust.mean
     model.rate(True, flat.tick)

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import math
 
+from hthor.geometry import wrap
 from hthor.navigation.follow import Follower
 from hthor.navigation.frontier import Frontier, Survey
 from hthor.navigation.map import CELL_M, UNKNOWN, GridMap
 from hthor.navigation.planner import Planner
 from hthor.types import BodySpec, Motion, Observation, Pose, Rotate, Vec2
 
-CLOSE_M = 0.9
-"""From this far every thing on a table's near half is within the detector's range."""
-_DETOUR_M = 1.5
-"""How much farther a frontier may be than furniture not yet looked at, and still go first."""
-_SIZE_GAIN, _SIZE_MOST = 0.5, 2.0
+CLOSE_M = 1.15
+"""From this far what lies near the edge of a table or a counter is within the detector's range."""
+_LINGER_M = 2.0
+"""How much nearer furniture not yet looked at seems than it is: a room is finished before the next is begun."""
+_TURN_M_RAD = 1.5
+"""What a radian of turning costs, in metres."""
+_LEAST_M = 0.5
+_TURN_RAD = 0.8
+"""A body may go sideways: turning less costs less."""
 _TRIES = 4
 _LOW_M, _HIGH_M, _ASIDE_M = 0.4, 1.1, 1.0
 
@@ -25,7 +30,7 @@ class Explorer:
     def __init__(self, body: BodySpec) -> None:
         self.body = body
         self.grid: GridMap | None = None
-        self.follower = Follower(step=0.5)
+        self.follower = Follower(step=0.5, turn_rad=_TURN_RAD)
         self._turns = math.ceil(2.0 * math.pi / (0.9 * body.fov[0]))
         self._integrated: Pose | None = None
         self._place: Frontier | None = None
@@ -42,8 +47,8 @@ class Explorer:
             self.grid.integrate(observation.scan, CLOSE_M, 0.45 * self.body.fov[0])
             self._integrated = pose
         outcome = observation.outcome
-        if outcome is not None and not outcome.ok and outcome.motion == "move" and not _is_seat(outcome.by):
-            self._bumped(pose)
+        if observation.idle and outcome is not None and not outcome.ok and outcome.motion == "move":
+            self._bumped(pose, outcome.by)
 
     def motion(self, observation: Observation) -> Motion:
         """The next motion of the exploration."""
@@ -82,12 +87,12 @@ class Explorer:
     def _choose(self, pose: Pose) -> None:
         assert self.grid is not None
         self.drop()
-        survey = Survey(self.grid, self.planner, pose)
-        ranked = [(_cost(place), True, place) for place in survey.frontiers]
-        ranked += [(_cost(place) + _DETOUR_M, False, place) for place in survey.unvisited]
+        survey = Survey(self.grid, self.planner, pose, _LEAST_M)
+        ranked = [(_cost(pose, place), True, place) for place in survey.frontiers]
+        ranked += [(_cost(pose, place) - _LINGER_M, False, place) for place in survey.unvisited]
         ranked.sort(key=lambda entry: (entry[0], entry[2].centre))
         for _, is_edge, place in ranked:
-            key = (round(place.centre[0] / 0.2), round(place.centre[1] / 0.2))
+            key = _key(place)
             if self._tries.get(key, 0) >= _TRIES:
                 continue
             self._tries[key] = self._tries.get(key, 0) + 1
@@ -99,15 +104,17 @@ class Explorer:
         self.grid.forget_near()  # all seen: go round once more
         self._tries.clear()
 
-    def _bumped(self, pose: Pose) -> None:
-        """Something that the scan does not show stopped the body: close the cell in front, and think again."""
+    def _bumped(self, pose: Pose, by: str) -> None:
+        """What the scan does not show closes the cell in front; a body in the way makes another place look better."""
         assert self.grid is not None
         goal = self.follower.ahead
-        if goal is None:
-            return
-        angle = math.atan2(goal[1] - pose.y, goal[0] - pose.x)
-        reach = self.body.radius + CELL_M
-        self.grid.mark_blocked(pose.x + reach * math.cos(angle), pose.y + reach * math.sin(angle))
+        if _is_seat(by):
+            if self._place is not None:
+                self._tries[_key(self._place)] = _TRIES
+        elif goal is not None:
+            angle = math.atan2(goal[1] - pose.y, goal[0] - pose.x)
+            reach = self.body.radius + CELL_M
+            self.grid.mark_blocked(pose.x + reach * math.cos(angle), pose.y + reach * math.sin(angle))
         self.drop()
 
 
@@ -117,8 +124,14 @@ def gaze(body: BodySpec) -> float:
     return max(-body.pitch_limit, min(body.pitch_limit, (low + high) / 2.0))
 
 
-def _cost(place: Frontier) -> float:
-    return place.distance - _SIZE_GAIN * min(place.size, _SIZE_MOST)
+def _cost(pose: Pose, place: Frontier) -> float:
+    x, y = place.centre
+    turn = abs(wrap(math.atan2(y - pose.y, x - pose.x) - pose.yaw))
+    return place.distance + _TURN_M_RAD * turn
+
+
+def _key(place: Frontier) -> tuple[int, int]:
+    return round(place.centre[0] / 0.2), round(place.centre[1] / 0.2)
 
 
 def _is_seat(name: str) -> bool:

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from hthor.navigation.courtesy import Courtesy
     from hthor.navigation.follow import Follower
 
+_LOOKS = 3
+"""Spots to look from before saying that the target must be in there: over the rim of a sink, a low eye sees nothing."""
+
 
 class Agent:
     """Walks the shortest way to the target and speaks only when it is close enough to detect it.
@@ -85,11 +88,18 @@ class Agent:
         seen = spot(observation, target.id)
         if seen is not None and seen.held_by != HUMAN:
             return Send(text=sighting(seen, observation), object=seen.id, position=seen.position)
-        support = next((thing for thing in observation.truth if thing.id == target.support), None)
-        if support is None or support.open or not self._is_close(observation, support.id):
+        support = next((thing for thing in self.house.things if thing.id == target.support), None)
+        if support is None or not self._is_close(observation, support.id):
+            return None
+        if len(self.misses) < _LOOKS and not self._is_shut(observation, support.id):
             return None
         text = f"{title(target.kind).capitalize()} is in {title(support.kind)}."
         return Send(text=text, object=target.id, position=target.position)
+
+    def _is_shut(self, observation: Observation, name: str) -> bool:
+        """Whether this is a thing with a door, and the door is closed."""
+        thing = next((thing for thing in observation.truth if thing.id == name), None)
+        return thing is not None and thing.kind == "fridge" and not thing.open
 
     def _destined(self, observation: Observation, target: ThingState, place: Vec3) -> Send | None:
         thing = self._destination(target)

@@ -51,8 +51,10 @@ def root(
 
 def run() -> None:
     """Run the command of this process, and turn the user's errors into one clear line."""
+    if "FORCE_COLOR" not in os.environ and not sys.stdout.isatty():
+        os.environ["_TYPER_FORCE_DISABLE_TERMINAL"] = "1"  # typer would also colour for GITHUB_ACTIONS and PY_COLORS
     try:
-        app()
+        app(prog_name="hthor")
     except HthorError as error:
         sys.stderr.write(f"error: {error}\n")
         sys.exit(error.exit_code)

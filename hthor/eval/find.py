@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -9,6 +10,8 @@ from hthor import rules
 from hthor.errors import RunError, UnknownName
 from hthor.eval import score, setup
 from hthor.eval.record import Record
+
+_SHOWN = 10
 
 
 def trial(folder: Path, name: str) -> Record:
@@ -30,12 +33,12 @@ def trial(folder: Path, name: str) -> Record:
     by_key = [record for record in records if name and record.key.startswith(name)]
     if by_key:
         return _only(by_key, name)
-    raise UnknownName(
-        "trial",
-        name,
-        [record.spec.task.id for record in records],
-        f"A number from 0 to {len(records) - 1} or the start of a key does as well." if records else "",
+    ids = sorted({record.spec.task.id for record in records})
+    near = difflib.get_close_matches(name, ids, n=_SHOWN, cutoff=0.4) or ids[:_SHOWN]
+    more = (
+        f"The run's log has {len(ids)} tasks; a number from 0 to {len(records) - 1} or the start of a key does as well."
     )
+    raise UnknownName("trial", name, near, more if records else "The run has no trials yet.")
 
 
 def _only(found: Sequence[Record], name: str) -> Record:

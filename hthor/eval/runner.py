@@ -33,7 +33,9 @@ class SessionFailed(HthorError):
         super().__init__(failed.message)
 
 
-def perform(sessions: Sequence[Session], make: Make, *, jobs: int, beat_s: float = 0.25) -> Generator[News | None, None, None]:
+def perform(
+    sessions: Sequence[Session], make: Make, *, jobs: int, beat_s: float = 0.25
+) -> Generator[News | None, None, None]:
     """Play sessions in worker processes and tell what happens, at least once for every trial.
 
     A trial is told of again when its session had to be started again. Closing the iterator ends the workers.

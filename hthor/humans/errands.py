@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator
+from functools import partial
 
 from hthor import catalog
-from hthor.geometry import to_house, to_local
+from hthor.geometry import to_house, to_local, wrap
 from hthor.humans import standing
 from hthor.humans.beliefs import expectation
 from hthor.humans.hands import Hands
@@ -19,15 +20,17 @@ from hthor.humans.search import Option, Search
 from hthor.humans.subject import Deed, Subject
 from hthor.humans.walking import Walker, never
 from hthor.navigation.frontier import frontiers
-from hthor.types import Detection, Motion, Open, Pick, Vec2, Vec3
+from hthor.types import Detection, Motion, Open, Pick, Vec2, Vec3, Wait
 from hthor.types import Place as Put
 
 _INSIDE_M = 0.5
 _FOUND_M = 1.3
 _EDGE_M = 0.12
 _SWEEP_RAD = 1.0
-_REACH = 0.85
+_REACH = 0.96
+_TRIED_M = 0.35
 _PATIENCE = 6
+_PAUSE_S = 0.3
 
 
 class Errands:
@@ -41,7 +44,7 @@ class Errands:
         self.hands = Hands(me)
         self.fresh: Vec2 | None = None
         self._turns = 0
-        self._tries = 0
+        self.anew()
         wanted = expectation(me.task.target, me.traits.w_prior)
         if me.task.destination in wanted:
             wanted = {**wanted, me.task.destination: wanted[me.task.destination] * me.traits.dest_factor}
@@ -51,6 +54,7 @@ class Errands:
     def anew(self) -> None:
         """Forget what was tried: another errand begins."""
         self._tries = 0
+        self._tried: list[Vec2] = []
         self.eyes.attention = None
 
     def begin(self) -> Deed:
@@ -74,9 +78,9 @@ class Errands:
             arrived = yield from self._approach(target.position, target.support, _FOUND_M, self._is_close)
         else:
             arrived = yield from self._approach(target.position, target.support, self.me.body.reach * _REACH)
-        yield from self._check(target)
-        if self.eyes.target is None or self.me.task.relation == "find":
-            return arrived
+        visible = arrived and (yield from self._check(target))
+        if not visible or self.me.task.relation == "find":
+            return visible
         reason = yield from self.hands.do(Pick(object=target.id), f"pick {target.id}")
         return not reason
 
@@ -86,7 +90,9 @@ class Errands:
         place = self._destination()
         if place is None:
             return False
-        yield from self._go_to(place, self._tries)
+        if not (yield from self._go_to(place)):
+            self._tries += 1
+            return False
         if place.state == "closed" and (yield from self._open(place)):
             return False
         point = _resting_point(place, self.me.here, self._tries)
@@ -117,39 +123,40 @@ class Errands:
                 self.fresh = None
                 yield from self._round(self.me.traits.scan)
                 continue
-            option = search.choose()
+            option, since = search.choose(), self.me.now.tick
             if option is None:
-                yield from self._wander()
+                yield from self._wander(search)
             elif option.place is not None:
-                yield from self._inspect(option.place, option.spot)
+                yield from self._inspect(option.place, option.spot, partial(search.done, option.place))
             else:
                 yield from self._pass(option, enough)
+            if self.me.now.tick == since:
+                yield Wait(seconds=_PAUSE_S)
         return True
 
     def _pass(self, option: Option, enough: Callable[[], bool]) -> Deed:
         """Go through a doorway."""
         arrived = yield from self.walker.go(option.spot, stop=lambda: self._inside() or enough())
-        tried = not arrived or math.dist(self.me.here, option.spot) < _INSIDE_M
-        if option.doorway is not None and tried:
-            option.doorway.passed = True
+        doorway = option.doorway
+        if doorway is not None:
+            doorway.failures += not arrived
+            if doorway.failures > 1 or math.dist(self.me.here, option.spot) < _INSIDE_M:
+                doorway.passed = True
         return arrived
 
-    def _inspect(self, place: Place, spot: Vec2) -> Deed:
-        """Go to a place and look at all of it; pass it by when it turns out on the way that nothing is there."""
+    def _inspect(self, place: Place, spot: Vec2, plain: Callable[[], bool] = never) -> Deed:
+        """Go to a place and look at all of it, or pass it by once it is ``plain`` on the way that nothing is there."""
         me, memory = self.me, self.memory
         self.eyes.attention = place
-
-        def plain() -> bool:
-            return place.state != "closed" and memory.exposure(place, me.now.tick) > me.traits.e_skip
-
         arrived = yield from self.walker.go(spot, stop=lambda: self._inside() or plain())
         if arrived and (plain() or self._inside()):
             self.eyes.attention = None
             return True
-        refused = ""
-        if arrived and place.state == "closed":
-            refused = yield from self._open(place)
-        if arrived and not refused:
+        if not arrived:
+            memory.expose(place, 1.0, me.now.tick)
+            self.eyes.attention = None
+            return False
+        if place.state != "closed" or not (yield from self._open(place)):
             gazes = _gazes(place, me.here)
             for gaze in gazes:
                 yield from me.look_at(gaze)
@@ -165,14 +172,19 @@ class Errands:
             place.state = "open"
         return reason
 
-    def _wander(self) -> Deed:
-        """Nothing comes to mind: go where the known floor ends, or look round once more."""
+    def _wander(self, search: Search) -> Deed:
+        """Nothing comes to mind: go where the known floor ends, search something again, or look round."""
+        since = self.me.now.tick
         edges = frontiers(self.walker.grid, self.walker.planner, self.me.now.pose)
         if edges:
             nearest = min(edges, key=lambda edge: edge.distance)
             arrived = yield from self.walker.go(nearest.centre, stop=self._inside)
-            if arrived and math.dist(self.me.here, nearest.centre) > 0.3:
+            if arrived and self.me.now.tick > since:
                 return True
+        place = search.again()
+        spots = search.spots(place) if place is not None else []
+        if place is not None and spots:
+            return (yield from self._inspect(place, spots[0]))
         yield from self._round(self.me.traits.scan)
         return True
 
@@ -193,7 +205,7 @@ class Errands:
         if place is not None and place.state:
             spots = standing.in_reach(standing.at(place, self.walker, front=True), point, reach) or spots
         self._tries += 1
-        spot = self._nearest(spots, self._tries - 1)
+        spot = self._nearest(spots, point)
         if spot is not None:
             arrived = yield from self.walker.go(spot, stop=stop)
         else:
@@ -201,35 +213,46 @@ class Errands:
         yield from self.me.look_at(point)
         return arrived
 
-    def _go_to(self, place: Place, number: int) -> Deed:
+    def _go_to(self, place: Place) -> Deed:
         spots = standing.at(place, self.walker, front=bool(place.state))
-        spot = self._nearest(spots, number)
+        spot = self._nearest(spots, place.centre)
         if spot is None:
             reach = self.me.body.reach * _REACH + min(place.size[:2]) / 2.0
             return (yield from self.walker.go((place.centre[0], place.centre[1]), within=reach))
         return (yield from self.walker.go(spot))
 
-    def _nearest(self, spots: list[Vec2], number: int) -> Vec2 | None:
-        """The nearest spot on foot, or at later tries another one."""
-        if not spots:
+    def _nearest(self, spots: list[Vec2], point: Vec3) -> Vec2 | None:
+        """The nearest spot on foot; after failures another one, from where the object was seen if possible."""
+        new = [spot for spot in spots if all(math.dist(spot, old) > _TRIED_M for old in self._tried)]
+        if not new:
+            new, self._tried = spots, []
+        seen_from = self.eyes.seen_from if self._tried else None
+        distances = self.walker.planner.distances(self.me.here, new) if new else ()
+        ranked = [
+            (far + _aslant(spot, point, seen_from), spot)
+            for far, spot in zip(distances, new, strict=True)
+            if math.isfinite(far)
+        ]
+        if not ranked:
             return None
-        distances = self.walker.planner.distances(self.me.here, spots)
-        ranked = sorted((far, spot) for far, spot in zip(distances, spots, strict=True) if math.isfinite(far))
-        return ranked[(number % _PATIENCE) * 3 % len(ranked)][1] if ranked else None
+        self._tried.append(min(ranked)[1])
+        return self._tried[-1]
 
     def _is_close(self) -> bool:
         target = self.eyes.target
         return target is not None and self.eyes.seen_at == self.me.now.tick and target.distance < _FOUND_M
 
     def _check(self, target: Detection) -> Deed:
-        """Look where the target should be; without it in view it is not there any more, or was never."""
+        """Whether the target is in view from here; after several tries without, it is taken for gone."""
         yield from self.me.look_at(target.position)
         since = self.me.now.tick
         yield from self.me.rest(0.4)
-        if self.eyes.seen_at < since and self._tries > 2:
-            self._tries = 0
+        if self.eyes.seen_at >= since:
+            return True
+        if self._tries > _PATIENCE:
+            self.anew()
             self.eyes.lose()
-        return True
+        return False
 
     def _learnt(self, position: Vec3, before: Place | None) -> bool:
         """Whether the furniture at a position came into view on the way."""
@@ -246,6 +269,14 @@ class Errands:
         far = [self.walker.planner.distance(self.me.here, spot, r) for spot, r in zip(spots, reach, strict=True)]
         order = sorted(range(len(known)), key=lambda k: (far[k], known[k].id))
         return known[order[self._tries // _PATIENCE % len(order)]]
+
+
+def _aslant(spot: Vec2, point: Vec3, seen_from: Vec2 | None) -> float:
+    """How far [rad] a spot lies off the line along which an object was seen; 0 when that does not matter."""
+    if seen_from is None:
+        return 0.0
+    a = math.atan2(spot[1] - point[1], spot[0] - point[0])
+    return abs(wrap(a - math.atan2(seen_from[1] - point[1], seen_from[0] - point[0])))
 
 
 def _gazes(place: Place, here: Vec2) -> list[Vec3]:

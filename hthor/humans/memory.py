@@ -50,6 +50,7 @@ class Doorway(Struct, kw_only=True):
     sides: list[str] = []
     beyond: Vec2 = (0.0, 0.0)
     passed: bool = False
+    failures: int = 0
 
     @property
     def spent(self) -> bool:

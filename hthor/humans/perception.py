@@ -14,7 +14,7 @@ from hthor.geometry import wrap
 from hthor.humans.beliefs import holders
 from hthor.humans.memory import Memory, Place
 from hthor.humans.parameters import Parameters
-from hthor.types import HUMAN, Detection, Observation, Vec3
+from hthor.types import HUMAN, Detection, Observation, Vec2, Vec3
 
 GLIMPSE_TICKS = 3
 """People fixate about three times a second."""
@@ -24,8 +24,8 @@ _LONGEST_S = 0.6
 class Eyes:
     """Turns detections into what the person knows.
 
-    ``target`` is where the target was noticed last, at tick ``seen_at``; None while it is not known. ``attention``
-    is what is being searched: a place, a spot, or nothing in particular.
+    ``target`` is where the target was noticed last, at tick ``seen_at`` and from ``seen_from``; None while it is not
+    known. ``attention`` is what is being searched: a place, a spot, or nothing in particular.
     """
 
     def __init__(self, traits: Parameters, root: int, target: str, memory: Memory, tick_s: float) -> None:
@@ -34,6 +34,7 @@ class Eyes:
         self.attention: Place | Vec3 | None = None
         self.at = -1
         self.seen_at = -1
+        self.seen_from: Vec2 = (0.0, 0.0)
         self._holders = frozenset(holders())
         self._gathered: dict[str, float] = {}
         self._threshold: dict[str, float] = {}
@@ -68,7 +69,7 @@ class Eyes:
             rate = self._rate(seen, now) * (self.traits.focus if self._attended(seen) else 1.0)
             if not self._notice(self.wanted, rate * seconds, self._lost):
                 return
-        self.target, self.seen_at = seen, now.tick
+        self.target, self.seen_at, self.seen_from = seen, now.tick, (now.pose.x, now.pose.y)
 
     def _furniture(self, seen: Detection, now: Observation, seconds: float) -> None:
         traits, known = self.traits, seen.id in self.memory.places

@@ -59,7 +59,7 @@ class Search:
         """Everything that can be thought of from here."""
         doorways = [door for door in self.memory.doorways.values() if door.sides and not door.spent]
         beliefs = self.beliefs(bool(doorways))
-        places = [place for place in self.memory.places.values() if beliefs.get(place.id, 0.0) > 0.0]
+        places = [place for place in self.memory.places.values() if beliefs[place.id] > 0.0 and not self.done(place)]
         spots = [self.spots(place) for place in places]
         distances = self._distances([*(spot for some in spots for spot in some), *(door.beyond for door in doorways)])
         found = []
@@ -86,6 +86,15 @@ class Search:
             place.id: self.hope.get(place.kind, 0.0) / (kinds.count(place.kind) + unseen)
             for place in self.memory.places.values()
         }
+
+    def done(self, place: Place) -> bool:
+        """Whether nothing is expected any more of a place that can be seen as it is."""
+        return place.state != "closed" and self.memory.exposure(place, self.me.now.tick) > self.me.traits.e_skip
+
+    def again(self) -> Place | None:
+        """When everything was searched: the place that was searched least, or longest ago."""
+        hoped = [place for place in self.memory.places.values() if self.hope.get(place.kind, 0.0) > 0.0]
+        return min(hoped, key=lambda place: (self.memory.exposure(place, self.me.now.tick), place.id), default=None)
 
     def spots(self, place: Place) -> list[Vec2]:
         """Where to stand to search a place; worked out anew after ten seconds."""

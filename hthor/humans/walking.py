@@ -21,6 +21,7 @@ _MAP_EVERY_M, _MAP_EVERY_RAD = 0.2, 0.35
 _ARRIVED_M = 0.03
 _CHECK_TICKS = 5
 _CREEP = 0.3
+_DETOUR, _DETOUR_M = 1.4, 1.5
 _GIVE_UP = 12
 _POLITE_S = 0.5
 _SIDESTEP_M = 0.35
@@ -61,15 +62,19 @@ class Walker:
     def go(self, goal: Vec2, within: float = 0.0, stop: Callable[[], bool] = never) -> Deed:
         """Walk to ``goal`` [m], or to where it is within ``within`` metres; False when there is no way.
 
+        A way that turns out to be blocked, so that the next one is much longer, is no way either: time to think again.
+
         Args:
             stop: asked before each motion; the walk ends, well, when it says so.
         """
+        left = math.inf
         for bumps in range(_GIVE_UP):
             path = self.planner.path(self.me.here, goal, within)
             if path is None and self._doubted():
                 path = self.planner.path(self.me.here, goal, within)
-            if path is None:
+            if path is None or length(path) > _DETOUR * left + _DETOUR_M:
                 return False
+            left = length(path)
             ended = yield from self._follow(path, stop, bumps)
             if ended:
                 return True

@@ -25,7 +25,7 @@ class Courtesy:
     def __init__(self, body: BodySpec, fits: Callable[[Vec2, Vec2], bool]) -> None:
         """``fits(a, b)`` says whether the body can go straight from ``a`` to ``b`` [m]."""
         self.body, self.fits = body, fits
-        self._person: Vec2 | None = None
+        self._seen = False
         self._until = -1.0
         self._rest = -1.0
 
@@ -39,15 +39,17 @@ class Courtesy:
         person = self._look(observation)
         bumped = observation.outcome is not None and observation.outcome.by == HUMAN
         if seconds < self._until:
-            if person is None and not bumped:
+            if person is None and self._seen:
                 self._until = -1.0
                 return None
+            self._seen = self._seen or person is not None
             return Wait(seconds=_PAUSE_S)
         if seconds < self._rest and not bumped:
             return None
         if not bumped and not self._in_front(observation, person):
             return None
         self._until, self._rest = seconds + PATIENCE_S, seconds + 2.0 * PATIENCE_S
+        self._seen = person is not None
         here = (observation.pose.x, observation.pose.y)
         aside = self._aside(here, person)
         return Wait(seconds=_PAUSE_S) if aside is None else shift(observation.pose, aside, _STEP_M)

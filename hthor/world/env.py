@@ -6,14 +6,14 @@ the engine sleeps and a tick costs nothing. Stepping lazily gives bit for bit th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from hthor.world.engine import Environment, mujoco
 
-QPose = Sequence[float]
+QPose = tuple[float, float, float, float, float, float, float]
 """Position [m] and unit quaternion (w, x, y, z) of a free object."""
 
 

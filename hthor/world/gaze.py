@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from msgspec import Struct
 
-from hthor import catalog, rules
+from hthor import catalog
 from hthor.geometry import to_house
 from hthor.houses.solids import WALL_M
 from hthor.types import HUMAN, Detection, Opening, Pose, Thing, Vec3
@@ -79,7 +79,7 @@ class Gaze:
         reach = self._reach[seat.name]
         reach[: len(self._items)] = np.where(self._present, seat.spec.sight_range, 0.0)
         seen = self._see(seat, reach, len(reach))
-        found = [self._detection(int(index), seat) for index in np.flatnonzero(seen)]
+        found = [self._detection(index, seat) for index in seen.nonzero()[0].tolist()]
         return tuple(sorted(found, key=lambda detection: detection.id))
 
     def in_view(self, seat: Seat, reach: float) -> tuple[str, ...]:

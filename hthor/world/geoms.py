@@ -8,14 +8,16 @@ from typing import Any
 from hthor.geometry import to_house
 from hthor.types import Part, Vec3
 
+Bits = dict[str, Any]
+
 FURNITURE, WALLS, OBJECTS, BODIES, CEILINGS = range(5)
 """Draw groups."""
 
-STATIC = {"contype": 1, "conaffinity": 0}
-MOVABLE = {"contype": 2, "conaffinity": 3}
-GHOST = {"contype": 0, "conaffinity": 0}
+STATIC: Bits = {"contype": 1, "conaffinity": 0}
+MOVABLE: Bits = {"contype": 2, "conaffinity": 3}
+GHOST: Bits = {"contype": 0, "conaffinity": 0}
 """Collision bits: movable things meet each other and what is static; ghosts (bodies, floors' looks) meet nothing."""
-LEAF = {"contype": 4, "conaffinity": 0}
+LEAF: Bits = {"contype": 4, "conaffinity": 0}
 """A door's leaf meets nothing either, but unlike a ghost it counts as solid: it hides what is behind it."""
 
 

@@ -1,4 +1,4 @@
-"""The movable objects of one episode: where each is, what it lies on, who holds it; knows nothing of reach or strength."""
+"""The movable objects of one episode: where each is, what it lies on, who holds it; knows nothing of laws."""
 
 from __future__ import annotations
 

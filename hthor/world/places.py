@@ -19,7 +19,7 @@ _GAP_M = 0.005
 
 
 class Place(Struct, frozen=True, kw_only=True):
-    """A surface of ``thing``: ``centre`` [m] house frame, ``half`` [m] along the thing's local axes, turned by ``yaw``."""
+    """A surface of ``thing``: ``centre`` [m] house frame, ``half`` [m] along local axes that are turned by ``yaw``."""
 
     thing: str
     centre: Vec3

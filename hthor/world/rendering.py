@@ -117,7 +117,8 @@ class Studio:
             if geom.objtype == int(mujoco.mjtObj.mjOBJ_GEOM) and geom.segid >= 0:
                 owner[geom.segid + 1] = self._numbers[geom.objid]
         wide = pixels.astype(np.int32)
-        return owner[(wide[..., 0] + (wide[..., 1] << 8) + (wide[..., 2] << 16)) & 0xFFFF]
+        numbers: NDArray[np.int32] = owner[(wide[..., 0] + (wide[..., 1] << 8) + (wide[..., 2] << 16)) & 0xFFFF]
+        return numbers
 
 
 def _free(gl: Any, context: Any) -> None:

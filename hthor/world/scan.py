@@ -29,7 +29,9 @@ class Scanner:
 
 
 @numba.njit(cache=True)
-def _march(raw: Any, ox: float, oy: float, cell: float, x: float, y: float, yaw: float, bearings: Any, limit: float) -> Any:
+def _march(
+    raw: Any, ox: float, oy: float, cell: float, x: float, y: float, yaw: float, bearings: Any, limit: float
+) -> Any:
     """Ranges (N,) [m]: each beam goes from cell edge to cell edge until it enters a cell that is not clear."""
     ny, nx = raw.shape
     out = np.empty(len(bearings))

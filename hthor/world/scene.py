@@ -1,4 +1,4 @@
-"""The compiled model's geoms as plain arrays: who owns each, which of them hide what; knows nothing of eyes or hands."""
+"""The compiled model's geoms as plain arrays: who owns each, which of them hide what; knows nothing of eyes."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Scene:
         return bool(blocked(*ends, self.half, self.pos, self.mat, self.radius, self._without(ignore), 0, 0))
 
     def boxes(self, without: str) -> tuple[Any, Any]:
-        """Centres (M, 3) and half extents (M, 3) [m] of the upright boxes around all solids but those of ``without``."""
+        """Centres (M, 3) and half extents (M, 3) [m] of upright boxes around all solids but those of ``without``."""
         keep = self._without(without)
         rotation = np.abs(self.mat[keep].reshape(-1, 3, 3))
         return self.pos[keep], np.einsum("nij,nj->ni", rotation, self.half[keep])
@@ -100,4 +100,3 @@ def _spans(owners: tuple[str, ...]) -> dict[str, tuple[int, int]]:
         if end == geom:
             spans[owner] = (first, geom + 1)
     return spans
-

@@ -40,15 +40,18 @@ class Senses:
 
     def rgb(self) -> NDArray[np.uint8]:
         """(H, W, 3) uint8."""
-        return self._picture("rgb")
+        image: NDArray[np.uint8] = self._picture("rgb")
+        return image
 
     def depth(self) -> NDArray[np.float32]:
         """(H, W) float32 [m] along the optical axis."""
-        return self._picture("depth")
+        image: NDArray[np.float32] = self._picture("depth")
+        return image
 
     def segmentation(self) -> NDArray[np.int32]:
         """(H, W) int32, indices into ``World.names``, -1 for nothing."""
-        return self._picture("segmentation")
+        image: NDArray[np.int32] = self._picture("segmentation")
+        return image
 
     def _picture(self, mode: str) -> Any:
         self._check()

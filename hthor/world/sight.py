@@ -19,9 +19,7 @@ def camera(pose: Pose, spec: BodySpec) -> Any:
     """(14,) float64: eye [m], forward, left and up axes (house frame), tangents of half the fields of view."""
     cy, sy, cp, sp = math.cos(pose.yaw), math.sin(pose.yaw), math.cos(pose.pitch), math.sin(pose.pitch)
     tangents = math.tan(spec.fov[0] / 2), math.tan(spec.fov[1] / 2)
-    return np.array(
-        (pose.x, pose.y, spec.eye, cp * cy, cp * sy, sp, -sy, cy, 0.0, -sp * cy, -sp * sy, cp, *tangents)
-    )
+    return np.array((pose.x, pose.y, spec.eye, cp * cy, cp * sy, sp, -sy, cy, 0.0, -sp * cy, -sp * sy, cp, *tangents))
 
 
 def eye(pose: Pose, spec: BodySpec) -> Vec3:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable
+from typing import Any
 
 from hthor import geometry, houses, rules
 from hthor.errors import HthorError, TaskError, UnknownName
-from hthor.houses import solids
 from hthor.houses.freespace import FreeSpace
 from hthor.types import (
     HUMAN,
@@ -36,24 +34,20 @@ from hthor.types import (
     Vec3,
     Wait,
 )
-from hthor.world import avatar, bodies, contents, interaction, motion
+from hthor.world import avatar, bodies, contents, interaction, motion, starts
 from hthor.world.doors import Doors
 from hthor.world.env import FastEnv
 from hthor.world.gaze import Gaze
 from hthor.world.interaction import Hands
 from hthor.world.objects import Objects
+from hthor.world.obstacles import Obstacles
+from hthor.world.pictures import IMAGE_SIZE, Pictures
 from hthor.world.places import Places
 from hthor.world.scan import Scanner
 from hthor.world.scene import Scene
 from hthor.world.seats import Activity, Seat
 from hthor.world.senses import Senses as SeatSenses
 from hthor.world.task import HouseTask
-
-if TYPE_CHECKING:
-    from hthor.world.rendering import Studio
-
-IMAGE_SIZE = (128, 128)
-"""Width and height of a seat's own pictures, in pixels."""
 
 
 class World:
@@ -89,7 +83,7 @@ class World:
         self._env = FastEnv(self._task)
         self._assemble()
         self.tick, self._episode = 0, 0
-        self._stand(Pose(x=self.house.start.x, y=self.house.start.y, yaw=self.house.start.yaw), ())
+        starts.stand(tuple(self._seats.values()), self.house.start, ())
         self._begin({})
 
     def _assemble(self) -> None:
@@ -105,8 +99,9 @@ class World:
         seats = tuple(self._seats.values())
         self._gaze = Gaze(self._scene, self._objects, self._doors, statics, self.house.openings, seats)
         self._others = {seat.name: tuple(other for other in seats if other is not seat) for seat in seats}
-        self._studio: Studio | None = None
-        self._rooms = {name: 0 for name in self.seats}
+        self._obstacles = Obstacles(self.house)
+        self._pictures = Pictures(self.house, env, self._scene, self._seats)
+        self._rooms = dict.fromkeys(self.seats, 0)
 
     # ------------------------------------------------------------------------------------------------------- episodes
 
@@ -122,22 +117,22 @@ class World:
         if task.house_sha256 and self.house.sha256 and task.house_sha256 != self.house.sha256:
             raise TaskError(task.id, "house_sha256", f"made for another version of house '{task.house}'; make it anew")
         self._begin({placement.id: placement for placement in task.objects}, task.id)
-        self._stand(task.human_start, task.robot_starts)
+        starts.stand(tuple(self._seats.values()), task.human_start, task.robot_starts)
 
     def _begin(self, placements: dict[str, Placement], task: str = "") -> None:
         movables = {movable.id: movable for movable in self._contents.movables}
         for id in placements:
             if id not in movables:
                 raise TaskError(task, "objects", str(UnknownName("object", id, movables)))
-        starts: dict[str, tuple[Vec3, float]] = {}
+        poses: dict[str, tuple[Vec3, float]] = {}
         supports: dict[str, tuple[Vec3, str]] = {}
         for id, movable in movables.items():
             placed = placements.get(id)
             position = movable.home if placed is None else placed.position
             if position is not None:
-                starts[id] = (position, movable.yaw if placed is None else placed.yaw)
+                poses[id] = (position, movable.yaw if placed is None else placed.yaw)
                 supports[id] = (position, movable.support if placed is None else placed.support)
-        self._task.starts = starts
+        self._task.starts = poses
         self._env.reset()
         self._objects.reset(supports)
         self._doors.reset()
@@ -147,33 +142,6 @@ class World:
         self._things: dict[str, ThingState] = {}
         self._things_version = (-1, -1)
         self._view: tuple[Any, tuple[str, ...]] = (None, ())
-
-    def _stand(self, human: Pose, robots: Sequence[Pose]) -> None:
-        taken: list[Seat] = []
-        first = robots[0] if robots else human
-        for number, seat in enumerate(self._seats.values()):
-            given = human if number == 0 else robots[number - 1] if number <= len(robots) else None
-            pose = first if given is None else given
-            x, y = self._free_place(seat, pose, taken if given is None else ())
-            limit = seat.spec.pitch_limit
-            pitch = max(-limit, min(limit, pose.pitch))
-            seat.clear(Pose(x=x, y=y, yaw=geometry.wrap(pose.yaw), pitch=pitch))
-            taken.append(seat)
-
-    def _free_place(self, seat: Seat, pose: Pose, taken: Sequence[Seat]) -> Vec2:
-        """The free place nearest to ``pose``, clear of the bodies in ``taken``."""
-        space = seat.space
-        if not taken:
-            return space.nearest_free(pose.x, pose.y)
-        centres = space.centres(space.free)
-        clear = space.free.copy()
-        apart = [(other.pose.x, other.pose.y, seat.spec.radius + other.spec.radius) for other in taken]
-        for x, y in centres:
-            if any(math.hypot(x - ox, y - oy) < least for ox, oy, least in apart):
-                clear[space.cell_of(x, y)] = False
-        if all(math.hypot(pose.x - ox, pose.y - oy) >= least for ox, oy, least in apart):
-            return space.nearest_free(pose.x, pose.y)
-        return space.nearest_free(pose.x, pose.y, clear)
 
     # -------------------------------------------------------------------------------------------------------- motions
 
@@ -193,7 +161,7 @@ class World:
             return
         body.activity = self._activity(body, action)
 
-    def _refusal(self, seat: Seat, action: Motion) -> str:
+    def _refusal(self, seat: Seat, action: object) -> str:
         if isinstance(action, (Pick, Place, Open, Close)):
             return self._hands.refusal(seat, action)
         if isinstance(action, (Move, Rotate, Wait)):
@@ -218,6 +186,9 @@ class World:
 
         Returns:
             what happened: picked, placed, opened, closed, refused, blocked (by the house), in_way (of another body).
+
+        Raises:
+            RuntimeError: when the engine reports a state it cannot go on from.
         """
         self.tick += 1
         events, self._events = self._events, []
@@ -234,20 +205,20 @@ class World:
                 self._objects.follow(seat.holding)
         if self._env.tick():
             self._objects.settle()
+            self._check()
         return tuple(events)
+
+    def _check(self) -> None:
+        complaints = self._env.warnings()
+        if complaints:
+            raise RuntimeError(
+                f"the physics of house '{self.house.id}' broke down at tick {self.tick}: {', '.join(complaints)}; "
+                "most likely two objects were placed into each other, see `houses.check` and the task's objects"
+            )
 
     def _culprit(self, seat: Seat, step: Vec2) -> str:
         """What the body would have run into: the nearest thing's id, or "wall"."""
-        x, y = seat.pose.x + step[0], seat.pose.y + step[1]
-        best, least = "wall", math.inf
-        for slab in solids.walls(self.house):
-            least = min(least, geometry.distance_to_rectangle((x, y), slab.centre, slab.size, slab.yaw))
-        for thing, slab in solids.furniture(self.house):
-            if slab.low < seat.spec.height:
-                gap = geometry.distance_to_rectangle((x, y), slab.centre, slab.size, slab.yaw)
-                if gap < least - 1e-9:
-                    best, least = thing.id, gap
-        return best
+        return self._obstacles.nearest((seat.pose.x + step[0], seat.pose.y + step[1]), seat.spec.height)
 
     def teleport(self, seat: str, pose: Pose) -> None:
         """Put a body somewhere at once; what it was doing ends.
@@ -263,6 +234,11 @@ class World:
             self._objects.follow(body.holding)
 
     # ---------------------------------------------------------------------------------------------------------- truth
+
+    @property
+    def still(self) -> bool:
+        """Whether every object and door is at rest, but for what someone carries."""
+        return self._env.still
 
     @property
     def moment(self) -> tuple[int, int]:
@@ -346,32 +322,17 @@ class World:
         Raises:
             RenderingUnavailable: when no OpenGL back end works.
         """
-        return self._draw().view(self._moment(), seat, mode, size)
+        return self._pictures.view(seat, mode, size)
 
     def frame(self, seat: str, size: tuple[int, int] = IMAGE_SIZE) -> Callable[[], Any]:
-        """A picture (H, W, 3) uint8 of this very moment, drawn if and when it is called."""
-        moment = self._moment()
-        return lambda: self._draw().view(moment, seat, "rgb", size)
+        """The seat's own view of this very moment, (H, W, 3) uint8, drawn if and when it is called."""
+        return self._pictures.frame(seat, size)
 
     def top_view(self, pixels_per_metre: float = 50.0) -> Any:
         """The house from above without its ceilings, (H, W, 3) uint8, covering `top_view_bounds`; north (+y) is up."""
-        return self._draw().top_view(self._moment(), self.top_view_bounds, pixels_per_metre)
+        return self._pictures.top_view(pixels_per_metre)
 
     @property
     def top_view_bounds(self) -> tuple[float, float, float, float]:
-        """x0, y0, x1, y1 [m] of the top view: the rooms and a margin of 0.3 m."""
-        xs, ys = zip(*(corner for room in self.house.rooms for corner in room.polygon), strict=True)
-        return (min(xs) - 0.3, min(ys) - 0.3, max(xs) + 0.3, max(ys) + 0.3)
-
-    def _moment(self) -> Any:
-        from hthor.world.moment import Moment
-
-        poses = {name: (seat.pose, seat.spec) for name, seat in self._seats.items()}
-        return Moment(qpos=self._env.data.qpos.copy(), seats=poses)
-
-    def _draw(self) -> Studio:
-        if self._studio is None:
-            from hthor.world.rendering import Studio
-
-            self._studio = Studio(self._env.model, self._scene)
-        return self._studio
+        """x0, y0, x1, y1 [m] of the top view: the rooms and a small margin."""
+        return self._pictures.bounds

@@ -1,0 +1,41 @@
+"""Putting bodies where an episode begins: on free floor and clear of each other; knows nothing of tasks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from hthor.geometry import wrap
+from hthor.types import Pose, Vec2
+from hthor.world.seats import Seat
+
+
+def stand(seats: Sequence[Seat], human: Pose, robots: Sequence[Pose]) -> None:
+    """Put every seat at its start, or at the free place nearest to it.
+
+    A robot without a start of its own stands nearest to the first robot's, clear of the bodies before it.
+    """
+    first = robots[0] if robots else human
+    for number, seat in enumerate(seats):
+        given = human if number == 0 else robots[number - 1] if number <= len(robots) else None
+        pose = first if given is None else given
+        x, y = (
+            seat.space.nearest_free(pose.x, pose.y) if given is not None else _clear_place(seat, pose, seats[:number])
+        )
+        limit = seat.spec.pitch_limit
+        pitch = max(-limit, min(limit, pose.pitch))
+        seat.clear(Pose(x=float(x), y=float(y), yaw=wrap(pose.yaw), pitch=float(pitch)))
+
+
+def _clear_place(seat: Seat, pose: Pose, others: Sequence[Seat]) -> Vec2:
+    space, free = seat.space, seat.space.free.copy()
+    for row, column in zip(*free.nonzero(), strict=True):
+        if not _apart(space.centre_of(int(row), int(column)), seat, others):
+            free[row, column] = False
+    if _apart((pose.x, pose.y), seat, others):
+        return space.nearest_free(pose.x, pose.y)
+    return space.nearest_free(pose.x, pose.y, free)
+
+
+def _apart(place: Vec2, seat: Seat, others: Sequence[Seat]) -> bool:
+    return all(math.dist(place, (o.pose.x, o.pose.y)) >= seat.spec.radius + o.spec.radius for o in others)

@@ -1,0 +1,268 @@
+"""What the command line says and returns: errors that help, data on standard output, words on standard error."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import eval_fakes as fakes
+import msgspec
+import pytest
+
+from hthor import __version__, cli, tasks
+from hthor.eval import cast
+
+
+class Said(msgspec.Struct):
+    """What a command left: exit code, standard output, standard error."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def hthor(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    """Run a command in this process, with a fake umpire and a fake suite called ``fake``."""
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.delenv("FORCE_COLOR", raising=False)
+    monkeypatch.setenv("_TYPER_FORCE_DISABLE_TERMINAL", "1")  # the command sets it; this takes it back afterwards
+    real = tasks.suite
+    monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
+    monkeypatch.setattr(cast, "player", fakes.player)
+
+    def run(*words: str) -> Said:
+        monkeypatch.setattr(sys, "argv", ["hthor", *words])
+        try:
+            cli.main()
+            code = 0
+        except SystemExit as end:
+            code = end.code if isinstance(end.code, int) else int(end.code is not None)
+        out, err = capsys.readouterr()
+        return Said(code, out, err)
+
+    return run
+
+
+@pytest.fixture
+def done(hthor, tmp_path: Path) -> Path:
+    """A finished run."""
+    assert hthor("eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "run"), "--quiet").code == 0
+    return tmp_path / "run"
+
+
+def test_help_names_every_command_and_exit_code(hthor):
+    said = hthor("--help")
+    assert said.code == 0
+    for word in ("eval", "score", "replay", "leaderboard", "houses", "tasks", "agents", "agent", "humans", "robots"):
+        assert word in said.out
+    for code in (0, 1, 2, 3, 4, 75, 130):
+        assert str(code) in said.out.split("Exit codes")[1]
+
+
+def test_version(hthor):
+    assert hthor("--version").out == f"hthor {__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "hints"),
+    [
+        (("evla",), ("No such command 'evla'", "eval")),
+        (("eval", "--agnet", "silent"), ("No such option", "--agent")),
+        (("houses", "chekc", "x"), ("No such command 'chekc'", "check")),
+        (("eval",), ("Missing option", "--agent")),
+        (("eval", "--agent", "silent", "--jobs", "0"), ("--jobs", "0 is not in the range")),
+        (
+            ("eval", "--agent", "silnt", "--suite", "fake"),
+            ("unknown agent 'silnt'. Did you mean 'silent'?", "my_agent.py"),
+        ),
+        (("eval", "--agent", "silent", "--suite", "smokey"), ("unknown suite 'smokey'",)),
+        (
+            ("eval", "--agent", "silent", "--suite", "fake", "--humans", "prox"),
+            ("unknown human model 'prox'", "'proxy'"),
+        ),
+        (("eval", "--agent", "silent", "--suite", "fake", "--robot", "scuot"), ("unknown robot 'scuot'", "'scout'")),
+        (("score", "nowhere"), ("nowhere is not a run's folder", "hthor eval")),
+    ],
+)
+def test_wrong_usage_says_what_is_right(hthor, words, hints):
+    said = hthor(*words)
+    assert said.code == 2
+    for hint in hints:
+        assert hint in said.err
+    assert said.out == ""
+    assert "Traceback" not in said.err
+
+
+def test_an_agent_file_that_is_missing_or_broken(hthor, tmp_path: Path):
+    missing = hthor("eval", "--agent", str(tmp_path / "mine.py"), "--suite", "fake")
+    assert missing.code == 4
+    assert "mine.py" in missing.err
+    (tmp_path / "bad.py").write_text("def oops(:\n")
+    broken = hthor("eval", "--agent", str(tmp_path / "bad.py"), "--suite", "fake")
+    assert broken.code == 4
+    assert "bad.py" in broken.err
+
+
+def test_eval_writes_what_json_shows(hthor, tmp_path: Path):
+    said = hthor(
+        "eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "run"), "--json", "--jobs", "1"
+    )
+    assert said.code == 0
+    assert said.out.encode() == (tmp_path / "run" / "result.json").read_bytes()
+    assert json.loads(said.out)["counts"]["trials"] == 20
+    assert "20/20 trials" in said.err
+    assert "success rate" in said.err
+
+
+def test_eval_again_only_scores(hthor, done: Path):
+    before = (done / "result.json").read_bytes()
+    said = hthor("eval", "--agent", "silent", "--suite", "fake", "--out", str(done))
+    assert said.code == 0
+    assert "20 of them played before" in said.err
+    assert "success rate" in said.out
+    assert f"hthor replay {done} 0" in said.out
+    assert (done / "result.json").read_bytes() == before
+
+
+def test_eval_of_something_else_in_the_same_folder_is_refused(hthor, done: Path):
+    said = hthor("eval", "--agent", "silent", "--suite", "fake", "--out", str(done), "--seed", "5")
+    assert said.code == 2
+    assert "seed is 0 there and 5 here" in said.err
+
+
+def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    real = cast.introduce
+    monkeypatch.setattr(cast, "introduce", lambda name: real(name) if name == "silent" else fakes.character(name))
+    said = hthor("eval", "--agent", "silent", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path), "--quiet")
+    assert said.code == 3, "done, but an agent failed in some trials"
+    assert "silent" in said.out
+    assert "clumsy" in said.out
+    assert "trials with a fault" in said.out
+    assert {path.name for path in tmp_path.iterdir()} == {"silent", "clumsy"}
+
+
+def test_an_agents_faults_are_shown_with_a_way_to_look(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(cast, "introduce", fakes.character)
+    said = hthor("eval", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path / "run"))
+    assert said.code == 3
+    assert "failed in 2 of 20 trials" in said.out
+    assert "after 7.0 s: raised: ValueError: no" in said.out
+
+
+def test_score_says_whether_it_agrees(hthor, done: Path):
+    assert "the same as" in hthor("score", str(done)).err
+    document = json.loads((done / "result.json").read_bytes())
+    document["metrics"]["sr"]["mean"] = 1.0
+    (done / "result.json").write_text(json.dumps(document))
+    said = hthor("score", str(done), "--json")
+    assert "differs from" in said.err
+    assert "in metrics" in said.err
+    assert json.loads(said.out)["metrics"]["sr"]["mean"] < 1.0
+    assert "the same as" in hthor("score", str(done)).err
+
+
+def test_score_of_a_part_is_shown_but_not_stored(hthor, done: Path):
+    (done / "result.json").unlink()
+    path = done / "trials.jsonl"
+    path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:5]))
+    said = hthor("score", str(done))
+    assert said.code == 0
+    assert "15 of 20 trials are missing" in said.err
+    assert not (done / "result.json").exists()
+
+
+def test_replay_names_what_it_cannot_find(hthor, done: Path):
+    said = hthor("replay", str(done), "t00")
+    assert said.code == 2
+    assert "unknown trial 't00'. Did you mean 't0" in said.err
+    assert "number from 0 to 19" in said.err
+    wrong = hthor("replay", str(done), "0", "--out", "x.gif")
+    assert wrong.code == 2
+    assert ".png" in wrong.err
+
+
+def test_leaderboard_add(hthor, done: Path, tmp_path: Path):
+    said = hthor("leaderboard", "add", str(done), "--board", str(tmp_path / "board"))
+    assert said.code == 0
+    assert Path(said.out.strip()).is_file()
+    assert (tmp_path / "board" / "leaderboard.json").is_file()
+
+
+@pytest.mark.parametrize("words", [("houses",), ("tasks",), ("agents",), ("humans",), ("robots",)])
+def test_lists_agree_with_their_json(hthor, words):
+    rows = json.loads(hthor(*words, "list", "--json").out)
+    table = hthor(*words, "list").out
+    assert rows
+    for row in rows:
+        assert row["name"] in table
+
+
+def test_tasks_of_a_suite(hthor):
+    rows = json.loads(hthor("tasks", "list", "--suite", "fake", "--json").out)
+    assert len(rows) == 20
+    assert rows[0]["instruction"] == "Find the apple."
+
+
+def test_a_broken_house_and_a_sound_one(hthor, tmp_path: Path):
+    (tmp_path / "broken.json").write_text("{}")
+    broken = hthor("houses", "check", str(tmp_path / "broken.json"))
+    assert broken.code == 2
+    assert "broken.json" in broken.err
+    name = json.loads(hthor("houses", "list", "--json").out)[0]["name"]
+    sound = hthor("houses", "check", name, "--radius", "0.2")
+    assert sound.code == 0
+    assert "sound" in sound.out
+    assert hthor("houses", "check", name, "--radius", "1.5").code == 1
+
+
+def test_a_new_agent_is_not_written_over(hthor, tmp_path: Path):
+    path = tmp_path / "mine.py"
+    assert hthor("agent", "new", str(path)).code == 0
+    text = path.read_text()
+    assert hthor("agent", "new", str(path)).code == 4
+    path.write_text("changed")
+    assert hthor("agent", "new", str(path), "--force").code == 0
+    assert path.read_text() == text
+
+
+def _process(*words: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    bare = {name: value for name, value in os.environ.items() if name not in ("NO_COLOR", "FORCE_COLOR", "COLUMNS")}
+    return subprocess.run(
+        [sys.executable, "-m", "hthor", *words],
+        env={**bare, **environment},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+
+
+def test_colours_survive_a_pipe_only_when_forced():
+    assert "\x1b[" not in _process("tasks", "--help").stdout
+    assert "\x1b[" not in _process("tasks", "--help", GITHUB_ACTIONS="true").stdout
+    assert "\x1b[" in _process("tasks", "--help", FORCE_COLOR="1").stdout
+    assert "\x1b[3" not in _process("tasks", "--help", FORCE_COLOR="1", NO_COLOR="1").stdout
+
+
+def test_help_imports_nothing_heavy():
+    code = (
+        "import sys; sys.argv = ['hthor', '--help']\n"
+        "from hthor.cli import main\n"
+        "try: main()\n"
+        "except SystemExit: pass\n"
+        "heavy = {'numpy', 'mujoco', 'dm_control', 'numba', 'cv2', 'matplotlib', 'scipy', 'torch'} & set(sys.modules)\n"
+        "sys.exit(f'imports {heavy}' if heavy else 0)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+
+
+def test_another_python_is_told_so(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    monkeypatch.setattr(sys, "version_info", (3, 13, 1, "final", 0))
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    assert end.value.code == 2
+    assert "hthor needs Python 3.11 or 3.12, this is Python 3.13.1" in capsys.readouterr().err
