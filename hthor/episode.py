@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, Protocol, TypeVar
 
 from msgspec import Struct
@@ -111,7 +112,7 @@ class _Episode:
         self.world.reset(self.task)
         self._trace()
         for seat, mind in tuple(self.minds.items()):
-            self._guarded(seat, lambda mind=mind, seat=seat: mind.begin(self._briefing(seat)))
+            self._guarded(seat, partial(mind.begin, self._briefing(seat)))
         met = False
         while not met and self.world.tick < self.limit:
             self._tick()

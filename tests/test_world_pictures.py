@@ -11,7 +11,7 @@ from world_house import COFFEE, TABLE, do, on, task
 
 from hthor.errors import RenderingUnavailable
 from hthor.types import Pose, Rotate
-from hthor.world import World
+from hthor.world import World, opengl
 
 
 @pytest.fixture(scope="module")
@@ -91,6 +91,17 @@ def test_the_top_view_is_to_scale(world: World) -> None:
     red, green, blue = pixel(9.0, 2.7)  # the bed's blanket
     assert blue > red
     assert pixel(1.5, 1.5) != pixel(6.0, 3.0)  # two floors
+
+
+def test_without_any_back_end_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(name: str, width: int, height: int) -> None:
+        raise ImportError(f"no lib{name}")
+
+    monkeypatch.setattr(opengl, "_open", fail)
+    monkeypatch.setattr(opengl, "_forget", lambda: None)
+    monkeypatch.delenv("MUJOCO_GL", raising=False)
+    with pytest.raises(RenderingUnavailable, match=r"egl: no libegl; osmesa: no libosmesa; glfw.*libegl1"):
+        opengl.context(8, 8)
 
 
 def test_wrong_modes_are_named(world: World) -> None:

@@ -6,6 +6,7 @@ from hthor.types import Briefing, Detection, Observation, Receipt
 
 AGAIN_S = 10.0
 """How long to leave the person alone after a message was declined or covered."""
+_HOLLOW = ("bathtub", "fridge", "garbage_can", "sink")
 
 
 class Offers:
@@ -35,13 +36,16 @@ def title(kind: str) -> str:
     return "the " + kind.replace("_", " ")
 
 
+def place(kind: str) -> str:
+    """Where something is that rests on or in a thing of this kind, such as "on the dining table"."""
+    return f"{'in' if kind in _HOLLOW else 'on'} {title(kind)}"
+
+
 def sighting(seen: Detection, observation: Observation) -> str:
     """What a robot says of an object in its view."""
     support = next((thing for thing in observation.detections if thing.id == seen.support), None)
-    if support is None:
-        return f"I found {title(seen.kind)} in front of me."
-    where = "in" if support.state else "on"
-    return f"I found {title(seen.kind)} {where} {title(support.kind)} in front of me."
+    where = "" if support is None else f" {place(support.kind)}"
+    return f"I found {title(seen.kind)}{where} in front of me."
 
 
 def spot(observation: Observation, name: str) -> Detection | None:

@@ -14,6 +14,15 @@ from hthor.types import BodySpec, HouseSpec, Room, Vec2, Vec3
 
 _MARGIN_M = 0.1
 _MISS_M = 0.4
+_BESIDE_M = 0.2
+
+
+def _passes(a: Vec2, b: Vec2, point: Vec2, radius: float) -> bool:
+    """Whether the way from ``a`` straight to ``b`` keeps ``radius`` [m] from a point, or at least leads away."""
+    ex, ey = b[0] - a[0], b[1] - a[1]
+    along = ((point[0] - a[0]) * ex + (point[1] - a[1]) * ey) / max(ex * ex + ey * ey, 1e-12)
+    share = max(0.0, min(1.0, along))
+    return along <= 0.0 or math.dist((a[0] + share * ex, a[1] + share * ey), point) >= radius
 
 
 class Routes:
@@ -36,6 +45,31 @@ class Routes:
         """Whether both lie in one room; so nothing but furniture can be between them."""
         room = self._room((place[0], place[1]))
         return room is None or geometry.inside(a, room.polygon)
+
+    def clear(self, here: Vec2) -> Vec2:
+        """The middle of the roomiest free cell close by."""
+        row, column = self.space.cell_of(*here)
+        free = self.space.free
+        best, most = self.space.nearest_free(*here), -1
+        for j in range(row - 2, row + 3):
+            for i in range(column - 2, column + 3):
+                room = int(free[max(j - 2, 0) : j + 3, max(i - 2, 0) : i + 3].sum())
+                if 0 <= j < free.shape[0] and 0 <= i < free.shape[1] and free[j, i] and room > most:
+                    best, most = self.space.centre_of(j, i), room
+        return best
+
+    def around(self, here: Vec2, place: Vec3, people: Sequence[Vec3]) -> Vec2:
+        """A spot beside the nearest person from which the way to ``place`` is shortest; ``here`` when none is free."""
+        person = min(people, key=lambda other: math.dist(other[:2], here))
+        radius = 2.0 * self.body.radius + _BESIDE_M
+        spots = []
+        for k in range(16):
+            angle = 2.0 * math.pi * k / 16
+            spot = (person[0] + radius * math.cos(angle), person[1] + radius * math.sin(angle))
+            if self.space.segment_free(here, spot) and _passes(here, spot, (person[0], person[1]), radius - 0.1):
+                spots.append(spot)
+        goal = self.space.nearest_free(place[0], place[1])
+        return min(spots, key=lambda spot: math.dist(here, spot) + self.ways.distance(goal, spot), default=here)
 
     def to_view(self, here: Vec2, place: Vec3, but: Sequence[Vec2] = ()) -> tuple[Vec2, ...]:
         """The shortest way to a spot from which ``place`` is within range in the same room, () when there is none.

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from hthor import geometry, rules
-from hthor.agents._offers import Offers, sighting, spot, title
+from hthor.agents._offers import Offers, place, sighting, spot, title
 from hthor.types import HUMAN, Action, Briefing, Motion, Observation, Send, Thing, ThingState, Vec2, Vec3, Wait
 
 if TYPE_CHECKING:
@@ -47,12 +47,12 @@ class Agent:
     def act(self, observation: Observation) -> Action:
         """Tell when it is time, and go to where the errand is."""
         target = next(thing for thing in observation.truth if thing.id == self.briefing.target)
-        errand, place = self._errand(target)
-        say = self._say(observation, target, errand, place)
+        errand, where = self._errand(target)
+        say = self._say(observation, target, errand, where)
         if not observation.idle:
             return Action(say=say)
         yielding = self.courtesy.motion(observation, observation.tick * self.briefing.tick_s)
-        motion = yielding if yielding is not None else self._go(observation, errand, place)
+        motion = yielding if yielding is not None else self._go(observation, errand, where)
         return Action(motion=motion, say=say)
 
     def _errand(self, target: ThingState) -> tuple[str, Vec3]:
@@ -71,13 +71,13 @@ class Agent:
         here = (target.position[0], target.position[1])
         return min(things, key=lambda thing: (self.routes.near(here, thing.centre), thing.id))
 
-    def _say(self, observation: Observation, target: ThingState, errand: str, place: Vec3) -> Send | None:
+    def _say(self, observation: Observation, target: ThingState, errand: str, where: Vec3) -> Send | None:
         offers = self.offers[errand]
         receipt = observation.receipt if self.spoken_about == errand else None
         if not offers.due(observation.tick, receipt):
             return None
         message = (
-            self._destined(observation, target, place) if errand == "destination" else self._found(observation, target)
+            self._destined(observation, target, where) if errand == "destination" else self._found(observation, target)
         )
         if message is not None:
             offers.note(observation.tick)
@@ -93,7 +93,7 @@ class Agent:
             return None
         if len(self.misses) < _LOOKS and not self._is_shut(observation, support.id):
             return None
-        text = f"{title(target.kind).capitalize()} is in {title(support.kind)}."
+        text = f"{title(target.kind).capitalize()} is {place(support.kind)}."
         return Send(text=text, object=target.id, position=target.position)
 
     def _is_shut(self, observation: Observation, name: str) -> bool:
@@ -101,11 +101,11 @@ class Agent:
         thing = next((thing for thing in observation.truth if thing.id == name), None)
         return thing is not None and thing.kind == "fridge" and not thing.open
 
-    def _destined(self, observation: Observation, target: ThingState, place: Vec3) -> Send | None:
+    def _destined(self, observation: Observation, target: ThingState, where: Vec3) -> Send | None:
         thing = self._destination(target)
         if thing is None or not self._is_close(observation, thing.id):
             return None
-        return Send(text=f"{title(thing.kind).capitalize()} is here.", object=thing.id, position=place)
+        return Send(text=f"{title(thing.kind).capitalize()} is here.", object=thing.id, position=where)
 
     def _is_close(self, observation: Observation, name: str) -> bool:
         """Whether the robot is within the detector's range of a thing's outline, in the same room."""
@@ -118,34 +118,43 @@ class Agent:
         )
         return apart <= rules.DETECTOR_RANGE_M and self.routes.same_room(here, thing.centre)
 
-    def _go(self, observation: Observation, errand: str, place: Vec3) -> Motion:
+    def _go(self, observation: Observation, errand: str, where: Vec3) -> Motion:
         """Walk to where the place is in range, face it, then stand aside; try another spot when it is not seen."""
         from hthor.navigation.follow import face
 
-        if self.goal is None or math.dist(self.goal, place) > 0.3:
-            self.goal, self.misses = place, []
-            self._route(observation, place)
+        if self.goal is None or math.dist(self.goal, where) > 0.3:
+            self.goal, self.misses = where, []
+            self._route(observation, where)
+        elif observation.outcome is not None and observation.outcome.motion == "move" and not observation.outcome.ok:
+            self._reroute(observation, where)
         step = self.follower.next(observation.pose)
         if step is not None:
             return step
         body = self.briefing.body
-        turn = face(observation.pose, place, body.eye, body.pitch_limit)
+        turn = face(observation.pose, where, body.eye, body.pitch_limit)
         if turn is not None:
             return turn
-        if self.offers[errand].sent == 0 and len(self.misses) < 8:
+        if self.offers[errand].sent == 0 and len(self.misses) < 2 * _LOOKS:
             self.misses.append((observation.pose.x, observation.pose.y))
-            self._route(observation, place)
+            self._route(observation, where)
             return self.follower.next(observation.pose) or Wait(seconds=0.5)
-        return self._stand_aside(observation, place)
+        return self._stand_aside(observation, where)
 
-    def _route(self, observation: Observation, place: Vec3) -> None:
+    def _route(self, observation: Observation, where: Vec3) -> None:
         here = (observation.pose.x, observation.pose.y)
-        self.follower.take(self.routes.to_view(here, place, self.misses))
+        self.follower.take(self.routes.to_view(here, where, self.misses))
 
-    def _stand_aside(self, observation: Observation, place: Vec3) -> Motion:
+    def _reroute(self, observation: Observation, where: Vec3) -> None:
+        """Stopped on the way: go round whoever stands there, or step back from a corner that was cut too close."""
+        here = (observation.pose.x, observation.pose.y)
+        people = [seen.position for seen in observation.detections if seen.family == "person"]
+        via = self.routes.around(here, where, people) if people else self.routes.clear(here)
+        self.follower.take((via, *self.routes.to_view(via, where, self.misses)))
+
+    def _stand_aside(self, observation: Observation, where: Vec3) -> Motion:
         from hthor.navigation.courtesy import lookout
         from hthor.navigation.follow import shift
 
         here = (observation.pose.x, observation.pose.y)
-        aside = lookout(here, (place[0], place[1]), self.routes.fits) if math.dist(here, place[:2]) < 1.0 else None
+        aside = lookout(here, (where[0], where[1]), self.routes.fits) if math.dist(here, where[:2]) < 1.0 else None
         return Wait(seconds=0.5) if aside is None else shift(observation.pose, aside)

@@ -18,11 +18,11 @@ from hthor.types import Event, HouseSpec, TrialSpec, Vec2
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_STROKE = (patheffects.withStroke(linewidth=2.4, foreground="white"),)
+_STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.4, foreground="white")]
 
 
 def figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
-    """Draw a trial, about 7 inches wide: plan above, timeline below.
+    """Draw a trial, about 8 inches wide: plan above, timeline below.
 
     Args:
         spec: the trial. log: what it left behind. house: the house of its task.
@@ -39,7 +39,7 @@ def figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
         _draw_message(above, log, number, event)
     _draw_acts(above, log)
     above.set_title(_headline(spec, log), fontsize=10, loc="left", color=trace.INK)
-    _legend(above, spec, log)
+    _legend(sheet, spec, log)
     timeline.draw_timeline(below, spec, log)
     return sheet
 
@@ -55,8 +55,8 @@ def draw_path(ax: Axes, log: EpisodeLog, seat: str) -> None:
     every = round(10.0 / rules.TICK_S) // rules.LOG_EVERY_TICKS
     dots = way[every::every]
     ax.scatter(dots[:, 0], dots[:, 1], s=9, color=shade, zorder=9, linewidths=0)
-    ax.scatter(*way[0], s=46, facecolor="white", edgecolor=shade, linewidths=1.7, zorder=10)
-    ax.scatter(*way[-1], s=46, facecolor=shade, edgecolor="white", linewidths=1.0, zorder=10)
+    ax.scatter(way[0, 0], way[0, 1], s=46, facecolor="white", edgecolor=shade, linewidths=1.7, zorder=10)
+    ax.scatter(way[-1, 0], way[-1, 1], s=46, facecolor=shade, edgecolor="white", linewidths=1.0, zorder=10)
 
 
 def _draw_target(ax: Axes, spec: TrialSpec) -> None:
@@ -125,10 +125,10 @@ def _headline(spec: TrialSpec, log: EpisodeLog) -> str:
     agents = ", ".join(robot.agent.name for robot in spec.robots) or "no robot"
     seconds = log.ticks * rules.TICK_S
     end = f"done in {seconds:.1f} s" if log.met else f"not done in {seconds:.0f} s"
-    return f"“{spec.task.instruction}”\n{agents}; {end}; shortest {spec.task.t_star:.1f} s; {spec.task.id}"
+    return f"“{spec.task.instruction}”\n{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"
 
 
-def _legend(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
+def _legend(sheet: Figure, spec: TrialSpec, log: EpisodeLog) -> None:
     handles = [_line(trace.PERSON, "person")]
     for robot in spec.robots:
         handles.append(_line(trace.colour(robot.seat), f"{robot.seat} ({robot.agent.name})"))
@@ -143,9 +143,7 @@ def _legend(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
         handles.append(_mark("o", trace.MESSAGE, "message and its claim", size=7))
     present = {event.kind for event in log.events}
     handles += [_mark(mark, "#555555", f"{verb}") for kind, (mark, verb) in trace.ACTS.items() if kind in present]
-    ax.legend(
-        handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=7.5, frameon=False, handlelength=1.6
-    )
+    sheet.legend(handles=handles, loc="outside right upper", fontsize=7.5, frameon=False, handlelength=1.6)
 
 
 def _line(shade: str, label: str) -> Line2D:

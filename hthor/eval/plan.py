@@ -37,9 +37,7 @@ def draw_house(ax: Axes, house: HouseSpec, *, marked: Collection[str] = ()) -> N
             _draw_thing(ax, thing, thing.id in marked)
     for thing in house.things:
         if thing.kind in catalog.RECEPTACLES and thing.id not in marked:
-            ax.text(
-                *thing.centre[:2], title(thing.kind), ha="center", va="center", fontsize=5.2, color="#8b8478", zorder=3
-            )
+            _label(ax, thing)
     for wall in house.walls:
         ax.plot(*zip(wall.a, wall.b, strict=True), color=trace.INK, lw=WALL_PT, solid_capstyle="projecting", zorder=4)
     for opening in house.openings:
@@ -72,6 +70,15 @@ def _front_line(thing: Thing) -> tuple[Vec2, Vec2]:
         for sx in (-1.0, 1.0)
     )
     return (a[0], a[1]), (b[0], b[1])
+
+
+def _label(ax: Axes, thing: Thing) -> None:
+    """The name of a receptacle, along its longer side."""
+    outline = geometry.rectangle((thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw)
+    wide, deep = (max(axis) - min(axis) for axis in zip(*outline, strict=True))
+    turned = 90.0 if deep > 1.2 * wide else 0.0
+    x, y, _ = thing.centre
+    ax.text(x, y, title(thing.kind), ha="center", va="center", rotation=turned, fontsize=5.2, color="#8b8478", zorder=3)
 
 
 def _draw_opening(ax: Axes, opening: Opening) -> None:

@@ -14,6 +14,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+_WORD_S = 8.0
+"""How much of the time axis a word takes up."""
+_LIFTS = (6, -14, 15)
+"""Where a word may stand, in points above its mark, best first."""
+
+
 def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
     """Who did what when: one row a seat, a row for the messages."""
     seats = list(log.paths)
@@ -21,19 +27,10 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
     for row, seat in enumerate(seats):
         ax.plot((0, end), (-row, -row), color=trace.colour(seat), lw=2.2, alpha=0.35, solid_capstyle="butt")
         _timeline_marks(ax, log, seat, -row)
-    ax.axvline(spec.task.t_star, color="#888888", lw=0.8, ls=":")
-    ax.text(spec.task.t_star, 0.62, "T*", fontsize=7.5, color="#666666", ha="center")
-    ax.axvline(end, color=trace.TARGET if log.met else trace.FAILED, lw=1.2)
-    ax.text(
-        end,
-        0.62,
-        "done" if log.met else "time is up",
-        fontsize=7.5,
-        ha="center",
-        color=trace.TARGET if log.met else trace.FAILED,
-    )
+    _moment(ax, spec.task.t_star, "T*", "#777777", ":")
+    _moment(ax, end, "done" if log.met else "time is up", trace.TARGET if log.met else trace.FAILED, "-")
     ax.set_xlim(-1, limit + 1)
-    ax.set_ylim(-len(seats) + 0.4, 1.05)
+    ax.set_ylim(-len(seats) + 0.4, 0.75)
     ax.set_yticks(
         [-row for row in range(len(seats))], ["person" if seat == HUMAN else seat for seat in seats], fontsize=8
     )
@@ -44,20 +41,25 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
         ax.spines[side].set_visible(False)
 
 
+def _moment(ax: Axes, seconds: float, name: str, shade: str, style: str) -> None:
+    ax.axvline(seconds, color=shade, lw=1.0, ls=style, zorder=1)
+    ax.text(seconds, 1.02, name, transform=ax.get_xaxis_transform(), fontsize=7.5, color=shade, ha="center")
+
+
 def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float) -> None:
     for number, event in enumerate(trace.messages(log), 1):
         if event.seat == seat:
             trace.badge(ax, (event.tick * rules.TICK_S, row), str(number))
     words = {**{kind: verb for kind, (_, verb) in trace.ACTS.items()}, "confirmed": "confirms", "declined": "declines"}
-    last = -math.inf
+    last = dict.fromkeys(_LIFTS, -math.inf)
     for event in log.events:
         if event.seat != seat or event.kind not in words:
             continue
         x = event.tick * rules.TICK_S
         marker = trace.ACTS.get(event.kind, ("o", ""))[0]
         ax.scatter(x, row, s=26, marker=marker, color=trace.colour(seat), edgecolor="white", linewidths=0.6, zorder=3)
-        lift = -14 if x - last < 7.0 else 6
-        last = x if lift > 0 else last
+        lift = next((lift for lift in _LIFTS if x - last[lift] > _WORD_S), _LIFTS[-1])
+        last[lift] = x
         ax.annotate(
             words[event.kind], (x, row), (0, lift), textcoords="offset points", fontsize=7, ha="center", color=trace.INK
         )

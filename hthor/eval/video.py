@@ -33,7 +33,7 @@ def write(path: Path, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Non
     stage = _Stage(spec, house)
     height, width = stage.empty.shape[:2]
     rate = SPEED / (rules.TICK_S * rules.LOG_EVERY_TICKS)
-    film = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), rate, (width, height))
+    film = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"mp4v"), rate, (width, height))
     if not film.isOpened():
         raise HthorError(f"{path}: cannot write a film there; is the folder writable, and does the name end in .mp4?")
     count = max(len(way) for way in log.paths.values())

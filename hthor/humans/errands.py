@@ -104,11 +104,14 @@ class Errands:
     def follow(self, position: Vec3) -> Deed:
         """Go where a robot says something is, and look there; True when all was done, whatever was found."""
         self.eyes.attention = position
-        support = self.memory.at(position)
-        yield from self._approach(position, support.id if support else "", 1.0, lambda: self._learnt(position, support))
+        for _ in range(_PATIENCE):
+            place = self.memory.at(position)
+            arrived = yield from self._approach(
+                position, place.id if place else "", 1.0, partial(self._learnt, position, place)
+            )
+            if arrived and self.memory.at(position) is place:
+                break
         place = self.memory.at(position)
-        if place is not support:
-            yield from self._approach(position, place.id if place else "", 1.0)
         if place is not None and place.state == "closed":
             yield from self._open(place)
         yield from self.me.look_at(position)

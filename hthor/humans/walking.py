@@ -22,7 +22,7 @@ _ARRIVED_M = 0.03
 _CHECK_TICKS = 5
 _CREEP = 0.3
 _DETOUR, _DETOUR_M = 1.4, 1.5
-_GIVE_UP = 12
+_GIVE_UP, _REPLANS = 12, 100
 _POLITE_S = 0.5
 _SIDESTEP_M = 0.35
 
@@ -40,7 +40,7 @@ class Walker:
     """
 
     def __init__(self, me: Subject, x: float, y: float) -> None:
-        self.me, self.haste = me, 1.0
+        self.me, self.haste, self._bumps = me, 1.0, 0
         self._draw_map(x, y)
 
     def _draw_map(self, x: float, y: float) -> None:
@@ -67,20 +67,22 @@ class Walker:
         Args:
             stop: asked before each motion; the walk ends, well, when it says so.
         """
-        left = math.inf
-        for bumps in range(_GIVE_UP):
+        left, self._bumps = math.inf, 0
+        for _ in range(_REPLANS):
             path = self.planner.path(self.me.here, goal, within)
             if path is None and self._doubted():
                 path = self.planner.path(self.me.here, goal, within)
             if path is None or length(path) > _DETOUR * left + _DETOUR_M:
                 return False
             left = length(path)
-            ended = yield from self._follow(path, stop, bumps)
+            ended = yield from self._follow(path, stop)
             if ended:
                 return True
+            if self._bumps >= _GIVE_UP:
+                return False
         return False
 
-    def _follow(self, path: tuple[Vec2, ...], stop: Callable[[], bool], bumps: int) -> Deed:
+    def _follow(self, path: tuple[Vec2, ...], stop: Callable[[], bool]) -> Deed:
         """Walk the path; False when it turns out to be blocked."""
         ahead, checked, left, moves = list(path), self.me.now.tick, math.inf, 0
         while not stop():
@@ -94,7 +96,8 @@ class Walker:
                     return False
                 was, left = left, length((self.me.here, *ahead))
                 if moves >= _CHECK_TICKS and left > was - _CREEP * moves * self._pace() * self.me.tick_s:
-                    if bumps:
+                    self._bumps += 1
+                    if self._bumps > 1:
                         self._mark(ahead[0])
                     return False
                 moves = 0
@@ -103,7 +106,8 @@ class Walker:
             if isinstance(motion, Move):
                 moves += 1
                 if self._bumped():
-                    yield from self._give_way(motion, bumps)
+                    self._bumps += 1
+                    yield from self._give_way(motion)
                     return False
         return True
 
@@ -124,13 +128,13 @@ class Walker:
         outcome = self.me.now.outcome
         return outcome is not None and outcome.motion == "move" and not outcome.ok
 
-    def _give_way(self, motion: Move, bumps: int) -> Deed:
+    def _give_way(self, motion: Move) -> Deed:
         """Wait for a body in the way, then step aside; put anything else on the map."""
         outcome, pose = self.me.now.outcome, self.me.now.pose
         dx, dy = turn((motion.forward, motion.left), pose.yaw)
         if outcome is not None and outcome.by.startswith("robot"):
             yield Wait(seconds=_POLITE_S)
-            if bumps % 2:
+            if self._bumps % 2 == 0:
                 yield from self._aside(dx, dy)
         else:
             self._mark((pose.x + dx, pose.y + dy))

@@ -151,7 +151,7 @@ def _of_item(item: Item, seat: Seat) -> Detection:
         family="object",
         position=item.position,
         size=item.size,
-        yaw=0.0,
+        yaw=item.yaw,
         distance=_distance(seat, item.position),
         support=item.support,
         held_by=item.held_by,

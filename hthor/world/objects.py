@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from hthor.geometry import wrap
 from hthor.types import ThingState, Vec3
 from hthor.world import geoms
 from hthor.world.contents import Movable
@@ -30,7 +32,12 @@ class Item:
     def clear(self) -> None:
         """Out of the world until placed."""
         self.present, self.settling, self.held_by, self.support = False, False, "", ""
-        self.position = AWAY
+        self.position, self.yaw = AWAY, 0.0
+
+    def at(self, qpos: Sequence[float]) -> None:
+        """Read position and heading from a pose, position and quaternion."""
+        x, y, z, w, _, _, k = qpos
+        self.position, self.yaw = (x, y, z), wrap(2.0 * math.atan2(k, w))
 
     def state(self) -> ThingState:
         """Its true state now."""
@@ -60,13 +67,13 @@ class Objects:
         item = self._items.get(id)
         return item if item is not None and item.present else None
 
-    def reset(self, starts: Mapping[str, tuple[Vec3, str]]) -> None:
-        """Begin an episode, the engine having been reset: id -> (position, what the task says it lies on)."""
+    def reset(self, starts: Mapping[str, tuple[Vec3, float, str]]) -> None:
+        """Begin an episode, the engine having been reset: id -> (position, yaw, what the task says it lies on)."""
         for item in self:
             self._collide(item, True)
             item.clear()
             if item.id in starts:
-                position, support = starts[item.id]
+                position, item.yaw, support = starts[item.id]
                 item.present, item.position = True, position
                 item.support = self._places.support(position, item.size[2]) or support
         self._scene.hide_all_but(())
@@ -85,7 +92,7 @@ class Objects:
         """Let go of the object at ``pose``, a little above ``support``."""
         item = self._items[id]
         item.held_by, item.support, item.settling = "", support, True
-        item.position = (pose[0], pose[1], pose[2])
+        item.at(pose)
         self._collide(item, True)
         self._env.release(item.tree, pose)
         self._after_handling()
@@ -94,8 +101,7 @@ class Objects:
         """A carried object's holder has moved."""
         item = self._items[id]
         self._env.pin()
-        x, y, z = self._env.data.qpos[item.qpos : item.qpos + 3].tolist()
-        item.position = (x, y, z)
+        item.at(self._env.data.qpos[item.qpos : item.qpos + 7].tolist())
         self.changes += 1
 
     def settle(self) -> None:
@@ -104,8 +110,8 @@ class Objects:
         for item in self:
             if not item.present or item.held_by or (asleep[item.tree] >= 0 and not item.settling):
                 continue
-            x, y, z = self._env.data.qpos[item.qpos : item.qpos + 3].tolist()
-            item.position, item.settling = (x, y, z), True
+            item.at(self._env.data.qpos[item.qpos : item.qpos + 7].tolist())
+            item.settling = True
             if asleep[item.tree] >= 0:
                 item.settling = False
                 item.support = self._places.support(item.position, item.size[2])

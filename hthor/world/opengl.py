@@ -7,10 +7,12 @@ import importlib
 import os
 import sys
 import warnings
+from collections.abc import Iterator
 from typing import Any
 
 from hthor.errors import RenderingUnavailable
 
+_VARIABLE = "MUJOCO_GL"
 _PLATFORM = "PYOPENGL_PLATFORM"
 _BACKENDS = ("egl", "osmesa", "glfw")
 _CURE = (
@@ -25,7 +27,7 @@ def context(width: int, height: int) -> Any:
     Raises:
         RenderingUnavailable: when none works; says what was tried and what to install.
     """
-    wanted = os.environ.get("MUJOCO_GL", "").strip().lower()
+    wanted = os.environ.get(_VARIABLE, "").strip().lower()
     order = (wanted,) if wanted in _BACKENDS else _BACKENDS
     failures = []
     for name in order:
@@ -35,6 +37,20 @@ def context(width: int, height: int) -> Any:
             failures.append(f"{name}: {str(error).splitlines()[0] if str(error) else type(error).__name__}")
             _forget()
     raise RenderingUnavailable(f"no OpenGL back end could draw ({'; '.join(failures)}). {_CURE}")
+
+
+@contextlib.contextmanager
+def named(context: Any) -> Iterator[None]:
+    """While the engine loads its OpenGL functions: it must look for them in the library that ``context`` came from."""
+    before = os.environ.get(_VARIABLE)
+    os.environ[_VARIABLE] = type(context).__module__.rpartition(".")[2]
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_VARIABLE]
+        else:
+            os.environ[_VARIABLE] = before
 
 
 def _open(name: str, width: int, height: int) -> Any:

@@ -39,7 +39,8 @@ class Studio:
         self._data = mujoco.MjData(self._model)
         self._numbers = scene.numbers
         self._gl = opengl.context(64, 64)
-        self._context = mujoco.MjrContext(self._model, int(mujoco.mjtFontScale.mjFONTSCALE_100))
+        with opengl.named(self._gl):
+            self._context = mujoco.MjrContext(self._model, int(mujoco.mjtFontScale.mjFONTSCALE_100))
         mujoco.mjr_setBuffer(int(mujoco.mjtFramebuffer.mjFB_OFFSCREEN), self._context)
         self._scene = mujoco.MjvScene(self._model, maxgeom=self._model.ngeom + 64)
         self._option = mujoco.MjvOption()

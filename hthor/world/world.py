@@ -101,7 +101,6 @@ class World:
         self._others = {seat.name: tuple(other for other in seats if other is not seat) for seat in seats}
         self._obstacles = Obstacles(self.house)
         self._pictures = Pictures(self.house, env, self._scene, self._seats)
-        self._rooms = dict.fromkeys(self.seats, 0)
 
     # ------------------------------------------------------------------------------------------------------- episodes
 
@@ -124,17 +123,17 @@ class World:
         for id in placements:
             if id not in movables:
                 raise TaskError(task, "objects", str(UnknownName("object", id, movables)))
-        poses: dict[str, tuple[Vec3, float]] = {}
-        supports: dict[str, tuple[Vec3, str]] = {}
+        self._rooms = dict.fromkeys(self.seats, 0)
+        begin: dict[str, tuple[Vec3, float, str]] = {}
         for id, movable in movables.items():
             placed = placements.get(id)
-            position = movable.home if placed is None else placed.position
-            if position is not None:
-                poses[id] = (position, movable.yaw if placed is None else placed.yaw)
-                supports[id] = (position, movable.support if placed is None else placed.support)
-        self._task.starts = poses
+            if placed is not None:
+                begin[id] = (placed.position, placed.yaw, placed.support)
+            elif movable.home is not None:
+                begin[id] = (movable.home, movable.yaw, movable.support)
+        self._task.starts = {id: (position, yaw) for id, (position, yaw, _) in begin.items()}
         self._env.reset()
-        self._objects.reset(supports)
+        self._objects.reset(begin)
         self._doors.reset()
         self.tick = 0
         self._episode += 1
