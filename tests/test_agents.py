@@ -22,16 +22,19 @@ from hthor.types import (
     BodySpec,
     Briefing,
     Detection,
+    Goal,
     HouseSpec,
     Move,
     Observation,
     Outcome,
+    Placement,
     Pose,
     Receipt,
     Room,
     Rotate,
     Scan,
     Send,
+    TaskSpec,
     Thing,
     ThingState,
     Wait,
@@ -356,7 +359,8 @@ def test_words() -> None:
     flat = Flat()
     flat.pose = Pose(x=4.5, y=1.6)
     apple = flat.detections()[0]
-    assert sighting(apple, flat.observe()) == "I found the apple on the dining table in front of me."
+    assert sighting(apple, {}) == "I found the apple in front of me."
+    assert sighting(apple, {"table": "dining_table"}) == "I found the apple on the dining table in front of me."
 
 
 def test_runs_are_repeated_exactly() -> None:
@@ -396,6 +400,25 @@ def test_the_example_finds_the_apple(root: Path) -> None:
     assert message.object == "apple"
 
 
+def errand(house: HouseSpec) -> TaskSpec:
+    """An apple on the bed that is farthest from the start."""
+    bed = max((thing for thing in house.things if thing.kind == "bed"), key=lambda thing: thing.centre)
+    top = bed.centre[2] + bed.size[2] / 2
+    return TaskSpec(
+        id="errand",
+        kind="object_goal_navigation",
+        house=house.id,
+        house_sha256=house.sha256,
+        human_start=house.start,
+        robot_starts=(house.start,),
+        objects=(Placement(id="apple", kind="apple", position=(*bed.centre[:2], top), support=bed.id),),
+        goal=Goal(target="apple", relation="find"),
+        instruction="Find an apple.",
+        time_limit=90.0,
+        t_star=10.0,
+    )
+
+
 @pytest.mark.parametrize("name", ["frontier", "oracle"])
 def test_a_minute_in_a_real_house(name: str) -> None:
     """Nothing raises, every motion is legal, and the body gets about."""
@@ -404,6 +427,7 @@ def test_a_minute_in_a_real_house(name: str) -> None:
 
     house = houses.load(houses.names()[0])
     world = World(house, robots=("scout",), objects=(("apple", "apple"),))
+    world.reset(errand(house))
     agent = plugins.load("agent", name)()
     told = briefing(house if name == "oracle" else None)
     agent.begin(told)

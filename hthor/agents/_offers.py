@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from hthor.types import Briefing, Detection, Observation, Receipt
 
 AGAIN_S = 10.0
@@ -41,10 +43,9 @@ def place(kind: str) -> str:
     return f"{'in' if kind in _HOLLOW else 'on'} {title(kind)}"
 
 
-def sighting(seen: Detection, observation: Observation) -> str:
-    """What a robot says of an object in its view."""
-    support = next((thing for thing in observation.detections if thing.id == seen.support), None)
-    where = "" if support is None else f" {place(support.kind)}"
+def sighting(seen: Detection, kinds: Mapping[str, str]) -> str:
+    """What a robot says of an object in its view; ``kinds`` gives the kind of each piece of furniture it knows."""
+    where = f" {place(kinds[seen.support])}" if seen.support in kinds else ""
     return f"I found {title(seen.kind)}{where} in front of me."
 
 

@@ -34,10 +34,12 @@ class Agent:
         self.courtesy: Courtesy = Courtesy(briefing.body, self.explorer.fits)
         self.target: Detection | None = None
         self.retreated = False
+        self.kinds: dict[str, str] = {}
 
     def act(self, observation: Observation) -> Action:
         """Look, tell, and go on."""
         self.explorer.see(observation)
+        self.kinds.update((thing.id, thing.kind) for thing in observation.detections)
         seen = spot(observation, self.briefing.target)
         if seen is not None:
             self.target = seen
@@ -55,7 +57,7 @@ class Agent:
         if seen is None or seen.held_by == HUMAN or not self.offers.due(observation.tick, observation.receipt):
             return None
         self.offers.note(observation.tick)
-        return Send(text=sighting(seen, observation), object=seen.id, position=seen.position)
+        return Send(text=sighting(seen, self.kinds), object=seen.id, position=seen.position)
 
     def _watch(self, observation: Observation) -> Motion:
         """Stand aside once, then keep the target in view."""

@@ -40,13 +40,16 @@ class Agent:
         self.courtesy: Courtesy = Courtesy(briefing.body, self.routes.fits)
         self.follower: Follower = Follower(step=0.5)
         self.offers = {"target": Offers(briefing, most=3), "destination": Offers(briefing, most=3)}
+        self.kinds = {thing.id: thing.kind for thing in briefing.house.things}
         self.goal: Vec3 | None = None
         self.misses: list[Vec2] = []
         self.spoken_about = ""
 
     def act(self, observation: Observation) -> Action:
         """Tell when it is time, and go to where the errand is."""
-        target = next(thing for thing in observation.truth if thing.id == self.briefing.target)
+        target = next((thing for thing in observation.truth if thing.id == self.briefing.target), None)
+        if target is None:
+            return Action(motion=Wait(seconds=1.0))
         errand, where = self._errand(target)
         say = self._say(observation, target, errand, where)
         if not observation.idle:
@@ -87,7 +90,7 @@ class Agent:
     def _found(self, observation: Observation, target: ThingState) -> Send | None:
         seen = spot(observation, target.id)
         if seen is not None and seen.held_by != HUMAN:
-            return Send(text=sighting(seen, observation), object=seen.id, position=seen.position)
+            return Send(text=sighting(seen, self.kinds), object=seen.id, position=seen.position)
         support = next((thing for thing in self.house.things if thing.id == target.support), None)
         if support is None or not self._is_close(observation, support.id):
             return None

@@ -127,7 +127,7 @@ def replay(
     from hthor.eval import find, redraw
 
     record = find.trial(run, trial)
-    path = out or run / "replays" / f"{record.spec.task.id}-{record.key}.{'mp4' if video else 'png'}"
+    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'mp4' if video else 'png'}"
     redraw.draw(record, path, video=video)
     sys.stdout.write(f"{path}\n")
 

@@ -186,7 +186,8 @@ class Guest:
 
     def __del__(self) -> None:
         if getattr(self, "_process", None) is not None:
-            self._kill()
+            with contextlib.suppress(Exception):  # the interpreter may be half gone
+                self._kill()
 
     def _sense(self, observation: Observation, ask: wire.Ask) -> Any:
         """What was asked for. A failure to sense is ours, so the guest is let go and the error passed on."""

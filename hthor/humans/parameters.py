@@ -15,7 +15,7 @@ class Parameters(Struct, frozen=True, kw_only=True):
     # walking
     v_pace: float = 0.45  # m/s *, mean speed under way: stick speed times duty cycle [fit, scaled to larger houses]
     omega: float = 1.7  # rad/s, mean speed of turning the head and body [fit]
-    k_map: float = 1.5  # how much slower people walk while they follow a map [fit; lit: mini-maps cost attention]
+    k_map: float = 1.1  # how much slower people walk while they follow a map; dead ends come on top [own; lit: 1 to 2]
     k_read: float = 2.0  # how much slower people walk while they read a message [own]
 
     # seeing: a rate of noticing lam0 / (1 + (d/d50)^2) * exp(-(ecc/ecc_sd)^2 / 2)

@@ -5,14 +5,15 @@ Knows nothing of why they go.
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Callable
 from itertools import pairwise
 
-from hthor.geometry import turn, wrap
+from hthor.geometry import wrap
 from hthor.humans.subject import GAZE_PITCH, Deed, Subject
 from hthor.navigation.follow import toward
-from hthor.navigation.map import GridMap
+from hthor.navigation.map import CELL_M, GridMap
 from hthor.navigation.planner import Planner, length
 from hthor.types import Motion, Move, Rotate, Vec2, Wait
 
@@ -24,7 +25,7 @@ _CREEP = 0.3
 _DETOUR, _DETOUR_M = 1.4, 1.5
 _GIVE_UP, _REPLANS = 12, 100
 _POLITE_S = 0.5
-_SIDESTEP_M = 0.35
+_TOUCH_M = 0.06
 
 
 def never() -> bool:
@@ -41,6 +42,7 @@ class Walker:
 
     def __init__(self, me: Subject, x: float, y: float) -> None:
         self.me, self.haste, self._bumps = me, 1.0, 0
+        self._robot: tuple[float, float, float] | None = None
         self._draw_map(x, y)
 
     def _draw_map(self, x: float, y: float) -> None:
@@ -67,11 +69,9 @@ class Walker:
         Args:
             stop: asked before each motion; the walk ends, well, when it says so.
         """
-        left, self._bumps = math.inf, 0
+        left, self._bumps, self._robot = math.inf, 0, None
         for _ in range(_REPLANS):
-            path = self.planner.path(self.me.here, goal, within)
-            if path is None and self._doubted():
-                path = self.planner.path(self.me.here, goal, within)
+            path = self._way(goal, within)
             if path is None or length(path) > _DETOUR * left + _DETOUR_M:
                 return False
             left = length(path)
@@ -81,6 +81,16 @@ class Walker:
             if self._bumps >= _GIVE_UP:
                 return False
         return False
+
+    def _way(self, goal: Vec2, within: float) -> tuple[Vec2, ...] | None:
+        """A path to the goal, round the robot that is in the way; None when there is none or the robot stands there."""
+        if self._robot is not None:
+            x, y, radius = self._robot
+            if math.dist((x, y), goal) <= radius + self.me.body.radius + within:
+                return None
+            return _planner_with(self.grid, self.me.body.radius, x, y, radius).path(self.me.here, goal, within)
+        path = self.planner.path(self.me.here, goal, within)
+        return self.planner.path(self.me.here, goal, within) if path is None and self._doubted() else path
 
     def _follow(self, path: tuple[Vec2, ...], stop: Callable[[], bool]) -> Deed:
         """Walk the path; False when it turns out to be blocked."""
@@ -96,9 +106,7 @@ class Walker:
                     return False
                 was, left = left, length((self.me.here, *ahead))
                 if moves >= _CHECK_TICKS and left > was - _CREEP * moves * self._pace() * self.me.tick_s:
-                    self._bumps += 1
-                    if self._bumps > 1:
-                        self._mark(ahead[0])
+                    yield from self._give_way(ahead[0])
                     return False
                 moves = 0
             motion = toward(self.me.now.pose, ahead[0], self._pace() * self.me.tick_s, _TURN_RAD)
@@ -106,8 +114,7 @@ class Walker:
             if isinstance(motion, Move):
                 moves += 1
                 if self._bumped():
-                    self._bumps += 1
-                    yield from self._give_way(motion)
+                    yield from self._give_way(ahead[0])
                     return False
         return True
 
@@ -128,17 +135,32 @@ class Walker:
         outcome = self.me.now.outcome
         return outcome is not None and outcome.motion == "move" and not outcome.ok
 
-    def _give_way(self, motion: Move) -> Deed:
-        """Wait for a body in the way, then step aside; put anything else on the map."""
-        outcome, pose = self.me.now.outcome, self.me.now.pose
-        dx, dy = turn((motion.forward, motion.left), pose.yaw)
-        if outcome is not None and outcome.by.startswith("robot"):
-            yield Wait(seconds=_POLITE_S)
-            if self._bumps % 2 == 0:
-                yield from self._aside(dx, dy)
-        else:
-            self._mark((pose.x + dx, pose.y + dy))
+    def _give_way(self, ahead: Vec2) -> Deed:
+        """Wait for a robot in the way, then plan round it; put anything else that is felt again on the map."""
+        self._bumps += 1
+        robot = self._touched(ahead)
+        if robot is None:
+            if self._bumps > 1:
+                self._mark(ahead)
+            return True
+        yield Wait(seconds=_POLITE_S)
+        if self._bumps > 1:
+            self._robot = self._touched(ahead)
         return True
+
+    def _touched(self, ahead: Vec2) -> tuple[float, float, float] | None:
+        """Middle and radius [m] of the robot that stops the person on the way ``ahead``, None when none does."""
+        (x, y), outcome = self.me.here, self.me.now.outcome
+        for seen in self.me.now.detections:
+            if seen.family == "robot":
+                radius = max(seen.size[:2]) / 2.0
+                gap = math.dist((x, y), seen.position[:2]) - radius - self.me.body.radius
+                if gap < _TOUCH_M:
+                    return (seen.position[0], seen.position[1], radius)
+        if outcome is None or not outcome.by.startswith("robot"):
+            return None
+        share = 2.0 * self.me.body.radius / max(math.dist((x, y), ahead), 1e-9)
+        return (x + share * (ahead[0] - x), y + share * (ahead[1] - y), self.me.body.radius)
 
     def _mark(self, point: Vec2) -> None:
         """Something that no scan showed stands in the direction of ``point`` [m], in touch with the body."""
@@ -156,14 +178,12 @@ class Walker:
         self.sense()
         return True
 
-    def _aside(self, dx: float, dy: float) -> Deed:
-        """A step to the right or else to the left of the direction (``dx``, ``dy``)."""
-        (x, y), pose = self.me.here, self.me.now.pose
-        wide = _SIDESTEP_M / max(math.hypot(dx, dy), 1e-9)
-        for side in (-1.0, 1.0):
-            sx, sy = -dy * side * wide, dx * side * wide
-            if self.planner.straight((x, y), (x + sx, y + sy)):
-                forward, left = turn((sx, sy), -pose.yaw)
-                yield Move(forward=forward, left=left)
-                return True
-        return False
+
+def _planner_with(grid: GridMap, radius: float, x: float, y: float, size: float) -> Planner:
+    """A planner on a copy of the map in which a disc of radius ``size`` [m] stands at (``x``, ``y``)."""
+    trial = copy.deepcopy(grid)
+    count = math.ceil(2.0 * math.pi * size / CELL_M)
+    for k in range(count):
+        angle = 2.0 * math.pi * k / count
+        trial.mark_blocked(x + size * math.cos(angle), y + size * math.sin(angle))
+    return Planner(trial, radius, optimistic=True)

@@ -6,7 +6,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from hthor.navigation import kernels
+from hthor.navigation import grouping, searching
 from hthor.navigation.map import CELL_M, GridMap
 from hthor.navigation.planner import Field, Planner
 from hthor.types import Pose, Vec2
@@ -60,13 +60,13 @@ def _known(planner: Planner, pose: Pose) -> Field:
 
 def _groups(grid: GridMap, field: Field, planner: Planner, edges: bool, least: float) -> list[Frontier]:
     mask: NDArray[np.uint8] = np.zeros(grid.cells.shape, dtype=np.uint8)
-    kernels.mark(grid.cells, planner.levels, grid.near, field.cost, field.window, edges, mask)
+    grouping.mark(grid.cells, planner.levels, grid.near, field.cost, field.window, edges, mask)
     out = np.empty((_MOST, 4), dtype=np.int64)
     stack = np.empty(grid.cells.size, dtype=np.int32)
-    count = kernels.clusters(field.cost, field.window, mask, stack, out)
+    count = grouping.clusters(field.cost, field.window, mask, stack, out)
     found = []
     for row, column, size, cost in out[:count].tolist():
         if size * CELL_M >= least - 1e-9:
             centre = ((column + 0.5 + grid.left) * CELL_M, (row + 0.5 + grid.bottom) * CELL_M)
-            found.append(Frontier(centre=centre, size=size * CELL_M, distance=cost / kernels.STEP * CELL_M))
+            found.append(Frontier(centre=centre, size=size * CELL_M, distance=cost / searching.STEP * CELL_M))
     return found

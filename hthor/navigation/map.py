@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor.navigation import kernels
+from hthor.navigation import marching
 from hthor.types import Scan
 
 CELL_M = 0.05
@@ -56,7 +56,7 @@ class GridMap:
         origin, margin = scan.origin, scan.limit + 0.2
         self._cover(origin.x - margin, origin.y - margin, origin.x + margin, origin.y + margin)
         self._reserve(16 * len(scan.ranges) + 64)
-        self._count = kernels.integrate(
+        self._count = marching.integrate(
             self.cells,
             self.near,
             self.left,

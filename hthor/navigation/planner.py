@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor.navigation import kernels
+from hthor.navigation import marching, pulling, searching
 from hthor.navigation.map import CELL_M, GridMap
 from hthor.types import Vec2
 
@@ -56,7 +56,7 @@ class Planner:
         else:
             snapped = True
         nx = self._cells.shape[1]
-        found = kernels.search(
+        found = searching.search(
             self._cells,
             self._level,
             self.optimistic,
@@ -89,10 +89,10 @@ class Planner:
         came = np.empty(self._cells.shape, dtype=np.int8)
         window = self._window((a, *cover))
         if start < 0:
-            _window_view(cost, window)[:] = kernels.FAR
+            _window_view(cost, window)[:] = searching.FAR
         else:
             nx = self._cells.shape[1]
-            kernels.search(
+            searching.search(
                 self._cells,
                 self._level,
                 self.optimistic,
@@ -124,7 +124,7 @@ class Planner:
         flat = self._flat((x, y))
         nx = self._cells.shape[1]
         return flat >= 0 and bool(
-            kernels.passable(self._cells, self._level, self.optimistic, flat // nx, flat % nx),
+            searching.passable(self._cells, self._level, self.optimistic, flat // nx, flat % nx),
         )
 
     def straight(self, a: Vec2, b: Vec2) -> bool:
@@ -132,7 +132,7 @@ class Planner:
         self._follow()
         ax, ay = self._cell(a)
         bx, by = self._cell(b)
-        return bool(kernels.line_cost(self._cells, self._level, self.optimistic, ax, ay, bx, by) >= 0.0)
+        return bool(pulling.line_cost(self._cells, self._level, self.optimistic, ax, ay, bx, by) >= 0.0)
 
     @property
     def levels(self) -> NDArray[np.uint8]:
@@ -149,7 +149,7 @@ class Planner:
             self._allocate()
         self._cells = grid.cells
         obstacles = grid.obstacles
-        kernels.inflate(self._level, obstacles, self._stamped, len(obstacles), grid.left, grid.bottom, self._disc)
+        marching.inflate(self._level, obstacles, self._stamped, len(obstacles), grid.left, grid.bottom, self._disc)
         self._stamped = len(obstacles)
         self._version = grid.version
 
@@ -200,7 +200,7 @@ class Planner:
         """Index of the nearest cell the body may be in; -1 when there is none close by or the point is far outside."""
         x, y = self._cell(point)
         return int(
-            kernels.nearest(self._cells, self._level, self.optimistic, math.floor(y), math.floor(x), _ESCAPE_CELLS)
+            searching.nearest(self._cells, self._level, self.optimistic, math.floor(y), math.floor(x), _ESCAPE_CELLS)
         )
 
     def _enter(self, a: Vec2) -> tuple[int, bool]:
@@ -226,9 +226,9 @@ class Planner:
         if b is not None:
             points[-1] = self._cell(b)
         keep = np.empty(len(points), dtype=np.int64)
-        kept = kernels.straighten(self._cells, self._level, self.optimistic, points, costs, keep)
+        kept = pulling.straighten(self._cells, self._level, self.optimistic, points, costs, keep)
         bends = np.ascontiguousarray(points[keep[:kept]])
-        kept = kernels.tighten(self._cells, self._level, self.optimistic, bends, kept)
+        kept = pulling.tighten(self._cells, self._level, self.optimistic, bends, kept)
         way = [self._metres(x, y) for x, y in bends[:kept].tolist()]
         if b is not None:
             way[-1] = b
@@ -261,7 +261,7 @@ class Field:
         Without ``within``, a place that the body cannot stand on counts as the nearest one within 0.7 m.
         """
         flat = self._best(b, within)
-        return math.inf if flat < 0 else int(self.cost.flat[flat]) / kernels.STEP * CELL_M
+        return math.inf if flat < 0 else int(self.cost.flat[flat]) / searching.STEP * CELL_M
 
     def path(self, b: Vec2, within: float = 0.0) -> tuple[Vec2, ...] | None:
         """Way points [m] as `Planner.path` gives them. Ask before the map grows; afterwards None is given."""
@@ -281,7 +281,7 @@ class Field:
         x0, x1, y0, y1 = (int(edge) for edge in self.window)
         column, row = math.floor(b[0] / CELL_M) - self._frame[0], math.floor(b[1] / CELL_M) - self._frame[1]
         nx = int(self.cost.shape[1])
-        if x0 <= column <= x1 and y0 <= row <= y1 and within <= 0.0 and self.cost[row, column] < kernels.FAR:
+        if x0 <= column <= x1 and y0 <= row <= y1 and within <= 0.0 and self.cost[row, column] < searching.FAR:
             return row * nx + column
         span = max(math.ceil(within / CELL_M), 0) if within > 0.0 else _ESCAPE_CELLS
         i0, i1, j0, j1 = max(column - span, x0), min(column + span, x1), max(row - span, y0), min(row + span, y1)
@@ -292,12 +292,12 @@ class Field:
         dy = np.arange(j0, j1 + 1) + (0.5 + self._frame[1]) - b[1] / CELL_M
         apart = dy[:, None] ** 2 + dx[None, :] ** 2
         if within > 0.0:
-            rank = np.where(apart <= (within / CELL_M) ** 2, box, kernels.FAR)
+            rank = np.where(apart <= (within / CELL_M) ** 2, box, searching.FAR)
         else:
-            rank = np.where((box < kernels.FAR) & (apart <= span * span), apart, np.inf)
+            rank = np.where((box < searching.FAR) & (apart <= span * span), apart, np.inf)
         k = int(np.argmin(rank))
         j, i = divmod(k, int(box.shape[1]))
-        if box[j, i] >= kernels.FAR or not rank[j, i] < kernels.FAR:
+        if box[j, i] >= searching.FAR or not rank[j, i] < searching.FAR:
             return -1
         return (j + j0) * nx + i + i0
 
@@ -317,7 +317,7 @@ def _trace(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Cell centres (N, 2) [cells] and costs (N,) from ``start`` to ``end``."""
     buffer = np.empty(cost.size if cost.size < 8192 else 8192, dtype=np.int64)
-    count = kernels.trace(came, start, end, buffer)
+    count = searching.trace(came, start, end, buffer)
     cells = buffer[:count][::-1]
     nx = cost.shape[1]
     points = np.empty((count, 2), dtype=np.float64)

@@ -86,7 +86,7 @@ class HouseArena(Arena):
                 panel.half,
                 panel.yaw,
                 rgba=panel.rgba,
-                group=geoms.WALLS,
+                group=geoms.CEILINGS if panel.sort == "lintel" else geoms.WALLS,
                 **geoms.STATIC,
             )
 

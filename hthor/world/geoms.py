@@ -11,7 +11,7 @@ from hthor.types import Part, Vec3
 Bits = dict[str, Any]
 
 FURNITURE, WALLS, OBJECTS, BODIES, CEILINGS = range(5)
-"""Draw groups."""
+"""Draw groups. Ceilings, and lintels with them, are left out of the view from above."""
 
 STATIC: Bits = {"contype": 1, "conaffinity": 0}
 MOVABLE: Bits = {"contype": 2, "conaffinity": 3}

@@ -9,7 +9,6 @@ import numpy as np
 
 from hthor.rays import blocked
 from hthor.types import Vec3
-from hthor.world import geoms
 from hthor.world.engine import mujoco
 from hthor.world.env import FastEnv
 from hthor.world.task import HouseTask
@@ -39,8 +38,7 @@ class Scene:
         self.names = tuple(sorted(set(self.owner)))
         self._number = {owner: number for number, owner in enumerate(self.names)}
         self.numbers = np.array([self._number[owner] for owner in self.owner])
-        self.solid = np.isin(model.geom_group, (geoms.FURNITURE, geoms.WALLS, geoms.OBJECTS))
-        self.solid &= model.geom_contype != 0
+        self.solid = model.geom_contype != 0
         self.solid &= model.geom_rgba[:, 3] >= _CLEAR
         self.solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)
         self.ids = np.zeros(0, np.int64)

@@ -25,7 +25,7 @@ class Panel(NamedTuple):
     """One upright box, ``half`` its half extents along, across and up."""
 
     name: str
-    sort: Literal["wall", "pane", "door"]
+    sort: Literal["wall", "lintel", "pane", "door"]
     centre: Vec3
     half: Vec3
     yaw: float
@@ -88,7 +88,7 @@ def _slab(face: Wall, along: Vec2, side: float, reach: Vec2, heights: Vec2) -> I
     y = face.a[1] + along[1] * middle + along[0] * off
     half = ((end - begin) / 2, WALL_M / 4, (high - low) / 2)
     yaw = math.atan2(along[1], along[0])
-    yield Panel(face.id, "wall", (x, y, (low + high) / 2), half, yaw, paint.wall(face))
+    yield Panel(face.id, "lintel" if low > 0.0 else "wall", (x, y, (low + high) / 2), half, yaw, paint.wall(face))
 
 
 def _filling(opening: Opening) -> Panel:

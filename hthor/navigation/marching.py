@@ -1,0 +1,129 @@
+"""Compiled: range scans onto a grid, and obstacles onto levels; knows nothing of records.
+
+Cells are (ny, nx) uint8: 0 unknown, 1 free, 2 occupied. Levels are (ny, nx) uint8: 0 clear, 1 tight, 2 no room for the
+body. Signatures are explicit, so that loading a module loads its loops, from the cache when there is one.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numba
+
+
+@numba.njit("void(uint8[:,::1], int64, int64, int64[::1])", cache=True)
+def _open(cells: Any, row: int, column: int, bounds: Any) -> None:
+    """Make an unknown cell free, and keep the bounds of what is known."""
+    if cells[row, column] == 0:
+        cells[row, column] = 1
+        if column < bounds[0]:
+            bounds[0] = column
+        if column > bounds[1]:
+            bounds[1] = column
+        if row < bounds[2]:
+            bounds[2] = row
+        if row > bounds[3]:
+            bounds[3] = row
+
+
+@numba.njit("int64(uint8[:,::1], int64, int64, int64, int64, int64[::1], int32[:,::1], int64)", cache=True)
+def _fill(cells: Any, row: int, column: int, left: int, bottom: int, bounds: Any, found: Any, count: int) -> int:
+    """Make a cell occupied and note it; returns how many are noted."""
+    if cells[row, column] == 2:
+        return count
+    _open(cells, row, column, bounds)
+    cells[row, column] = 2
+    found[count, 0] = column + left
+    found[count, 1] = row + bottom
+    return count + 1
+
+
+@numba.njit(
+    "int64(uint8[:,::1], uint8[:,::1], int64, int64, float64, float64, float64, float64, float64[::1], float64[::1],"
+    " float64, float64, float64, int64[::1], int32[:,::1], int64)",
+    cache=True,
+)
+def integrate(
+    cells: Any,
+    near: Any,
+    left: int,
+    bottom: int,
+    cell: float,
+    x: float,
+    y: float,
+    yaw: float,
+    bearings: Any,
+    ranges: Any,
+    limit: float,
+    look_m: float,
+    look_rad: float,
+    bounds: Any,
+    found: Any,
+    count: int,
+) -> int:
+    """March every beam, and beams between neighbours so that no cell is skipped; returns the count of obstacles."""
+    px, py = x / cell - left, y / cell - bottom
+    row, column = math.floor(py), math.floor(px)
+    for j in range(row - 2, row + 3):
+        for i in range(column - 2, column + 3):
+            _open(cells, j, i, bounds)
+            near[j, i] = 1
+    n = len(ranges)
+    look = look_m / cell
+    for k in range(n):
+        angle = yaw + bearings[k]
+        ux, uy = math.cos(angle), math.sin(angle)
+        reach = ranges[k] / cell
+        hit = ranges[k] < limit - 1e-6
+        looking = abs(bearings[k]) <= look_rad
+        t = 0.0
+        end = reach - 0.3 if hit else reach
+        while t < end:
+            j, i = math.floor(py + t * uy), math.floor(px + t * ux)
+            _open(cells, j, i, bounds)
+            if looking and t <= look:
+                near[j, i] = 1
+            t += 1.0
+        if hit:
+            j, i = math.floor(py + (reach + 0.2) * uy), math.floor(px + (reach + 0.2) * ux)
+            count = _fill(cells, j, i, left, bottom, bounds, found, count)
+        # Between this beam and the next: free as far as the shorter one, from where a gap could open.
+        m = k + 1 if k + 1 < n else 0
+        gap = bearings[m] - bearings[k] if m else bearings[0] + 2.0 * math.pi - bearings[k]
+        if not 1e-9 < gap < 0.3:
+            continue
+        other = ranges[m] / cell
+        shorter = min(reach, other) - 1.0
+        between = math.ceil(shorter * gap) - 1
+        for s in range(1, between + 1):
+            angle = yaw + bearings[k] + gap * s / (between + 1)
+            vx, vy = math.cos(angle), math.sin(angle)
+            t = 1.0 / gap
+            while t < shorter:
+                _open(cells, math.floor(py + t * vy), math.floor(px + t * vx), bounds)
+                t += 1.0
+        # Two hits closer together than any body is wide belong to one obstacle.
+        if hit and ranges[m] < limit - 1e-6:
+            angle = yaw + bearings[m]
+            ax, ay = px + (reach + 0.2) * ux, py + (reach + 0.2) * uy
+            bx, by = px + (other + 0.2) * math.cos(angle), py + (other + 0.2) * math.sin(angle)
+            apart = math.hypot(bx - ax, by - ay)
+            if 1.0 < apart < 6.0:
+                for s in range(1, int(apart) + 1):
+                    f = s / (int(apart) + 1)
+                    j, i = math.floor(ay + f * (by - ay)), math.floor(ax + f * (bx - ax))
+                    count = _fill(cells, j, i, left, bottom, bounds, found, count)
+    return count
+
+
+@numba.njit("void(uint8[:,::1], int32[:,::1], int64, int64, int64, int64, int64[:,::1])", cache=True)
+def inflate(level: Any, obstacles: Any, first: int, last: int, left: int, bottom: int, disc: Any) -> None:
+    """Raise the level around obstacles ``first`` to ``last``; ``disc`` (N, 3) holds column and row offsets, level."""
+    ny, nx = level.shape
+    for k in range(first, last):
+        column, row = obstacles[k, 0] - left, obstacles[k, 1] - bottom
+        for d in range(disc.shape[0]):
+            i, j = column + disc[d, 0], row + disc[d, 1]
+            if 0 <= i < nx and 0 <= j < ny and level[j, i] < disc[d, 2]:
+                level[j, i] = disc[d, 2]
