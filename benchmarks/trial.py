@@ -21,6 +21,7 @@ from hthor.world import World
 
 
 def main() -> None:
+    """Play, time and print."""
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--agent", default="frontier", choices=plugins.names("agent"))
     options.add_argument("--suite", default="smoke")
@@ -32,29 +33,26 @@ def main() -> None:
     _row("whole trial as played", [cpu for cpu, _, _ in costs], "ms")
     _row("scaled to 90 s", [cpu * 900 / log.ticks for cpu, log, _ in costs], "ms")
     _row("times real time", [log.ticks * rules.TICK_S * 1000 / cpu for cpu, log, _ in costs], "x")
-    floors = {world.house.id: (world, floor(world)) for _, _, world in costs}
-    for house, (_, cost) in sorted(floors.items()):
-        print(f"bare mj_step floor, 90 s in {house}: {cost:.1f} ms")
+    worlds = {world.house.id: world for _, _, world in costs}
+    for house, world in sorted(worlds.items()):
+        print(f"bare mj_step floor, 90 s in {house}: {floor(world):.1f} ms")
 
 
 def _trials(agent: str, suite: str, count: int) -> Iterator[tuple[float, EpisodeLog, World]]:
-    """Play the first ``count`` trials of the suite; the first is played twice, so that compiling is not counted."""
+    """Play the first ``count`` trials of the suite; the very first twice, so that compiling is not counted."""
     stage = cast.Stage()
-    warm = False
-    done = 0
-    for session in sessions(tasks.suite(suite), agent=agent):
-        company = stage.enter(session)
-        for trial in session.trials:
-            world = stage.world(trial)
-            if not warm:
-                play(trial, world, company.human, company.robots())
-                warm = True
-            begin = time.process_time()
-            log = play(trial, world, company.human, company.robots())
-            yield (time.process_time() - begin) * 1000, log, world
-            done += 1
-            if done == count:
-                return
+    hands = sessions(tasks.suite(suite), agent=agent)
+    trials = [(session, trial) for session in hands for trial in session.trials][:count]
+    with stage.enter(hands[0]) as company:
+        first = trials[0][1]
+        play(first, stage.world(first), company.human, company.robots())
+    for session in hands:
+        with stage.enter(session) as company:
+            for _, trial in (pair for pair in trials if pair[0] is session):
+                world = stage.world(trial)
+                begin = time.process_time()
+                log = play(trial, world, company.human, company.robots())
+                yield (time.process_time() - begin) * 1000, log, world
 
 
 def floor(world: World, ticks: int = 900, repeats: int = 5) -> float:

@@ -8,8 +8,8 @@ edges of its map as such: it prefers places beside furniture where people usuall
 
 import math
 
-from hthor.navigation import Courtesy, Follower, GridMap, Planner, Survey, face
-from hthor.types import Action, Briefing, Detection, Motion, Observation, Rotate, Send, Wait
+from hthor.navigation import Courtesy, Follower, Frontier, GridMap, Planner, Survey, face
+from hthor.types import Action, Briefing, Detection, Motion, Observation, Pose, Rotate, Send, Wait
 
 LIKELY = {
     "apple": ("counter_top", "dining_table", "fridge"),
@@ -19,6 +19,8 @@ LIKELY = {
     "book": ("desk", "bed", "coffee_table", "sofa"),
     "remote_control": ("tv_stand", "coffee_table", "sofa"),
 }
+FINISH_FIRST_M = 2.0  # finish a room before the next is begun
+TURN_M_RAD = 1.5  # what a radian of turning costs, in metres
 WORTH_M = 2.0  # a likely piece of furniture is worth this much of a detour
 RIGHT_BESIDE_M = 1.0
 AGAIN_TICKS = 100
@@ -35,11 +37,12 @@ class Agent:
         self.map = GridMap()
         self.planner = Planner(self.map, self.body.radius, optimistic=False)
         self.courtesy = Courtesy(self.body, self.planner.straight)
-        self.follower = Follower()
+        self.follower = Follower(turn_rad=0.8)  # it may go sideways, which saves turns
         self.likely = LIKELY.get(briefing.target, ())
         self.turns = math.ceil(2 * math.pi / self.body.fov[0])
         self.furniture: dict[str, Detection] = {}
         self.target: Detection | None = None
+        self.place: Frontier | None = None
         self.messages = 0
         self.tried: dict[tuple[float, float], int] = {}
 
@@ -54,7 +57,7 @@ class Agent:
 
     def look(self, observation: Observation) -> None:
         """Bring the map and the lists of what was seen up to date."""
-        self.map.integrate(observation.scan, look_m=0.9, look_rad=0.45 * self.body.fov[0])
+        self.map.integrate(observation.scan, look_m=1.15, look_rad=0.45 * self.body.fov[0])
         self.target = next((seen for seen in observation.detections if seen.id == self.brief.target), self.target)
         self.furniture.update((seen.id, seen) for seen in observation.detections if seen.family == "furniture")
 
@@ -77,24 +80,27 @@ class Agent:
         if self.turns:
             self.turns -= 1
             return Rotate(yaw=self.body.fov[0], pitch=-0.2 - pose.pitch)
-        if self.follower.done or (observation.outcome and not observation.outcome.ok):
+        seen = self.place is not None and self.map.was_near(*self.place.centre)
+        if seen or self.follower.done or (observation.outcome and not observation.outcome.ok):
             self.choose(observation)
         return self.follower.next(pose) or Rotate(yaw=self.body.fov[0])
 
     def choose(self, observation: Observation) -> None:
         """Take the way to the best place: near, and beside likely furniture."""
-        survey = Survey(self.map, self.planner, observation.pose)
-        places = [(place.distance - self.worth(place.centre), place) for place in survey.unvisited]
-        places += [(place.distance + 1.0, place) for place in survey.frontiers]
-        places = [(cost, place) for cost, place in places if self.tried.get(place.centre, 0) < 2]
+        pose = observation.pose
+        survey = Survey(self.map, self.planner, pose, least=0.5)
+        places = [(cost(pose, place) - self.worth(place.centre), place) for place in survey.unvisited]
+        places += [(cost(pose, place) + FINISH_FIRST_M, place) for place in survey.frontiers]
+        places = [(price, place) for price, place in places if self.tried.get(place.centre, 0) < 2]
         if not places:
             self.tried.clear()
             self.map.forget_near()
             self.follower.take(None)
             return
-        _, best = min(places, key=lambda entry: (entry[0], entry[1].centre))
-        self.tried[best.centre] = self.tried.get(best.centre, 0) + 1
-        self.follower.take(survey.path(best))
+        self.place = min(places, key=lambda entry: (entry[0], entry[1].centre))[1]
+        centre = self.place.centre
+        self.tried[centre] = self.tried.get(centre, 0) + 1
+        self.follower.take(survey.path(self.place))
 
     def worth(self, centre: tuple[float, float]) -> float:
         """How much detour [m] a place deserves for the furniture beside it."""
@@ -104,3 +110,10 @@ class Agent:
             if math.dist(centre, thing.position[:2]) < RIGHT_BESIDE_M + max(thing.size[:2]) / 2
         )
         return WORTH_M if any(thing.kind in self.likely for thing in beside) else 0.0
+
+
+def cost(pose: Pose, place: Frontier) -> float:
+    """The way to a place [m], turns included."""
+    x, y = place.centre
+    turn = math.remainder(math.atan2(y - pose.y, x - pose.x) - pose.yaw, 2 * math.pi)
+    return place.distance + TURN_M_RAD * abs(turn)

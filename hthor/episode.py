@@ -116,7 +116,7 @@ class _Episode:
         met = False
         while not met and self.world.tick < self.limit:
             self._tick()
-            met = self.kind.met(self.task, self.world.snapshot())
+            met = self.kind.met(self.task, self.world.snapshot(), self.world.house)
         ticks = self.world.tick
         self.events.append(Event(tick=ticks, seat=HUMAN, kind="success" if met else "timeout"))
         trust = self.human.rate(met, ticks)

@@ -74,7 +74,7 @@ def test_version(hthor):
         (("eval", "--agnet", "silent"), ("No such option", "--agent")),
         (("houses", "chekc", "x"), ("No such command 'chekc'", "check")),
         (("eval",), ("Missing option", "--agent")),
-        (("eval", "--agent", "silent", "--jobs", "0"), ("--jobs", "0 is not in the range")),
+        (("eval", "--agent", "silent", "--jobs", "0"), ("--jobs", "greater than or equal to 1")),
         (
             ("eval", "--agent", "silnt", "--suite", "fake"),
             ("unknown agent 'silnt'. Did you mean 'silent'?", "my_agent.py"),

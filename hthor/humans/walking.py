@@ -24,8 +24,7 @@ _CHECK_TICKS = 5
 _CREEP = 0.3
 _DETOUR, _DETOUR_M = 1.4, 1.5
 _GIVE_UP, _REPLANS = 12, 100
-_POLITE_S = 0.5
-_TOUCH_M = 0.06
+_POLITE_S, _AVOID_S = 0.5, 6.0
 
 
 def never() -> bool:
@@ -43,6 +42,7 @@ class Walker:
     def __init__(self, me: Subject, x: float, y: float) -> None:
         self.me, self.haste, self._bumps = me, 1.0, 0
         self._robot: tuple[float, float, float] | None = None
+        self._robot_until = -1
         self._draw_map(x, y)
 
     def _draw_map(self, x: float, y: float) -> None:
@@ -69,22 +69,24 @@ class Walker:
         Args:
             stop: asked before each motion; the walk ends, well, when it says so.
         """
-        left, self._bumps, self._robot = math.inf, 0, None
+        left, self._bumps = math.inf, 0
         for _ in range(_REPLANS):
             path = self._way(goal, within)
             if path is None or length(path) > _DETOUR * left + _DETOUR_M:
                 return False
-            left = length(path)
+            left, bumps = length(path), self._bumps
             ended = yield from self._follow(path, stop)
             if ended:
                 return True
+            if self._bumps > bumps:
+                left = math.inf
             if self._bumps >= _GIVE_UP:
                 return False
         return False
 
     def _way(self, goal: Vec2, within: float) -> tuple[Vec2, ...] | None:
         """A path to the goal, round the robot that is in the way; None when there is none or the robot stands there."""
-        if self._robot is not None:
+        if self._robot is not None and self.me.now.tick <= self._robot_until:
             x, y, radius = self._robot
             if math.dist((x, y), goal) <= radius + self.me.body.radius + within:
                 return None
@@ -136,31 +138,23 @@ class Walker:
         return outcome is not None and outcome.motion == "move" and not outcome.ok
 
     def _give_way(self, ahead: Vec2) -> Deed:
-        """Wait for a robot in the way, then plan round it; put anything else that is felt again on the map."""
+        """Put furniture that is felt on the map; wait for what moves, then plan round it."""
         self._bumps += 1
-        robot = self._touched(ahead)
-        if robot is None:
-            if self._bumps > 1:
-                self._mark(ahead)
+        outcome = self.me.now.outcome
+        if self._bumped() and outcome is not None and not outcome.by.startswith("robot"):
+            self._mark(ahead)
             return True
+        obstacle = self._felt(ahead)
         yield Wait(seconds=_POLITE_S)
         if self._bumps > 1:
-            self._robot = self._touched(ahead)
+            self._robot, self._robot_until = obstacle, self.me.now.tick + round(_AVOID_S / self.me.tick_s)
         return True
 
-    def _touched(self, ahead: Vec2) -> tuple[float, float, float] | None:
-        """Middle and radius [m] of the robot that stops the person on the way ``ahead``, None when none does."""
-        (x, y), outcome = self.me.here, self.me.now.outcome
-        for seen in self.me.now.detections:
-            if seen.family == "robot":
-                radius = max(seen.size[:2]) / 2.0
-                gap = math.dist((x, y), seen.position[:2]) - radius - self.me.body.radius
-                if gap < _TOUCH_M:
-                    return (seen.position[0], seen.position[1], radius)
-        if outcome is None or not outcome.by.startswith("robot"):
-            return None
-        share = 2.0 * self.me.body.radius / max(math.dist((x, y), ahead), 1e-9)
-        return (x + share * (ahead[0] - x), y + share * (ahead[1] - y), self.me.body.radius)
+    def _felt(self, ahead: Vec2) -> tuple[float, float, float]:
+        """Middle and radius [m] of what stands in the way ``ahead``: as large as oneself, as near as a touch."""
+        (x, y), radius = self.me.here, self.me.body.radius
+        share = 2.0 * radius / max(math.dist((x, y), ahead), 1e-9)
+        return (x + share * (ahead[0] - x), y + share * (ahead[1] - y), radius)
 
     def _mark(self, point: Vec2) -> None:
         """Something that no scan showed stands in the direction of ``point`` [m], in touch with the body."""

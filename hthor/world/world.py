@@ -102,6 +102,11 @@ class World:
         self._obstacles = Obstacles(self.house)
         self._pictures = Pictures(self.house, env, self._scene, self._seats)
 
+    @property
+    def model(self) -> Any:
+        """The compiled `mujoco.MjModel`, for whoever wants the engine itself; changing it voids every promise here."""
+        return self._env.model
+
     # ------------------------------------------------------------------------------------------------------- episodes
 
     def reset(self, task: TaskSpec) -> None:
