@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hthor import houses, navigation
 from hthor.houses.freespace import FreeSpace
 from hthor.houses.geodesic import Geodesics
-from hthor.navigation import Courtesy, Follower, GridMap, Planner, Survey, face, frontiers, lookout, unvisited
+from hthor.navigation import Courtesy, Follower, GridMap, Planner, Survey, face, frontiers, park, unvisited
 from hthor.navigation.follow import shift, toward
 from hthor.navigation.map import CELL_M, FREE, OCCUPIED, UNKNOWN
 from hthor.navigation.planner import length
@@ -329,11 +329,21 @@ def test_courtesy_without_room_waits_and_a_bump_counts() -> None:
     assert Courtesy(BODY, lambda a, b: True).motion(look(0, by="table"), 0.0) is None
 
 
-def test_a_lookout_is_near_but_not_in_front() -> None:
-    spot = lookout((0.0, 0.0), (0.5, 0.0), lambda a, b: True)
+def test_a_parked_body_is_in_nobodys_way(known: GridMap) -> None:
+    planner = Planner(known, RADIUS)
+    free = (known.cells == FREE) & (planner.levels < 2)
+    origin = (known.left * CELL_M, known.bottom * CELL_M)
+    doorway, apple = (4.0, 2.95), (4.9, 2.9)
+    spot = park(free, origin, CELL_M, doorway, apple, apart_m=1.2)
     assert spot is not None
-    assert 1.0 <= math.dist(spot, (0.5, 0.0)) <= 2.0
-    assert lookout((0.0, 0.0), (0.5, 0.0), lambda a, b: False) is None
+    assert math.dist(spot, apple) >= 1.2
+    assert planner.fits(*spot)
+    grid = Planner(known, RADIUS)
+    for k in range(12):  # its outline as an obstacle: all rooms can still be reached
+        angle = k * math.pi / 6
+        known.mark_blocked(spot[0] + 0.2 * math.cos(angle), spot[1] + 0.2 * math.sin(angle))
+    assert grid.path((1.0, 1.0), (7.3, 0.7)) is not None
+    assert park(free & False, origin, CELL_M, doorway, apple, apart_m=1.2) is None
 
 
 def test_unknown_names_are_refused() -> None:

@@ -8,6 +8,8 @@ from hthor.types import Briefing, Detection, Observation, Receipt
 
 AGAIN_S = 10.0
 """How long to leave the person alone after a message was declined or covered."""
+APART_M = 1.3
+"""How far from the target a robot waits: out of the person's way, and close enough to see it."""
 _HOLLOW = ("bathtub", "fridge", "garbage_can", "sink")
 
 

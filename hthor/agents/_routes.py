@@ -10,6 +10,7 @@ import numpy as np
 from hthor import geometry
 from hthor.houses.freespace import FreeSpace
 from hthor.houses.geodesic import geodesics
+from hthor.navigation.parking import park
 from hthor.types import BodySpec, HouseSpec, Room, Vec2, Vec3
 
 _MARGIN_M = 0.1
@@ -70,6 +71,11 @@ class Routes:
                 spots.append(spot)
         goal = self.space.nearest_free(place[0], place[1])
         return min(spots, key=lambda spot: math.dist(here, spot) + self.ways.distance(goal, spot), default=here)
+
+    def retreat(self, here: Vec2, point: Vec2, apart_m: float) -> tuple[Vec2, ...]:
+        """The way to a spot where the body is in nobody's way, ``apart_m`` metres from ``point``; () to stay."""
+        spot = park(self.space.free, self.space.origin, self.space.cell, here, point, apart_m)
+        return () if spot is None else self.ways.path(here, spot)
 
     def to_view(self, here: Vec2, place: Vec3, but: Sequence[Vec2] = ()) -> tuple[Vec2, ...]:
         """The shortest way to a spot from which ``place`` is within range in the same room, () when there is none.

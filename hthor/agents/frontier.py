@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
-from hthor.agents._offers import Offers, sighting, spot
-from hthor.types import HUMAN, Action, Briefing, Detection, Motion, Observation, Send, Vec2, Wait
+from hthor.agents._offers import APART_M, Offers, sighting, spot
+from hthor.types import HUMAN, Action, Briefing, Detection, Motion, Observation, Send, Wait
 
 if TYPE_CHECKING:
     from hthor.agents._explorer import Explorer
@@ -60,15 +59,13 @@ class Agent:
         return Send(text=sighting(seen, self.kinds), object=seen.id, position=seen.position)
 
     def _watch(self, observation: Observation) -> Motion:
-        """Stand aside once, then keep the target in view."""
-        from hthor.navigation.courtesy import lookout
-        from hthor.navigation.follow import face, shift
+        """Go where it is in nobody's way, and keep the target in view from there."""
+        from hthor.navigation.follow import face
 
         assert self.target is not None
         pose, where = observation.pose, self.target.position
         if not self.retreated:
             self.retreated = True
-            aside: Vec2 | None = lookout((pose.x, pose.y), (where[0], where[1]), self.explorer.fits)
-            if aside is not None and math.dist((pose.x, pose.y), (where[0], where[1])) < 1.0:
-                return shift(pose, aside)
-        return face(pose, where, self.briefing.body.eye, self.briefing.body.pitch_limit) or Wait(seconds=0.5)
+            self.explorer.retreat(pose, (where[0], where[1]), APART_M)
+        step = self.explorer.follower.next(pose)
+        return step or face(pose, where, self.briefing.body.eye, self.briefing.body.pitch_limit) or Wait(seconds=0.5)

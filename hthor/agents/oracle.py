@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from hthor import geometry, rules
-from hthor.agents._offers import Offers, place, sighting, spot, title
+from hthor.agents._offers import APART_M, Offers, place, sighting, spot, title
 from hthor.types import HUMAN, Action, Briefing, Motion, Observation, Send, Thing, ThingState, Vec2, Vec3, Wait
 
 if TYPE_CHECKING:
@@ -39,11 +39,11 @@ class Agent:
         self.routes: Routes = Routes(briefing.house, briefing.body)
         self.courtesy: Courtesy = Courtesy(briefing.body, self.routes.fits)
         self.follower: Follower = Follower(step=0.5)
-        self.offers = {"target": Offers(briefing, most=3), "destination": Offers(briefing, most=3)}
+        self.offers = {"target": Offers(briefing, most=3), "destination": Offers(briefing, most=1)}
         self.kinds = {thing.id: thing.kind for thing in briefing.house.things}
         self.goal: Vec3 | None = None
         self.misses: list[Vec2] = []
-        self.spoken_about = ""
+        self.spoken_about = self.aside = ""
 
     def act(self, observation: Observation) -> Action:
         """Tell when it is time, and go to where the errand is."""
@@ -141,7 +141,7 @@ class Agent:
             self.misses.append((observation.pose.x, observation.pose.y))
             self._route(observation, where)
             return self.follower.next(observation.pose) or Wait(seconds=0.5)
-        return self._stand_aside(observation, where)
+        return self._stand_aside(observation, where, errand)
 
     def _route(self, observation: Observation, where: Vec3) -> None:
         here = (observation.pose.x, observation.pose.y)
@@ -154,10 +154,11 @@ class Agent:
         via = self.routes.around(here, where, people) if people else self.routes.clear(here)
         self.follower.take((via, *self.routes.to_view(via, where, self.misses)))
 
-    def _stand_aside(self, observation: Observation, where: Vec3) -> Motion:
-        from hthor.navigation.courtesy import lookout
-        from hthor.navigation.follow import shift
-
+    def _stand_aside(self, observation: Observation, where: Vec3, errand: str) -> Motion:
+        """Go where it is in nobody's way, once."""
+        if self.aside == errand:
+            return Wait(seconds=0.5)
+        self.aside = errand
         here = (observation.pose.x, observation.pose.y)
-        aside = lookout(here, (where[0], where[1]), self.routes.fits) if math.dist(here, where[:2]) < 1.0 else None
-        return Wait(seconds=0.5) if aside is None else shift(observation.pose, aside)
+        self.follower.take(self.routes.retreat(here, (where[0], where[1]), APART_M))
+        return self.follower.next(observation.pose) or Wait(seconds=0.5)

@@ -20,6 +20,7 @@ from hthor.humans.search import Option, Search
 from hthor.humans.subject import Deed, Subject
 from hthor.humans.walking import Walker, never
 from hthor.navigation.frontier import frontiers
+from hthor.navigation.map import FREE
 from hthor.types import Detection, Motion, Open, Pick, Vec2, Vec3, Wait
 from hthor.types import Place as Put
 
@@ -29,6 +30,7 @@ _EDGE_M = 0.12
 _SWEEP_RAD = 1.0
 _REACH = 0.96
 _TRIED_M = 0.35
+_GLIMPSE_M = 1.5
 _PATIENCE = 6
 _PAUSE_S = 0.3
 
@@ -203,26 +205,41 @@ class Errands:
 
     def _approach(self, point: Vec3, support: str, reach: float, stop: Callable[[], bool] = never) -> Deed:
         """Walk to within ``reach`` [m] of an object, a little elsewhere at each new try."""
-        place = self.memory.places.get(support) or self.memory.at(point)
-        spots = standing.near(point, place, self.walker, reach)
-        if place is not None and place.state:
-            spots = standing.in_reach(standing.at(place, self.walker, front=True), point, reach) or spots
+
+        def spots() -> list[Vec2]:
+            place = self.memory.places.get(support) or self.memory.at(point)
+            around = standing.near(point, place, self.walker, reach)
+            if place is None or not place.state:
+                return around
+            return standing.in_reach(standing.at(place, self.walker, front=True), point, reach) or around
+
         self._tries += 1
-        spot = self._nearest(spots, point)
-        if spot is not None:
-            arrived = yield from self.walker.go(spot, stop=stop)
-        else:
-            arrived = yield from self.walker.go((point[0], point[1]), within=reach, stop=stop)
+        arrived = yield from self._stand(spots, point, reach, stop)
         yield from self.me.look_at(point)
         return arrived
 
     def _go_to(self, place: Place) -> Deed:
-        spots = standing.at(place, self.walker, front=bool(place.state))
-        spot = self._nearest(spots, place.centre)
-        if spot is None:
-            reach = self.me.body.reach * _REACH + min(place.size[:2]) / 2.0
-            return (yield from self.walker.go((place.centre[0], place.centre[1]), within=reach))
-        return (yield from self.walker.go(spot))
+        def spots() -> list[Vec2]:
+            return standing.at(place, self.walker, front=bool(place.state))
+
+        reach = self.me.body.reach * _REACH + min(place.size[:2]) / 2.0
+        return (yield from self._stand(spots, place.centre, reach, never))
+
+    def _stand(self, spots: Callable[[], list[Vec2]], point: Vec3, reach: float, stop: Callable[[], bool]) -> Deed:
+        """Walk to the best of the spots; choose again once near enough to see whether one can stand there."""
+        for _ in range(_PATIENCE):
+            spot = self._nearest(spots(), point)
+            if spot is None:
+                return (yield from self.walker.go((point[0], point[1]), within=reach, stop=stop))
+            guessed = self.walker.grid.at(*spot) != FREE and math.dist(self.me.here, spot) > _GLIMPSE_M
+            arrived = yield from self.walker.go(spot, stop=partial(self._halt, stop, spot if guessed else None))
+            if not arrived or not guessed or stop() or math.dist(self.me.here, spot) < _TRIED_M:
+                break
+            self._tried.pop()
+        return arrived
+
+    def _halt(self, stop: Callable[[], bool], guess: Vec2 | None) -> bool:
+        return stop() or (guess is not None and math.dist(self.me.here, guess) < _GLIMPSE_M)
 
     def _nearest(self, spots: list[Vec2], point: Vec3) -> Vec2 | None:
         """The nearest spot on foot; after failures another one, from where the object was seen if possible."""

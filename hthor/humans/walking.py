@@ -10,10 +10,13 @@ import math
 from collections.abc import Callable
 from itertools import pairwise
 
+from msgspec import Struct
+
 from hthor.geometry import wrap
+from hthor.humans.memory import Doorway, Memory
 from hthor.humans.subject import GAZE_PITCH, Deed, Subject
 from hthor.navigation.follow import toward
-from hthor.navigation.map import CELL_M, GridMap
+from hthor.navigation.map import CELL_M, FREE, GridMap
 from hthor.navigation.planner import Planner, length
 from hthor.types import Motion, Move, Rotate, Vec2, Wait
 
@@ -23,8 +26,18 @@ _ARRIVED_M = 0.03
 _CHECK_TICKS = 5
 _CREEP = 0.3
 _DETOUR, _DETOUR_M = 1.4, 1.5
+_FAMILIAR, _FAMILIAR_M = 1.5, 2.0
+_DOORWAY_M = 3.0
 _GIVE_UP, _REPLANS = 12, 100
 _POLITE_S, _AVOID_S = 0.5, 6.0
+
+
+class Way(Struct, frozen=True, kw_only=True):
+    """A path [m] to a goal ``metres`` away, or only to just behind the ``doorway`` that should lead there."""
+
+    path: tuple[Vec2, ...]
+    metres: float
+    doorway: Doorway | None = None
 
 
 def never() -> bool:
@@ -39,8 +52,8 @@ class Walker:
     short move a tick, so the mean speed on a straight way is exactly the pace.
     """
 
-    def __init__(self, me: Subject, x: float, y: float) -> None:
-        self.me, self.haste, self._bumps = me, 1.0, 0
+    def __init__(self, me: Subject, memory: Memory, x: float, y: float) -> None:
+        self.me, self.memory, self.haste, self._bumps = me, memory, 1.0, 0
         self._robot: tuple[float, float, float] | None = None
         self._robot_until = -1
         self._draw_map(x, y)
@@ -69,30 +82,70 @@ class Walker:
         Args:
             stop: asked before each motion; the walk ends, well, when it says so.
         """
-        left, self._bumps = math.inf, 0
+        self._bumps, budget, here = 0, math.inf, self.me.here
         for _ in range(_REPLANS):
-            path = self._way(goal, within)
-            if path is None or length(path) > _DETOUR * left + _DETOUR_M:
+            way = self._way(goal, within)
+            budget, here = budget - math.dist(here, self.me.here), self.me.here
+            if way is None or way.metres > budget:
                 return False
-            left, bumps = length(path), self._bumps
-            ended = yield from self._follow(path, stop)
-            if ended:
+            budget, bumps = min(budget, _DETOUR * way.metres + _DETOUR_M), self._bumps
+            ended = yield from self._follow(way.path, stop)
+            if ended and (way.doorway is None or stop()):
                 return True
+            if ended and way.doorway is not None:
+                way.doorway.passed = True
             if self._bumps > bumps:
-                left = math.inf
+                budget = math.inf
             if self._bumps >= _GIVE_UP:
                 return False
         return False
 
-    def _way(self, goal: Vec2, within: float) -> tuple[Vec2, ...] | None:
-        """A path to the goal, round the robot that is in the way; None when there is none or the robot stands there."""
+    def _way(self, goal: Vec2, within: float) -> Way | None:
+        """How to get to the goal: where one has been if that is not much farther, else by a doorway, else straight on.
+
+        None when there is no way or a robot stands on the goal.
+        """
         if self._robot is not None and self.me.now.tick <= self._robot_until:
             x, y, radius = self._robot
             if math.dist((x, y), goal) <= radius + self.me.body.radius + within:
                 return None
-            return _planner_with(self.grid, self.me.body.radius, x, y, radius).path(self.me.here, goal, within)
-        path = self.planner.path(self.me.here, goal, within)
-        return self.planner.path(self.me.here, goal, within) if path is None and self._doubted() else path
+            return _as_way(_planner_with(self.grid, self.me.body.radius, x, y, radius).path(self.me.here, goal, within))
+        hopeful = _as_way(self.planner.path(self.me.here, goal, within))
+        if hopeful is None:
+            return _as_way(self.planner.path(self.me.here, goal, within)) if self._doubted() else None
+        if all(self._seen(a, b) for a, b in pairwise(hopeful.path)):
+            return hopeful
+        known = self._known(goal, within)
+        if known is not None and known.metres <= _FAMILIAR * hopeful.metres + _FAMILIAR_M:
+            return known
+        return self._by_doorway(goal, hopeful.metres + _DOORWAY_M) or hopeful
+
+    def _seen(self, a: Vec2, b: Vec2) -> bool:
+        """Whether the floor from ``a`` to ``b`` [m] was seen."""
+        count = max(1, math.ceil(math.dist(a, b) / (4.0 * CELL_M)))
+        points = ((a[0] + k / count * (b[0] - a[0]), a[1] + k / count * (b[1] - a[1])) for k in range(count + 1))
+        return all(self.grid.at(*point) == FREE for point in points)
+
+    def _known(self, goal: Vec2, within: float) -> Way | None:
+        """A way over floor that was seen."""
+        if within <= 0.0 and self.grid.at(*goal) != FREE:
+            return None
+        self.planner.optimistic = False
+        try:
+            return _as_way(self.planner.path(self.me.here, goal, within))
+        finally:
+            self.planner.optimistic = True
+
+    def _by_doorway(self, goal: Vec2, most: float) -> Way | None:
+        """The way through the doorway not yet passed that promises the shortest way, ``most`` metres in all."""
+        doors = [door for door in self.memory.doorways.values() if door.sides and not door.spent]
+        if not doors:
+            return None
+        before = self.planner.distances(self.me.here, [door.beyond for door in doors])
+        metres = [far + math.dist(door.beyond, goal) for far, door in zip(before, doors, strict=True)]
+        best = min(range(len(doors)), key=lambda k: (metres[k], doors[k].id))
+        path = self.planner.path(self.me.here, doors[best].beyond) if metres[best] <= most else None
+        return None if path is None else Way(path=path, metres=metres[best], doorway=doors[best])
 
     def _follow(self, path: tuple[Vec2, ...], stop: Callable[[], bool]) -> Deed:
         """Walk the path; False when it turns out to be blocked."""
@@ -171,6 +224,10 @@ class Walker:
         self._draw_map(*self.me.here)
         self.sense()
         return True
+
+
+def _as_way(path: tuple[Vec2, ...] | None) -> Way | None:
+    return None if path is None else Way(path=path, metres=length(path))
 
 
 def _planner_with(grid: GridMap, radius: float, x: float, y: float, size: float) -> Planner:

@@ -9,15 +9,16 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hthor.navigation.courtesy import Courtesy, lookout
+    from hthor.navigation.courtesy import Courtesy
     from hthor.navigation.follow import Follower, face
     from hthor.navigation.frontier import Frontier, Survey, frontiers, unvisited
     from hthor.navigation.map import FREE, OCCUPIED, UNKNOWN, GridMap
+    from hthor.navigation.parking import park
     from hthor.navigation.planner import Field, Planner
 
 _HOMES = {
     "Courtesy": "courtesy",
-    "lookout": "courtesy",
+    "park": "parking",
     "Follower": "follow",
     "face": "follow",
     "Frontier": "frontier",
@@ -45,7 +46,7 @@ __all__ = [
     "Survey",
     "face",
     "frontiers",
-    "lookout",
+    "park",
     "unvisited",
 ]
 

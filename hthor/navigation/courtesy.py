@@ -90,26 +90,5 @@ class Courtesy:
         return 0.0
 
 
-def lookout(here: Vec2, point: Vec2, fits: Callable[[Vec2, Vec2], bool]) -> Vec2 | None:
-    """A spot close by from which to watch ``point`` [m] without standing in front of it; None to stay.
-
-    Of the spots 0.5 m and 1 m away that the body can go straight to, 1 to 2 m from the point, the one with most room.
-    """
-    best, most = None, -1
-    for reach in (0.5, 1.0):
-        for k in range(_DIRECTIONS):
-            angle = 2.0 * math.pi * k / _DIRECTIONS
-            spot = (here[0] + reach * math.cos(angle), here[1] + reach * math.sin(angle))
-            if 1.0 <= math.dist(spot, point) <= 2.0 and fits(here, spot):
-                room = sum(fits(spot, _ring(spot, j)) for j in range(8))
-                if room > most:
-                    best, most = spot, room
-    return best
-
-
-def _ring(spot: Vec2, k: int) -> Vec2:
-    return (spot[0] + 0.5 * math.cos(k * math.pi / 4.0), spot[1] + 0.5 * math.sin(k * math.pi / 4.0))
-
-
 def _apart(observation: Observation, seen: Detection) -> float:
     return math.hypot(seen.position[0] - observation.pose.x, seen.position[1] - observation.pose.y)

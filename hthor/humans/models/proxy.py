@@ -80,7 +80,7 @@ class Model:
 
     def _awake(self, observation: Observation) -> tuple[Walker, Errands]:
         if self._walker is None:
-            self._walker = Walker(self._me, observation.pose.x, observation.pose.y)
+            self._walker = Walker(self._me, self._memory, observation.pose.x, observation.pose.y)
             self._errands = Errands(self._me, self._eyes, self._memory, self._walker)
             self._deed = self._errands.begin()
         return self._walker, self._errands
