@@ -32,7 +32,7 @@ class Agent:
         self.explorer: Explorer = Explorer(briefing.body)
         self.courtesy: Courtesy = Courtesy(briefing.body, self.explorer.fits)
         self.target: Detection | None = None
-        self.retreated = False
+        self.aside = False
         self.kinds: dict[str, str] = {}
 
     def act(self, observation: Observation) -> Action:
@@ -59,13 +59,18 @@ class Agent:
         return Send(text=sighting(seen, self.kinds), object=seen.id, position=seen.position)
 
     def _watch(self, observation: Observation) -> Motion:
-        """Go where it is in nobody's way, and keep the target in view from there."""
+        """Wait where it is in nobody's way, facing the target; come back when there is reason to speak again."""
         from hthor.navigation.follow import face
 
         assert self.target is not None
-        pose, where = observation.pose, self.target.position
-        if not self.retreated:
-            self.retreated = True
-            self.explorer.retreat(pose, (where[0], where[1]), APART_M)
-        step = self.explorer.follower.next(pose)
-        return step or face(pose, where, self.briefing.body.eye, self.briefing.body.pitch_limit) or Wait(seconds=0.5)
+        pose, (x, y, _) = observation.pose, self.target.position
+        follower, body = self.explorer.follower, self.briefing.body
+        speaking = self.target.held_by != HUMAN and self.offers.due(observation.tick, observation.receipt)
+        if self.aside and speaking:
+            self.aside = False
+            follower.take(self.explorer.planner.path((pose.x, pose.y), (x, y), within=APART_M))
+        elif not self.aside and not speaking:
+            self.aside = True
+            self.explorer.retreat(pose, (x, y), APART_M)
+        step = follower.next(pose)
+        return step or face(pose, self.target.position, body.eye, body.pitch_limit) or Wait(seconds=0.5)

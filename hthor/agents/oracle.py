@@ -75,17 +75,19 @@ class Agent:
         return min(things, key=lambda thing: (self.routes.near(here, thing.centre), thing.id))
 
     def _say(self, observation: Observation, target: ThingState, errand: str, where: Vec3) -> Send | None:
-        offers = self.offers[errand]
-        receipt = observation.receipt if self.spoken_about == errand else None
-        if not offers.due(observation.tick, receipt):
+        if not self._is_due(observation, errand):
             return None
         message = (
             self._destined(observation, target, where) if errand == "destination" else self._found(observation, target)
         )
         if message is not None:
-            offers.note(observation.tick)
+            self.offers[errand].note(observation.tick)
             self.spoken_about = errand
         return message
+
+    def _is_due(self, observation: Observation, errand: str) -> bool:
+        receipt = observation.receipt if self.spoken_about == errand else None
+        return self.offers[errand].due(observation.tick, receipt)
 
     def _found(self, observation: Observation, target: ThingState) -> Send | None:
         seen = spot(observation, target.id)
@@ -127,6 +129,9 @@ class Agent:
 
         if self.goal is None or math.dist(self.goal, where) > 0.3:
             self.goal, self.misses = where, []
+            self._route(observation, where)
+        elif self.aside == errand and self._is_due(observation, errand):
+            self.aside = ""
             self._route(observation, where)
         elif observation.outcome is not None and observation.outcome.motion == "move" and not observation.outcome.ok:
             self._reroute(observation, where)

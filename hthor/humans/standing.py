@@ -13,8 +13,8 @@ from hthor.types import Vec2, Vec3
 GAP_M = 0.42
 """From the edge of a place to the middle of who stands at it."""
 _SPACING_M = 0.6
-_RING_M = (0.6, 0.8, 1.0, 1.14)
-_DIRECTIONS = 16
+_RING_M = (0.6, 0.75, 0.9, 1.0, 1.14)
+_DIRECTIONS = 20
 _MARGIN_M = 0.12
 
 

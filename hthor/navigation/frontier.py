@@ -26,20 +26,16 @@ class Frontier(Struct, frozen=True, kw_only=True):
     distance: float
 
 
-def frontiers(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> list[Frontier]:
-    """Groups of at least ``least`` [m] of reachable free cells next to unknown ones, in order of their place."""
-    return _groups(grid, _known(planner, pose), planner, True, least)
-
-
-def unvisited(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.3) -> list[Frontier]:
-    """Groups of reachable free cells along obstacles that were never looked at from close by, see `GridMap.near`."""
-    return _groups(grid, _known(planner, pose), planner, False, least)
-
-
 class Survey:
-    """Both kinds of place by one search, with the ways to them."""
+    """Every place worth going to, by one search, with the ways there.
+
+    Attributes:
+        frontiers: groups of reachable free cells next to unknown ones.
+        unvisited: groups along obstacles that were never looked at from close by, see `GridMap.near`.
+    """
 
     def __init__(self, grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> None:
+        """Groups of at least ``least`` [m] are listed, in order of their place."""
         self._field = _known(planner, pose)
         self.frontiers = _groups(grid, self._field, planner, True, least)
         self.unvisited = _groups(grid, self._field, planner, False, least)
@@ -47,6 +43,16 @@ class Survey:
     def path(self, place: Frontier) -> tuple[Vec2, ...] | None:
         """The way to a place, through what is known to be free; ask before the map grows."""
         return self._field.path(place.centre)
+
+
+def frontiers(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> list[Frontier]:
+    """Groups of at least ``least`` [m] of reachable free cells next to unknown ones, in order of their place."""
+    return Survey(grid, planner, pose, least).frontiers
+
+
+def unvisited(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.3) -> list[Frontier]:
+    """Groups of reachable free cells along obstacles that were never looked at from close by, see `GridMap.near`."""
+    return Survey(grid, planner, pose, least).unvisited
 
 
 def _known(planner: Planner, pose: Pose) -> Field:

@@ -9,72 +9,69 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from hthor.navigation.searching import _DX, _DY, FAR, nearest, search
 from hthor.types import Vec2
 
 BERTH_M = 0.45
 """Nobody else's axis comes closer than this to a standing body: both radii and a little."""
 _ROUND_M = 0.95
 _FAR_M = 3.0
+_SNAP_CELLS = 30
 
 
 def park(free: NDArray[np.bool_], origin: Vec2, cell: float, here: Vec2, point: Vec2, apart_m: float) -> Vec2 | None:
-    """The nearest spot that blocks no passage and leaves room around ``point``; None when there is none close by.
+    """The spot nearby where least traffic to ``point`` would pass; None when there is none.
 
-    A spot blocks no passage when the free floor around it hangs together without it.
+    It blocks no passage: the free floor around it hangs together without it. Traffic comes from everywhere alike, by
+    the shortest ways.
 
     Args:
         free: (ny, nx) where an axis may be; its corner lies at ``origin`` [m], its cells are ``cell`` metres wide.
-        here: where the body stands [m]. It walks at most 3 m to the spot.
-        point: where others have business [m]; the spot is ``apart_m`` metres away from it.
+        here: where the body stands [m]. The spot is at most 3 m away.
+        point: where others have business [m]; the spot is at least ``apart_m`` metres away from it.
     """
+    cells = np.array(free, dtype=np.uint8)
     column, row = math.floor((here[0] - origin[0]) / cell), math.floor((here[1] - origin[1]) / cell)
-    found = _search(
-        np.array(free, dtype=np.uint8),
-        row,
-        column,
-        (point[0] - origin[0]) / cell,
-        (point[1] - origin[1]) / cell,
-        apart_m / cell,
-        BERTH_M / cell,
-        _ROUND_M / cell,
-        _FAR_M / cell,
-    )
+    x, y = (point[0] - origin[0]) / cell, (point[1] - origin[1]) / cell
+    flow = _traffic(cells, x, y)
+    if flow is None:
+        return None
+    found = _search(cells, flow, row, column, x, y, apart_m / cell, BERTH_M / cell, _ROUND_M / cell, _FAR_M / cell)
     if found < 0:
         return None
     row, column = divmod(int(found), free.shape[1])
     return (origin[0] + (column + 0.5) * cell, origin[1] + (row + 0.5) * cell)
 
 
-@numba.njit(
-    "int64(uint8[:,::1], int64, int64, float64, float64, float64, float64, float64, float64)",
-    cache=True,
-)
-def _search(
-    free: Any, row: int, column: int, x: float, y: float, apart: float, inner: float, outer: float, far: float
-) -> int:
-    """Flat index of the first good cell in order of steps from the start; -1 when there is none."""
-    ny, nx = free.shape
-    seen = np.zeros((ny, nx), dtype=np.uint8)
-    queue = np.empty(ny * nx, dtype=np.int64)
-    count, done = 0, 0
-    for j in range(max(row - 1, 0), min(row + 2, ny)):
-        for i in range(max(column - 1, 0), min(column + 2, nx)):
-            seen[j, i] = 1
-            queue[count] = j * nx + i
-            count += 1
-    while done < count:
-        j, i = queue[done] // nx, queue[done] % nx
-        done += 1
-        if free[j, i] and math.hypot(i + 0.5 - x, j + 0.5 - y) >= apart and _pieces(free, j, i, inner, outer) <= 1:
-            return j * nx + i
-        for dj, di in ((0, 1), (1, 0), (0, -1), (-1, 0)):
-            b, a = j + dj, i + di
-            if 0 <= b < ny and 0 <= a < nx and free[b, a] and not seen[b, a]:
-                seen[b, a] = 1
-                if math.hypot(b - row, a - column) <= far:
-                    queue[count] = b * nx + a
-                    count += 1
-    return -1
+def _traffic(cells: NDArray[np.uint8], x: float, y: float) -> NDArray[np.int64] | None:
+    """How many cells' shortest ways to a point [cells] lead through each cell."""
+    ny, nx = cells.shape
+    level = np.zeros_like(cells)
+    end = nearest(cells, level, False, math.floor(y), math.floor(x), _SNAP_CELLS)
+    if end < 0:
+        return None
+    cost, came = np.empty(cells.shape, dtype=np.int32), np.empty(cells.shape, dtype=np.int8)
+    chain, item = np.empty(8 * cells.size + 8, dtype=np.int32), np.empty(8 * cells.size + 8, dtype=np.int32)
+    window = np.array([0, nx - 1, 0, ny - 1], dtype=np.int64)
+    search(cells, level, False, end // nx, end % nx, 0.0, 0.0, 0.0, False, window, cost, came, chain, item)
+    order = np.argsort(-cost, axis=None, kind="stable")
+    flow: NDArray[np.int64] = np.zeros(cells.shape, dtype=np.int64)
+    _pour(cost, came, order, end, flow)
+    return flow
+
+
+@numba.njit("void(int32[:,::1], int8[:,::1], int64[::1], int64, int64[:,::1])", cache=True)
+def _pour(cost: Any, came: Any, order: Any, end: int, flow: Any) -> None:
+    """Let one unit run down from every reached cell along the steps by which it was reached."""
+    nx = cost.shape[1]
+    for here in order:
+        j, i = here // nx, here % nx
+        if cost[j, i] >= FAR:
+            continue
+        flow[j, i] += 1
+        if here != end:
+            d = came[j, i] & 7
+            flow[j - _DY[d], i - _DX[d]] += flow[j, i]
 
 
 @numba.njit("int64(uint8[:,::1], int64, int64, float64, float64)", cache=True)
@@ -112,3 +109,60 @@ def _pieces(free: Any, row: int, column: int, inner: float, outer: float) -> int
             if size >= 4:
                 pieces += 1
     return pieces
+
+
+@numba.njit("int64(int64[:,::1], int64, int64, float64)", cache=True)
+def _passing(flow: Any, row: int, column: int, radius: float) -> int:
+    """The strongest stream within a radius [cells] of a cell."""
+    ny, nx = flow.shape
+    reach = math.ceil(radius)
+    most = 0
+    for j in range(max(row - reach, 0), min(row + reach + 1, ny)):
+        for i in range(max(column - reach, 0), min(column + reach + 1, nx)):
+            if flow[j, i] > most and math.hypot(j - row, i - column) <= radius:
+                most = flow[j, i]
+    return int(most)
+
+
+@numba.njit(
+    "int64(uint8[:,::1], int64[:,::1], int64, int64, float64, float64, float64, float64, float64, float64)",
+    cache=True,
+)
+def _search(
+    free: Any,
+    flow: Any,
+    row: int,
+    column: int,
+    x: float,
+    y: float,
+    apart: float,
+    inner: float,
+    outer: float,
+    far: float,
+) -> int:
+    """Flat index of the quietest good cell, the first found of equals, looking ever farther; -1 when there is none."""
+    ny, nx = free.shape
+    seen = np.zeros((ny, nx), dtype=np.uint8)
+    queue = np.empty(ny * nx + 9, dtype=np.int64)
+    count, done = 0, 0
+    for j in range(max(row - 1, 0), min(row + 2, ny)):
+        for i in range(max(column - 1, 0), min(column + 2, nx)):
+            seen[j, i] = 1
+            queue[count] = j * nx + i
+            count += 1
+    best, least = -1, 1 << 60
+    while done < count:
+        j, i = queue[done] // nx, queue[done] % nx
+        done += 1
+        if free[j, i] and (i + j) % 2 == 0 and math.hypot(i + 0.5 - x, j + 0.5 - y) >= apart:
+            passing = _passing(flow, j, i, inner)
+            if passing < least and _pieces(free, j, i, inner, outer) <= 1:
+                best, least = j * nx + i, passing
+        for dj, di in ((0, 1), (1, 0), (0, -1), (-1, 0)):
+            b, a = j + dj, i + di
+            if 0 <= b < ny and 0 <= a < nx and free[b, a] and not seen[b, a]:
+                seen[b, a] = 1
+                if math.hypot(b - row, a - column) <= far:
+                    queue[count] = b * nx + a
+                    count += 1
+    return int(best)

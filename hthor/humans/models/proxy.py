@@ -58,7 +58,7 @@ class Model:
             return Action(motion=Wait(), say=say)
         walker, errands = self._awake(observation)
         if self._memory.visit(me.here, observation.room) and self._purpose != "begin":
-            errands.fresh = me.here
+            errands.exploring.fresh = me.here
         if self._eyes.due(observation.tick):
             walker.sense()
             self._eyes.look(observation)

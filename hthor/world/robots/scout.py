@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from hthor import rules
 from hthor.types import Part, Rgba, RobotSpec
 
@@ -11,9 +13,9 @@ SPEC = RobotSpec(
     radius=0.18,
     height=0.95,
     eye=0.90,
-    fov=(1.2, 1.2),
-    speed=1.0,
-    turn_rate=1.8,
+    fov=(math.pi / 2, math.pi / 2),  # AI2-THOR's field of view
+    speed=1.3,
+    turn_rate=math.pi,  # of a Kobuki base, 180 degrees a second
     sight_range=rules.DETECTOR_RANGE_M,
     scan_range=5.0,
     scan_beams=61,
