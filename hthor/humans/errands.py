@@ -70,7 +70,10 @@ class Errands:
             )
         else:
             arrived = yield from self.approach.to_object(target.position, target.support, self.me.body.reach * REACH)
-        visible = arrived and (yield from self._check(target))
+        if not arrived:
+            self._despair()
+            return False
+        visible = yield from self._check(target)
         if not visible or self.me.task.relation == "find":
             return visible
         reason = yield from self.hands.do(Pick(object=target.id), f"pick {target.id}")
@@ -125,10 +128,14 @@ class Errands:
         yield from self.me.rest(_BLINK_S)
         if self.eyes.seen_at >= since:
             return True
+        self._despair()
+        return False
+
+    def _despair(self) -> None:
+        """After several tries the target is taken for gone, or for a mistake."""
         if self.approach.tries > PATIENCE:
             self.anew()
             self.eyes.lose()
-        return False
 
     def _sight_m(self, point: Vec3) -> float:
         """How far off [m] on the floor a point is near enough to the eye to count as found."""

@@ -29,7 +29,7 @@ _DETOUR, _DETOUR_M = 1.4, 1.5
 _FAMILIAR, _FAMILIAR_M = 1.5, 2.0
 _DOORWAY_M = 1.0
 _GIVE_UP, _REPLANS = 12, 100
-_POLITE_S, _AVOID_S = 0.5, 6.0
+_POLITE_S, _AVOID_S, _TRUSTED_S = 0.5, 6.0, 10.0
 
 
 class Way(Struct, frozen=True, kw_only=True):
@@ -56,13 +56,13 @@ class Walker:
         self.me, self.memory, self.haste, self._bumps = me, memory, 1.0, 0
         self._robot: tuple[float, float, float] | None = None
         self._robot_until = -1
+        self._drawn = me.now.tick
         self._draw_map(x, y)
 
     def _draw_map(self, x: float, y: float) -> None:
         self.grid = GridMap(x, y)
         self.planner = Planner(self.grid, self.me.body.radius, optimistic=True)
         self._mapped: tuple[float, float, float] | None = None
-        self._marks = 0
 
     def sense(self) -> None:
         """Bring the map up to date, when the view has changed enough."""
@@ -215,12 +215,12 @@ class Walker:
         if apart > 0.0:
             share = (self.me.body.radius + 0.05) / apart
             self.grid.mark_blocked(x + share * (point[0] - x), y + share * (point[1] - y))
-            self._marks += 1
 
     def _doubted(self) -> bool:
-        """Throw a map away on which something was only felt, such as a body that may have gone since."""
-        if not self._marks:
+        """Throw a map away that shows no way: what was felt may have gone, what was seen may have been seen badly."""
+        if self.me.now.tick < self._drawn + round(_TRUSTED_S / self.me.tick_s):
             return False
+        self._drawn = self.me.now.tick
         self._draw_map(*self.me.here)
         self.sense()
         return True

@@ -19,7 +19,8 @@ from hthor.humans.trust import Experience, Trust, initial
 from hthor.humans.walking import Walker
 from hthor.types import Action, Briefing, Message, Motion, Observation, Reply, Vec3, Wait
 
-_RESTARTS = 4
+_RESTARTS = 2
+_PAUSE_S = 0.5
 
 
 class Model:
@@ -100,7 +101,7 @@ class Model:
             if motion is not None:
                 return motion
             self._finish()
-        return Wait(seconds=0.3)
+        return Wait(seconds=_PAUSE_S)
 
     def _wish(self) -> str:
         """What the person is about now; seeing or holding the target comes before everything else."""
