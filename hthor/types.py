@@ -296,13 +296,16 @@ class Scan(Struct, frozen=True, kw_only=True):
     """A range scan: for each of N bearings the way to the first thing that would stop this body.
 
     ``bearings`` (N,) float64 [rad] are relative to the heading, ``ranges`` (N,) float64 [m] from the body's axis, equal
-    to ``limit`` [m] where nothing was met. ``origin`` is the pose it was taken from.
+    to ``limit`` [m] where nothing was met. ``tops`` (N,) float64 [m] are the heights of what was met, as a depth
+    camera tells a wall from a table; infinite for walls and where nothing was met. ``origin`` is the pose it was taken
+    from.
     """
 
     origin: Pose
     bearings: Any
     ranges: Any
     limit: float
+    tops: Any = None
 
 
 class Senses(Protocol):

@@ -14,8 +14,6 @@ from hthor.types import BodySpec, Motion, Observation, Pose, Rotate, Vec2
 
 CLOSE_M = 1.15
 """From this far what lies near the edge of a table or a counter is within the detector's range."""
-_LINGER_M = 2.0
-"""How much nearer furniture not yet looked at seems than it is: a room is finished before the next is begun."""
 _TURN_M_RAD = 1.5
 """What a radian of turning costs, in metres."""
 _LEAST_M = 0.5
@@ -100,7 +98,7 @@ class Explorer:
         self.drop()
         survey = Survey(self.grid, self.planner, pose, _LEAST_M)
         ranked = [(_cost(pose, place), True, place) for place in survey.frontiers]
-        ranked += [(_cost(pose, place) - _LINGER_M, False, place) for place in survey.unvisited]
+        ranked += [(_cost(pose, place), False, place) for place in survey.unvisited]
         ranked.sort(key=lambda entry: (entry[0], entry[2].centre))
         for _, is_edge, place in ranked:
             key = _key(place)

@@ -213,7 +213,10 @@ def _with_image(message: Message, senses: RemoteSenses) -> Message:
 def _scan(data: bytes) -> Scan:
     scan = msgspec.msgpack.decode(data, type=Scan)
     return msgspec.structs.replace(
-        scan, bearings=wire.decode_array(scan.bearings), ranges=wire.decode_array(scan.ranges)
+        scan,
+        bearings=wire.decode_array(scan.bearings),
+        ranges=wire.decode_array(scan.ranges),
+        tops=scan.tops if scan.tops is None else wire.decode_array(scan.tops),
     )
 
 

@@ -31,7 +31,7 @@ class Survey:
 
     Attributes:
         frontiers: groups of reachable free cells next to unknown ones.
-        unvisited: groups along obstacles that were never looked at from close by, see `GridMap.near`.
+        unvisited: groups along furniture that were never looked at from close by, see `GridMap.near`.
     """
 
     def __init__(self, grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> None:
@@ -51,7 +51,7 @@ def frontiers(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -
 
 
 def unvisited(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.3) -> list[Frontier]:
-    """Groups of reachable free cells along obstacles that were never looked at from close by, see `GridMap.near`."""
+    """Groups of reachable free cells along furniture that were never looked at from close by, see `GridMap.near`."""
     return Survey(grid, planner, pose, least).unvisited
 
 
@@ -66,7 +66,7 @@ def _known(planner: Planner, pose: Pose) -> Field:
 
 def _groups(grid: GridMap, field: Field, planner: Planner, edges: bool, least: float) -> list[Frontier]:
     mask: NDArray[np.uint8] = np.zeros(grid.cells.shape, dtype=np.uint8)
-    grouping.mark(grid.cells, planner.levels, grid.near, field.cost, field.window, edges, mask)
+    grouping.mark(grid.cells, planner.levels, grid.beside, grid.near, field.cost, field.window, edges, mask)
     out = np.empty((_MOST, 4), dtype=np.int64)
     stack = np.empty(grid.cells.size, dtype=np.int32)
     count = grouping.clusters(field.cost, field.window, mask, stack, out)

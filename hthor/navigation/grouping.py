@@ -10,10 +10,11 @@ from hthor.navigation.searching import _DX, _DY, FAR
 
 
 @numba.njit(
-    "void(uint8[:,::1], uint8[:,::1], uint8[:,::1], int32[:,::1], int64[::1], boolean, uint8[:,::1])", cache=True
+    "void(uint8[:,::1], uint8[:,::1], uint8[:,::1], uint8[:,::1], int32[:,::1], int64[::1], boolean, uint8[:,::1])",
+    cache=True,
 )
-def mark(cells: Any, level: Any, near: Any, cost: Any, window: Any, edges: bool, mask: Any) -> None:
-    """Mark reached free cells: those next to the unknown (``edges``), or those along obstacles never seen close."""
+def mark(cells: Any, level: Any, beside: Any, near: Any, cost: Any, window: Any, edges: bool, mask: Any) -> None:
+    """Mark reached free cells: those next to the unknown (``edges``), or those along furniture never seen close."""
     ny, nx = cells.shape
     for j in range(max(window[2], 1), min(window[3], ny - 2) + 1):
         for i in range(max(window[0], 1), min(window[1], nx - 2) + 1):
@@ -24,7 +25,7 @@ def mark(cells: Any, level: Any, near: Any, cost: Any, window: Any, edges: bool,
                 unknown = cells[j - 1, i] == 0 or cells[j + 1, i] == 0 or cells[j, i - 1] == 0 or cells[j, i + 1] == 0
                 mask[j, i] = 1 if unknown else 0
             else:
-                mask[j, i] = 1 if level[j, i] == 1 and near[j, i] == 0 else 0
+                mask[j, i] = 1 if level[j, i] == 1 and beside[j, i] and near[j, i] == 0 else 0
 
 
 @numba.njit("int64(int32[:,::1], int64[::1], uint8[:,::1], int32[::1], int64[:,::1])", cache=True)

@@ -12,6 +12,9 @@ from hthor.types import Scan
 
 CELL_M = 0.05
 UNKNOWN, FREE, OCCUPIED = 0, 1, 2
+LOW_M = 2.1
+"""What is lower than this is furniture, not a wall, and may have something on it or in it."""
+_BESIDE_CELLS = 8
 _CHUNK = 64
 
 
@@ -21,6 +24,7 @@ class GridMap:
     Attributes:
         cells: (ny, nx) uint8, row = y. Replaced by a larger array when the map grows.
         near: (ny, nx) uint8, 1 where a free cell was looked at from close by (see `integrate`).
+        beside: (ny, nx) uint8, 1 within 0.4 m of furniture; everything that a scan without ``tops`` met counts as such.
         left, bottom: lattice index of column 0 and row 0; cell (row, column) has its centre at
             ``((left + column + 0.5) * 0.05, (bottom + row + 0.5) * 0.05)`` metres.
         bounds: (4,) int64, first and last known column, first and last known row.
@@ -35,14 +39,15 @@ class GridMap:
         self.left, self.bottom = math.floor(x / CELL_M) - half, math.floor(y / CELL_M) - half
         self.cells: NDArray[np.uint8] = np.zeros((2 * half, 2 * half), dtype=np.uint8)
         self.near: NDArray[np.uint8] = np.zeros_like(self.cells)
+        self.beside: NDArray[np.uint8] = np.zeros_like(self.cells)
         self.bounds: NDArray[np.int64] = np.array([half, half, half, half], dtype=np.int64)
         self.version = 0
-        self._obstacles: NDArray[np.int32] = np.empty((1024, 2), dtype=np.int32)
+        self._obstacles: NDArray[np.int32] = np.empty((1024, 3), dtype=np.int32)
         self._count = 0
 
     @property
     def obstacles(self) -> NDArray[np.int32]:
-        """(N, 2) lattice indices (x, y) of the occupied cells in the order they were found; only ever appended to."""
+        """(N, 3) x and y index of the occupied cells as they were found, and 1 for furniture; only appended to."""
         return self._obstacles[: self._count]
 
     def integrate(self, scan: Scan, look_m: float = 1.1, look_rad: float = math.pi) -> None:
@@ -56,6 +61,8 @@ class GridMap:
         origin, margin = scan.origin, scan.limit + 0.2
         self._cover(origin.x - margin, origin.y - margin, origin.x + margin, origin.y + margin)
         self._reserve(16 * len(scan.ranges) + 64)
+        first = self._count
+        low = np.ones(len(scan.ranges), dtype=np.bool_) if scan.tops is None else np.asarray(scan.tops) < LOW_M
         self._count = marching.integrate(
             self.cells,
             self.near,
@@ -67,6 +74,7 @@ class GridMap:
             origin.yaw,
             np.array(scan.bearings, dtype=np.float64),
             np.array(scan.ranges, dtype=np.float64),
+            low,
             scan.limit,
             look_m,
             look_rad,
@@ -74,6 +82,7 @@ class GridMap:
             self._obstacles,
             self._count,
         )
+        marching.surround(self.beside, self._obstacles, first, self._count, self.left, self.bottom, _BESIDE_CELLS)
         self.version += 1
 
     def mark_blocked(self, x: float, y: float) -> None:
@@ -84,7 +93,7 @@ class GridMap:
         if self.cells[row, column] == OCCUPIED:
             return
         self.cells[row, column] = OCCUPIED
-        self._obstacles[self._count] = (column + self.left, row + self.bottom)
+        self._obstacles[self._count] = (column + self.left, row + self.bottom, 0)
         self._count += 1
         box = self.bounds
         box[0], box[1] = min(int(box[0]), column), max(int(box[1]), column)
@@ -113,7 +122,7 @@ class GridMap:
 
     def _reserve(self, room: int) -> None:
         if self._count + room > len(self._obstacles):
-            larger = np.empty((2 * (self._count + room), 2), dtype=np.int32)
+            larger = np.empty((2 * (self._count + room), 3), dtype=np.int32)
             larger[: self._count] = self.obstacles
             self._obstacles = larger
 
@@ -128,6 +137,7 @@ class GridMap:
             return
         widths = ((bottom, top), (left, right))
         self.cells, self.near = np.pad(self.cells, widths), np.pad(self.near, widths)
+        self.beside = np.pad(self.beside, widths)
         self.bounds += np.array([left, left, bottom, bottom], dtype=np.int64)
         self.left, self.bottom = self.left - left, self.bottom - bottom
         self.version += 1

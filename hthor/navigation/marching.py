@@ -27,21 +27,24 @@ def _open(cells: Any, row: int, column: int, bounds: Any) -> None:
             bounds[3] = row
 
 
-@numba.njit("int64(uint8[:,::1], int64, int64, int64, int64, int64[::1], int32[:,::1], int64)", cache=True)
-def _fill(cells: Any, row: int, column: int, left: int, bottom: int, bounds: Any, found: Any, count: int) -> int:
-    """Make a cell occupied and note it; returns how many are noted."""
+@numba.njit("int64(uint8[:,::1], int64, int64, int64, int64, int64[::1], int32[:,::1], int64, int64)", cache=True)
+def _fill(
+    cells: Any, row: int, column: int, left: int, bottom: int, bounds: Any, found: Any, count: int, low: int
+) -> int:
+    """Make a cell occupied and note it, and whether it is ``low``; returns how many are noted."""
     if cells[row, column] == 2:
         return count
     _open(cells, row, column, bounds)
     cells[row, column] = 2
     found[count, 0] = column + left
     found[count, 1] = row + bottom
+    found[count, 2] = low
     return count + 1
 
 
 @numba.njit(
     "int64(uint8[:,::1], uint8[:,::1], int64, int64, float64, float64, float64, float64, float64[::1], float64[::1],"
-    " float64, float64, float64, int64[::1], int32[:,::1], int64)",
+    " boolean[::1], float64, float64, float64, int64[::1], int32[:,::1], int64)",
     cache=True,
 )
 def integrate(
@@ -55,6 +58,7 @@ def integrate(
     yaw: float,
     bearings: Any,
     ranges: Any,
+    low: Any,
     limit: float,
     look_m: float,
     look_rad: float,
@@ -87,7 +91,7 @@ def integrate(
             t += 1.0
         if hit:
             j, i = math.floor(py + (reach + 0.2) * uy), math.floor(px + (reach + 0.2) * ux)
-            count = _fill(cells, j, i, left, bottom, bounds, found, count)
+            count = _fill(cells, j, i, left, bottom, bounds, found, count, low[k])
         # Between this beam and the next: free as far as the shorter one, from where a gap could open.
         m = k + 1 if k + 1 < n else 0
         gap = bearings[m] - bearings[k] if m else bearings[0] + 2.0 * math.pi - bearings[k]
@@ -113,8 +117,20 @@ def integrate(
                 for s in range(1, int(apart) + 1):
                     f = s / (int(apart) + 1)
                     j, i = math.floor(ay + f * (by - ay)), math.floor(ax + f * (bx - ax))
-                    count = _fill(cells, j, i, left, bottom, bounds, found, count)
+                    count = _fill(cells, j, i, left, bottom, bounds, found, count, low[k] and low[m])
     return count
+
+
+@numba.njit("void(uint8[:,::1], int32[:,::1], int64, int64, int64, int64, int64)", cache=True)
+def surround(beside: Any, obstacles: Any, first: int, last: int, left: int, bottom: int, reach: int) -> None:
+    """Mark the cells within ``reach`` columns and rows of those obstacles, ``first`` to ``last``, that are low."""
+    ny, nx = beside.shape
+    for k in range(first, last):
+        if obstacles[k, 2]:
+            column, row = obstacles[k, 0] - left, obstacles[k, 1] - bottom
+            for j in range(max(row - reach, 0), min(row + reach + 1, ny)):
+                for i in range(max(column - reach, 0), min(column + reach + 1, nx)):
+                    beside[j, i] = 1
 
 
 @numba.njit("void(uint8[:,::1], int32[:,::1], int64, int64, int64, int64, int64[:,::1])", cache=True)

@@ -8,33 +8,50 @@ from typing import Any
 import numba
 import numpy as np
 
+from hthor.houses import cells, solids
 from hthor.houses.freespace import FreeSpace
-from hthor.types import BodySpec, Pose, Scan
+from hthor.types import BodySpec, HouseSpec, Pose, Scan
 
 
 class Scanner:
     """The range sensor of one body: beams evenly spread over its horizontal field of view, both edges included."""
 
-    def __init__(self, spec: BodySpec, space: FreeSpace) -> None:
+    def __init__(self, spec: BodySpec, space: FreeSpace, house: HouseSpec) -> None:
         half = spec.fov[0] / 2
         self._bearings = np.linspace(-half, half, spec.scan_beams)
         self._bearings.setflags(write=False)
         self._limit, self._space = spec.scan_range, space
+        self._tops = _tops(house, space, spec.height)
 
     def scan(self, pose: Pose) -> Scan:
         """What the sensor measures from ``pose``, exact on the obstacle raster of 5 cm cells."""
         space = self._space
-        ranges = _march(space.raw, *space.origin, space.cell, pose.x, pose.y, pose.yaw, self._bearings, self._limit)
-        return Scan(origin=pose, bearings=self._bearings, ranges=ranges, limit=self._limit)
+        ranges, tops = _march(
+            space.raw, self._tops, *space.origin, space.cell, pose.x, pose.y, pose.yaw, self._bearings, self._limit
+        )
+        return Scan(origin=pose, bearings=self._bearings, ranges=ranges, limit=self._limit, tops=tops)
+
+
+def _tops(house: HouseSpec, space: FreeSpace, height: float) -> np.ndarray:
+    """(ny, nx) [m], the height of the tallest furniture that stops a body in each cell; infinite elsewhere."""
+    tops = np.full(space.raw.shape, np.inf)
+    slabs = [slab for _, slab in solids.furniture(house) if slab.low < height]
+    walls = np.array([(*slab.centre, slab.size[0] / 2, slab.size[1] / 2, slab.yaw) for slab in solids.walls(house)])
+    everywhere, half = np.ones_like(space.raw), space.cell / 2
+    for slab in sorted(slabs, key=lambda slab: slab.high):
+        row = np.array([(*slab.centre, slab.size[0] / 2, slab.size[1] / 2, slab.yaw)])
+        tops[~cells.clear(everywhere, row, *space.origin, space.cell, half)] = slab.high
+    tops[~cells.clear(everywhere, walls.reshape(-1, 5), *space.origin, space.cell, half)] = np.inf
+    return tops
 
 
 @numba.njit(cache=True)
 def _march(
-    raw: Any, ox: float, oy: float, cell: float, x: float, y: float, yaw: float, bearings: Any, limit: float
+    raw: Any, tops: Any, ox: float, oy: float, cell: float, x: float, y: float, yaw: float, bearings: Any, limit: float
 ) -> Any:
-    """Ranges (N,) [m]: each beam goes from cell edge to cell edge until it enters a cell that is not clear."""
+    """Ranges and tops (N,) [m]: each beam goes from cell edge to cell edge until it enters a cell that is not clear."""
     ny, nx = raw.shape
-    out = np.empty(len(bearings))
+    out, met = np.empty(len(bearings)), np.full(len(bearings), np.inf)
     px, py, far = (x - ox) / cell, (y - oy) / cell, limit / cell
     for k in range(len(bearings)):
         ux, uy = math.cos(yaw + bearings[k]), math.sin(yaw + bearings[k])
@@ -50,7 +67,10 @@ def _march(
                 t, tx, i = tx, tx + dx, i + si
             else:
                 t, ty, j = ty, ty + dy, j + sj
-            if not (0 <= i < nx and 0 <= j < ny) or not raw[j, i]:
+            if not (0 <= i < nx and 0 <= j < ny):
+                break
+            if not raw[j, i]:
+                met[k] = tops[j, i] if t < far else np.inf
                 break
         out[k] = min(t, far) * cell
-    return out
+    return out, met

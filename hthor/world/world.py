@@ -94,7 +94,7 @@ class World:
         self._objects = Objects(self._contents.movables, env, self._scene, places)
         self._doors = Doors(self._task.doors, env)
         self._seats = {name: Seat(name, spec, self.space[name]) for name, spec in self.bodies.items()}
-        self._scanners = {name: Scanner(seat.spec, seat.space) for name, seat in self._seats.items()}
+        self._scanners = {name: Scanner(seat.spec, seat.space, self.house) for name, seat in self._seats.items()}
         self._hands = Hands(self.house, self._scene, self._objects, self._doors, places)
         seats = tuple(self._seats.values())
         self._gaze = Gaze(self._scene, self._objects, self._doors, statics, self.house.openings, seats)
