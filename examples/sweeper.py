@@ -8,7 +8,7 @@ edges of its map as such: it prefers places beside furniture where people usuall
 
 import math
 
-from hthor.navigation import Courtesy, Follower, Frontier, GridMap, Planner, Survey, face
+from hthor.navigation import Courtesy, Follower, Frontier, GridMap, Planner, Survey, face, retreat
 from hthor.types import Action, Briefing, Detection, Motion, Observation, Pose, Rotate, Send, Wait
 
 LIKELY = {
@@ -23,6 +23,7 @@ FINISH_FIRST_M = 2.0  # finish a room before the next is begun
 TURN_M_RAD = 1.5  # what a radian of turning costs, in metres
 WORTH_M = 2.0  # a likely piece of furniture is worth this much of a detour
 RIGHT_BESIDE_M = 1.0
+APART_M = 1.3  # how far from the target it waits, so that the person can get there
 AGAIN_TICKS = 100
 
 
@@ -43,7 +44,7 @@ class Agent:
         self.furniture: dict[str, Detection] = {}
         self.target: Detection | None = None
         self.place: Frontier | None = None
-        self.messages = 0
+        self.messages, self.aside = 0, False
         self.tried: dict[tuple[float, float], int] = {}
 
     def act(self, observation: Observation) -> Action:
@@ -76,7 +77,11 @@ class Agent:
         """Look around, then go from place to place until the target is found."""
         pose = observation.pose
         if self.target is not None:
-            return face(pose, self.target.position, self.body.eye, self.body.pitch_limit) or Wait(seconds=0.5)
+            if not self.aside:
+                self.aside, here = True, (pose.x, pose.y)
+                self.follower.take(retreat(self.map, self.planner, here, self.target.position[:2], APART_M))
+            step = self.follower.next(pose)
+            return step or face(pose, self.target.position, self.body.eye, self.body.pitch_limit) or Wait(seconds=0.5)
         if self.turns:
             self.turns -= 1
             return Rotate(yaw=self.body.fov[0], pitch=-0.2 - pose.pitch)

@@ -7,8 +7,8 @@ import math
 from hthor.geometry import wrap
 from hthor.navigation.follow import Follower
 from hthor.navigation.frontier import Frontier, Survey
-from hthor.navigation.map import CELL_M, FREE, UNKNOWN, GridMap
-from hthor.navigation.parking import park
+from hthor.navigation.map import CELL_M, UNKNOWN, GridMap
+from hthor.navigation.parking import retreat
 from hthor.navigation.planner import Planner
 from hthor.types import BodySpec, Motion, Observation, Pose, Rotate, Vec2
 
@@ -69,11 +69,7 @@ class Explorer:
         """Set out for a spot where it is in nobody's way, ``apart_m`` metres from ``point``; `follower` leads there."""
         assert self.grid is not None
         self.drop()
-        grid = self.grid
-        free = (grid.cells == FREE) & (self.planner.levels < 2)
-        origin, here = (grid.left * CELL_M, grid.bottom * CELL_M), (pose.x, pose.y)
-        spot = park(free, origin, CELL_M, here, point, apart_m)
-        self.follower.take(None if spot is None else self.planner.path(here, spot))
+        self.follower.take(retreat(self.grid, self.planner, (pose.x, pose.y), point, apart_m))
 
     def drop(self) -> None:
         """Forget where it was going."""

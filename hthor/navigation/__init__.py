@@ -13,12 +13,13 @@ if TYPE_CHECKING:
     from hthor.navigation.follow import Follower, face
     from hthor.navigation.frontier import Frontier, Survey, frontiers, unvisited
     from hthor.navigation.map import FREE, OCCUPIED, UNKNOWN, GridMap
-    from hthor.navigation.parking import park
+    from hthor.navigation.parking import park, retreat
     from hthor.navigation.planner import Field, Planner
 
 _HOMES = {
     "Courtesy": "courtesy",
     "park": "parking",
+    "retreat": "parking",
     "Follower": "follow",
     "face": "follow",
     "Frontier": "frontier",
@@ -47,6 +48,7 @@ __all__ = [
     "face",
     "frontiers",
     "park",
+    "retreat",
     "unvisited",
 ]
 

@@ -9,6 +9,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from hthor.navigation.map import CELL_M, FREE, GridMap
+from hthor.navigation.planner import Planner
 from hthor.navigation.searching import _DX, _DY, FAR, nearest, search
 from hthor.types import Vec2
 
@@ -41,6 +43,13 @@ def park(free: NDArray[np.bool_], origin: Vec2, cell: float, here: Vec2, point: 
         return None
     row, column = divmod(int(found), free.shape[1])
     return (origin[0] + (column + 0.5) * cell, origin[1] + (row + 0.5) * cell)
+
+
+def retreat(grid: GridMap, planner: Planner, here: Vec2, point: Vec2, apart_m: float) -> tuple[Vec2, ...] | None:
+    """The way on a body's own map to the spot that `park` finds there; None to stay."""
+    free = (grid.cells == FREE) & (planner.levels < 2)
+    spot = park(free, (grid.left * CELL_M, grid.bottom * CELL_M), CELL_M, here, point, apart_m)
+    return None if spot is None else planner.path(here, spot)
 
 
 def _traffic(cells: NDArray[np.uint8], x: float, y: float) -> NDArray[np.int64] | None:
