@@ -1,0 +1,21 @@
+"""What the tasks assume of the person's body is what the world gives it."""
+
+from __future__ import annotations
+
+from hthor import rules
+from hthor.tasks import avatar as assumed
+from hthor.world.avatar import HUMAN
+
+
+def test_tasks_and_world_mean_the_same_body() -> None:
+    assert (assumed.RADIUS_M, assumed.HEIGHT_M, assumed.EYE_M, assumed.REACH_M) == (
+        HUMAN.radius,
+        HUMAN.height,
+        HUMAN.eye,
+        HUMAN.reach,
+    )
+
+
+def test_nobody_is_faster_than_the_shortest_time_assumes() -> None:
+    assert HUMAN.speed <= rules.PACE_M_S
+    assert HUMAN.handling >= rules.HANDLING_S
