@@ -12,6 +12,7 @@ import time
 from collections.abc import Iterator
 
 import mujoco
+from tqdm import tqdm
 
 from hthor import plugins, rules, tasks
 from hthor.episode import EpisodeLog, play
@@ -27,7 +28,7 @@ def main() -> None:
     options.add_argument("--suite", default="smoke")
     options.add_argument("--trials", type=int, default=60)
     given = options.parse_args()
-    costs = list(_trials(given.agent, given.suite, given.trials))
+    costs = list(tqdm(_trials(given.agent, given.suite, given.trials), total=given.trials, disable=None, leave=False))
     print(f"{given.agent} and proxy, suite {given.suite}, {len(costs)} trials, CPU time of this process")
     print(f"{'':24}{'median':>10}{'p90':>10}{'max':>10}")
     _row("whole trial as played", [cpu for cpu, _, _ in costs], "ms")

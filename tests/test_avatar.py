@@ -8,12 +8,12 @@ from hthor.world.avatar import HUMAN
 
 
 def test_tasks_and_world_mean_the_same_body() -> None:
-    assert (assumed.RADIUS_M, assumed.HEIGHT_M, assumed.EYE_M, assumed.REACH_M) == (
+    assert (
         HUMAN.radius,
         HUMAN.height,
         HUMAN.eye,
         HUMAN.reach,
-    )
+    ) == (assumed.RADIUS_M, assumed.HEIGHT_M, assumed.EYE_M, assumed.REACH_M)
 
 
 def test_nobody_is_faster_than_the_shortest_time_assumes() -> None:

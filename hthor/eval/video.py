@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from tqdm import tqdm
 
 from hthor import rules
 from hthor.episode import EpisodeLog
@@ -37,7 +38,7 @@ def write(path: Path, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Non
     if not film.isOpened():
         raise HthorError(f"{path}: cannot write a film there; is the folder writable, and does the name end in .mp4?")
     count = max(len(way) for way in log.paths.values())
-    for index in range(count):
+    for index in tqdm(range(count), desc=path.name, unit="frame", disable=None, leave=False):
         frame = stage.draw(log, index)
         film.write(frame)
     for _ in range(round(HOLD_S * rate)):

@@ -129,30 +129,3 @@ def walk(free: Any, ax: float, ay: float, bx: float, by: float) -> float:
             ty += stepy
         t = u
     return 1.0 if stand(free, bx, by) else t
-
-
-@numba.njit(cache=True)
-def label(free: Any) -> Any:
-    """(ny, nx) int32: the free cells that hang together by their edges, numbered from 1, row by row; 0 elsewhere."""
-    ny, nx = free.shape
-    out = np.zeros((ny, nx), dtype=np.int32)
-    stack = np.empty((ny * nx, 2), dtype=np.int64)
-    count = 0
-    for j0 in range(ny):
-        for i0 in range(nx):
-            if not free[j0, i0] or out[j0, i0]:
-                continue
-            count += 1
-            out[j0, i0] = count
-            stack[0, 0], stack[0, 1] = j0, i0
-            top = 1
-            while top:
-                top -= 1
-                j, i = stack[top, 0], stack[top, 1]
-                for dj, di in ((0, 1), (1, 0), (0, -1), (-1, 0)):
-                    jj, ii = j + dj, i + di
-                    if is_open(free, ii, jj) and not out[jj, ii]:
-                        out[jj, ii] = count
-                        stack[top, 0], stack[top, 1] = jj, ii
-                        top += 1
-    return out

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hthor import rules
 from hthor.errors import HthorError
 from hthor.houses import solids
-from hthor.houses.cells import clear, inside, label, label_at, stand, walk
+from hthor.houses.cells import clear, inside, label_at, stand, walk
 from hthor.types import HouseSpec, Room, Vec2
 
 STEP_M = 0.05
@@ -134,7 +134,9 @@ class FreeSpace:
     @functools.cached_property
     def components(self) -> NDArray[np.int32]:
         """(ny, nx) int32: 0 for blocked cells, else the number of the cell's component, counted row by row from 1."""
-        labels: NDArray[np.int32] = label(self.free)
+        from skimage.measure import label  # late: it brings much with it, and not every use of a grid needs it
+
+        labels: NDArray[np.int32] = label(self.free, connectivity=1).astype(np.int32)
         labels.setflags(write=False)
         return labels
 
