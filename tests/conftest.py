@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
+
+from hthor.eval import provenance
+
+os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))  # before anything that is compiled is imported
 
 ROOT = Path(__file__).resolve().parents[1]
 SAMPLES = ROOT.parent / "shared" / "houses"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import os
 import platform
 from collections.abc import Iterator
 from importlib import metadata
@@ -25,6 +26,16 @@ def code_sha256() -> str:
         digest.update(f"{path.relative_to(PACKAGE).as_posix()} {len(data)}\n".encode())
         digest.update(data)
     return digest.hexdigest()
+
+
+def compiled() -> Path:
+    """Where compiled loops of exactly this code are kept, in the user's cache.
+
+    Left to itself the compiler's cache looks only at the file of the loop it is asked for, not at those that the loop
+    calls into: after an update it could run old code, and nothing would tell.
+    """
+    cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(cache) / "hthor" / f"compiled-{code_sha256()[:16]}"
 
 
 def _files() -> Iterator[Path]:

@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection, wait
 from typing import TYPE_CHECKING
 
 from hthor.errors import HthorError, RunError
-from hthor.eval import worker
+from hthor.eval import provenance, worker
 from hthor.eval.worker import Failed, Finished, News, Played
 
 if TYPE_CHECKING:
@@ -146,10 +146,11 @@ def _cause(code: int | None) -> str:
 
 @contextmanager
 def _quiet_environment() -> Iterator[None]:
-    """One thread a library, and no Ctrl-C until the worker has decided to ignore it; both are inherited."""
+    """What workers inherit: one thread a library, compiled code of this version alone, and no Ctrl-C for now."""
     before = dict(os.environ)
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     os.environ.update(worker.ONE_THREAD, PYTHONHASHSEED="0")
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))
     try:
         yield
     finally:
