@@ -100,7 +100,7 @@ def _draw_message(ax: Axes, log: EpisodeLog, number: int, event: Event) -> None:
             here,
             arrowprops={
                 "arrowstyle": "-|>",
-                "color": trace.MESSAGE,
+                "color": trace.tint(log, event),
                 "lw": 1.0,
                 "ls": (0, (3, 2)),
                 "shrinkA": 6,
@@ -108,7 +108,7 @@ def _draw_message(ax: Axes, log: EpisodeLog, number: int, event: Event) -> None:
             },
             zorder=11,
         )
-    trace.badge(ax, here, str(number))
+    trace.badge(ax, here, str(number), trace.tint(log, event))
 
 
 def _draw_acts(ax: Axes, log: EpisodeLog) -> None:
@@ -140,7 +140,11 @@ def _legend(sheet: Figure, spec: TrialSpec, log: EpisodeLog) -> None:
     if spec.task.goal.destination:
         handles.append(_mark("s", "#bfe3d4", "destination", edge="#00795a"))
     if trace.messages(log):
-        handles.append(_mark("o", trace.MESSAGE, "message and its claim", size=7))
+        handles += [
+            _mark("o", shade, f"message, {word}", size=7)
+            for shade, word in ((trace.MESSAGE, "confirmed"), (trace.IDLE_MESSAGE, "not confirmed"))
+            if shade in {trace.tint(log, event) for event in trace.messages(log)}
+        ]
     present = {event.kind for event in log.events}
     handles += [_mark(mark, "#555555", f"{verb}") for kind, (mark, verb) in trace.ACTS.items() if kind in present]
     sheet.legend(handles=handles, loc="outside right upper", fontsize=7.5, frameon=False, handlelength=1.6)

@@ -49,7 +49,7 @@ def _moment(ax: Axes, seconds: float, name: str, shade: str, style: str) -> None
 def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float) -> None:
     for number, event in enumerate(trace.messages(log), 1):
         if event.seat == seat:
-            trace.badge(ax, (event.tick * rules.TICK_S, row), str(number))
+            trace.badge(ax, (event.tick * rules.TICK_S, row), str(number), trace.tint(log, event))
     words = {**{kind: verb for kind, (_, verb) in trace.ACTS.items()}, "confirmed": "confirms", "declined": "declines"}
     last = dict.fromkeys(_LIFTS, -math.inf)
     for event in log.events:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 # Okabe and Ito's palette, which colour-blind readers can tell apart.
 PERSON, ROBOTS, TARGET, MESSAGE, FAILED = "#0072B2", ("#D55E00", "#CC79A7", "#E69F00"), "#009E73", "#7a3b8f", "#b00020"
+IDLE_MESSAGE = "#ae98b8"
 INK = "#2b2f36"
 
 ACTS = {"picked": ("^", "picks"), "placed": ("v", "places"), "opened": ("D", "opens")}
@@ -51,7 +52,12 @@ def fate(log: EpisodeLog, message: int) -> str:
     return next((kind for kind in ("confirmed", "declined", "covered", "shown") if kind in kinds), "sent")
 
 
-def badge(ax: Axes, place: Vec2, text: str) -> None:
+def tint(log: EpisodeLog, event: Event) -> str:
+    """The colour of a message: strong when the person confirmed it, pale when not."""
+    return MESSAGE if fate(log, event.data["message"]) == "confirmed" else IDLE_MESSAGE
+
+
+def badge(ax: Axes, place: Vec2, text: str, shade: str) -> None:
     """A message's number in a disc."""
-    box = {"boxstyle": "circle,pad=0.22", "facecolor": MESSAGE, "edgecolor": "white", "lw": 0.8}
+    box = {"boxstyle": "circle,pad=0.22", "facecolor": shade, "edgecolor": "white", "lw": 0.8}
     ax.text(*place, text, fontsize=7, color="white", weight="bold", ha="center", va="center", bbox=box, zorder=14)
