@@ -126,7 +126,10 @@ class _Episode:
 
     def _tick(self) -> None:
         """Every seat that is asked sees the same moment; only then do their actions take effect."""
-        actions = [(seat, self._ask(seat)) for seat in tuple(self.minds) if self._is_asked(seat)]
+        asked = {seat: self._observe(seat) for seat in self.minds if self._is_asked(seat)}
+        if HUMAN in asked and asked[HUMAN].inbox:
+            self.events.extend(self.mailbox.shown(self.world.tick))
+        actions = [(seat, self._ask(seat, observation)) for seat, observation in asked.items()]
         for seat, action in actions:
             if action is None:
                 continue
@@ -140,15 +143,12 @@ class _Episode:
     def _is_asked(self, seat: str) -> bool:
         return self.world.idle(seat) or self.mailbox.changed(seat)
 
-    def _ask(self, seat: str) -> Action | None:
-        observation, mind = self._observe(seat), self.minds[seat]
+    def _ask(self, seat: str, observation: Observation) -> Action | None:
+        mind = self.minds[seat]
         return self._guarded(seat, lambda: _checked(mind.act(observation)))
 
     def _observe(self, seat: str) -> Observation:
         world, tick = self.world, self.world.tick
-        inbox = self.mailbox.inbox(seat)
-        if inbox:
-            self.events.extend(self.mailbox.shown(tick))
         return Observation(
             tick=tick,
             pose=world.pose(seat),
@@ -157,7 +157,7 @@ class _Episode:
             room=world.room(seat),
             holding=world.holding(seat),
             outcome=world.outcome(seat),
-            inbox=inbox,
+            inbox=self.mailbox.inbox(seat),
             receipt=self.mailbox.receipt(seat),
             truth=world.truth() if "object_poses" in self.privileges.get(seat, ()) else (),
         )

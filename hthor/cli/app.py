@@ -62,3 +62,8 @@ def run() -> None:
         # Whoever read our output has gone, as `head` does. Python would complain once more at its end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(0)
+    except OSError as error:
+        # A place that cannot be read or written, a full disk: the user's to mend, like any wrong input.
+        place = f"{error.filename}: " if error.filename else ""
+        sys.stderr.write(f"error: {place}{error.strerror or error}.\n")
+        sys.exit(2)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec import Struct
 
 from hthor import plugins
-from hthor.errors import UnknownName
+from hthor.errors import AgentError, UnknownName
 from hthor.types import AgentRef, Mind, RobotSeat, TrialSpec
 
 if TYPE_CHECKING:
@@ -135,7 +135,14 @@ class Stage:
             return mind
         from hthor.guest import Guest
 
-        return Guest(self._path)
+        guest = Guest(self._path)
+        if guest.load().sha256 != seat.agent.sha256:
+            guest.close()
+            raise AgentError(
+                f"{self._path} was changed while its run was going on. Change it back and repeat the command to finish "
+                "this run, or evaluate the new version in a run of its own."
+            )
+        return guest
 
 
 class Company:

@@ -85,8 +85,10 @@ def records(folder: Path, plan: Setup) -> tuple[list[bytes], list[Record]]:
     found = sorted(log.read(folder / "trials.jsonl"), key=lambda pair: (pair[1].spec.participant, pair[1].spec.index))
     for _, record in found:
         _check_origin(folder, record, plan)
-    if len({record.key for _, record in found}) < len(found):
-        raise RunError(f"{folder / 'trials.jsonl'}: the same trial is there twice. Delete one of the two lines.")
+    keys = [record.key for _, record in found]
+    twice = next((key for key in keys if keys.count(key) > 1), "") if len(set(keys)) < len(keys) else ""
+    if twice:
+        raise RunError(f"{folder / 'trials.jsonl'}: trial {twice} is there twice. Delete one of the two lines.")
     return [line for line, _ in found], [record for _, record in found]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fnmatch
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from hthor.tasks import Suite
 from hthor.types import AgentRef
 
 SCHEMA = "hthor.run/1"
-_MADE_FIRST = (".lock", "trials.jsonl")  # a command that was killed early leaves these alone
+_MADE_FIRST = (".lock", "trials.jsonl", ".run.json.*")  # a command that was killed early leaves these alone
 
 
 class SuiteRef(Struct, frozen=True, kw_only=True):
@@ -106,7 +107,7 @@ def examine(folder: Path, plan: Setup) -> None:
     if not folder.is_dir():
         raise RunError(f"{folder} is a file; a run needs a folder. Choose another with --out.")
     if not (folder / "run.json").exists():
-        strangers = sorted(entry.name for entry in folder.iterdir() if entry.name not in _MADE_FIRST)
+        strangers = sorted(entry.name for entry in folder.iterdir() if not _made_first(entry.name))
         if strangers or _has_bytes(folder / "trials.jsonl"):
             listed = strangers[0] if strangers else "trials.jsonl"
             raise RunError(f"{folder} is not empty and holds no run ({listed}). Choose another folder with --out.")
@@ -120,9 +121,15 @@ def examine(folder: Path, plan: Setup) -> None:
 
 
 def write(folder: Path, plan: Setup) -> None:
-    """Write `run.json`, unless it is there."""
+    """Write `run.json`, unless it is there, and clear away what a killed command left of such a write."""
+    for torn in folder.glob(".run.json.*"):
+        torn.unlink(missing_ok=True)
     if not (folder / "run.json").exists():
         jsonio.write(folder / "run.json", jsonio.pretty(plan))
+
+
+def _made_first(name: str) -> bool:
+    return any(fnmatch.fnmatchcase(name, pattern) for pattern in _MADE_FIRST)
 
 
 def _has_bytes(path: Path) -> bool:

@@ -7,6 +7,7 @@ class; then only a new object is made for each trial.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import gc
 import importlib.util
@@ -138,6 +139,9 @@ def main(read: int, write: int, parent: int) -> None:
 def _settle(read: int, write: int, parent: int) -> None:
     """Die with the parent, leave no core files, and send whatever is printed to the log instead of the wire."""
     _die_with_parent(parent)
+    _guard_group((read, write))
+    with contextlib.suppress(OSError):  # where memory runs out, let it be the guest that is ended, not the evaluation
+        Path("/proc/self/oom_score_adj").write_text("1000")
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     for handle in (read, write):
         os.set_inheritable(handle, False)
@@ -150,6 +154,25 @@ def _die_with_parent(parent: int) -> None:
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
     if os.getppid() != parent:
         os._exit(0)
+
+
+def _guard_group(pipes: tuple[int, ...]) -> None:
+    """Leave a process behind that ends the whole group when this process ends: an agent may have started others."""
+    me = os.getpid()
+    if sys.platform != "linux" or os.getpgrp() != me:
+        return
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGUSR1})
+    if os.fork():
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGUSR1})
+        return
+    try:
+        ctypes.CDLL(None).prctl(1, signal.SIGUSR1)  # PR_SET_PDEATHSIG
+        for handle in (*pipes, 1, 2):  # the host takes an open end for a guest that lives
+            os.close(handle)
+        if os.getppid() == me:
+            signal.sigwait({signal.SIGUSR1})
+    finally:
+        os.killpg(me, signal.SIGKILL)
 
 
 def _fork(pipe: Pipe, cls: type[Any], order: wire.Begin) -> None:
@@ -197,7 +220,10 @@ def _act(pipe: Pipe, agent: Any, observation: Observation) -> wire.Acted | wire.
     if not isinstance(action, Action):
         detail = f"act must return an hthor.types.Action, got {type(action).__name__}: {repr(action)[:200]}"
         return wire.Failed(kind="wrong_type", detail=detail)
-    message = wire.Acted(action=action)
+    try:
+        message = wire.Acted(action=wire.plain(action))
+    except wire.Unfit as error:
+        return wire.Failed(kind="garbage", detail=f"act returned an Action that cannot be taken: {error}")
     size = len(wire.encode(message))
     if size > wire.MOST_BYTES:
         return wire.Failed(
@@ -251,7 +277,8 @@ def _import(path: Path) -> ModuleType:
     try:
         spec.loader.exec_module(module)
     except SyntaxError as error:
-        raise Refusal(f"{error.filename or path}:{error.lineno}: {error.msg}") from None
+        line = f":{error.lineno}" if error.lineno else ""
+        raise Refusal(f"{error.filename or path}{line}: {error.msg}") from None
     except BaseException as error:
         raise Refusal(f"{path}: importing it failed.\n{_traceback(error)}") from None
     return module
@@ -281,7 +308,7 @@ def _pick(module: ModuleType, path: Path, wanted: str) -> type[Any]:
 
 def _names(cls: type[Any], attribute: str, path: Path) -> tuple[str, ...]:
     value = getattr(cls, attribute, ())
-    if isinstance(value, str) or not all(isinstance(name, str) for name in tuple(value)):
+    if not isinstance(value, (tuple, list)) or not all(isinstance(name, str) for name in value):
         raise Refusal(f"{path}: {cls.__name__}.{attribute} must be a tuple of names, got {value!r}.")
     return tuple(value)
 

@@ -21,6 +21,10 @@ NAME_MAX = 200
 """Longest id, seat or thing's name in an action, in characters."""
 
 
+class Unfit(ValueError):
+    """An action with a value of the wrong type; the message names the field."""
+
+
 class Load(Struct, tag="load", frozen=True, kw_only=True):
     """Host: import this file; ``cls`` picks a class, empty for the only one."""
 
@@ -98,12 +102,33 @@ def _encode_array(value: object) -> object:
     raise TypeError(f"cannot send a {type(value).__name__}")
 
 
+def _as_list(value: object) -> object:
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    raise TypeError(f"a {type(value).__name__} has no place in an Action")
+
+
+def plain(action: Action) -> Action:
+    """The same action with NumPy's numbers and arrays turned into Python's.
+
+    Raises:
+        Unfit: when a value is of the wrong type.
+    """
+    try:
+        return _action_decoder.decode(_plain_encoder.encode(action))
+    except (msgspec.ValidationError, TypeError, OverflowError) as error:
+        problem, _, place = str(error).partition(" - at `$.")
+        raise Unfit(f"{place.rstrip('`')}: {problem}" if place else problem) from None
+
+
 def decode_array(value: dict[str, Any]) -> Any:
     """The array that a plain dictionary stands for."""
     return np.frombuffer(value["d"], dtype=np.dtype(value["__nd__"])).reshape(value["s"])
 
 
 _encoder = msgspec.msgpack.Encoder(enc_hook=_encode_array)
+_plain_encoder = msgspec.msgpack.Encoder(enc_hook=_as_list)
+_action_decoder = msgspec.msgpack.Decoder(Action)
 
 
 def encode(message: object) -> bytes:

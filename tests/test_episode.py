@@ -1,0 +1,247 @@
+"""The umpire's laws, in a world without an engine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from hthor import houses, tasks
+from hthor.episode import EpisodeLog, play
+from hthor.types import (
+    HUMAN,
+    Action,
+    AgentRef,
+    BodySpec,
+    Briefing,
+    Event,
+    Motion,
+    Move,
+    Observation,
+    Outcome,
+    Pose,
+    Reply,
+    RobotSeat,
+    Send,
+    Snapshot,
+    TaskSpec,
+    ThingState,
+    TrialSpec,
+    Wait,
+)
+
+TASK = next(task for task in tasks.suite("smoke").tasks if task.kind == "object_goal_navigation")
+BODY = BodySpec(
+    name="box",
+    title="box",
+    radius=0.2,
+    height=1.0,
+    eye=0.9,
+    fov=(1.0, 1.0),
+    speed=1.0,
+    turn_rate=1.0,
+    sight_range=1.5,
+    scan_range=5.0,
+    scan_beams=3,
+    pitch_limit=0.5,
+    capabilities=frozenset({"navigate"}),
+)
+
+
+class Stage:
+    """Time passes, motions take ``busy`` ticks, and the target comes into view at tick ``seen``."""
+
+    def __init__(self, seats: tuple[str, ...] = (HUMAN, "robot"), *, seen: int = 10**9, busy: int = 1) -> None:
+        self.seats, self.bodies = seats, dict.fromkeys(seats, BODY)
+        self.house = houses.load(TASK.house)
+        self.seen, self.busy = seen, busy
+        self.started: list[tuple[int, str, Motion]] = []
+        self.frames = 0
+
+    def reset(self, task: TaskSpec) -> None:
+        self.tick, self.free_at = 0, dict.fromkeys(self.seats, 0)
+
+    def idle(self, seat: str) -> bool:
+        return self.tick >= self.free_at[seat]
+
+    def start(self, seat: str, motion: Motion) -> None:
+        self.started.append((self.tick, seat, motion))
+        self.free_at[seat] = self.tick + self.busy
+
+    def advance(self) -> tuple[Event, ...]:
+        self.tick += 1
+        return ()
+
+    def outcome(self, seat: str) -> Outcome | None:
+        return None
+
+    def pose(self, seat: str) -> Pose:
+        return Pose(x=self.tick / 1000, y=0.0)
+
+    def holding(self, seat: str) -> str:
+        return ""
+
+    def room(self, seat: str) -> str:
+        return "kitchen"
+
+    def senses(self, seat: str) -> Any:
+        return None
+
+    def truth(self) -> tuple[ThingState, ...]:
+        return (ThingState(id="apple", kind="apple", position=(0.0, 0.0, 0.0)),)
+
+    def snapshot(self) -> Snapshot:
+        view = (TASK.goal.target,) if self.tick >= self.seen else ()
+        return Snapshot(tick=self.tick, poses={}, things={}, in_view={HUMAN: view}, holding={})
+
+    def frame(self, seat: str) -> Callable[[], Any]:
+        def render() -> int:
+            self.frames += 1
+            return self.frames
+
+        return render
+
+
+class Mind:
+    """Does what ``script`` says at each tick, and remembers what it observed."""
+
+    def __init__(self, script: Callable[[Observation], Action] = lambda _: Action()) -> None:
+        self.script, self.observed = script, list[Observation]()
+
+    def begin(self, briefing: Briefing) -> None:
+        self.briefing = briefing
+
+    def act(self, observation: Observation) -> Action:
+        self.observed.append(observation)
+        return self.script(observation)
+
+    def rate(self, met: bool, tick: int) -> int | None:
+        return 5 if met else 3
+
+    def state(self) -> dict[str, Any]:
+        return {}
+
+
+def trial(*privileges: str) -> TrialSpec:
+    agent = AgentRef(name="a", source="a", sha256="0", privileges=privileges)
+    return TrialSpec(
+        task=TASK,
+        robots=(RobotSeat(seat="robot", robot="box", agent=agent),),
+        human="proxy",
+        human_sha256="0",
+        participant=0,
+        index=0,
+        seed=0,
+        suite_sha256="0",
+        rules_sha256="0",
+        code_sha256="0",
+    )
+
+
+def run(stage: Stage, human: Mind, robot: Mind | None, *privileges: str) -> EpisodeLog:
+    return play(trial(*privileges), stage, human, {"robot": robot} if robot else {})  # type: ignore[arg-type]
+
+
+def kinds(log: EpisodeLog) -> list[str]:
+    return [event.kind for event in log.events]
+
+
+def test_the_limit_is_nine_hundred_ticks_exactly() -> None:
+    log = run(Stage(), Mind(), Mind())
+    assert (log.ticks, log.met, kinds(log)[-1]) == (900, False, "timeout")
+    assert len(log.paths[HUMAN]) == len(log.paths["robot"]) == 451
+
+
+def test_it_ends_at_the_first_tick_at_which_the_goal_is_met() -> None:
+    log = run(Stage(seen=37), Mind(), Mind())
+    assert (log.ticks, log.met, log.trust, kinds(log)[-1]) == (37, True, 5, "success")
+
+
+def test_success_at_the_last_tick_counts() -> None:
+    assert run(Stage(seen=900), Mind(), Mind()).met
+
+
+def test_a_busy_body_is_not_asked() -> None:
+    robot = Mind(lambda _: Action(motion=Move(forward=0.5)))
+    run(Stage(seen=20, busy=5), Mind(), robot)
+    assert [seen.tick for seen in robot.observed] == [0, 5, 10, 15]
+
+
+def test_a_busy_person_is_asked_when_mail_comes_and_only_their_words_count() -> None:
+    human = Mind(lambda _: Action(motion=Move(forward=0.1)))
+    robot = Mind(lambda now: Action(say=Send(text="here") if now.tick == 0 else None))
+    stage = Stage(seen=12, busy=10)
+    run(stage, human, robot)
+    assert [(seen.tick, seen.idle, len(seen.inbox)) for seen in human.observed] == [
+        (0, True, 0),
+        (1, False, 1),
+        (10, True, 1),
+    ]
+    assert [tick for tick, seat, _ in stage.started if seat == HUMAN] == [0, 10]
+
+
+def test_all_seats_see_the_same_moment() -> None:
+    """A message of tick 3 cannot be answered at tick 3, whoever is asked first."""
+    human = Mind(lambda now: Action(say=Reply(message=now.inbox[0].id, accept=True) if now.inbox else None))
+    robot = Mind(lambda now: Action(say=Send(text="here", object="apple") if now.tick == 3 else None))
+    log = run(Stage(seen=9), human, robot)
+    life = {event.kind: event.tick for event in log.events}
+    assert (life["sent"], life["shown"], life["confirmed"]) == (3, 4, 4)
+    statuses = [(seen.tick, seen.receipt.status) for seen in robot.observed if seen.receipt]
+    assert statuses[0] == (4, "sent")
+    assert (5, "confirmed") in statuses
+
+
+def test_no_picture_is_taken_that_nobody_looks_at() -> None:
+    robot = Mind(lambda now: Action(say=Send(text="here")))
+    stage = Stage(seen=9)
+    run(stage, Mind(), robot)
+    assert stage.frames == 0
+    human = Mind(lambda now: Action(motion=Wait(seconds=len(now.inbox) and now.inbox[0].image())))
+    run(stage, human, robot)
+    assert stage.frames > 0
+
+
+def test_truth_and_the_house_are_for_the_privileged() -> None:
+    plain, knowing = Mind(), Mind()
+    run(Stage(seen=3), Mind(), plain)
+    assert not plain.observed[0].truth
+    assert plain.briefing.house is None
+    human = Mind()
+    run(Stage(seen=3), human, knowing, "object_poses", "house_map")
+    assert knowing.observed[0].truth
+    assert knowing.briefing.house is not None
+    assert not human.observed[0].truth
+
+
+@pytest.mark.parametrize("where", ["begin", "act", "answer"])
+def test_a_mind_that_fails_is_retired_and_the_trial_goes_on(where: str) -> None:
+    class Bad(Mind):
+        def begin(self, briefing: Briefing) -> None:
+            if where == "begin":
+                raise ValueError("no such house")
+
+        def act(self, observation: Observation) -> Action:
+            if observation.tick < 7:
+                return Action()
+            if where == "answer":
+                return "forward"  # type: ignore[return-value]
+            raise ValueError("lost")
+
+    log = run(Stage(seen=30), Mind(), Bad())
+    assert log.met
+    assert [(fault.seat, fault.tick) for fault in log.faults] == [("robot", 0 if where == "begin" else 7)]
+    assert "fault" in kinds(log)
+    assert {"begin": "no such house", "act": "lost", "answer": "must return an hthor.types.Action"}[
+        where
+    ] in log.faults[0].detail
+    assert len(log.paths["robot"]) == len(log.paths[HUMAN])
+
+
+def test_a_failing_human_model_is_not_hidden() -> None:
+    def fail(_: Observation) -> Action:
+        raise RuntimeError("broken model")
+
+    with pytest.raises(RuntimeError, match="broken model"):
+        run(Stage(), Mind(fail), Mind())
