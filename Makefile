@@ -21,7 +21,8 @@ test: .venv/.installed-dev
 install: .venv/.installed
 
 python:
-	@test -n "$(PYTHON)" || { echo "hthor needs Python 3.11 or 3.12 and found neither on the PATH; install one, or name it: make demo PYTHON=/path/to/python3.12" >&2; exit 2; }
+	@$(if $(PYTHON),$(PYTHON),false) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 12))' 2>/dev/null \
+	  || { echo "hthor needs Python 3.11 or 3.12, and $(if $(PYTHON),$(PYTHON) is neither,none is on the PATH): install one, or name it: make demo PYTHON=/path/to/python3.12" >&2; exit 2; }
 
 .venv/bin/python: | python
 	$(PYTHON) -m venv .venv
