@@ -49,8 +49,20 @@ def root(
     """Evaluate robots that help people in a shared house."""
 
 
+def _open_streams() -> None:
+    """Give a process that was started without standard streams, as some job runners do, empty ones."""
+    for handle, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+        if getattr(sys, name) is None:
+            if (null := os.open(os.devnull, os.O_RDWR)) != handle:
+                os.dup2(null, handle)
+                os.close(null)
+            os.set_inheritable(handle, True)
+            setattr(sys, name, os.fdopen(handle, mode))
+
+
 def run() -> None:
     """Run the command of this process, and turn the user's errors into one clear line."""
+    _open_streams()
     if "FORCE_COLOR" not in os.environ and not sys.stdout.isatty():
         os.environ["_TYPER_FORCE_DISABLE_TERMINAL"] = "1"  # typer would also colour for GITHUB_ACTIONS and PY_COLORS
     try:

@@ -76,8 +76,11 @@ class Log:
         if key in self.lines:
             return False
         written = 0
-        while written < len(line):
-            written += os.write(self._file, line[written:])
+        try:
+            while written < len(line):
+                written += os.write(self._file, line[written:])
+        except OSError as error:  # a full disk; the next command cuts the torn line
+            raise OSError(error.errno, error.strerror, str(self.path)) from None
         self.lines[key] = line
         if self._dirty_since is None:
             self._dirty_since = time.monotonic()

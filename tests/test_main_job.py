@@ -1,0 +1,495 @@
+"""The main job with the real engine and real processes: the same bytes, whatever is killed or fails; clear words."""
+
+from __future__ import annotations
+
+import copy
+import functools
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import cv2
+import jsonschema
+import msgspec
+import pytest
+
+from hthor import cli, guest, houses, tasks
+from hthor.eval import cast, find, redraw
+from hthor.eval.log import Log
+from hthor.eval.record import Record
+from hthor.eval.session import Session, sessions
+from hthor.types import HUMAN
+
+EVAL = ("eval", "--agent", "frontier", "--humans", "proxy", "--suite", "smoke", "--participants", "2", "--quiet")
+TRIALS = 20
+
+
+def command(*words: str) -> list[str]:
+    return [sys.executable, "-m", "hthor", *words]
+
+
+def hthor(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command(*words), cwd=cwd, capture_output=True, text=True, timeout=120)
+
+
+class Said(msgspec.Struct):
+    """What a command left: exit code, standard output, standard error."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def say(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[..., Said]:
+    """Run a command that plays nothing in this process, which saves starting one."""
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.setenv("_TYPER_FORCE_DISABLE_TERMINAL", "1")
+
+    def run(*words: object) -> Said:
+        monkeypatch.setattr(sys, "argv", ["hthor", *map(str, words)])
+        code: object = 0
+        try:
+            cli.main()
+        except SystemExit as end:
+            code = end.code or 0
+        out, err = capsys.readouterr()
+        assert isinstance(code, int)
+        return Said(code, out, err)
+
+    return run
+
+
+def lines(folder: Path) -> list[bytes]:
+    path = folder / "trials.jsonl"
+    return path.read_bytes().splitlines(keepends=True) if path.exists() else []
+
+
+def by_key(folder: Path) -> list[bytes]:
+    return sorted(lines(folder), key=lambda line: json.loads(line)["key"])
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two people with the frontier robot, played by two workers and disturbed by nobody. Not to be changed."""
+    folder = tmp_path_factory.mktemp("main") / "frontier"
+    done = hthor(*EVAL, "--jobs", "2", "--out", str(folder), cwd=folder.parent)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+@pytest.fixture
+def copied(reference: Path, tmp_path: Path) -> Path:
+    """A copy of the reference run, to be spoiled."""
+    folder = tmp_path / "copy"
+    folder.mkdir()
+    for name in ("run.json", "trials.jsonl", "result.json"):
+        (folder / name).write_bytes((reference / name).read_bytes())
+    return folder
+
+
+# ----------------------------------------------------------------------------------------------- the same bytes, always
+
+
+def test_one_worker_writes_the_same_records_as_two(reference: Path, tmp_path: Path):
+    done = hthor(*EVAL, "--jobs", "1", "--out", "run", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert by_key(tmp_path / "run") == by_key(reference)
+    assert len(lines(reference)) == TRIALS
+    one, two = json.loads(done.stdout), json.loads((reference / "result.json").read_bytes())
+    del one["effort"], two["effort"]  # what it cost is all that may differ
+    assert one == two
+
+
+@contextmanager
+def started(*words: str, cwd: Path) -> Iterator[subprocess.Popen[str]]:
+    """A command in a session of its own. All its processes, guests too, can be told by their TMPDIR."""
+    with subprocess.Popen(
+        command(*words),
+        cwd=cwd,
+        env={**os.environ, "TMPDIR": str(cwd)},
+        start_new_session=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        try:
+            yield process
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+
+
+def until(true: Callable[[], object], what: str) -> None:
+    deadline = time.monotonic() + 60.0
+    while not true():
+        assert time.monotonic() < deadline, what
+        time.sleep(0.005)
+
+
+def processes(tmpdir: Path) -> list[str]:
+    """Command lines of living processes with this TMPDIR."""
+    mark, found = f"TMPDIR={tmpdir}".encode(), []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            state = (folder / "stat").read_text().rpartition(")")[2].split()[0]
+            if state not in "ZX" and mark in (folder / "environ").read_bytes().split(b"\0"):
+                found.append((folder / "cmdline").read_bytes().replace(b"\0", b" ").decode())
+        except OSError:
+            continue  # it ended while we looked, or is not ours
+    return found
+
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
+
+
+@linux
+def test_killed_three_times_and_resumed_by_the_same_command(reference: Path, tmp_path: Path):
+    words = (*EVAL, "--jobs", "2", "--out", "run")
+    folder = tmp_path / "run"
+    for more, kill in ((1, os.kill), (5, os.killpg), (3, os.kill)):
+        aim = len(lines(folder)) + more
+        with started(*words, cwd=tmp_path) as process:
+            until(lambda aim=aim: len(lines(folder)) >= aim, "the run does not get on")
+            kill(process.pid, signal.SIGKILL)
+            process.wait()
+        until(lambda: not processes(tmp_path), "processes outlived their run")
+    assert 9 <= len(lines(folder)) < TRIALS
+    done = hthor(*words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert by_key(folder) == by_key(reference)
+
+
+PARENT = """
+import subprocess
+from hthor.types import Action, Wait
+
+class Agent:
+    def begin(self, briefing):
+        self.child = subprocess.Popen(["sleep", "600"])
+    def act(self, observation):
+        return Action(motion=Wait(seconds=0.1))
+"""
+
+
+@linux
+def test_not_even_what_an_agent_started_outlives_the_run(tmp_path: Path):
+    (tmp_path / "parent.py").write_text(PARENT)
+    words = ("eval", "--agent", "parent.py", "--participants", "1", "--jobs", "1", "--out", "run", "--quiet")
+    with started(*words, cwd=tmp_path) as process:
+        until(lambda: "sleep 600 " in processes(tmp_path), "the agent never began")
+        process.kill()
+    until(lambda: not processes(tmp_path), "processes outlived their run")
+
+
+def test_what_an_early_death_leaves_is_cleared_away(copied: Path, say: Callable[..., Said]):
+    (copied / ".run.json.k1ll3d").write_text("{")
+    said = say(*EVAL, "--out", copied)
+    assert said.code == 0
+    assert not list(copied.glob(".run.json.*"))
+    (copied / "run.json").rename(copied / ".run.json.k1ll3d")
+    (copied / "trials.jsonl").write_bytes(b"")
+    (copied / "result.json").unlink()
+    with Log(copied):  # so that nothing is played: the folder was accepted, and then found busy
+        assert say(*EVAL, "--out", copied).code == 75
+
+
+# --------------------------------------------------------------------------------------------------------- agents
+
+
+def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(tmp_path: Path):
+    (tmp_path / "far").mkdir()
+    assert hthor("agent", "new", "far/mine.py", cwd=tmp_path).returncode == 0
+    written(tmp_path, act="assert observation.tick < 100, 'tired'")
+    words = ("eval", "--agent", "far/mine.py", "--agent", "agent.py", "--participants", "1", "--json")
+    done = hthor(*words, cwd=tmp_path)
+    assert done.returncode == 3, done.stderr
+    mine, tired = json.loads(done.stdout)
+    assert (mine["counts"]["trials"], mine["counts"]["faults"]) == (10, 0)
+    assert (tired["counts"]["trials"], tired["counts"]["faults"] > 5) == (10, True)
+    assert f"failed in {tired['counts']['faults']} of 10 trials" in done.stderr
+    assert "after 10.0 s: raised: AssertionError: tired" in done.stderr
+    assert "Traceback" not in done.stderr
+    folder = next((tmp_path / "runs").glob("mine-smoke-*"))
+    assert json.loads((folder / "result.json").read_bytes()) == mine
+
+
+def dealt(agent: str, count: int = 2) -> tuple[cast.Character, Session]:
+    """An agent, and the first trials of its first person."""
+    who = cast.introduce(agent)
+    whole = sessions(tasks.suite("smoke"), agent=who, participants=1)[0]
+    return who, msgspec.structs.replace(whole, trials=whole.trials[:count])
+
+
+def played(agent: str, count: int = 2) -> list[Record]:
+    who, session = dealt(agent, count)
+    return list(cast.player(who.path)(session))
+
+
+def test_the_example_works(root: Path):
+    records = played(str(root / "examples" / "sweeper.py"))
+    assert not any(record.faults for record in records)
+    assert all(len(set(record.paths["robot"])) > 10 for record in records), "it goes places"
+
+
+AGENT = """
+import math, os, sys
+import numpy as np
+from hthor.types import *
+
+class Agent:
+    def begin(self, briefing):
+        {begin}
+    def act(self, observation):
+        {act}
+        return Action(motion=Wait(seconds=0.5))
+"""
+HARMLESS = {
+    "waits": {"act": "pass"},
+    "prints": {"act": "print('hello ' * 10000); os.write(1, b'hello'); sys.stdout.flush()"},
+    "numpy": {"act": "return Action(motion=Rotate(yaw=np.float64(0.0), pitch=np.zeros(1)[0]))"},
+    "asks for the impossible": {"act": "return Action(motion=Pick(object='no such thing'))"},
+}
+FAULTY = {
+    "raises in begin": ({"begin": "raise ValueError('no begin')"}, "raised", "ValueError: no begin"),
+    "raises in act": ({"act": "raise KeyError('x')"}, "raised", "KeyError: 'x'"),
+    "hangs": ({"act": "while True: pass"}, "timeout", "gave no answer within 0.5 s"),
+    "exits": ({"act": "sys.exit(3)"}, "raised", "SystemExit: 3"),
+    "is killed": ({"act": "os.kill(os.getpid(), 9)"}, "died", "SIGKILL"),
+    "gives nothing": ({"act": "return None"}, "wrong_type", "act must return an hthor.types.Action, got NoneType"),
+    "gives a text as motion": ({"act": "return Action(motion='forward')"}, "garbage", "motion: Expected `object`"),
+    "gives a short position": (
+        {"act": "return Action(say=Send(text='x', position=np.zeros(2)))"},
+        "garbage",
+        "say.position: Expected `array` of length 3, got 2",
+    ),
+    "gives NaN": ({"act": "return Action(motion=Move(forward=math.nan))"}, "not_finite", "Move.forward"),
+    "wants all memory": ({"act": "bytearray(1 << 62)"}, "raised", "MemoryError"),
+}
+
+
+def written(folder: Path, **bodies: str) -> str:
+    path = folder / "agent.py"
+    path.write_text(AGENT.format(**{"begin": "pass", "act": "pass", **bodies}))
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def idle_robot(tmp_path_factory: pytest.TempPathFactory) -> list[Record]:
+    """Two trials with a robot that waits."""
+    return played(written(tmp_path_factory.mktemp("idle"), act="pass"))
+
+
+@pytest.mark.parametrize("name", HARMLESS)
+def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: list[Record]):
+    records = played(written(tmp_path, **HARMLESS[name]))
+    assert not any(record.faults for record in records)
+    assert [record.paths[HUMAN] for record in records] == [record.paths[HUMAN] for record in idle_robot]
+
+
+@pytest.mark.parametrize("name", FAULTY)
+def test_a_failing_agent_leaves_the_person_alone(
+    name: str, tmp_path: Path, idle_robot: list[Record], monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(guest, "Guest", functools.partial(guest.Guest, step_s=0.5))
+    bodies, kind, told = FAULTY[name]
+    records = played(written(tmp_path, **bodies))
+    assert len(records) == 2, "the next trial is played all the same"
+    for record, idle in zip(records, idle_robot, strict=True):
+        assert [fault.kind for fault in record.faults] == [kind]
+        assert told in record.faults[0].detail
+        assert record.paths == idle.paths, "as if the robot had stood still"
+        assert record.metrics == idle.metrics
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("def oops(:\n", "agent.py:1: invalid syntax"),
+        ("\0", "agent.py: source code string cannot contain null bytes"),
+        ("import no_such_module\n", "No module named 'no_such_module'"),
+        ("raise SystemExit(5)\n", "SystemExit: 5"),
+        ("x = 1\n", "no agent class found"),
+        (AGENT.format(begin="pass", act="pass") + "    privileges = 5\n", "must be a tuple of names, got 5"),
+    ],
+)
+def test_an_agent_that_does_not_load(text: str, told: str, tmp_path: Path, say: Callable[..., Said]):
+    (tmp_path / "agent.py").write_text(text)
+    said = say("eval", "--agent", tmp_path / "agent.py", "--out", tmp_path / "run")
+    assert said.code == 4
+    assert told in said.err
+    assert "hthor/guest" not in said.err, "no frames of ours"
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
+    who, session = dealt(written(tmp_path))
+    written(tmp_path, act="return None")
+    with pytest.raises(guest.host.AgentError, match=r"agent\.py was changed while its run was going on"):
+        list(cast.player(who.path)(session))
+
+
+# ----------------------------------------------------------------------------------------------------- what a run holds
+
+
+def test_scoring_again_gives_the_same_result(copied: Path, say: Callable[..., Said]):
+    before = (copied / "result.json").read_bytes()
+    assert say("score", copied, "--json").out.encode() == before
+    (copied / "result.json").unlink()
+    assert say("score", copied).code == 0
+    now, then = json.loads((copied / "result.json").read_bytes()), json.loads(before)
+    del now["effort"], then["effort"]  # no log knows what it cost
+    assert now == then
+
+
+def test_a_log_that_was_changed(copied: Path, say: Callable[..., Said]):
+    whole, path = lines(copied), copied / "trials.jsonl"
+    alien = json.loads(whole[7])
+    alien["spec"]["seed"] = 5
+    for line, told in (
+        (whole[7][:300] + b"\n", "line 8: $: JSON is malformed"),
+        (whole[7].replace(b'"ticks":', b'"ticks":"many","t":'), "line 8: $.ticks: Expected `int`, got `str`"),
+        (whole[7].replace(b'"sr":1', b'"sr":2').replace(b'"sr":0', b'"sr":2'), "line 8: check: "),
+        (json.dumps(alien).encode() + b"\n", "line 8: check: "),
+        (whole[6], f"trial {json.loads(whole[6])['key']} is there twice"),
+    ):
+        path.write_bytes(b"".join([*whole[:7], line, *whole[8:]]))
+        for words in (("score", copied), (*EVAL, "--out", copied)):
+            said = say(*words)
+            assert said.code == 2, words
+            assert str(path) in said.err
+            assert told in said.err
+            assert "Traceback" not in said.err
+
+
+def test_a_torn_last_line_is_one_trial_less(copied: Path, say: Callable[..., Said], tmp_path: Path):
+    whole = lines(copied)
+    (copied / "trials.jsonl").write_bytes(b"".join(whole)[:-9])
+    assert "1 of 20 trials are missing" in say("score", copied).err
+    refused = say("leaderboard", "add", copied, "--board", tmp_path / "board")
+    assert refused.code == 2
+    assert "lacks 1 of its 20 trials" in refused.err
+    assert "hthor eval --agent frontier" in refused.err
+    assert not (tmp_path / "board").exists()
+
+
+def test_folders_that_cannot_be_used(copied: Path, say: Callable[..., Said], tmp_path: Path):
+    with Log(copied):
+        busy = say(*EVAL, "--out", copied)
+    assert busy.code == 75
+    assert f"{copied} is being written by process {os.getpid()}" in busy.err
+    other = say(*EVAL, "--seed", "9", "--out", copied)
+    assert other.code == 2
+    assert "seed is 0 there and 9 here" in other.err
+    nowhere = say(*EVAL, "--out", copied / "run.json" / "below")
+    assert nowhere.code == 2
+    assert f"{copied / 'run.json' / 'below'}: Not a directory" in nowhere.err
+    assert "Traceback" not in nowhere.err
+
+
+def test_leaderboard(reference: Path, root: Path, say: Callable[..., Said], tmp_path: Path):
+    said = say("leaderboard", "add", reference, "--board", tmp_path)
+    assert said.code == 0
+    schema = jsonschema.Draft202012Validator(json.loads((root / "leaderboard" / "schema.json").read_bytes()))
+    written = sorted(tmp_path.rglob("*.json"))
+    assert [path.parent.name for path in written if path.name != "leaderboard.json"] == ["entries"]
+    for path in written:
+        schema.validate(json.loads(path.read_bytes()))
+    metrics = json.loads(Path(said.out.strip()).read_bytes())["metrics"]
+    assert metrics == json.loads((reference / "result.json").read_bytes())["metrics"]
+
+
+@pytest.mark.parametrize("agent", ["silent", "frontier", "oracle"])
+def test_a_trial_can_be_looked_at(agent: str, tmp_path: Path):
+    (record,) = played(agent, count=1)
+    redraw.draw(record, tmp_path / "trial.png", video=False)
+    picture = cv2.imread(str(tmp_path / "trial.png"))
+    assert picture.shape[0] > 600
+    assert picture.std() > 10
+    redraw.draw(record, tmp_path / "trial.mp4", video=True)
+    film = cv2.VideoCapture(str(tmp_path / "trial.mp4"))
+    good, frame = film.read()
+    assert good
+    assert frame.std() > 10
+    assert film.get(cv2.CAP_PROP_FRAME_COUNT) > record.ticks / 10
+    film.release()
+
+
+def test_a_trial_is_found_by_any_of_its_names(reference: Path, say: Callable[..., Said]):
+    record = find.trial(reference, "3")
+    assert find.trial(reference, record.key[:8]) == find.trial(reference, record.spec.task.id) == record
+    for wrong in (record.spec.task.id[:-1], record.spec.task.id.split("/")[-1]):
+        said = say("replay", reference, wrong)
+        assert said.code == 2
+        assert f"unknown trial '{wrong}'. Did you mean '" in said.err
+    assert "number from 0 to 19" in say("replay", reference, "20").err
+
+
+def test_a_process_without_standard_streams(reference: Path):
+    line = f"{sys.executable} -m hthor score {reference} --json >&- 2>&- <&-"
+    assert subprocess.run(["sh", "-c", line], timeout=60).returncode == 0
+
+
+# ------------------------------------------------------------------------------------------------------- broken houses
+
+
+def _set(*path: Any, to: Any) -> Callable[[Any], None]:
+    def spoil(house: Any) -> None:
+        for step in path[:-1]:
+            house = house[step]
+        house[path[-1]] = to
+
+    return spoil
+
+
+DAMAGE: dict[str, Callable[[Any], object]] = {
+    "walls: is missing": lambda house: house.pop("walls"),
+    "objects: expected a list": _set("objects", to={}),
+    "rooms: is empty": _set("rooms", to=[]),
+    "rooms[0].floorPolygon[1].x: must be a finite number": _set("rooms", 0, "floorPolygon", 1, "x", to=float("nan")),
+    "rooms[1].floorPolygon: ": lambda house: house["rooms"][1].update(floorPolygon=house["rooms"][0]["floorPolygon"]),
+    "rooms[0].floorPolygon: needs at least 3": lambda house: house["rooms"][0]["floorPolygon"].__delitem__(slice(2, 9)),
+    "rooms[1].id: ": lambda house: house["rooms"][1].update(id=house["rooms"][0]["id"]),
+    "rooms[0].roomType: unknown room type": _set("rooms", 0, "roomType", to="Dungeon"),
+    "doors[0].wall0: no wall has the id": _set("doors", 0, "wall0", to="wall|nowhere"),
+    "walls[0].polygon: needs 4 corners": lambda house: house["walls"][0]["polygon"].pop(),
+    "objects[0].assetId: unknown asset 'No_Such_1'": _set("objects", 0, "assetId", to="No_Such_1"),
+    "objects[0].position.x: expected a number": _set("objects", 0, "position", "x", to="1.0"),
+    "objects[1].id: ": lambda house: house["objects"][1].update(id=house["objects"][0]["id"]),
+}
+
+
+def _spoiled(source: Path, folder: Path, say: Callable[..., Said]) -> None:
+    file, sound = folder / "spoiled.json", json.loads(source.read_bytes())
+    for told, spoil in DAMAGE.items():
+        house = copy.deepcopy(sound)
+        spoil(house)
+        file.write_text(json.dumps(house))
+        _refused(file, told, say)
+    file.write_bytes(source.read_bytes()[:1000])
+    _refused(file, "$: not valid JSON", say)
+
+
+def _refused(file: Path, told: str, say: Callable[..., Said]) -> None:
+    said = say("houses", "check", file)
+    assert said.code == 2, told
+    assert f"{file}: {told}" in said.err
+    assert "Traceback" not in said.err
+
+
+@pytest.mark.parametrize("name", houses.names())
+def test_damaged_copies_of_our_own_houses(name: str, root: Path, tmp_path: Path, say: Callable[..., Said]):
+    assert say("houses", "check", name).code == 0
+    _spoiled(root / "hthor" / "houses" / "data" / f"{name}.json", tmp_path, say)
+
+
+def test_damaged_copies_of_a_sample_house(samples: list[Path], tmp_path: Path, say: Callable[..., Said]):
+    assert say("houses", "check", samples[-1]).code == 0
+    _spoiled(samples[-1], tmp_path, say)
