@@ -27,6 +27,8 @@ from hthor.eval.record import Record
 from hthor.eval.session import Session, sessions
 from hthor.types import HUMAN
 
+pytestmark = pytest.mark.xdist_group("main-job")  # one process makes the run that most of these look at
+
 EVAL = ("eval", "--agent", "frontier", "--humans", "proxy", "--suite", "smoke", "--participants", "2", "--quiet")
 TRIALS = 20
 
