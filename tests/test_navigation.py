@@ -311,7 +311,7 @@ def look(tick: int, *people: tuple[float, float], by: str = "") -> Observation:
     return Observation(tick=tick, pose=Pose(x=0.0, y=0.0), idle=True, senses=Seen(*people), outcome=outcome)
 
 
-def test_courtesy_steps_aside_waits_and_goes_on() -> None:
+def test_courtesy_steps_aside_as_long_as_it_is_followed_and_goes_on() -> None:
     courtesy = Courtesy(BODY, lambda a, b: abs(b[0]) < 2 and abs(b[1]) < 2)
     assert courtesy.motion(look(0), 0.0) is None
     assert courtesy.motion(look(1, (2.5, 0.0)), 0.1) is None
@@ -319,8 +319,20 @@ def test_courtesy_steps_aside_waits_and_goes_on() -> None:
     assert isinstance(aside, Move)
     assert math.hypot(aside.forward, aside.left) == pytest.approx(0.5)
     assert aside.forward < 0
-    assert isinstance(courtesy.motion(look(7, (0.8, 0.0)), 0.7), Wait)
+    assert isinstance(courtesy.motion(look(7, (0.8, 0.0)), 0.7), Move)
     assert courtesy.motion(look(30, (0.8, 0.0)), 3.0) is None
+
+
+def test_courtesy_ends_when_the_person_has_passed() -> None:
+    courtesy = Courtesy(BODY, lambda a, b: abs(b[0]) < 2 and abs(b[1]) < 2)
+    assert isinstance(courtesy.motion(look(2, (0.7, 0.0)), 0.2), Move)
+    assert courtesy.motion(look(9), 0.9) is None
+
+
+def test_courtesy_after_a_bump_from_behind_steps_once_and_waits() -> None:
+    courtesy = Courtesy(BODY, lambda a, b: True)
+    assert isinstance(courtesy.motion(look(0, by="human"), 0.0), Move)
+    assert isinstance(courtesy.motion(look(5), 0.5), Wait)
 
 
 def test_courtesy_without_room_waits_and_a_bump_counts() -> None:

@@ -20,12 +20,12 @@ _DIRECTIONS = 16
 
 
 class Courtesy:
-    """Steps aside when the person is in the way, waits up to two seconds, then goes on."""
+    """Makes room when the person is in the way, for up to two seconds at a time, then goes on."""
 
     def __init__(self, body: BodySpec, fits: Callable[[Vec2, Vec2], bool]) -> None:
         """``fits(a, b)`` says whether the body can go straight from ``a`` to ``b`` [m]."""
         self.body, self.fits = body, fits
-        self._seen = False
+        self._seen, self._stepped = False, False
         self._until = -1.0
         self._rest = -1.0
 
@@ -43,16 +43,24 @@ class Courtesy:
                 self._until = -1.0
                 return None
             self._seen = self._seen or person is not None
-            return Wait(seconds=_PAUSE_S)
+            return self._make_room(observation, person)
         if seconds < self._rest and not bumped:
             return None
         if not bumped and not self._in_front(observation, person):
             return None
         self._until, self._rest = seconds + PATIENCE_S, seconds + 2.0 * PATIENCE_S
-        self._seen = person is not None
-        here = (observation.pose.x, observation.pose.y)
-        aside = self._aside(here, person)
-        return Wait(seconds=_PAUSE_S) if aside is None else shift(observation.pose, aside, _STEP_M)
+        self._seen, self._stepped = person is not None, False
+        return self._make_room(observation, person)
+
+    def _make_room(self, observation: Observation, person: Vec2 | None) -> Motion:
+        """A step away, as long as the person is near or was not seen at all yet; else wait.
+
+        In a passage this goes on, step by step, ahead of a person who follows, until there is room to pass.
+        """
+        pose = observation.pose
+        aside = self._aside((pose.x, pose.y), person) if person is not None or not self._stepped else None
+        self._stepped = True
+        return Wait(seconds=_PAUSE_S) if aside is None else shift(pose, aside, _STEP_M)
 
     def _look(self, observation: Observation) -> Vec2 | None:
         """Where the nearest person close by is [m]; None when none is."""
