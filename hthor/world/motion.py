@@ -124,11 +124,14 @@ class Going:
         return self._try(dx, dy) if abs(dx + dy) > _SLIDE * step else _BLOCKED
 
     def _in_way(self, tick: int, met: str) -> tuple[Event, ...]:
-        """A hindered body says so once a move."""
+        """A hindered body says so once a move.
+
+        The tick is the one at which the other stood in the way, before the step: up to it, all went as without them.
+        """
         if met in (_FREE, _BLOCKED) or self._hindered:
             return ()
         self._hindered = True
-        return (Event(tick=tick, seat=self._seat.name, kind="in_way", data={"by": met}),)
+        return (Event(tick=tick - 1, seat=self._seat.name, kind="in_way", data={"by": met}),)
 
     def _stop(self, tick: int, met: str, step: Vec2, events: tuple[Event, ...]) -> Step:
         name = self._seat.name

@@ -210,7 +210,7 @@ class World:
         if self._env.tick():
             self._objects.settle()
             self._check()
-        return tuple(events)
+        return tuple(sorted(events, key=lambda event: event.tick))
 
     def _check(self) -> None:
         complaints = self._env.warnings()
