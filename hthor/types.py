@@ -39,22 +39,24 @@ class Pose(Struct, frozen=True, kw_only=True):
 class Part(Struct, frozen=True, kw_only=True):
     """One solid of a thing, in the thing's local frame.
 
-    ``half`` [m] holds half extents of a box, (r, r, half height) of an upright cylinder, (r, r, r) of a sphere.
-    ``moves`` says that the part belongs to the hinged door and turns with it.
+    ``half`` [m] holds the half extents of its bounding box: (r, r, half height) of an upright cylinder, (r, r, r) of a
+    sphere. ``axis`` is the direction of a cylinder. ``moves`` names the `Joint` that it moves with, empty for none.
     """
 
     shape: Literal["box", "cylinder", "sphere"]
     centre: Vec3
     half: Vec3
     rgba: Rgba
-    moves: bool = False
+    axis: Literal["x", "y", "z"] = "z"
+    moves: str = ""
 
 
 class Surface(Struct, frozen=True, kw_only=True):
     """A flat place of a thing where objects can rest, in the thing's local frame.
 
     ``centre`` [m] is the middle of the surface, ``half`` [m] its half extents along local x and y, ``clearance`` [m]
-    the free height above it. ``inside`` marks a surface that only an open door gives access to.
+    the free height above it. ``inside`` marks a surface that only an open door gives access to. ``moves`` names the
+    `Joint` that it moves with, as a drawer's floor does; ``centre`` is then where it is while closed.
     """
 
     name: str
@@ -62,12 +64,20 @@ class Surface(Struct, frozen=True, kw_only=True):
     half: Vec2
     clearance: float
     inside: bool = False
+    moves: str = ""
 
 
-class Hinge(Struct, frozen=True, kw_only=True):
-    """A door's vertical axis in the thing's local frame, and how far it turns [rad] (sign gives the direction)."""
+class Joint(Struct, frozen=True, kw_only=True):
+    """How a door turns or a drawer slides, in the thing's local frame; 0 is closed, ``travel`` open.
 
-    axis: Vec2
+    A hinge turns by ``travel`` [rad] about the unit vector ``axis`` through ``anchor`` [m], right-handed; a slide goes
+    ``travel`` [m] along ``axis``. All joints of a thing move together.
+    """
+
+    name: str
+    kind: Literal["hinge", "slide"]
+    anchor: Vec3
+    axis: Vec3
     travel: float
 
 
@@ -75,12 +85,13 @@ class Thing(Struct, frozen=True, kw_only=True):
     """A piece of furniture or a small object of a house, as its file places it.
 
     ``centre`` [m] house frame is the middle of the bounding box, ``size`` [m] its extents along the thing's local
-    x (width), y (depth) and z (height) axes.
+    x (width), y (depth) and z (height) axes. ``variant`` picks one of its kind's finishes; it changes looks only.
     """
 
     id: str
     kind: str
     asset: str
+    variant: int = 0
     centre: Vec3
     size: Vec3
     yaw: float
@@ -113,7 +124,8 @@ class Wall(Struct, frozen=True, kw_only=True):
 class Opening(Struct, frozen=True, kw_only=True):
     """A hole in a wall: the floor segment ``a`` to ``b`` [m] and the heights ``low`` and ``high`` [m] it spans.
 
-    A ``passable`` one is an open doorway; the closed outside door and every window are not.
+    A ``passable`` one is an open doorway; the closed outside door and every window are not. In an ``openable`` one
+    hangs a leaf that stands open when a trial begins; in other doorways there is none. ``asset`` is what fills it.
     """
 
     id: str
@@ -124,6 +136,8 @@ class Opening(Struct, frozen=True, kw_only=True):
     low: float
     high: float
     passable: bool
+    openable: bool = False
+    asset: str = ""
 
 
 class HouseSpec(Struct, frozen=True, kw_only=True):

@@ -53,7 +53,7 @@ def test_every_kind_is_sound(kind: Kind) -> None:
     assert kind.title
     assert kind.indefinite.endswith(kind.title)
     assert 1 <= len(kind.parts()) <= (3 if kind.pickable else 10)
-    assert kind.openable == (kind.hinge() is not None) == any(part.moves for part in kind.parts())
+    assert kind.openable == bool(kind.joints()) == any(part.moves for part in kind.parts())
     assert kind.receptacle == bool(kind.surfaces())
     heights = [surface.centre[2] for surface in kind.surfaces()]
     assert heights == sorted(heights)
@@ -115,8 +115,7 @@ def test_every_surface_of_a_receptacle_holds_a_lettuce(name: str) -> None:
 
 def test_a_closed_fridge_hides_its_shelves_and_an_open_one_bares_them() -> None:
     fridge = catalog.kind("fridge")
-    hinge = fridge.hinge()
-    assert hinge is not None
+    (hinge,) = fridge.joints()
     door = max((part for part in fridge.parts() if part.moves), key=lambda part: part.half[0])
     assert door.half[0] == fridge.size[0] / 2
     assert door.half[2] == fridge.size[2] / 2
@@ -126,10 +125,10 @@ def test_a_closed_fridge_hides_its_shelves_and_an_open_one_bares_them() -> None:
     front = door.centre[1] - door.half[1]
     for step in range(1, 21):
         swung = [
-            turn((x - hinge.axis[0], y - hinge.axis[1]), hinge.travel * step / 20) for x, y in corners
+            turn((x - hinge.anchor[0], y - hinge.anchor[1]), hinge.travel * step / 20) for x, y in corners
         ]  # relative to the axis
-        assert min(y + hinge.axis[1] for _, y in swung) >= front - 0.02, "the door must swing out, not in"
-    assert max(x + hinge.axis[0] for x, _ in swung) <= -fridge.size[0] / 2 + 2 * door.half[1] + 0.02
+        assert min(y + hinge.anchor[1] for _, y in swung) >= front - 0.02, "the door must swing out, not in"
+    assert max(x + hinge.anchor[0] for x, _ in swung) <= -fridge.size[0] / 2 + 2 * door.half[1] + 0.02
     assert math.degrees(hinge.travel) == pytest.approx(100)
 
 
@@ -146,8 +145,9 @@ def test_an_unknown_kind_names_the_nearest() -> None:
 
 def test_own_assets() -> None:
     fridge = catalog.kind("fridge")
-    assert catalog.own_asset("hthor_fridge") == (fridge, fridge.size)
-    assert catalog.own_asset("hthor_counter_top_240x62x90") == (catalog.kind("counter_top"), (2.4, 0.62, 0.9))
+    assert catalog.own_asset("hthor_fridge") == (fridge, fridge.size, 0)
+    assert catalog.own_asset("hthor_counter_top_240x62x90") == (catalog.kind("counter_top"), (2.4, 0.62, 0.9), 0)
+    assert catalog.own_asset("hthor_counter_top_240x62x90_v3") == (catalog.kind("counter_top"), (2.4, 0.62, 0.9), 3)
     assert catalog.own_asset("Fridge_1") is None
     assert catalog.own_asset("hthor_spaceship") is None
 

@@ -164,12 +164,11 @@ def test_one_house_has_an_open_plan() -> None:
 def test_a_fridge_s_door_has_room_to_swing(house: HouseSpec) -> None:
     for fridge in (thing for thing in house.things if thing.kind == "fridge"):
         kind = catalog.kind("fridge")
-        hinge = kind.hinge(fridge.size)
-        assert hinge is not None
+        (hinge,) = kind.joints(fridge.size)
         for step in range(1, 21):
             for reach in (0.25, 0.5, 0.75, 1.0):
                 tip = turn((reach * fridge.size[0], 0.0), hinge.travel * step / 20)
-                x, y = turn((hinge.axis[0] + tip[0], hinge.axis[1] + tip[1]), fridge.yaw)
+                x, y = turn((hinge.anchor[0] + tip[0], hinge.anchor[1] + tip[1]), fridge.yaw)
                 point = (fridge.centre[0] + x, fridge.centre[1] + y)
                 for thing in on_floor(house):
                     if thing.id != fridge.id:

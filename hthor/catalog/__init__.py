@@ -17,7 +17,7 @@ TARGETS = tuple(kind.name for kind in targets.KINDS)
 """The benchmark's six target objects, by name."""
 
 _KINDS = {kind.name: kind for kind in (*receptacles.KINDS, *targets.KINDS, *background.KINDS)}
-_ASSET = re.compile(r"hthor_([a-z_]+?)(?:_(\d+)x(\d+)x(\d+))?")
+_ASSET = re.compile(r"hthor_([a-z_]+?)(?:_(\d+)x(\d+)x(\d+))?(?:_v(\d+))?")
 
 
 def names() -> tuple[str, ...]:
@@ -37,15 +37,16 @@ def kind(name: str) -> Kind:
         raise UnknownName("kind of thing", name, _KINDS) from None
 
 
-def own_asset(asset: str) -> tuple[Kind, Vec3] | None:
-    """Kind and size [m] of one of our own asset ids, None for an id that is not ours.
+def own_asset(asset: str) -> tuple[Kind, Vec3, int] | None:
+    """Kind, size [m] and variant of one of our own asset ids, None for an id that is not ours.
 
-    Ours are ``hthor_<kind>``, and ``hthor_<kind>_<width>x<depth>x<height>`` with whole centimetres for another size.
+    Ours are ``hthor_<kind>``, and ``hthor_<kind>_<width>x<depth>x<height>`` with whole centimetres for another size;
+    ``_v<number>`` at the end names a variant.
     """
     match = _ASSET.fullmatch(asset)
     if match is None or match[1] not in _KINDS:
         return None
-    found = _KINDS[match[1]]
+    found, variant = _KINDS[match[1]], int(match[5] or 0)
     if match[2] is None:
-        return found, found.size
-    return found, (int(match[2]) / 100.0, int(match[3]) / 100.0, int(match[4]) / 100.0)
+        return found, found.size, variant
+    return found, (int(match[2]) / 100.0, int(match[3]) / 100.0, int(match[4]) / 100.0), variant

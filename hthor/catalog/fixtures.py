@@ -7,7 +7,7 @@ import math
 from hthor.catalog.colours import GLASS, GREY, STEEL, WHITE
 from hthor.catalog.kind import Form
 from hthor.catalog.solids import box, pillar, rest, rounded
-from hthor.types import Hinge, Part, Rgba, Vec3
+from hthor.types import Joint, Part, Rgba, Vec3
 
 DOOR_TRAVEL_RAD = math.radians(100.0)
 
@@ -30,16 +30,17 @@ def fridge(size: Vec3, *, body: Rgba, inner: Rgba) -> Form:
         box(size, (t, t, 0.0), (w - t, front, low), inner),
         box(size, (t, t, h - t), (w - t, front, h), inner),
         *(box(size, (t, t, z - board), (w - t, 0.92 * front, z), inner) for z in floors[1:]),
-        box(size, (0.0, front, 0.0), (w, front + leaf, h), body, moves=True),
-        box(size, (0.9 * w, front + leaf, 0.45 * h), (0.94 * w, d, 0.75 * h), GREY, moves=True),
+        box(size, (0.0, front, 0.0), (w, front + leaf, h), body, moves="door"),
+        box(size, (0.9 * w, front + leaf, 0.45 * h), (0.94 * w, d, 0.75 * h), GREY, moves="door"),
     )
     e = min(0.03, 0.05 * w, 0.05 * d)
     rests = tuple(
         rest(size, name, (t + e, t + e), (w - t - e, 0.92 * front - e), z, step - board, inside=True)
         for name, z in zip(("bottom", "lower shelf", "upper shelf"), floors, strict=True)
     )
-    hinge = Hinge(axis=(-w / 2, front + leaf - d / 2), travel=DOOR_TRAVEL_RAD)
-    return Form(parts=parts, surfaces=rests, hinge=hinge)
+    corner = (-w / 2, front + leaf - d / 2, 0.0)
+    door = Joint(name="door", kind="hinge", anchor=corner, axis=(0.0, 0.0, 1.0), travel=DOOR_TRAVEL_RAD)
+    return Form(parts=parts, surfaces=rests, joints=(door,))
 
 
 def _basin(

@@ -2,32 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Literal
 
 from msgspec import Struct
 
-from hthor.types import Hinge, Part, Surface, Vec3
+from hthor.types import Joint, Part, Rgba, Surface, Vec3
 
 
 class Form(Struct, frozen=True, kw_only=True):
-    """The solids, resting places and door of a thing of a given size, in the thing's local frame."""
+    """The solids, resting places, doors and drawers of a thing of a given size, in the thing's local frame."""
 
     parts: tuple[Part, ...]
     surfaces: tuple[Surface, ...] = ()
-    hinge: Hinge | None = None
+    joints: tuple[Joint, ...] = ()
 
 
-Shape = Callable[[Vec3], Form]
-"""Makes the form of a thing from its (width, depth, height) [m]."""
+Shape = Callable[..., Form]
+"""Makes the form of a thing from its (width, depth, height) [m], and colours by keyword."""
 
 Family = Literal["receptacle", "target", "background"]
 
 
 @lru_cache(maxsize=4096)
-def _form(shape: Shape, size: Vec3) -> Form:
-    return shape(size)
+def _form(shape: Shape, size: Vec3, colours: tuple[tuple[str, Rgba], ...]) -> Form:
+    return shape(size, **dict(colours))
 
 
 class Kind(Struct, frozen=True, kw_only=True):
@@ -35,7 +35,8 @@ class Kind(Struct, frozen=True, kw_only=True):
 
     ``size`` [m] is what a thing of this kind measures unless its house says otherwise: (width, depth, height) along
     the local x, y and z axes, front towards +y. ``mass`` [kg] belongs to that size. ``relation`` is how an object
-    lies there: in a fridge or a sink, on anything else.
+    lies there: in a fridge or a sink, on anything else. ``finishes`` are the colours of its variants: what each changes
+    of the shape's own colours; variant 0 is the shape as it is.
     """
 
     name: str
@@ -45,25 +46,31 @@ class Kind(Struct, frozen=True, kw_only=True):
     mass: float
     shape: Shape
     pickable: bool = False
-    openable: bool = False
     wall_mounted: bool = False
     relation: Literal["on", "in"] = "on"
+    finishes: tuple[Mapping[str, Rgba], ...] = ()
 
-    def form(self, size: Vec3 | None = None) -> Form:
-        """Parts, surfaces and hinge at ``size`` [m], or at the kind's own size."""
-        return _form(self.shape, self.size if size is None else size)
+    def form(self, size: Vec3 | None = None, variant: int = 0) -> Form:
+        """Parts, surfaces and joints at ``size`` [m], or at the kind's own size; ``variant`` only picks colours."""
+        looks = ({}, *self.finishes)[variant % (1 + len(self.finishes))]
+        return _form(self.shape, self.size if size is None else size, tuple(sorted(looks.items())))
 
-    def parts(self, size: Vec3 | None = None) -> tuple[Part, ...]:
-        """The solids; their common bounding box is exactly ``size``."""
-        return self.form(size).parts
+    def parts(self, size: Vec3 | None = None, variant: int = 0) -> tuple[Part, ...]:
+        """The solids, everything closed; their common bounding box is exactly ``size``."""
+        return self.form(size, variant).parts
 
     def surfaces(self, size: Vec3 | None = None) -> tuple[Surface, ...]:
         """Where objects can rest, lowest first; empty for a thing that is no receptacle."""
         return self.form(size).surfaces
 
-    def hinge(self, size: Vec3 | None = None) -> Hinge | None:
-        """The door's axis and travel, None for a thing that does not open."""
-        return self.form(size).hinge
+    def joints(self, size: Vec3 | None = None) -> tuple[Joint, ...]:
+        """Its doors and drawers, empty for a thing that does not open."""
+        return self.form(size).joints
+
+    @property
+    def openable(self) -> bool:
+        """Whether it has doors or drawers."""
+        return bool(self.form().joints)
 
     @property
     def receptacle(self) -> bool:

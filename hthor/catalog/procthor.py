@@ -125,10 +125,11 @@ KIND_OF = {
 
 
 class Asset(Struct, frozen=True, kw_only=True):
-    """A foreign asset: the kind that stands in for it, and its size (width, depth, height) [m]."""
+    """A foreign asset: the kind that stands in for it, and its size (width, depth, height) [m], and variant."""
 
     kind: str
     size: Vec3
+    variant: int = 0
 
 
 class _Box(Struct):

@@ -16,7 +16,6 @@ KINDS = (
         size=(0.75, 0.72, 1.78),
         mass=75.0,
         shape=partial(fixtures.fridge, body=c.STEEL, inner=c.WHITE),
-        openable=True,
         relation="in",
     ),
     Kind(

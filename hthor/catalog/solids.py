@@ -25,7 +25,7 @@ def _half(lo: Vec3, hi: Vec3) -> Vec3:
     return (x, y, z)
 
 
-def box(size: Vec3, lo: Vec3, hi: Vec3, rgba: Rgba, *, moves: bool = False) -> Part:
+def box(size: Vec3, lo: Vec3, hi: Vec3, rgba: Rgba, *, moves: str = "") -> Part:
     """A box from corner to corner."""
     return Part(shape="box", centre=_centre(size, lo, hi), half=_half(lo, hi), rgba=rgba, moves=moves)
 

@@ -42,10 +42,10 @@ class Assets:
         """
         own = catalog.own_asset(asset)
         if own is not None:
-            kind, size = own
+            kind, size, variant = own
             if min(size) <= 0.0:
                 raise HouseError(file, field, f"the size in '{asset}' must be positive in all three directions")
-            return Asset(kind=kind.name, size=size)
+            return Asset(kind=kind.name, size=size, variant=variant)
         rows = self._database()
         if asset in rows:
             return rows[asset]

@@ -108,6 +108,8 @@ def _opening(row: OpeningRow, wall: WallRow, *, door: bool) -> Opening:
     low, high = sorted(corner.y for corner in row.hole_polygon)
     beyond = EXTERIOR if row.room1 == row.room0 else row.room1
     indoors = EXTERIOR not in (row.room0, beyond)
+    # Door frames carry no openness: nothing hangs in them.
+    passable = door and indoors and (row.openness is None or row.openness > 0.0)
     return Opening(
         id=row.id,
         kind="door" if door else "window",
@@ -116,8 +118,9 @@ def _opening(row: OpeningRow, wall: WallRow, *, door: bool) -> Opening:
         b=(start[0] + ux * far, start[1] + uy * far),
         low=low,
         high=high,
-        # Door frames carry no openness: nothing hangs in them.
-        passable=door and indoors and (row.openness is None or row.openness > 0.0),
+        passable=passable,
+        openable=passable and bool(row.openable),
+        asset=row.asset_id,
     )
 
 
@@ -132,6 +135,7 @@ def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
                 id=row.id,
                 kind=asset.kind,
                 asset=row.asset_id,
+                variant=asset.variant,
                 centre=(at.x, at.z, at.y),
                 size=asset.size,
                 yaw=wrap(0.0 - math.radians(row.rotation.y)),

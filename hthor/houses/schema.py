@@ -95,6 +95,7 @@ class OpeningRow(Struct, frozen=True, rename="camel"):
     wall1: str | None = None
     openable: bool | None = None
     openness: float | None = None
+    asset_id: str = ""
 
 
 class ObjectRow(Struct, frozen=True, rename="camel"):

@@ -91,7 +91,7 @@ class HouseArena(Arena):
             )
 
     def _thing(self, thing: Thing) -> None:
-        for part in catalog.kind(thing.kind).parts(thing.size):
+        for part in catalog.kind(thing.kind).parts(thing.size, thing.variant):
             if not part.moves:
                 name = self._name(thing.id)
                 bits = geoms.STATIC

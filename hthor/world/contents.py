@@ -35,7 +35,7 @@ class Movable(Struct, frozen=True, kw_only=True):
 
 
 class Contents(Struct, frozen=True, kw_only=True):
-    """A house's things, split. ``doors`` are the statics that have a hinged door."""
+    """A house's things, split. ``doors`` are the statics that open."""
 
     statics: tuple[Thing, ...]
     movables: tuple[Movable, ...]
@@ -63,7 +63,7 @@ def split(house: HouseSpec, objects: Iterable[tuple[str, str]]) -> Contents:
             raise HthorError(f"object '{id}' is of kind '{name}', which cannot be picked up")
         taken.add(id)
         movables.append(Movable(id=id, kind=name, size=kind.size, mass=kind.mass))
-    doors = tuple(thing for thing in statics if catalog.kind(thing.kind).hinge(thing.size) is not None)
+    doors = tuple(thing for thing in statics if catalog.kind(thing.kind).joints(thing.size))
     return Contents(statics=statics, movables=tuple(movables), doors=doors)
 
 

@@ -14,9 +14,10 @@ class Leaf:
 
     def __init__(self, door: Door, env: FastEnv) -> None:
         self.thing: Thing = door.thing
-        self.travel = door.travel
-        joint = env.physics.bind(door.joint).element_id
-        self.qpos, self.dof = int(env.model.jnt_qposadr[joint]), int(env.model.jnt_dofadr[joint])
+        self.joints = door.joints
+        ids = [env.physics.bind(element).element_id for element in door.elements]
+        self.qpos = [int(env.model.jnt_qposadr[id]) for id in ids]
+        self.dof = [int(env.model.jnt_dofadr[id]) for id in ids]
         self.open, self.user = False, ""
 
 
@@ -47,8 +48,9 @@ class Doors:
 
     def swing(self, leaf: Leaf, share: float) -> None:
         """Set a door ``share`` of the way open, 0 to 1."""
-        self._env.data.qpos[leaf.qpos] = leaf.travel * share
-        self._env.data.qvel[leaf.dof] = 0.0
+        for joint, qpos, dof in zip(leaf.joints, leaf.qpos, leaf.dof, strict=True):
+            self._env.data.qpos[qpos] = joint.travel * share
+            self._env.data.qvel[dof] = 0.0
         self._env.touch()
         self.changes += 1
 

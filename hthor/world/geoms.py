@@ -10,6 +10,16 @@ from hthor.types import Part, Vec3
 
 Bits = dict[str, Any]
 
+Quaternion = tuple[float, float, float, float]
+"""(w, x, y, z)."""
+_HALF = math.sqrt(0.5)
+_AXES: dict[str, Quaternion] = {
+    "x": (_HALF, 0.0, _HALF, 0.0),
+    "y": (_HALF, -_HALF, 0.0, 0.0),
+    "z": (1.0, 0.0, 0.0, 0.0),
+}
+"""Turns of an upright cylinder onto an axis."""
+
 FURNITURE, WALLS, OBJECTS, BODIES, CEILINGS = range(5)
 """Draw groups. Ceilings, and lintels with them, are left out of the view from above."""
 
@@ -21,16 +31,31 @@ LEAF: Bits = {"contype": 4, "conaffinity": 0}
 """A door's leaf meets nothing either, but unlike a ghost it counts as solid: it hides what is behind it."""
 
 
-def quaternion(yaw: float) -> tuple[float, float, float, float]:
+def quaternion(yaw: float) -> Quaternion:
     """The turn by ``yaw`` [rad] about z, as (w, x, y, z)."""
     return (math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2))
+
+
+def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
+    """The turn ``b`` followed by the turn ``a``."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
 
 
 def size(part: Part) -> tuple[float, ...]:
     """A part's half extents as MuJoCo counts them for its shape."""
     if part.shape == "sphere":
         return (part.half[0],)
-    return (part.half[0], part.half[2]) if part.shape == "cylinder" else part.half
+    if part.shape == "cylinder":
+        along = "xyz".index(part.axis)
+        return (part.half[along - 1], part.half[along])
+    return part.half
 
 
 def volume(part: Part) -> float:
@@ -47,7 +72,7 @@ def add_part(body: Any, name: str, part: Part, centre: Vec3 = (0.0, 0.0, 0.0), y
         type=part.shape,
         size=size(part),
         pos=to_house(part.centre, centre, yaw),
-        quat=quaternion(yaw),
+        quat=multiply(quaternion(yaw), _AXES[part.axis]) if part.shape == "cylinder" else quaternion(yaw),
         rgba=part.rgba,
         **more,
     )
