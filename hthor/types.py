@@ -163,6 +163,7 @@ class BodySpec(Struct, frozen=True, kw_only=True):
     bounds what its detector reports, ``scan_range`` [m] its range scan. ``reach`` [m] is horizontal, from the body's
     axis; ``reach_low`` and ``reach_high`` [m] bound the height of a grasp; ``strength`` [kg] what it can lift.
     ``handling`` [s] is how long pick, place, open and close take. ``pitch_limit`` [rad] bounds the camera either way.
+    ``detector`` is how its detector errs unless a trial says otherwise, as `hthor.detectors.read` reads it.
     """
 
     name: str
@@ -183,6 +184,7 @@ class BodySpec(Struct, frozen=True, kw_only=True):
     reach_high: float = 0.0
     strength: float = 0.0
     handling: float = 1.0
+    detector: str = "ideal"
 
 
 class RobotSpec(BodySpec, frozen=True, kw_only=True):
@@ -234,15 +236,23 @@ class AgentRef(Struct, frozen=True, kw_only=True):
 
 
 class RobotSeat(Struct, frozen=True, kw_only=True):
-    """One robot of a trial: its body and its mind."""
+    """One robot of a trial: its body and its mind. ``detector`` as `hthor.detectors.read` reads it.
+
+    ``robot_sha256`` is the hash of a user's own robot file, empty for a robot that ships with hthor.
+    """
 
     seat: str
     robot: str
     agent: AgentRef
+    detector: str = "own"
+    robot_sha256: str = ""
 
 
 class TrialSpec(Struct, frozen=True, kw_only=True):
-    """Everything that decides a trial's course; its content hash is the trial's key."""
+    """Everything that decides a trial's course; its content hash is the trial's key.
+
+    ``assets_sha256`` is the hash of the furniture pack that the robots' pictures show, empty for our own furniture.
+    """
 
     task: TaskSpec
     robots: tuple[RobotSeat, ...]
@@ -254,6 +264,7 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
     suite_sha256: str
     rules_sha256: str
     code_sha256: str
+    assets_sha256: str = ""
 
 
 # ------------------------------------------------------------------------------------------------------------ messages
@@ -322,6 +333,47 @@ class Scan(Struct, frozen=True, kw_only=True):
     tops: Any = None
 
 
+class Camera(Struct, frozen=True, kw_only=True):
+    """A camera as OpenCV counts: in its frame x is right, y down, z along the optical axis.
+
+    ``size`` is (width, height) [pixels]. ``matrix`` (3, 3) float64 holds the intrinsics [pixels]; the centre of the
+    pixel in column i and row j is at (i, j). ``pose`` (4, 4) float64 takes points [m] from the camera's frame to the
+    house frame. Nothing nearer than ``near`` or farther than ``far`` [m] is in the picture; where nothing is, the depth
+    is ``far``. A pixel (i, j) of depth d shows the point ``pose @ [*(inv(matrix) @ [i, j, 1]) * d, 1]``.
+    """
+
+    size: tuple[int, int]
+    matrix: Any
+    pose: Any
+    near: float
+    far: float
+
+
+class View(Struct, frozen=True, kw_only=True):
+    """One glance of a seat's camera: ``rgb`` (H, W, 3) uint8, ``depth`` (H, W) float32 [m] along the optical axis,
+    ``segmentation`` (H, W) int32, indices into the world's list of names, -1 for nothing.
+    """
+
+    rgb: Any
+    depth: Any
+    segmentation: Any
+    camera: Camera
+
+
+class DetectorSpec(Struct, frozen=True, kw_only=True):
+    """How a detector errs; see `hthor.world.detector`.
+
+    ``miss`` is the chance that an object in view goes unreported, ``false_alarm`` that an object is reported where it
+    is not, each drawn anew for every glimpse, a second of time. ``position_sigma`` [m] is the standard deviation of the
+    reported positions of objects along each axis.
+    """
+
+    name: str
+    miss: float = 0.0
+    false_alarm: float = 0.0
+    position_sigma: float = 0.0
+
+
 class Senses(Protocol):
     """What a seat perceives at this tick, worked out only when asked; raises `StaleObservation` at a later tick."""
 
@@ -330,6 +382,7 @@ class Senses(Protocol):
     def rgb(self) -> NDArray[np.uint8]: ...
     def depth(self) -> NDArray[np.float32]: ...
     def segmentation(self) -> NDArray[np.int32]: ...
+    def camera(self) -> Camera: ...
 
 
 class Outcome(Struct, frozen=True, kw_only=True):
@@ -399,6 +452,12 @@ class Observation(Struct, frozen=True, kw_only=True):
         image: NDArray[np.int32] = self.senses.segmentation()
         return image
 
+    @property
+    def camera(self) -> Camera:
+        """Where the seat's own camera is and how it projects: what the three pictures were taken with."""
+        camera: Camera = self.senses.camera()
+        return camera
+
 
 class Briefing(Struct, frozen=True, kw_only=True):
     """What a mind is told before a trial.
@@ -450,6 +509,10 @@ class Place(Struct, tag="place", frozen=True, kw_only=True):
     position: Vec3 | None = None
 
 
+class Drop(Struct, tag="drop", frozen=True, kw_only=True):
+    """Let go of what is held, here: it falls, rolls, and settles on what is below the hand."""
+
+
 class Open(Struct, tag="open", frozen=True, kw_only=True):
     """Open the thing with this id."""
 
@@ -468,7 +531,7 @@ class Wait(Struct, tag="wait", frozen=True, kw_only=True):
     seconds: float = 0.1
 
 
-Motion = Move | Rotate | Pick | Place | Open | Close | Wait
+Motion = Move | Rotate | Pick | Place | Drop | Open | Close | Wait
 
 
 class Send(Struct, tag="send", frozen=True, kw_only=True):

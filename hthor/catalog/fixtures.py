@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import math
-
 from hthor.catalog.colours import GLASS, GREY, STEEL, WHITE
+from hthor.catalog.hollow import hinge
 from hthor.catalog.kind import Form
 from hthor.catalog.solids import box, pillar, rest, rounded
-from hthor.types import Joint, Part, Rgba, Vec3
-
-DOOR_TRAVEL_RAD = math.radians(100.0)
+from hthor.types import Part, Rgba, Vec3
 
 
 def fridge(size: Vec3, *, body: Rgba, inner: Rgba) -> Form:
     """A hollow shell with two shelves behind a door that is hinged at the left front edge, seen from inside it.
 
-    Closed, the door seals the shell; open, it has swung out by `DOOR_TRAVEL_RAD` and the shelves lie bare.
+    Closed, the door seals the shell; open, it has swung out by `hollow.SWING_RAD` and the shelves lie bare.
     """
     w, d, h = size
     t, leaf, grip = min(0.05, 0.1 * w, 0.05 * h), min(0.06, 0.12 * d), min(0.03, 0.06 * d)
@@ -38,9 +35,7 @@ def fridge(size: Vec3, *, body: Rgba, inner: Rgba) -> Form:
         rest(size, name, (t + e, t + e), (w - t - e, 0.92 * front - e), z, step - board, inside=True)
         for name, z in zip(("bottom", "lower shelf", "upper shelf"), floors, strict=True)
     )
-    corner = (-w / 2, front + leaf - d / 2, 0.0)
-    door = Joint(name="door", kind="hinge", anchor=corner, axis=(0.0, 0.0, 1.0), travel=DOOR_TRAVEL_RAD)
-    return Form(parts=parts, surfaces=rests, joints=(door,))
+    return Form(parts=parts, surfaces=rests, joints=(hinge(size, "door", 0.0, front + leaf, left=True),))
 
 
 def _basin(
@@ -116,17 +111,5 @@ def coffee_machine(size: Vec3, *, body: Rgba) -> Form:
         box(size, (0.0, 0.45 * d, 0.0), (w, d, 0.1 * h), body),
         box(size, (0.0, 0.45 * d, 0.72 * h), (w, d, h), body),
         pillar(size, (w / 2, 0.72 * d), 0.26 * min(w, d), 0.1 * h, 0.55 * h, GLASS),
-    )
-    return Form(parts=parts)
-
-
-def oven_front(size: Vec3, *, body: Rgba, glass: Rgba) -> Form:
-    """A box with a window and a panel in front: microwave ovens and safes."""
-    w, d, h = size
-    e = min(0.02, 0.05 * d)
-    parts = (
-        box(size, (0.0, 0.0, 0.0), (w, d - e, h), body),
-        box(size, (0.04 * w, d - e, 0.1 * h), (0.72 * w, d, 0.9 * h), glass),
-        box(size, (0.76 * w, d - e, 0.1 * h), (0.96 * w, d - 0.5 * e, 0.9 * h), STEEL),
     )
     return Form(parts=parts)

@@ -63,6 +63,19 @@ class Kind(Struct, frozen=True, kw_only=True):
         """Where objects can rest, lowest first; empty for a thing that is no receptacle."""
         return self.form(size).surfaces
 
+    def rests(self, size: Vec3 | None = None) -> tuple[Surface, ...]:
+        """The surfaces where a task may put things and people look for them, lowest first.
+
+        They lie in the open, or inside a receptacle that things are put *in*: the fridge's, but no drawer's.
+        """
+        within = self.relation == "in" and self.family == "receptacle"
+        return tuple(surface for surface in self.surfaces(size) if within or not surface.inside)
+
+    @property
+    def hides(self) -> bool:
+        """Whether it must be opened to see what lies on its `rests`."""
+        return any(surface.inside for surface in self.rests())
+
     def joints(self, size: Vec3 | None = None) -> tuple[Joint, ...]:
         """Its doors and drawers, empty for a thing that does not open."""
         return self.form(size).joints

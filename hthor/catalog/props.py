@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hthor.catalog.kind import Form
 from hthor.catalog.solids import box, pillar, rest, rounded
-from hthor.types import Rgba, Vec3
+from hthor.types import Part, Rgba, Vec3
 
 ZERO = (0.0, 0.0, 0.0)
 
@@ -65,12 +65,11 @@ def pan(size: Vec3, *, metal: Rgba, handle: Rgba) -> Form:
 
 
 def book(size: Vec3, *, cover: Rgba, pages: Rgba) -> Form:
-    """Two covers with pages between them, lying flat."""
+    """A cover, lying flat, out of which the pages stick a little on three sides; none of it is thin."""
     w, d, h = size
     parts = (
-        box(size, ZERO, (w, d, 0.15 * h), cover),
-        box(size, (0.0, 0.02 * d, 0.15 * h), (0.97 * w, 0.98 * d, 0.85 * h), pages),
-        box(size, (0.0, 0.0, 0.85 * h), size, cover),
+        box(size, (0.0, 0.01 * d, 0.0), (0.98 * w, 0.99 * d, h), cover),
+        box(size, (0.02 * w, 0.0, 0.15 * h), (w, d, 0.85 * h), pages),
     )
     return Form(parts=parts)
 
@@ -162,6 +161,27 @@ def painting(size: Vec3, *, frame: Rgba, sky: Rgba, land: Rgba) -> Form:
         box(size, (x, y, 0.45 * h), (w - x, d, h - z), sky),
     )
     return Form(parts=parts)
+
+
+def mirror(size: Vec3, *, frame: Rgba, glass: Rgba) -> Form:
+    """A pane in a frame."""
+    w, d, h = size
+    x, z = 0.06 * min(w, h), 0.06 * min(w, h)
+    parts = (
+        box(size, ZERO, (w, 0.7 * d, h), frame),
+        box(size, (x, 0.7 * d, z), (w - x, d, h - z), glass),
+    )
+    return Form(parts=parts)
+
+
+def clock(size: Vec3, *, rim: Rgba, face: Rgba) -> Form:
+    """A round dial on a wall, a box when it is not as wide as high."""
+    w, d, h = size
+    if abs(w - h) > 1e-6:
+        return mirror(size, frame=rim, glass=face)
+    dial = Part(shape="cylinder", centre=(0.0, -0.1 * d, 0.0), half=(w / 2, 0.4 * d, h / 2), rgba=rim, axis="y")
+    front = Part(shape="cylinder", centre=(0.0, 0.4 * d, 0.0), half=(0.44 * w, 0.1 * d, 0.44 * h), rgba=face, axis="y")
+    return Form(parts=(dial, front))
 
 
 def bin_(size: Vec3, *, body: Rgba, rim: Rgba) -> Form:

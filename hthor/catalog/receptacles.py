@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
+from hthor.catalog import cabinets, fixtures, shapes
 from hthor.catalog import colours as c
-from hthor.catalog import fixtures, shapes
 from hthor.catalog.kind import Kind
 
 KINDS = (
@@ -24,7 +24,8 @@ KINDS = (
         family="receptacle",
         size=(1.8, 0.62, 0.9),
         mass=80.0,
-        shape=partial(shapes.counter, body=c.SAGE, top=c.STONE),
+        shape=partial(cabinets.counter, body=c.SAGE, top=c.STONE),
+        finishes=({"body": c.WHITE, "top": c.IRON}, {"body": c.BLUE, "top": c.CREAM}, {"body": c.OAK, "top": c.WHITE}),
     ),
     Kind(
         name="dining_table",
@@ -33,6 +34,11 @@ KINDS = (
         size=(1.5, 0.9, 0.74),
         mass=35.0,
         shape=partial(shapes.table, wood=c.OAK, legs=c.OAK),
+        finishes=(
+            {"wood": c.WALNUT, "legs": c.WALNUT},
+            {"wood": c.WHITE, "legs": c.BIRCH},
+            {"wood": c.BIRCH, "legs": c.IRON},
+        ),
     ),
     Kind(
         name="coffee_table",
@@ -41,6 +47,11 @@ KINDS = (
         size=(1.05, 0.6, 0.42),
         mass=15.0,
         shape=partial(shapes.low_table, wood=c.WALNUT, legs=c.IRON),
+        finishes=(
+            {"wood": c.OAK, "legs": c.OAK},
+            {"wood": c.WHITE, "legs": c.BIRCH},
+            {"wood": c.BIRCH, "legs": c.IRON},
+        ),
     ),
     Kind(
         name="sofa",
@@ -49,6 +60,12 @@ KINDS = (
         size=(1.95, 0.9, 0.82),
         mass=50.0,
         shape=partial(shapes.sofa, fabric=c.BLUE, cushion=c.SKY, seats=2),
+        finishes=(
+            {"fabric": c.GREY, "cushion": c.LINEN},
+            {"fabric": c.SAGE, "cushion": c.CREAM},
+            {"fabric": c.RUST, "cushion": c.TERRACOTTA},
+            {"fabric": c.LINEN, "cushion": c.CREAM},
+        ),
     ),
     Kind(
         name="bed",
@@ -57,6 +74,12 @@ KINDS = (
         size=(1.6, 2.1, 0.95),
         mass=70.0,
         shape=partial(shapes.bed, frame=c.WALNUT, blanket=c.TEAL),
+        finishes=(
+            {"frame": c.OAK, "blanket": c.SKY},
+            {"frame": c.WHITE, "blanket": c.SAGE},
+            {"frame": c.IRON, "blanket": c.LINEN},
+            {"frame": c.BIRCH, "blanket": c.TERRACOTTA},
+        ),
     ),
     Kind(
         name="desk",
@@ -64,7 +87,12 @@ KINDS = (
         family="receptacle",
         size=(1.35, 0.65, 0.74),
         mass=30.0,
-        shape=partial(shapes.desk, wood=c.BIRCH, body=c.WHITE),
+        shape=partial(cabinets.desk, wood=c.BIRCH, body=c.WHITE),
+        finishes=(
+            {"wood": c.OAK, "body": c.OAK},
+            {"wood": c.WALNUT, "body": c.IRON},
+            {"wood": c.WHITE, "body": c.WHITE},
+        ),
     ),
     Kind(
         name="tv_stand",
@@ -73,5 +101,6 @@ KINDS = (
         size=(1.5, 0.42, 0.5),
         mass=28.0,
         shape=partial(shapes.tv_stand, wood=c.WALNUT),
+        finishes=({"wood": c.OAK}, {"wood": c.WHITE}, {"wood": c.IRON}),
     ),
 )

@@ -1,4 +1,4 @@
-"""Parametric furniture without doors: tables, cabinets, shelves, seats, beds; knows nothing of kinds.
+"""Parametric furniture without doors: tables, open cabinets, shelves, seats, beds; knows nothing of kinds.
 
 Every function builds a thing of any positive size [m] whose parts fill its bounding box; z runs up from the floor and
 y from the back to the front while building (see ``solids``).
@@ -6,7 +6,7 @@ y from the back to the front while building (see ``solids``).
 
 from __future__ import annotations
 
-from hthor.catalog.colours import GREY, IRON, WHITE
+from hthor.catalog.colours import IRON, WHITE
 from hthor.catalog.kind import Form
 from hthor.catalog.solids import box, pillar, rest, rounded
 from hthor.types import Part, Rgba, Surface, Vec3
@@ -38,49 +38,6 @@ def low_table(size: Vec3, *, wood: Rgba, legs: Rgba) -> Form:
     form = table(size, wood=wood, legs=legs)
     e, z, t = min(0.03, 0.1 * w, 0.1 * d), 0.3 * h, min(0.02, 0.1 * h)
     return Form(parts=(*form.parts, box(size, (e, e, z), (w - e, d - e, z + t), wood)), surfaces=form.surfaces)
-
-
-def desk(size: Vec3, *, wood: Rgba, body: Rgba) -> Form:
-    """A plate on a side panel and a chest of drawers, closed at the back."""
-    w, d, h = size
-    t, chest = min(0.035, 0.3 * h), min(0.4, 0.35 * w)
-    low, e = h - t, min(0.03, 0.1 * d)
-    front = d - e
-    parts = (
-        box(size, (0.0, 0.0, low), (w, d, h), wood),
-        box(size, (0.0, 0.0, 0.0), (min(0.04, 0.1 * w), front, low), body),
-        box(size, (w - chest, 0.0, 0.0), (w, front - 0.5 * e, low), body),
-        box(size, (w - 0.95 * chest, front - 0.5 * e, 0.06 * h), (w - 0.05 * chest, front, 0.48 * low), wood),
-        box(size, (w - 0.95 * chest, front - 0.5 * e, 0.52 * low), (w - 0.05 * chest, front, 0.97 * low), wood),
-        box(size, (0.0, 0.0, 0.35 * h), (w - chest, min(0.02, 0.1 * d), low), body),
-    )
-    return Form(parts=parts, surfaces=_top(size))
-
-
-def counter(size: Vec3, *, body: Rgba, top: Rgba) -> Form:
-    """A kitchen base cabinet under a worktop, with a toe kick and two fronts."""
-    w, d, h = size
-    t, toe, e = min(0.04, 0.2 * h), min(0.1, 0.2 * h), min(0.02, 0.05 * d)
-    parts = (
-        box(size, (0.0, 0.0, h - t), (w, d, h), top),
-        box(size, (0.0, 0.0, toe), (w, d - 2 * e, h - t), body),
-        box(size, (0.0, 0.0, 0.0), (w, 0.88 * d, toe), IRON),
-        box(size, (0.02 * w, d - 2 * e, toe), (0.49 * w, d - e, h - 1.5 * t), body),
-        box(size, (0.51 * w, d - 2 * e, toe), (0.98 * w, d - e, h - 1.5 * t), body),
-    )
-    return Form(parts=parts, surfaces=_top(size))
-
-
-def dresser(size: Vec3, *, body: Rgba, fronts: Rgba) -> Form:
-    """A chest with three drawers one above the other."""
-    w, d, h = size
-    e, t = min(0.02, 0.1 * d), min(0.03, 0.1 * h)
-    drawers = tuple(
-        box(size, (0.03 * w, d - e, (0.05 + 0.3 * i) * h), (0.97 * w, d, (0.32 + 0.3 * i) * h), fronts)
-        for i in range(3)
-    )
-    carcass = box(size, (0.0, 0.0, 0.0), (w, d - e, h - t), body)
-    return Form(parts=(box(size, (0.0, 0.0, h - t), (w, d, h), body), carcass, *drawers), surfaces=_top(size))
 
 
 def tv_stand(size: Vec3, *, wood: Rgba) -> Form:
@@ -183,15 +140,3 @@ def ottoman(size: Vec3, *, fabric: Rgba) -> Form:
     w, d, h = size
     low = box(size, (0.04 * w, 0.04 * d, 0.0), (0.96 * w, 0.96 * d, 0.3 * h), IRON)
     return Form(parts=(low, box(size, (0.0, 0.0, 0.3 * h), (w, d, h), fabric)), surfaces=_top(size))
-
-
-def washer(size: Vec3, *, body: Rgba) -> Form:
-    """A front loader; its round window is drawn square because cylinders stand upright."""
-    w, d, h = size
-    e = min(0.02, 0.05 * d)
-    parts = (
-        box(size, (0.0, 0.0, 0.0), (w, d - e, h), body),
-        box(size, (0.2 * w, d - e, 0.2 * h), (0.8 * w, d, 0.68 * h), GREY),
-        box(size, (0.05 * w, d - e, 0.85 * h), (0.95 * w, d - 0.5 * e, 0.95 * h), IRON),
-    )
-    return Form(parts=parts, surfaces=_top(size))

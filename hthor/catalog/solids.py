@@ -46,10 +46,19 @@ def pillar(size: Vec3, at: Vec2, radius: float, low: float, high: float, rgba: R
 
 
 def rest(
-    size: Vec3, name: str, lo: Vec2, hi: Vec2, height: float, clearance: float = OPEN_M, *, inside: bool = False
+    size: Vec3,
+    name: str,
+    lo: Vec2,
+    hi: Vec2,
+    height: float,
+    clearance: float = OPEN_M,
+    *,
+    inside: bool = False,
+    moves: str = "",
 ) -> Surface:
     """A resting place at ``height``."""
     corner, far = (lo[0], lo[1], height), (hi[0], hi[1], height)
     half = _half(corner, far)
     centre = _centre(size, corner, far)
-    return Surface(name=name, centre=centre, half=(half[0], half[1]), clearance=clearance, inside=inside)
+    width = (half[0], half[1])
+    return Surface(name=name, centre=centre, half=width, clearance=clearance, inside=inside, moves=moves)
