@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from hthor import catalog
-from hthor.looks import plain
+from hthor.looks import build, textures
 from hthor.looks.mesh import Material, Mesh, Piece
 from hthor.types import Vec3
 
-__all__ = ["Material", "Mesh", "Piece", "look"]
+__all__ = ["VERSION", "Material", "Mesh", "Piece", "fingerprint", "look", "textures"]
+
+VERSION = 1
+"""Counts up whenever a mesh or a texture changes."""
 
 
+def fingerprint() -> tuple[str, str]:
+    """Name and version of the looks that come with the package: what a run's result calls its pack."""
+    return ("procedural", str(VERSION))
+
+
+@lru_cache(maxsize=2048)
 def look(kind: str, size: Vec3 | None = None, variant: int = 0) -> tuple[Piece, ...]:
     """The pieces of a thing of ``kind`` at ``size`` [m] (the kind's own when None), in its local frame, closed.
 
-    They fill the thing's bounding box, and lie at the heights where its surfaces are.
+    They fill the thing's bounding box, and lie at the heights where its surfaces are. Pieces that move name their
+    joint. One is made a material and joint, so there are few.
 
     Raises:
         UnknownName: when there is no such kind.
     """
-    return plain.pieces(catalog.kind(kind).parts(size, variant))
+    return build.pieces(catalog.kind(kind), size, variant)

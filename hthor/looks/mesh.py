@@ -11,7 +11,8 @@ from hthor.types import Rgba
 
 class Mesh(NamedTuple):
     """Triangles. ``vertices`` (V, 3) float32 [m]; ``faces`` (F, 3) int32, counter-clockwise seen from outside; ``uv``
-    (V, 2) float32, one unit a repeat of the texture; ``normals`` (V, 3) float32 unit vectors.
+    (V, 2) float32, one unit a repeat of the texture, (0, 0) the picture's upper left corner; ``normals`` (V, 3) float32
+    unit vectors.
     """
 
     vertices: Any

@@ -1,57 +1,32 @@
-"""The look of last resort: a kind's own solids, each in its plain colour; knows nothing of particular kinds."""
+"""The look of last resort: a kind's own solids with rounded edges, in what their colours speak of; knows no kinds."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 
+from hthor.looks import materials, solids
 from hthor.looks.mesh import Material, Mesh, Piece
-from hthor.types import Part, Vec3
-
-_SIDES = 24
+from hthor.types import Part
 
 
-def pieces(parts: Iterable[Part]) -> tuple[Piece, ...]:
+def pieces(parts: Iterable[Part]) -> list[Piece]:
     """One piece a part."""
-    return tuple(Piece(_mesh(part), Material(rgba=part.rgba), part.moves) for part in parts)
+    return [piece(part) for part in parts]
 
 
-def _mesh(part: Part) -> Mesh:
-    mesh = {"box": box, "cylinder": cylinder, "sphere": sphere}[part.shape](part.half)
-    if part.shape == "cylinder" and part.axis != "z":
-        raise NotImplementedError("lying cylinders")
-    return mesh._replace(vertices=mesh.vertices + np.array(part.centre, np.float32))
+def piece(part: Part, material: Material | None = None) -> Piece:
+    """A part as a piece, of ``material`` or of what its colour speaks of."""
+    return materials.piece(solid(part), materials.guess(part.rgba) if material is None else material, part.moves)
 
 
-def box(half: Vec3) -> Mesh:
-    """A box around the origin."""
-    vertices: list[Any] = []
-    faces: list[list[int]] = []
-    uv: list[tuple[float, float]] = []
-    normals: list[Any] = []
-    for axis in range(3):
-        for sign in (-1.0, 1.0):
-            u, v = (axis + 1) % 3, (axis + 2) % 3
-            base = len(vertices)
-            for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
-                corner, normal = np.zeros(3), np.zeros(3)
-                corner[axis], corner[u], corner[v] = sign * half[axis], a * half[u], b * half[v]
-                normal[axis] = sign
-                vertices.append(corner)
-                normals.append(normal)
-                uv.append((corner[u], corner[v]))
-            order = ((0, 1, 2), (0, 2, 3)) if sign > 0 else ((0, 2, 1), (0, 3, 2))
-            faces += [[base + k for k in triangle] for triangle in order]
-    return Mesh(np.array(vertices, "f4"), np.array(faces, "i4"), np.array(uv, "f4"), np.array(normals, "f4"))
-
-
-def cylinder(half: Vec3) -> Mesh:
-    """An upright cylinder around the origin."""
-    raise NotImplementedError
-
-
-def sphere(half: Vec3) -> Mesh:
-    """A sphere around the origin."""
-    raise NotImplementedError
+def solid(part: Part, radius: float | None = None) -> Mesh:
+    """A part's mesh, the edges of boxes rounded by ``radius`` [m]."""
+    if part.shape == "box":
+        lo, hi = (tuple(np.array(part.centre) + sign * np.array(part.half)) for sign in (-1.0, 1.0))
+        return solids.box(lo, hi, radius)
+    if part.shape == "sphere":
+        return solids.ball(part.centre, part.half)
+    axis = "xyz".index(part.axis)
+    return solids.cylinder(part.centre, part.half[axis - 1], 2.0 * part.half[axis], part.axis, 24)

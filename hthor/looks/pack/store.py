@@ -1,0 +1,241 @@
+"""Where packs lie, what is in one, and reading it; knows nothing of where its models came from.
+
+A pack is a folder: ``pack.json``, ``meshes.npz``, ``textures/*.jpg``, ``LICENCES.md``, and ``ATTRIBUTION.md`` where a
+licence asks for it. Its hash is that of ``pack.json``, which holds the hashes of all other files.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+
+from hthor.errors import HthorError, UnknownName
+from hthor.looks.mesh import Material, Mesh, Piece
+from hthor.looks.pack import fitting
+from hthor.types import Rgba, Vec3
+
+SCHEMA = "hthor.pack/1"
+LIST = "pack.json"
+MESHES = "meshes.npz"
+TEXTURES = "textures"
+RESERVED = "procedural"
+"""What the furniture that ships with hthor is called."""
+
+
+class PackError(HthorError):
+    """A pack that cannot be used or made: names the file and what is wrong with it."""
+
+
+class Surface(Struct, frozen=True, kw_only=True):
+    """What one part of a model is made of; ``texture`` is a file in ``textures``, empty for plain colour."""
+
+    rgba: Rgba
+    texture: str = ""
+    specular: float = 0.1
+    shininess: float = 0.2
+
+
+class Model(Struct, frozen=True, kw_only=True):
+    """One model of a pack and who made it.
+
+    ``size`` [m] is (width, depth, height) in our local frame, front towards +y. ``rests`` are the level places where
+    things can lie, lowest first. ``parts`` are what its meshes in ``meshes.npz`` are made of, in order.
+    """
+
+    kind: str
+    name: str
+    source: str
+    title: str
+    author: str
+    licence: str
+    size: Vec3
+    rests: tuple[fitting.Rest, ...] = ()
+    parts: tuple[Surface, ...]
+
+
+class Contents(Struct, frozen=True, kw_only=True):
+    """The pack's ``pack.json``. ``files`` maps the name of every other file to the hash of its content."""
+
+    schema: str = SCHEMA
+    name: str
+    source: str
+    licences: tuple[str, ...]
+    models: tuple[Model, ...]
+    files: dict[str, str]
+
+
+class Pack:
+    """A pack, ready to draw with.
+
+    Attributes:
+        name, folder: what it is called and where it lies. sha256: hash of its content. contents: what is in it.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        data = _read(folder / LIST)
+        self.sha256 = hashlib.sha256(data).hexdigest()
+        try:
+            self.contents = msgspec.json.decode(data, type=Contents)
+        except (msgspec.DecodeError, UnicodeDecodeError) as error:
+            raise PackError(f"{folder / LIST}: {error}. Build the pack again: hthor assets build.") from None
+        if self.contents.schema != SCHEMA:
+            raise PackError(f"{folder / LIST}: schema is '{self.contents.schema}', this version reads '{SCHEMA}'.")
+        self.name = self.contents.name
+        self._models: dict[str, list[Model]] = {}
+        for model in self.contents.models:
+            self._models.setdefault(model.kind, []).append(model)
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds that it has a model of, in alphabetic order."""
+        return tuple(sorted(self._models))
+
+    def look(self, kind: str, size: Vec3, variant: int = 0) -> tuple[Piece, ...] | None:
+        """A thing's pieces as `hthor.looks.look` gives them; None for a kind or a size that the pack has no model for.
+
+        The model is stretched to ``size`` [m], its resting places to the heights of the kind's own surfaces.
+        """
+        models = [model for model in self._models.get(kind, ()) if fitting.fits(model.size, size)]
+        ways = [(model, way) for model in models if (way := fitting.stretch(kind, model.size, model.rests, size))]
+        if not ways:
+            return None
+        model, way = ways[variant % len(ways)]
+        meshes = [_stretched(mesh, way) for mesh in self._meshes(model)]
+        return tuple(Piece(mesh, _material(part)) for mesh, part in zip(meshes, model.parts, strict=True))
+
+    def texture(self, name: str) -> Any:
+        """(H, W, 3) uint8, its first row at v = 0."""
+        import cv2
+
+        path = self.folder / TEXTURES / name
+        image = cv2.imdecode(np.frombuffer(self._checked(f"{TEXTURES}/{name}"), np.uint8), cv2.IMREAD_COLOR)
+        if image is None:
+            raise PackError(f"{path} is no picture. Build the pack again: hthor assets build.")
+        return np.ascontiguousarray(image[..., ::-1])
+
+    def check(self) -> None:
+        """See that every file is there and as it was written.
+
+        Raises:
+            PackError: names the first that is not.
+        """
+        for name in self.contents.files:
+            self._checked(name)
+
+    def _checked(self, name: str) -> bytes:
+        data = _read(self.folder / name)
+        if hashlib.sha256(data).hexdigest() != self.contents.files.get(name):
+            raise PackError(f"{self.folder / name} is not as it was built. Build the pack again: hthor assets build.")
+        return data
+
+    @functools.cached_property
+    def _archive(self) -> dict[str, Any]:
+        import io
+
+        with np.load(io.BytesIO(self._checked(MESHES)), allow_pickle=False) as archive:
+            return {name: archive[name] for name in archive.files}
+
+    def _meshes(self, model: Model) -> list[Mesh]:
+        every = []
+        for part in range(len(model.parts)):
+            fields = (self._archive[f"{model.kind}/{model.name}/{part}/{field}"] for field in Mesh._fields)
+            every.append(Mesh(*fields))
+        return every
+
+
+def _material(part: Surface) -> Material:
+    return Material(rgba=part.rgba, texture=part.texture, specular=part.specular, shininess=part.shininess)
+
+
+def _stretched(mesh: Mesh, stretch: fitting.Stretch) -> Mesh:
+    vertices, slopes = stretch.apply(mesh.vertices)
+    normals = mesh.normals / slopes
+    normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+    return mesh._replace(vertices=np.asarray(vertices, np.float32), normals=np.asarray(normals, np.float32))
+
+
+# ------------------------------------------------------------------------------------------------------------ the cache
+
+
+def home() -> Path:
+    """The folder of all packs, in the user's cache."""
+    cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(cache) / "hthor" / "packs"
+
+
+def tidy(name: str) -> str:
+    """A name that can be a folder's and an option's.
+
+    Raises:
+        PackError: when it cannot.
+    """
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,59}", name) or name == RESERVED:
+        raise PackError(f"'{name}' cannot be a pack's name; use letters, digits, '-', '_', '.', but not '{RESERVED}'.")
+    return name
+
+
+def overwritable(folder: Path) -> None:
+    """See that a pack may be written to a folder: absent, empty, or a pack.
+
+    Raises:
+        PackError: when it holds something else.
+    """
+    if folder.exists() and not (folder / LIST).is_file() and (folder.is_file() or any(folder.iterdir())):
+        raise PackError(f"{folder} is there and is no pack. Choose another folder with --out.")
+
+
+def installed() -> tuple[str, ...]:
+    """The names of the packs in the user's cache."""
+    return tuple(sorted(path.parent.name for path in home().glob(f"*/{LIST}")))
+
+
+def find(name: str) -> Path:
+    """The folder of a pack, given its name or the folder itself.
+
+    Raises:
+        UnknownName: when there is none.
+    """
+    for folder in (home() / name, Path(name)):
+        if (folder / LIST).is_file():
+            return folder
+    raise UnknownName("furniture pack", name, installed(), "Build one: hthor assets build.")
+
+
+def load(name: str) -> Pack:
+    """The pack with this name, or in this folder.
+
+    Raises:
+        UnknownName: when there is none.
+        PackError: when it cannot be read.
+    """
+    return Pack(find(name))
+
+
+def remove(name: str) -> Path:
+    """Delete a pack of the user's cache; the folder that it was in.
+
+    Raises:
+        UnknownName: when there is none.
+    """
+    if name not in installed():
+        raise UnknownName("furniture pack", name, installed(), "'hthor assets list' shows what there is.")
+    folder = home() / name
+    shutil.rmtree(folder)
+    return folder
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise PackError(f"{path} is missing. Build the pack again: hthor assets build.") from None
