@@ -9,6 +9,7 @@ import math
 from collections import Counter
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 from hthor import jsonio
 from hthor.errors import HouseError, UnknownName
@@ -47,6 +48,17 @@ def load(name_or_path: str | Path, assets: Path | None = None) -> HouseSpec:
     return _build(house, path.stem, jsonio.sha256(document), file, Assets(path, assets))
 
 
+def build(document: Any, name: str) -> HouseSpec:
+    """A house from a document in memory, such as `hthor.houses.generator` makes; ``name`` becomes its id.
+
+    Raises:
+        HouseError: as `load`, naming ``name`` as the file.
+    """
+    house = schema.convert(document, name)
+    validate.validate(house, name)
+    return _build(house, name, jsonio.sha256(document), name, Assets(Path()))
+
+
 def _locate(given: str) -> tuple[Path, str]:
     if given in names():
         return _DATA / f"{given}.json", f"{given}.json"
@@ -68,7 +80,7 @@ def _build(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) 
         walls=tuple(_wall(wall) for wall in house.walls if not wall.empty),
         openings=(
             *(_opening(row, walls[row.wall0], door=True) for row in house.doors),
-            *(_opening(row, walls[row.wall0], door=False) for row in house.windows),
+            *(_opening(row, walls[row.wall0], door=False) for row in house.windows or ()),
         ),
         things=_things(house, file, assets),
         height=max(high for _, high in map(validate.wall_heights, house.walls)),
@@ -88,16 +100,20 @@ def _rooms(rows: list[RoomRow]) -> tuple[Room, ...]:
         number = f" {seen[row.room_type]}" if total[row.room_type] > 1 else ""
         corners = validate.floor(row)
         polygon = corners if signed_area(corners) > 0.0 else corners[::-1]
-        rooms.append(Room(id=row.id, kind=kind, name=title + number, polygon=polygon, floor=row.floor_material.name))
+        material = row.floor_material.name if row.floor_material is not None else ""
+        rooms.append(Room(id=row.id, kind=kind, name=title + number, polygon=polygon, floor=material))
     return tuple(rooms)
 
 
 def _wall(row: WallRow) -> Wall:
     a, b = validate.wall_line(row)
     low, high = validate.wall_heights(row)
-    colour = row.material.color
+    material = row.material if row.material is not None else schema.Material()
+    colour = material.color
     rgb: Vec3 | None = None if colour is None else (colour.r, colour.g, colour.b)
-    return Wall(id=row.id, room=row.room_id, a=a, b=b, height=high - low, material=row.material.name, rgb=rgb)
+    # ProcTHOR gives the outer face of an outer wall the id of the room behind it; only its own id tells.
+    room = EXTERIOR if row.id.startswith(f"wall|{EXTERIOR}|") else row.room_id
+    return Wall(id=row.id, room=room, a=a, b=b, height=high - low, material=material.name, rgb=rgb)
 
 
 def _opening(row: OpeningRow, wall: WallRow, *, door: bool) -> Opening:
@@ -108,8 +124,8 @@ def _opening(row: OpeningRow, wall: WallRow, *, door: bool) -> Opening:
     low, high = sorted(corner.y for corner in row.hole_polygon)
     beyond = EXTERIOR if row.room1 == row.room0 else row.room1
     indoors = EXTERIOR not in (row.room0, beyond)
-    # Door frames carry no openness: nothing hangs in them.
-    passable = door and indoors and (row.openness is None or row.openness > 0.0)
+    # Door frames carry no openness: nothing hangs in them. A door that can be opened stands open when a trial begins.
+    passable = door and indoors and (row.openness is None or row.openness > 0.0 or bool(row.openable))
     return Opening(
         id=row.id,
         kind="door" if door else "window",

@@ -47,18 +47,22 @@ def distance_to_outline(point: Vec2, polygon: Polygon) -> float:
 
 
 def _meet(p: tuple[Vec2, Vec2], q: tuple[Vec2, Vec2]) -> bool:
-    """Whether two segments cross or touch."""
-    crossed = _side(*p, q[0]) * _side(*p, q[1]) < 0 and _side(*q, p[0]) * _side(*q, p[1]) < 0
-    return crossed or min(
-        distance_to_segment(q[0], *p),
-        distance_to_segment(q[1], *p),
-        distance_to_segment(p[0], *q),
-        distance_to_segment(p[1], *q),
-    ) < _SAME_M  # fmt: skip
+    """Whether two segments cross, or an end of one lies on the other; a common end alone is no meeting.
+
+    So a floor may touch itself corner to corner, as one grown cell by cell does.
+    """
+    if _side(*p, q[0]) * _side(*p, q[1]) < 0 and _side(*q, p[0]) * _side(*q, p[1]) < 0:
+        return True
+    return any(_on(q, end) for end in p) or any(_on(p, end) for end in q)
+
+
+def _on(side: tuple[Vec2, Vec2], point: Vec2) -> bool:
+    """Whether a point lies on a segment, but not at its ends."""
+    return distance_to_segment(point, *side) < _SAME_M and min(math.dist(point, end) for end in side) >= _SAME_M
 
 
 def crossing(polygon: Polygon) -> tuple[int, int] | None:
-    """Indices of two sides that cross, touch or fold back on each other, None for a simple polygon."""
+    """Indices of two sides that cross, touch or fold back on each other, but for a common corner; None for none."""
     sides = edges(polygon)
     count = len(sides)
     for i in range(count):
@@ -100,10 +104,11 @@ def _crossing_x(a: tuple[Vec2, Vec2], b: tuple[Vec2, Vec2]) -> list[float]:
     return [a[0][0] + (a[1][0] - a[0][0]) * one / (one - two)]
 
 
-def _spans(x: float, polygon: Polygon) -> list[tuple[float, float]]:
+def spans(x: float, polygon: Polygon) -> list[tuple[float, float]]:
+    """The stretches [m] in y of a polygon that the upright line at ``x`` runs through, lowest first."""
     ys = sorted(ay + (by - ay) * (x - ax) / (bx - ax) for (ax, ay), (bx, by) in edges(polygon) if (ax > x) != (bx > x))
     return list(zip(ys[::2], ys[1::2], strict=True))
 
 
 def _shared(x: float, p: Polygon, q: Polygon) -> float:
-    return sum(max(0.0, min(b, d) - max(a, c)) for a, b in _spans(x, p) for c, d in _spans(x, q))
+    return sum(max(0.0, min(b, d) - max(a, c)) for a, b in spans(x, p) for c, d in spans(x, q))

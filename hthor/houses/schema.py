@@ -71,7 +71,7 @@ class RoomRow(Struct, frozen=True, rename="camel"):
     id: str
     room_type: str
     floor_polygon: list[Corner]
-    floor_material: Material = field(default_factory=Material)
+    floor_material: Material | None = None
 
 
 class WallRow(Struct, frozen=True, rename="camel"):
@@ -80,8 +80,8 @@ class WallRow(Struct, frozen=True, rename="camel"):
     id: str
     room_id: str
     polygon: list[Corner]
-    material: Material = field(default_factory=Material)
-    empty: bool = False
+    material: Material | None = None
+    empty: bool | None = None
 
 
 class OpeningRow(Struct, frozen=True, rename="camel"):
@@ -106,7 +106,7 @@ class ObjectRow(Struct, frozen=True, rename="camel"):
     position: Position
     rotation: Rotation = field(default_factory=Rotation)
     openness: float | None = None
-    children: list[ObjectRow] = field(default_factory=list)
+    children: list[ObjectRow] | None = None
 
 
 class Agent(Struct, frozen=True):
@@ -120,9 +120,9 @@ class Agent(Struct, frozen=True):
 class Metadata(Struct, frozen=True, rename="camel"):
     """The file's version and start pose; newer files give one pose for each robot instead of a single one."""
 
-    schema: str
+    schema: str = VERSION
     agent: Agent | None = None
-    agent_poses: dict[str, Agent] = field(default_factory=dict)
+    agent_poses: dict[str, Agent | None] | None = None
 
 
 class HouseFile(Struct, frozen=True):
@@ -133,7 +133,7 @@ class HouseFile(Struct, frozen=True):
     doors: list[OpeningRow]
     objects: list[ObjectRow]
     metadata: Metadata
-    windows: list[OpeningRow] = field(default_factory=list)
+    windows: list[OpeningRow] | None = None
 
 
 def read(path: Path, file: str) -> tuple[Any, HouseFile]:
@@ -148,9 +148,17 @@ def read(path: Path, file: str) -> tuple[Any, HouseFile]:
             version, or lacks a key or has a value of the wrong type.
     """
     document = _document(path, file)
+    return document, convert(document, file)
+
+
+def convert(document: Any, file: str) -> HouseFile:
+    """A house's JSON document as records; errors as those of `read`, naming ``file``."""
+    for where, number in _numbers(document, ""):
+        if not abs(number) < _LIMIT:
+            raise HouseError(file, where, f"must be a finite number, got {number!r:.24}")
     _check_version(document, file)
     try:
-        return document, msgspec.convert(document, HouseFile)
+        return msgspec.convert(document, HouseFile)
     except msgspec.ValidationError as error:
         raise _structural(str(error), file) from None
 
@@ -163,17 +171,13 @@ def _document(path: Path, file: str) -> Any:
     except UnicodeDecodeError as error:
         raise HouseError(file, "$", f"not a text file: byte {error.start} is not UTF-8") from None
     try:
-        document = json.loads(text)
-        for where, number in _numbers(document, ""):
-            if not abs(number) < _LIMIT:
-                raise HouseError(file, where, f"must be a finite number, got {number!r:.24}")
+        return json.loads(text)
     except json.JSONDecodeError as error:
         ends = " (the text ends there: is the file truncated?)" if not text[error.pos :].strip() else ""
         problem = f"not valid JSON at line {error.lineno}, column {error.colno}: {error.msg}{ends}"
         raise HouseError(file, "$", problem) from None
     except (RecursionError, ValueError) as error:
         raise HouseError(file, "$", f"not a house file: {error}") from None
-    return document
 
 
 def _numbers(value: Any, where: str) -> Iterator[tuple[str, float]]:

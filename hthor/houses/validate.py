@@ -18,9 +18,14 @@ ROOM_KINDS = {"Kitchen": "kitchen", "LivingRoom": "living_room", "Bedroom": "bed
 EXTERIOR = "exterior"
 """Stands where a room's id would, for what lies outside."""
 OVERLAP_M2 = 0.01
-OUTSIDE_M = 0.25
-"""How far the middle of an object may lie outside of every room: things on walls sit a little beyond the floor."""
+OUTSIDE_M = 1.0
+"""How far the middle of an object may lie outside of every room, above the ceiling or below the floor.
+
+Things on walls sit a little beyond the floor, and real houses may hold some put down badly; `check` tells of them.
+"""
 _SLACK_M = 0.02
+_HOLE_M = 0.1
+"""How far a hole may reach beyond its wall, which is then all hole there."""
 _AREA_M2 = 0.01
 
 
@@ -38,7 +43,7 @@ def validate(house: HouseFile, file: str) -> None:
         _check_ids(house)
         _check_rooms(house.rooms)
         _check_walls(house)
-        openings = (*_listed("doors", house.doors), *_listed("windows", house.windows))
+        openings = (*_listed("doors", house.doors), *_listed("windows", house.windows or ()))
         for where, opening in openings:
             _check_opening(where, opening, house)
         _check_objects(house)
@@ -54,7 +59,7 @@ def objects(house: HouseFile) -> Iterator[tuple[str, ObjectRow, str]]:
         for index, row in enumerate(rows):
             path = f"{where}[{index}]"
             yield path, row, parent
-            yield from walk(row.children, f"{path}.children", row.id)
+            yield from walk(row.children or [], f"{path}.children", row.id)
 
     return walk(house.objects, "objects", "")
 
@@ -63,10 +68,11 @@ def start(house: HouseFile) -> tuple[str, Agent] | None:
     """The start pose with its field path: the single one, else the default robot's, else the first robot's."""
     if house.metadata.agent is not None:
         return "metadata.agent", house.metadata.agent
-    poses = house.metadata.agent_poses
+    poses = house.metadata.agent_poses or {}
     for name in ("default", *sorted(poses)):
-        if name in poses:
-            return f"metadata.agentPoses.{name}", poses[name]
+        pose = poses.get(name)
+        if pose is not None:
+            return f"metadata.agentPoses.{name}", pose
     return None
 
 
@@ -101,7 +107,9 @@ def _listed(name: str, rows: Iterable[OpeningRow]) -> list[tuple[str, OpeningRow
 
 
 def _check_ids(house: HouseFile) -> None:
-    openings = [(where, row.id) for where, row in (*_listed("doors", house.doors), *_listed("windows", house.windows))]
+    openings = [
+        (where, row.id) for where, row in (*_listed("doors", house.doors), *_listed("windows", house.windows or ()))
+    ]
     groups = (
         [(f"rooms[{i}]", row.id) for i, row in enumerate(house.rooms)],
         [(f"walls[{i}]", row.id) for i, row in enumerate(house.walls)],
@@ -182,7 +190,7 @@ def _check_hole(where: str, opening: OpeningRow, wall: WallRow) -> None:
     low, high = wall_heights(wall)
     for key, span, limit in (("x", (a.x, b.x), math.dist(*wall_line(wall))), ("y", (a.y, b.y), high - low)):
         for index, value in enumerate(span):
-            if not -_SLACK_M <= value <= limit + _SLACK_M:
+            if not -_HOLE_M <= value <= limit + _HOLE_M:
                 raise Fault(f"{where}[{index}].{key}", f"{value:g} lies outside of '{wall.id}', 0 to {limit:.3f} m")
 
 
@@ -193,7 +201,7 @@ def _check_objects(house: HouseFile) -> None:
         if room_at((row.position.x, row.position.z), rooms) is None:
             at = f"x {row.position.x:.2f}, z {row.position.z:.2f}"
             raise Fault(f"{where}.position", f"'{row.id}' lies outside of every room, at {at}")
-        if not -_SLACK_M <= row.position.y <= ceiling + OUTSIDE_M:
+        if not -OUTSIDE_M <= row.position.y <= ceiling + OUTSIDE_M:
             problem = f"'{row.id}' lies at height {row.position.y:.2f}; floor 0, ceiling {ceiling:.2f} m"
             raise Fault(f"{where}.position.y", problem)
 
