@@ -1,0 +1,78 @@
+"""Houses from a seed, after ProcTHOR's published stages; knows nothing of engines, minds or tasks.
+
+A house's rooms are grown on a grid, joined by doors, furnished in groups, hung and laid with small things, and checked
+by rules with names. The same arguments give the same bytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from hthor import jsonio
+from hthor.errors import HthorError
+from hthor.houses.generator.attempt import Flaw, build
+from hthor.houses.generator.chance import Dice
+from hthor.houses.generator.specs import SPECS, choose
+from hthor.houses.generator.wants import OPTIONAL, wants
+
+__all__ = ["OPTIONAL", "SPECS", "VERSION", "GeneratorError", "generate", "write"]
+
+VERSION = 1
+"""Grows when the same seed gives another house."""
+TRIES = 20
+
+
+class GeneratorError(HthorError):
+    """No attempt gave a sound house. ``reasons`` are the rules broken, by attempt."""
+
+    def __init__(self, seed: int, rooms: int, reasons: tuple[tuple[str, str], ...]) -> None:
+        self.reasons = reasons
+        listed = "; ".join(f"attempt {number}: {problem} ({rule})" for number, (rule, problem) in enumerate(reasons))
+        super().__init__(
+            f"no sound house of {rooms} rooms came of seed {seed} in {len(reasons)} attempts: {listed}. "
+            "Take another seed, or allow more tries."
+        )
+
+
+def generate(
+    seed: int,
+    rooms: int,
+    spec: str | None = None,
+    tries: int = TRIES,
+    needs: Iterable[str] | None = None,
+    first: int = 0,
+) -> dict[str, Any]:
+    """A house file's document, ProcTHOR's JSON schema 1.0.0 with our own assets.
+
+    Every house has the benchmark's eight receptacles, a sink and a chair, and none of its targets.
+
+    Args:
+        seed: any whole number.
+        rooms: 4 to 7.
+        spec: the name of one of `SPECS`; None draws one with so many rooms.
+        tries: how many attempts are made, each with draws of its own; metadata says which one came to be.
+        needs: the `OPTIONAL` kinds that the house has, and it has none of the others; None draws them.
+        first: the attempt to begin with, to go on after one that was refused elsewhere.
+
+    Raises:
+        HthorError: for a number of rooms, a spec or a need that does not exist.
+        GeneratorError: when all attempts failed; names the rule that each one broke.
+    """
+    reasons = []
+    given = None if needs is None or isinstance(needs, str) else frozenset(needs)
+    for attempt in range(first, first + tries):
+        dice = Dice(seed).of("house", VERSION, rooms, attempt)
+        chosen = choose(rooms, dice, spec)
+        record = {"version": VERSION, "seed": seed, "rooms": rooms, "attempt": attempt}
+        try:
+            return build(chosen, wants(needs if isinstance(needs, str) else given, dice.of("wants")), dice, record)
+        except Flaw as flaw:
+            reasons.append((flaw.rule, flaw.problem))
+    raise GeneratorError(seed, rooms, tuple(reasons))
+
+
+def write(document: dict[str, Any], path: Path) -> None:
+    """Write a document as a file of canonical bytes: sorted keys, two spaces, a newline at the end."""
+    jsonio.write(path, jsonio.pretty(document))

@@ -1,0 +1,151 @@
+"""One attempt at a house, stage by stage; knows nothing of retries."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from hthor.houses import loader
+from hthor.houses.freespace import FreeSpace
+from hthor.houses.generator import clutter, document, doors, growth, layout, starts, validity
+from hthor.houses.generator.boundary import boundary
+from hthor.houses.generator.chance import Dice
+from hthor.houses.generator.clutter import Table
+from hthor.houses.generator.doors import Door
+from hthor.houses.generator.finish import Finish
+from hthor.houses.generator.furnish import furnish
+from hthor.houses.generator.hangings import Wallwork
+from hthor.houses.generator.layout import Plan
+from hthor.houses.generator.making import Maker
+from hthor.houses.generator.pieces import Piece
+from hthor.houses.generator.space import RADIUS_M, RoomSpace
+from hthor.houses.generator.specs import LIVING, Spec, leaves
+from hthor.houses.generator.wants import Wants
+from hthor.types import HouseSpec
+
+_OUTLINES, _DIVISIONS, _DOORINGS = 40, 60, 10
+_PASSAGE = 0.2
+"""What a door to a living room adds to a plan's quality."""
+
+
+class Flaw(Exception):
+    """Why an attempt came to nothing: the ``rule`` that it broke, and how."""
+
+    def __init__(self, rule: str, problem: str) -> None:
+        self.rule, self.problem = rule, problem
+        super().__init__(f"{problem} ({rule})")
+
+
+def build(spec: Spec, wants: Wants, dice: Dice, record: dict[str, Any]) -> dict[str, Any]:
+    """A house file's document; ``record`` is written into its metadata.
+
+    Raises:
+        Flaw: when the attempt fails.
+    """
+    plan, found = _floor_plan(spec, dice)
+    finish, maker = Finish(plan, dice.of("finish")), Maker(dice.of("maker"))
+    walls = document.Walls(plan, finish, found)
+    shell: dict[str, Any] = {
+        "rooms": document.rooms(plan, finish),
+        "walls": walls.rows,
+        "doors": document.doors(found, walls, dice.whole(0, 3, "door style")),
+        "windows": [],
+        "objects": [],
+        "metadata": document.metadata(spec.name, _middle(plan), record),
+    }
+    space = FreeSpace(loader.build(shell, "house"), RADIUS_M, validity.HEIGHT_M)
+    rooms = [RoomSpace(room, plan, found, space) for room in plan.rooms]
+    if missing := furnish(rooms, wants, maker, dice.of("furnish")):
+        raise Flaw("furniture-place", f"no place was found for the {missing.replace('_', ' ')}")
+    work = [Wallwork(room, plan, found, maker, finish.height) for room in rooms]
+    for wall, room in zip(work, rooms, strict=True):
+        wall.glaze(dice.of("windows", room.room.number))
+        wall.decorate(dice.of("decoration", room.room.number))
+    pieces = _laid(rooms, wants, maker, dice.of("clutter"))
+    shell |= {
+        "windows": document.windows([window for wall in work for window in wall.windows], walls),
+        "objects": document.objects(pieces),
+        "proceduralParameters": {
+            "floorColliderThickness": 1,
+            "receptacleHeight": 0.7,
+            "ceilingMaterial": {"name": "PlasterWhite"},
+            "skyboxId": finish.sky,
+            "reflections": [],
+            "lights": finish.lights(plan),
+        },
+    }
+    hidden = _judged(shell, spec, dice, record)
+    if hidden:
+        pieces = document.without(pieces, hidden)
+        shell["objects"] = document.objects(pieces)
+        if gone := next(iter(sorted(wants.must - _kinds(pieces))), ""):
+            raise Flaw("object-visible", f"the only {gone.replace('_', ' ')} is where nobody sees it")
+        if _judged(shell, spec, dice, record):
+            raise Flaw("object-visible", "things came to be hidden when others were taken away")
+    return shell
+
+
+def _kinds(pieces: list[Piece]) -> set[str]:
+    return {each.kind for piece in pieces for each in (piece, *piece.children)}
+
+
+def _judged(shell: dict[str, Any], spec: Spec, dice: Dice, record: dict[str, Any]) -> set[str]:
+    """Give the document its start; ids of the small things that nobody can see, when nothing else is wrong."""
+    house = loader.build(shell, "house")
+    space, free = validity.floor(house)
+    walkable = validity.reached(free)
+    start = starts.start(house, space, walkable, dice.of("start"))
+    if start is None:
+        raise Flaw("start-free", "no floor is roomy enough to start on")
+    shell["metadata"] = document.metadata(spec.name, start, record)
+    pose = msgspec.structs.replace(house.start, x=start[0], y=start[1])
+    placed: HouseSpec = msgspec.structs.replace(house, start=pose)
+    hidden = set()
+    for rule, where, problem in validity.faults(placed, space, walkable):
+        if rule != "object-visible":
+            raise Flaw(rule, f"{where}: {problem}")
+        hidden.add(where)
+    return hidden
+
+
+def _floor_plan(spec: Spec, dice: Dice) -> tuple[Plan, list[Door]]:
+    """The best division of the first outline that has one, and its doors."""
+    count = sum(1 for _ in leaves(spec.tree))
+    for outline in range(_OUTLINES):
+        own = dice.of("outline", outline)
+        shape = boundary(count, own)
+        if shape is None:
+            continue
+        best: tuple[float, Plan, list[tuple[int, int]]] | None = None
+        for number in range(_DIVISIONS):
+            labels = growth.grow(shape.cells, spec.tree, own.of("rooms", number))
+            plan = None if labels is None else layout.plan(shape, labels, spec.tree)
+            if labels is None or plan is None:
+                continue
+            pairs = doors.links(spec.tree, plan, own.of("links", number))
+            if pairs is None:
+                continue
+            passages = sum(LIVING in (plan.room(one).kind, plan.room(two).kind) for one, two in pairs)
+            score = layout.quality(labels, spec.tree) + _PASSAGE * passages
+            if best is None or score > best[0]:
+                best = (score, plan, pairs)
+        for number in range(_DOORINGS if best is not None else 0):
+            found = doors.place(best[2], best[1], own.of("doors", number)) if best is not None else None
+            if best is not None and found is not None:
+                return best[1], found
+    raise Flaw("floor-plan", f"none of {_OUTLINES} outlines could be divided into the rooms of '{spec.name}'")
+
+
+def _middle(plan: Plan) -> tuple[float, float, int]:
+    """Some place indoors, for a house that has no start yet."""
+    row, column = next((j, i) for j, line in enumerate(plan.labels) for i, mark in enumerate(line) if mark)
+    return ((column + 0.5) * plan.scale, (row + 0.5) * plan.scale, 0)
+
+
+def _laid(rooms: list[RoomSpace], wants: Wants, maker: Maker, dice: Dice) -> list[Piece]:
+    """All pieces with the small things on them."""
+    tables = [Table(piece, room.room.kind) for room in rooms for piece in room.pieces]
+    if missing := clutter.lay_all(tables, wants, maker, dice):
+        raise Flaw("clutter-place", f"no place was found for the {missing.replace('_', ' ')}")
+    return [msgspec.structs.replace(table.piece, children=tuple(table.children)) for table in tables]
