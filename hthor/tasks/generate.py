@@ -31,7 +31,7 @@ AWAY_M = 3.0
 """Least way of a start from the target: to a place from which it is in reach, and on to it as the crow flies."""
 APART_M = 1.2
 """Least distance between two starts."""
-EASY_S, HARD_S = 4.0, 24.0
+EASY_S, HARD_S = 4.0, 20.5
 """T* that the easiest and the hardest task of a house are aimed at; a small house falls short of the hardest."""
 _CLOSE_S = 0.5
 _STARTS = 400
@@ -52,10 +52,10 @@ class Plan(Struct, frozen=True, kw_only=True):
 PLANS = {
     "smoke": Plan(
         name="smoke",
-        version=1,
+        version=2,
         root=20240608,
-        houses=("hazel", "juniper", "rowan"),
-        counts=(("object_goal_navigation", 8), ("mobile_manipulation", 12)),
+        houses=("alder", "birch", "cedar", "elder", "hazel", "juniper", "linden", "maple", "rowan", "willow"),
+        counts=(("object_goal_navigation", 2), ("mobile_manipulation", 4)),
     )
 }
 

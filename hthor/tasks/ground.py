@@ -68,7 +68,7 @@ class Ground:
         mask = np.zeros(self.space.free.shape, dtype=bool)
         for thing in self.house.things:
             if thing.kind == kind:
-                for surface in catalog.kind(kind).surfaces(thing.size):
+                for surface in catalog.kind(kind).rests(thing.size):
                     x, y, _ = to_house(surface.centre, thing.centre, thing.yaw)
                     mask |= self._around((x, y), (2 * surface.half[0], 2 * surface.half[1]), thing.yaw)
         return mask

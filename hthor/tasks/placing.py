@@ -50,7 +50,7 @@ class Shelves:
         self.all = tuple(
             Rest(thing=thing, surface=surface)
             for thing in house.things
-            for surface in catalog.kind(thing.kind).surfaces(thing.size)
+            for surface in catalog.kind(thing.kind).rests(thing.size)
         )
         self.rests = tuple(rest for rest in self.all if LOW_M <= rest.centre[2] <= HIGH_M)
         self._solids = tuple(slab for thing in house.things for slab in _slabs(thing))

@@ -75,7 +75,7 @@ class MobileManipulation(TaskKind):
 
         target = next(placement for placement in objects if placement.id == goal.target)
         opening = [_kind_of(target.support, house) if target.relation == "in" else "", goal.destination]
-        doors = sum(1 for kind in opening if kind and catalog.kind(kind).openable)
+        doors = sum(1 for kind in opening if kind and catalog.kind(kind).hides)
         ground = Ground.of(house)
         walk = ground.walk([ground.touching(target), ground.serving(goal.destination)])
         handling = (2 + doors) * rules.HANDLING_S

@@ -50,7 +50,7 @@ class ObjectGoalNavigation(TaskKind):
         target = next(placement for placement in objects if placement.id == goal.target)
         ground = Ground.of(house)
         holder = next((thing for thing in house.things if thing.id == target.support), None)
-        if holder is not None and target.relation == "in" and catalog.kind(holder.kind).openable:
+        if holder is not None and target.relation == "in" and catalog.kind(holder.kind).hides:
             stops = [ground.beside(holder), ground.seeing(target, frozenset({holder.id}))]
             walk, handling = ground.walk(stops), rules.HANDLING_S
         else:
