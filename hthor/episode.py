@@ -9,7 +9,7 @@ from typing import Any, Protocol, TypeVar
 
 from msgspec import Struct
 
-from hthor import plugins, rules
+from hthor import plugins, rules, seeds
 from hthor.comms.mailbox import Mailbox
 from hthor.humans.model import HumanModel
 from hthor.types import (
@@ -46,7 +46,7 @@ class Stage(Protocol):
     def house(self) -> HouseSpec: ...
     @property
     def tick(self) -> int: ...
-    def reset(self, task: TaskSpec) -> None: ...
+    def reset(self, task: TaskSpec, seed: int = 0) -> None: ...
     def idle(self, seat: str) -> bool: ...
     def start(self, seat: str, motion: Motion) -> None: ...
     def outcome(self, seat: str) -> Outcome | None: ...
@@ -99,6 +99,7 @@ def play(trial: TrialSpec, world: Stage, human: HumanModel, robots: Mapping[str,
 class _Episode:
     def __init__(self, trial: TrialSpec, world: Stage, human: HumanModel, robots: Mapping[str, Mind]) -> None:
         self.task, self.world, self.human = trial.task, world, human
+        self.seed = seeds.derive(trial.seed, "world", trial.participant, trial.index, trial.task.id)
         self.minds: dict[str, Mind] = {HUMAN: human, **robots}
         self.privileges = {robot.seat: robot.agent.privileges for robot in trial.robots}
         self.kind = plugins.load("task kind", self.task.kind)
@@ -109,7 +110,7 @@ class _Episode:
         self.paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in self.minds}
 
     def run(self) -> EpisodeLog:
-        self.world.reset(self.task)
+        self.world.reset(self.task, seed=self.seed)
         self._trace()
         for seat, mind in tuple(self.minds.items()):
             self._guarded(seat, partial(mind.begin, self._briefing(seat)))
@@ -126,25 +127,26 @@ class _Episode:
 
     def _tick(self) -> None:
         """Every seat that is asked sees the same moment; only then do their actions take effect."""
-        asked = {seat: self._observe(seat) for seat in self.minds if self._is_asked(seat)}
+        world, mailbox = self.world, self.mailbox
+        asked = {seat: self._observe(seat) for seat in self.minds if world.idle(seat) or mailbox.changed(seat)}
         if HUMAN in asked and asked[HUMAN].inbox:
-            self.events.extend(self.mailbox.shown(self.world.tick))
+            self.events.extend(mailbox.shown(world.tick))
         actions = [(seat, self._ask(seat, observation)) for seat, observation in asked.items()]
         for seat, action in actions:
             if action is None:
                 continue
             if action.say is not None:
                 self._say(seat, action)
-            if self.world.idle(seat):
-                self.world.start(seat, action.motion)
-        self.events.extend(self.world.advance())
+            if world.idle(seat):
+                world.start(seat, action.motion)
+        self.events.extend(world.advance())
         self._trace()
 
-    def _is_asked(self, seat: str) -> bool:
-        return self.world.idle(seat) or self.mailbox.changed(seat)
-
     def _ask(self, seat: str, observation: Observation) -> Action | None:
+        """A robot's failure ends its part in the trial, not the trial; a human model's failure is ours to see."""
         mind = self.minds[seat]
+        if seat == HUMAN:
+            return _checked(mind.act(observation))
         return self._guarded(seat, lambda: _checked(mind.act(observation)))
 
     def _observe(self, seat: str) -> Observation:

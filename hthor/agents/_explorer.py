@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 from hthor.geometry import wrap
 from hthor.navigation.follow import Follower
@@ -33,7 +34,6 @@ class Explorer:
         self._turns = math.ceil(2.0 * math.pi / (0.9 * body.fov[0]))
         self._integrated: Pose | None = None
         self._place: Frontier | None = None
-        self._is_edge = False
         self._tries: dict[tuple[int, int], int] = {}
 
     def see(self, observation: Observation) -> None:
@@ -53,7 +53,7 @@ class Explorer:
         """The next motion of the exploration."""
         if self._turns:
             return self._look_around(observation.pose)
-        if self._place is None or self.follower.done or not self._is_open(self._place.centre):
+        if self._place is None or self.follower.done or not self._is_open(self._place):
             self._choose(observation.pose)
         step = self.follower.next(observation.pose)
         if step is None:
@@ -80,11 +80,11 @@ class Explorer:
         self._turns -= 1
         return Rotate(yaw=0.9 * self.body.fov[0], pitch=gaze(self.body) - pose.pitch)
 
-    def _is_open(self, centre: Vec2) -> bool:
+    def _is_open(self, place: Frontier) -> bool:
         """Whether there is still something to learn at the place."""
         assert self.grid is not None
-        x, y = centre
-        if self._is_edge:
+        x, y = place.centre
+        if place.is_edge:
             around = ((CELL_M, 0.0), (-CELL_M, 0.0), (0.0, CELL_M), (0.0, -CELL_M))
             return any(self.grid.at(x + dx, y + dy) == UNKNOWN for dx, dy in around)
         return not self.grid.was_near(x, y)
@@ -93,17 +93,14 @@ class Explorer:
         assert self.grid is not None
         self.drop()
         survey = Survey(self.grid, self.planner, pose, _LEAST_M)
-        ranked = [(_cost(pose, place), True, place) for place in survey.frontiers]
-        ranked += [(_cost(pose, place), False, place) for place in survey.unvisited]
-        ranked.sort(key=lambda entry: (entry[0], entry[2].centre))
-        for _, is_edge, place in ranked:
+        for place in survey.ranked(partial(_turning, pose)):
             key = _key(place)
             if self._tries.get(key, 0) >= _TRIES:
                 continue
             self._tries[key] = self._tries.get(key, 0) + 1
             path = survey.path(place)
             if path is not None:
-                self._place, self._is_edge = place, is_edge
+                self._place = place
                 self.follower.take(path)
                 return
         self.grid.forget_near()  # all seen: go round once more
@@ -129,10 +126,9 @@ def gaze(body: BodySpec) -> float:
     return max(-body.pitch_limit, min(body.pitch_limit, (low + high) / 2.0))
 
 
-def _cost(pose: Pose, place: Frontier) -> float:
-    x, y = place.centre
-    turn = abs(wrap(math.atan2(y - pose.y, x - pose.x) - pose.yaw))
-    return place.distance + _TURN_M_RAD * turn
+def _turning(pose: Pose, point: Vec2) -> float:
+    """What turning towards a point costs, in metres."""
+    return _TURN_M_RAD * abs(wrap(math.atan2(point[1] - pose.y, point[0] - pose.x) - pose.yaw))
 
 
 def _key(place: Frontier) -> tuple[int, int]:

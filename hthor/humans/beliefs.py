@@ -11,7 +11,7 @@ from hthor.catalog import priors
 @cache
 def holders() -> tuple[str, ...]:
     """Kinds of furniture that things are put on or in, in the catalogue's order: what people search."""
-    return tuple(name for name in catalog.names() if catalog.kind(name).receptacle)
+    return tuple(name for name in catalog.names() if catalog.kind(name).rests())
 
 
 @cache

@@ -164,7 +164,7 @@ class Errands:
 
 def _resting_point(place: Place, here: Vec2, number: int) -> Vec3:
     """A point on a surface of the place, near to the person at first, further along at later tries."""
-    surfaces = catalog.kind(place.kind).surfaces(place.size)
+    surfaces = catalog.kind(place.kind).rests(place.size)
     usable = [s for s in surfaces if 0.25 <= place.centre[2] + s.centre[2] <= 1.4] or list(surfaces)
     surface = usable[number // 3 % len(usable)] if usable else None
     if surface is None:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 from msgspec import Struct
 
+from hthor import catalog
 from hthor.geometry import distance_to_rectangle, to_local, turn
 from hthor.types import Detection, Vec2, Vec3
 
@@ -78,6 +80,7 @@ class Memory:
         self.doorways: dict[str, Doorway] = {}
         self.rooms: list[str] = []
         self._here: Vec2 | None = None
+        self._at: dict[tuple[Vec3, float], tuple[int, Place | None]] = {}
 
     def visit(self, here: Vec2, room: str) -> bool:
         """The person is at ``here`` [m] in ``room``; returns whether they have never been in this room."""
@@ -95,11 +98,9 @@ class Memory:
         """Remember furniture, or bring it up to date."""
         place = self.places.get(seen.id)
         if place is None:
-            place = Place(
-                id=seen.id, kind=seen.kind, centre=seen.position, size=seen.size, yaw=seen.yaw, state=seen.state
-            )
+            place = Place(id=seen.id, kind=seen.kind, centre=seen.position, size=seen.size, yaw=seen.yaw)
             self.places[seen.id] = place
-        place.state = seen.state
+        place.state = seen.state if seen.state and _hides(seen.kind) else ""  # a drawer is not worth opening
         return place
 
     def keep_doorway(self, seen: Detection, here: Vec2, room: str) -> None:
@@ -129,8 +130,18 @@ class Memory:
 
     def at(self, point: Vec3, margin: float = 0.1) -> Place | None:
         """The place that a point lies on or in, the nearest when several would do."""
-        near = [place for place in self.places.values() if place.covers(point, margin)]
-        return min(near, key=lambda place: (place.apart((point[0], point[1])), place.id), default=None)
+        known, place = self._at.get((point, margin), (0, None))
+        if known != len(self.places):  # places are never forgotten, and furniture does not walk
+            near = [place for place in self.places.values() if place.covers(point, margin)]
+            place = min(near, key=lambda place: (place.apart((point[0], point[1])), place.id), default=None)
+            self._at[point, margin] = len(self.places), place
+        return place
+
+
+@cache
+def _hides(kind: str) -> bool:
+    """Whether a thing of this kind hides something while it is closed."""
+    return catalog.kind(kind).hides
 
 
 def is_in_front(place: Place, point: Vec2) -> bool:

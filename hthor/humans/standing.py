@@ -7,7 +7,7 @@ import math
 from hthor.geometry import to_house, to_local
 from hthor.humans.memory import Place
 from hthor.humans.walking import Walker
-from hthor.navigation.map import FREE, OCCUPIED
+from hthor.navigation.map import FREE
 from hthor.types import Vec2, Vec3
 
 GAP_M = 0.42
@@ -68,13 +68,7 @@ def _clear(spot: Vec2, place: Place, walker: Walker) -> bool:
     x, y, _ = to_local((spot[0], spot[1], 0.0), place.centre, place.yaw)
     w, d = place.size[0] / 2.0, place.size[1] / 2.0
     edge = to_house((max(-w, min(w, x)), max(-d, min(d, y)), 0.0), place.centre, place.yaw)
-    apart = math.dist(spot, edge[:2])
-    steps = int((apart - _MARGIN_M) / 0.05)
-    for k in range(1, steps + 1):
-        share = k * 0.05 / apart
-        if walker.grid.at(spot[0] + share * (edge[0] - spot[0]), spot[1] + share * (edge[1] - spot[1])) == OCCUPIED:
-            return False
-    return True
+    return not walker.grid.meets(spot, edge[:2], _MARGIN_M)
 
 
 def _speck(point: Vec3) -> Place:

@@ -113,18 +113,12 @@ class Walker:
         hopeful = _as_way(self.planner.path(self.me.here, goal, within))
         if hopeful is None:
             return _as_way(self.planner.path(self.me.here, goal, within)) if self._doubted() else None
-        if all(self._seen(a, b) for a, b in pairwise(hopeful.path)):
+        if all(self.grid.seen(a, b) for a, b in pairwise(hopeful.path)):
             return hopeful
         known = self._known(goal, within)
         if known is not None and known.metres <= _FAMILIAR * hopeful.metres + _FAMILIAR_M:
             return known
         return self._by_doorway(goal, hopeful.metres + _DOORWAY_M) or hopeful
-
-    def _seen(self, a: Vec2, b: Vec2) -> bool:
-        """Whether the floor from ``a`` to ``b`` [m] was seen."""
-        count = max(1, math.ceil(math.dist(a, b) / (4.0 * CELL_M)))
-        points = ((a[0] + k / count * (b[0] - a[0]), a[1] + k / count * (b[1] - a[1])) for k in range(count + 1))
-        return all(self.grid.at(*point) == FREE for point in points)
 
     def _known(self, goal: Vec2, within: float) -> Way | None:
         """A way over floor that was seen."""
@@ -141,7 +135,7 @@ class Walker:
         doors = [door for door in self.memory.doorways.values() if door.sides and not door.spent]
         if not doors:
             return None
-        before = self.planner.distances(self.me.here, [door.beyond for door in doors])
+        before = self.planner.distances(self.me.here, [door.beyond for door in doors], most)
         metres = [far + math.dist(door.beyond, goal) for far, door in zip(before, doors, strict=True)]
         best = min(range(len(doors)), key=lambda k: (metres[k], doors[k].id))
         path = self.planner.path(self.me.here, doors[best].beyond) if metres[best] <= most else None

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hthor.navigation.courtesy import Courtesy
+    from hthor.navigation.field import Field
     from hthor.navigation.follow import Follower, face
     from hthor.navigation.frontier import Frontier, Survey, frontiers, unvisited
     from hthor.navigation.map import FREE, OCCUPIED, UNKNOWN, GridMap
     from hthor.navigation.parking import park, retreat
-    from hthor.navigation.planner import Field, Planner
+    from hthor.navigation.planner import Planner
 
 _HOMES = {
     "Courtesy": "courtesy",
@@ -30,7 +31,7 @@ _HOMES = {
     "OCCUPIED": "map",
     "UNKNOWN": "map",
     "GridMap": "map",
-    "Field": "planner",
+    "Field": "field",
     "Planner": "planner",
 }
 

@@ -2,47 +2,149 @@
 
 from __future__ import annotations
 
+import heapq
+import math
+from collections.abc import Callable, Iterator
+
 import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from hthor.navigation import grouping, searching
+from hthor.navigation import grouping
+from hthor.navigation.field import Field
 from hthor.navigation.map import CELL_M, GridMap
-from hthor.navigation.planner import Field, Planner
+from hthor.navigation.planner import Planner
 from hthor.types import Pose, Vec2
 
 _MOST = 256
+_EDGE, _UNVISITED = 1, 2
 
 
 class Frontier(Struct, frozen=True, kw_only=True):
     """A group of neighbouring places worth going to.
 
     ``centre`` [m] is the member nearest to the group's middle, a place where the body can stand. ``size`` [m] is the
-    number of cells times their width, ``distance`` [m] the way to the nearest member.
+    number of cells times their width, ``distance`` [m] the way to the nearest member. ``is_edge``: the members are
+    free cells next to unknown ones; else they are cells along furniture that were never looked at from close by, see
+    `GridMap.near`.
     """
 
     centre: Vec2
     size: float
     distance: float
+    is_edge: bool = True
+
+
+class _Group(Struct, frozen=True):
+    """A group before it is known whether there is a way to it; ``cell`` is its centre's row and column."""
+
+    cell: tuple[int, int]
+    size: int
+    is_edge: bool
 
 
 class Survey:
-    """Every place worth going to, by one search, with the ways there.
-
-    Attributes:
-        frontiers: groups of reachable free cells next to unknown ones.
-        unvisited: groups along furniture that were never looked at from close by, see `GridMap.near`.
-    """
+    """Every place worth going to, by one search that goes only as far as it must, with the ways there."""
 
     def __init__(self, grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> None:
-        """Groups of at least ``least`` [m] are listed, in order of their place."""
+        """Groups of at least ``least`` [m] are listed."""
         self._field = _known(planner, pose)
-        self.frontiers = _groups(grid, self._field, planner, True, least)
-        self.unvisited = _groups(grid, self._field, planner, False, least)
+        self._frame = (grid.left, grid.bottom)
+        self._groups: list[_Group] = []
+        self._found: dict[int, Frontier] = {}
+        self._news: list[int] = []
+        window = self._field.window
+        if window is not None:
+            self._names: NDArray[np.int16] = np.zeros((2, window.state.size), dtype=np.int16)
+            mask: NDArray[np.uint8] = np.zeros(grid.cells.shape, dtype=np.uint8)
+            cells: NDArray[np.int32] = np.empty(mask.size, dtype=np.int32)
+            count = grouping.mark(grid.cells, planner.levels, grid.beside, grid.near, grid.bounds, mask, cells)
+            self._gather(grid, mask, cells[:count], _EDGE, least)
+            self._gather(grid, mask, cells[:count], _UNVISITED, least)
+        self._known: NDArray[np.uint8] = np.zeros(len(self._groups) + 1, dtype=np.uint8)
+        self._known[0] = 1
+
+    @property
+    def frontiers(self) -> list[Frontier]:
+        """Groups of reachable free cells next to unknown ones, in order of their place."""
+        return self._all(is_edge=True)
+
+    @property
+    def unvisited(self) -> list[Frontier]:
+        """Groups of reachable free cells along furniture that were never looked at from close by, in order of place."""
+        return self._all(is_edge=False)
+
+    def ranked(self, extra: Callable[[Vec2], float]) -> Iterator[Frontier]:
+        """Every place, the one with the least ``distance + extra(centre)`` [m] first."""
+        more = {number: extra(self._centre(group)) for number, group in enumerate(self._groups, 1)}
+        waiting: list[tuple[float, Vec2, int]] = []
+        while True:
+            on = self._reach()
+            for number in self._news:
+                place = self._found[number]
+                heapq.heappush(waiting, (place.distance + more.pop(number), place.centre, number))
+            self._news.clear()
+            bound = self._field.reached + min(more.values(), default=math.inf) if on else math.inf
+            while waiting and waiting[0][0] < bound:
+                yield self._found[heapq.heappop(waiting)[2]]
+            if not on:
+                return
 
     def path(self, place: Frontier) -> tuple[Vec2, ...] | None:
         """The way to a place, through what is known to be free; ask before the map grows."""
+        window = self._field.window
+        if window is not None:
+            column, row = (round(metres / CELL_M - 0.5) for metres in place.centre)
+            goal = window.flat(row - self._frame[1], column - self._frame[0])
+            while not window.settled(goal) and self._reach(goal):
+                pass
         return self._field.path(place.centre)
+
+    def _gather(
+        self, grid: GridMap, mask: NDArray[np.uint8], marked: NDArray[np.int32], bit: int, least: float
+    ) -> None:
+        """List the groups of marked cells that are large enough, and have the search stop at them."""
+        window = self._field.window
+        assert window is not None
+        out: NDArray[np.int64] = np.empty((_MOST, 4), dtype=np.int64)
+        members: NDArray[np.int32] = np.empty(len(marked), dtype=np.int32)
+        count = grouping.clusters(mask, marked, bit, members, out)
+        names, columns, offset = self._names[bit - 1], grid.cells.shape[1], window.flat(0, 0)
+        for row, column, first, last in out[:count].tolist():
+            if (last - first) * CELL_M >= least - 1e-9:
+                self._groups.append(_Group((row, column), last - first, bit == _EDGE))
+                number = len(self._groups)
+                grouping.watch(members, first, last, columns, window.width, offset, window.state, names, number)
+
+    def _reach(self, goal: int = -1) -> bool:
+        """Go on to the next group, or to a member of one; False when there is no way to any more of them."""
+        window = self._field.window
+        if window is None:
+            return False
+        here = window.reach(self._names, self._known, goal)
+        if here < 0:
+            return False
+        for number in self._names[:, here].tolist():
+            if not self._known[number]:
+                self._known[number] = 1
+                self._news.append(number)
+                group = self._groups[number - 1]
+                self._found[number] = Frontier(
+                    centre=self._centre(group),
+                    size=group.size * CELL_M,
+                    distance=self._field.metres(here),
+                    is_edge=group.is_edge,
+                )
+        return True
+
+    def _centre(self, group: _Group) -> Vec2:
+        (row, column), (left, bottom) = group.cell, self._frame
+        return ((column + 0.5 + left) * CELL_M, (row + 0.5 + bottom) * CELL_M)
+
+    def _all(self, is_edge: bool) -> list[Frontier]:
+        while self._reach():
+            pass
+        return [place for _, place in sorted(self._found.items()) if place.is_edge == is_edge]
 
 
 def frontiers(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> list[Frontier]:
@@ -62,17 +164,3 @@ def _known(planner: Planner, pose: Pose) -> Field:
         return planner.field((pose.x, pose.y))
     finally:
         planner.optimistic = hopeful
-
-
-def _groups(grid: GridMap, field: Field, planner: Planner, edges: bool, least: float) -> list[Frontier]:
-    mask: NDArray[np.uint8] = np.zeros(grid.cells.shape, dtype=np.uint8)
-    grouping.mark(grid.cells, planner.levels, grid.beside, grid.near, field.cost, field.window, edges, mask)
-    out = np.empty((_MOST, 4), dtype=np.int64)
-    stack = np.empty(grid.cells.size, dtype=np.int32)
-    count = grouping.clusters(field.cost, field.window, mask, stack, out)
-    found = []
-    for row, column, size, cost in out[:count].tolist():
-        if size * CELL_M >= least - 1e-9:
-            centre = ((column + 0.5 + grid.left) * CELL_M, (row + 0.5 + grid.bottom) * CELL_M)
-            found.append(Frontier(centre=centre, size=size * CELL_M, distance=cost / searching.STEP * CELL_M))
-    return found

@@ -6,67 +6,120 @@ from typing import Any
 
 import numba
 
-from hthor.navigation.searching import _DX, _DY, FAR
+from hthor.navigation.searching import _DX, _DY, FAR, WATCHED, spread
 
 
 @numba.njit(
-    "void(uint8[:,::1], uint8[:,::1], uint8[:,::1], uint8[:,::1], int32[:,::1], int64[::1], boolean, uint8[:,::1])",
+    "int64(uint8[:,::1], uint8[:,::1], uint8[:,::1], uint8[:,::1], int64[::1], uint8[:,::1], int32[::1])",
     cache=True,
 )
-def mark(cells: Any, level: Any, beside: Any, near: Any, cost: Any, window: Any, edges: bool, mask: Any) -> None:
-    """Mark reached free cells: those next to the unknown (``edges``), or those along furniture never seen close."""
-    ny, nx = cells.shape
-    for j in range(max(window[2], 1), min(window[3], ny - 2) + 1):
-        for i in range(max(window[0], 1), min(window[1], nx - 2) + 1):
-            mask[j, i] = 0
-            if cells[j, i] != 1 or cost[j, i] == FAR:
-                continue
-            if edges:
-                unknown = cells[j - 1, i] == 0 or cells[j + 1, i] == 0 or cells[j, i - 1] == 0 or cells[j, i + 1] == 0
-                mask[j, i] = 1 if unknown else 0
-            else:
-                mask[j, i] = 1 if level[j, i] == 1 and beside[j, i] and near[j, i] == 0 else 0
+def mark(cells: Any, level: Any, beside: Any, near: Any, bounds: Any, mask: Any, marked: Any) -> int:
+    """Mark free cells where a body has room: 1 those next to the unknown, 2 those along furniture never seen close.
 
+    Args:
+        bounds: those of the known map, see `GridMap`.
+        mask: all zero outside them, and out. marked: out, flat indices of all cells marked, in order.
 
-@numba.njit("int64(int32[:,::1], int64[::1], uint8[:,::1], int32[::1], int64[:,::1])", cache=True)
-def clusters(cost: Any, window: Any, mask: Any, stack: Any, out: Any) -> int:
-    """Group the marked cells that were reached; every row of ``out`` is row, column, size, least cost.
-
-    ``mask`` is used up. The cell given is the member nearest to the middle of its group.
+    Returns:
+        How many cells are marked.
     """
-    x0, x1, y0, y1 = window[0], window[1], window[2], window[3]
-    nx = cost.shape[1]
-    groups = 0
-    for row in range(y0, y1 + 1):
-        for column in range(x0, x1 + 1):
-            if mask[row, column] == 0 or groups == len(out):
-                continue
-            mask[row, column] = 0
-            stack[0] = row * nx + column
-            size, done = 1, 0
-            sum_x, sum_y, least = 0, 0, FAR
-            while done < size:  # the stack is kept whole: it becomes the list of members
-                j, i = stack[done] // nx, stack[done] % nx
-                done += 1
-                sum_x += i
-                sum_y += j
-                if cost[j, i] < least:
-                    least = cost[j, i]
-                for d in range(8):
-                    a, b = i + _DX[d], j + _DY[d]
-                    if x0 <= a <= x1 and y0 <= b <= y1 and mask[b, a]:
-                        mask[b, a] = 0
-                        stack[size] = b * nx + a
-                        size += 1
-            best, best2 = stack[0], 1e18
-            for s in range(size):
-                j, i = stack[s] // nx, stack[s] % nx
-                ex, ey = i - sum_x / size, j - sum_y / size
-                if ex * ex + ey * ey < best2:
-                    best, best2 = stack[s], ex * ex + ey * ey
-            out[groups, 0] = best // nx
-            out[groups, 1] = best % nx
-            out[groups, 2] = size
-            out[groups, 3] = least
-            groups += 1
+    ny, nx = cells.shape
+    count = 0
+    x0, x1 = max(bounds[0], 1), min(bounds[1], nx - 2) + 1
+    for j in range(max(bounds[2], 1), min(bounds[3], ny - 2) + 1):  # a loop that becomes vector instructions
+        here, west, east = cells[j, x0:x1], cells[j, x0 - 1 : x1 - 1], cells[j, x0 + 1 : x1 + 1]
+        south, north, tight = cells[j - 1, x0:x1], cells[j + 1, x0:x1], level[j, x0:x1]
+        along, seen, out = beside[j, x0:x1], near[j, x0:x1], mask[j, x0:x1]
+        for i in range(len(out)):
+            room = (here[i] == 1) & (tight[i] < 2)
+            edge = room & ((west[i] == 0) | (east[i] == 0) | (south[i] == 0) | (north[i] == 0))
+            unvisited = room & (tight[i] == 1) & (along[i] != 0) & (seen[i] == 0)
+            out[i] = (1 if edge else 0) | (2 if unvisited else 0)
+        for i in range(len(out)):
+            if out[i]:
+                marked[count] = j * nx + x0 + i
+                count += 1
+    return count
+
+
+@numba.njit("int64(uint8[:,::1], int32[::1], uint8, int32[::1], int64[:,::1])", cache=True)
+def clusters(mask: Any, marked: Any, bit: int, members: Any, out: Any) -> int:
+    """Group the ``marked`` cells with ``bit`` in the mask; returns how many groups, in the order of their first cells.
+
+    The bit is used up. Every row of ``out`` is row, column, first and last + 1 index of the group's ``members``, which
+    are flat. The cell given is the member nearest to the middle of its group.
+    """
+    nx = mask.shape[1]
+    groups, done = 0, 0
+    for start in marked:
+        row, column = start // nx, start % nx
+        if mask[row, column] & bit == 0 or groups == len(out):
+            continue
+        mask[row, column] ^= bit
+        first, size = done, done + 1
+        members[first] = row * nx + column
+        sum_x, sum_y = 0, 0
+        while done < size:
+            j, i = members[done] // nx, members[done] % nx
+            done += 1
+            sum_x += i
+            sum_y += j
+            for d in range(8):
+                a, b = i + _DX[d], j + _DY[d]
+                if mask[b, a] & bit:
+                    mask[b, a] ^= bit
+                    members[size] = b * nx + a
+                    size += 1
+        best, best2 = members[first], 1e18
+        for s in range(first, size):
+            j, i = members[s] // nx, members[s] % nx
+            ex, ey = i - sum_x / (size - first), j - sum_y / (size - first)
+            if ex * ex + ey * ey < best2:
+                best, best2 = members[s], ex * ex + ey * ey
+        out[groups, 0] = best // nx
+        out[groups, 1] = best % nx
+        out[groups, 2] = first
+        out[groups, 3] = size
+        groups += 1
     return groups
+
+
+@numba.njit("void(int32[::1], int64, int64, int64, int64, int64, uint8[::1], int16[::1], int64)", cache=True)
+def watch(
+    members: Any, first: int, last: int, width: int, columns: int, offset: int, state: Any, names: Any, number: int
+) -> None:
+    """Have a search stop at the members ``first`` to ``last``, which it then finds under ``number`` in ``names``.
+
+    Args:
+        width: columns of the map. columns: of the search's window. offset: of the map's cell 0 in the window.
+    """
+    for s in range(first, last):
+        row = members[s] // width
+        here = row * columns + members[s] - row * width + offset
+        state[here] |= WATCHED
+        names[here] = number
+
+
+@numba.njit(
+    "int64(int16[:,::1], uint8[::1], int64, uint8[::1], int32[::1], int8[::1], int64, int32[::1], int32[::1],"
+    " int32[::1], int64[::1])",
+    cache=True,
+)
+def reach(
+    names: Any,
+    known: Any,
+    goal: int,
+    state: Any,
+    cost: Any,
+    came: Any,
+    width: int,
+    heads: Any,
+    chain: Any,
+    item: Any,
+    memo: Any,
+) -> int:
+    """Spread (see `searching.spread`) to the watched cell ``goal`` or one of a group not yet ``known``; -1 for none."""
+    while True:
+        here = spread(state, cost, came, width, 1, FAR, heads, chain, item, memo)
+        if here < 0 or here == goal or not (known[names[0, here]] and known[names[1, here]]):
+            return int(here)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hthor.navigation import marching
-from hthor.types import Scan
+from hthor.types import Scan, Vec2
 
 CELL_M = 0.05
 UNKNOWN, FREE, OCCUPIED = 0, 1, 2
@@ -42,6 +43,7 @@ class GridMap:
         self.beside: NDArray[np.uint8] = np.zeros_like(self.cells)
         self.bounds: NDArray[np.int64] = np.array([half, half, half, half], dtype=np.int64)
         self.version = 0
+        self._given: Any = None
         self._obstacles: NDArray[np.int32] = np.empty((1024, 3), dtype=np.int32)
         self._count = 0
 
@@ -72,7 +74,7 @@ class GridMap:
             origin.x,
             origin.y,
             origin.yaw,
-            np.array(scan.bearings, dtype=np.float64),
+            self._as_bearings(scan.bearings),
             np.array(scan.ranges, dtype=np.float64),
             low,
             scan.limit,
@@ -107,6 +109,22 @@ class GridMap:
             return UNKNOWN
         return int(self.cells[row, column])
 
+    def seen(self, a: Vec2, b: Vec2) -> bool:
+        """Whether the floor from ``a`` to ``b`` [m] is known to be free, as far as a look every 0.2 m tells."""
+        count = max(1, math.ceil(math.dist(a, b) / (4.0 * CELL_M)))
+        line = self.left, self.bottom, CELL_M, *a, *b
+        return bool(marching.along(self.cells, *line, 0, count, 1.0, float(count), FREE, True))
+
+    def meets(self, a: Vec2, b: Vec2, margin: float) -> bool:
+        """Whether something occupied is on the line from ``a`` [m] to ``margin`` [m] before ``b``, past the first cell.
+
+        Not more than every 5 cm is looked at.
+        """
+        apart = math.dist(a, b)
+        line = self.left, self.bottom, CELL_M, *a, *b
+        count = int((apart - margin) / CELL_M)
+        return count > 0 and not marching.along(self.cells, *line, 1, count, CELL_M, apart, OCCUPIED, False)
+
     def was_near(self, x: float, y: float) -> bool:
         """Whether the free cell at (``x``, ``y``) [m] was looked at from close by."""
         column, row = self._index(x, y)
@@ -116,6 +134,12 @@ class GridMap:
     def forget_near(self) -> None:
         """Count every cell as not yet looked at from close by."""
         self.near[:] = 0
+
+    def _as_bearings(self, bearings: Any) -> NDArray[np.float64]:
+        """The bearings as compiled loops want them; a sensor gives the same ones every time."""
+        if bearings is not self._given:
+            self._given, self._bearings = bearings, np.array(bearings, dtype=np.float64)
+        return self._bearings
 
     def _index(self, x: float, y: float) -> tuple[int, int]:
         return math.floor(x / CELL_M) - self.left, math.floor(y / CELL_M) - self.bottom
@@ -131,10 +155,10 @@ class GridMap:
         ny, nx = self.cells.shape
         column0, row0 = self._index(x0, y0)
         column1, row1 = self._index(x1, y1)
+        if column0 >= 1 and row0 >= 1 and column1 + 2 <= nx and row1 + 2 <= ny:
+            return
         left, bottom = _chunks(1 - column0), _chunks(1 - row0)
         right, top = _chunks(column1 + 2 - nx), _chunks(row1 + 2 - ny)
-        if not (left or bottom or right or top):
-            return
         widths = ((bottom, top), (left, right))
         self.cells, self.near = np.pad(self.cells, widths), np.pad(self.near, widths)
         self.beside = np.pad(self.beside, widths)

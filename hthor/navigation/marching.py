@@ -121,6 +121,39 @@ def integrate(
     return count
 
 
+@numba.njit(
+    "boolean(uint8[:,::1], int64, int64, float64, float64, float64, float64, float64, int64, int64, float64, float64,"
+    " int64, boolean)",
+    cache=True,
+)
+def along(
+    cells: Any,
+    left: int,
+    bottom: int,
+    cell: float,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    first: int,
+    last: int,
+    step: float,
+    length: float,
+    state: int,
+    wanted: bool,
+) -> bool:
+    """Whether all points of a line, ``first`` to ``last``, ``step`` apart, are in cells of a state, or all are not."""
+    ny, nx = cells.shape
+    for k in range(first, last + 1):
+        share = k * step / length
+        i = math.floor((ax + share * (bx - ax)) / cell) - left
+        j = math.floor((ay + share * (by - ay)) / cell) - bottom
+        found = cells[j, i] if 0 <= j < ny and 0 <= i < nx else 0
+        if (found == state) != wanted:
+            return False
+    return True
+
+
 @numba.njit("void(uint8[:,::1], int32[:,::1], int64, int64, int64, int64, int64)", cache=True)
 def surround(beside: Any, obstacles: Any, first: int, last: int, left: int, bottom: int, reach: int) -> None:
     """Mark the cells within ``reach`` columns and rows of those obstacles, ``first`` to ``last``, that are low."""

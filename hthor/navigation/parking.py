@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from hthor.navigation.map import CELL_M, FREE, GridMap
 from hthor.navigation.planner import Planner
-from hthor.navigation.searching import _DX, _DY, FAR, nearest, search
+from hthor.navigation.searching import _DX, _DY, FAR, nearest
+from hthor.navigation.window import Window
 from hthor.types import Vec2
 
 BERTH_M = 0.45
@@ -54,33 +55,45 @@ def retreat(grid: GridMap, planner: Planner, here: Vec2, point: Vec2, apart_m: f
 
 def _traffic(cells: NDArray[np.uint8], x: float, y: float) -> NDArray[np.int64] | None:
     """How many cells' shortest ways to a point [cells] lead through each cell."""
-    ny, nx = cells.shape
+    nx = cells.shape[1]
     level = np.zeros_like(cells)
     end = nearest(cells, level, False, math.floor(y), math.floor(x), _SNAP_CELLS)
     if end < 0:
         return None
-    cost, came = np.empty(cells.shape, dtype=np.int32), np.empty(cells.shape, dtype=np.int8)
-    chain, item = np.empty(8 * cells.size + 8, dtype=np.int32), np.empty(8 * cells.size + 8, dtype=np.int32)
-    window = np.array([0, nx - 1, 0, ny - 1], dtype=np.int64)
-    search(cells, level, False, end // nx, end % nx, 0.0, 0.0, 0.0, False, window, cost, came, chain, item)
-    order = np.argsort(-cost, axis=None, kind="stable")
+    rows, columns = (np.flatnonzero(cells.any(axis=axis)).tolist() for axis in (1, 0))
+    x0, x1, y0, y1 = edges = columns[0], columns[-1], rows[0], rows[-1]
+    ways = Window(cells, level, False, edges, divmod(int(end), nx))
+    ways.spread(0)
+    run: NDArray[np.int64] = np.zeros(ways.cost.size, dtype=np.int64)
+    _pour(ways.cost, ways.came, ways.width, ways.start, run)
     flow: NDArray[np.int64] = np.zeros(cells.shape, dtype=np.int64)
-    _pour(cost, came, order, end, flow)
+    flow[y0 : y1 + 1, x0 : x1 + 1] = run.reshape(-1, ways.width)[1:-1, 1:-1]
     return flow
 
 
-@numba.njit("void(int32[:,::1], int8[:,::1], int64[::1], int64, int64[:,::1])", cache=True)
-def _pour(cost: Any, came: Any, order: Any, end: int, flow: Any) -> None:
+@numba.njit("void(int32[::1], int8[::1], int64, int64, int64[::1])", cache=True)
+def _pour(cost: Any, came: Any, width: int, end: int, flow: Any) -> None:
     """Let one unit run down from every reached cell along the steps by which it was reached."""
-    nx = cost.shape[1]
-    for here in order:
-        j, i = here // nx, here % nx
-        if cost[j, i] >= FAR:
-            continue
-        flow[j, i] += 1
-        if here != end:
-            d = came[j, i] & 7
-            flow[j - _DY[d], i - _DX[d]] += flow[j, i]
+    n = len(cost)
+    sources = np.zeros(n, dtype=np.int8)  # cells that still have to run into each
+    for here in range(n):
+        if cost[here] < FAR and here != end:
+            d = came[here]
+            sources[here - _DY[d] * width - _DX[d]] += 1
+    for first in range(n):
+        here = first
+        while cost[here] < FAR and sources[here] == 0:
+            sources[here] = -1
+            flow[here] += 1
+            if here == end:
+                break
+            d = came[here]
+            there = here - _DY[d] * width - _DX[d]
+            flow[there] += flow[here]
+            sources[there] -= 1
+            if there > first:  # its own turn comes
+                break
+            here = there
 
 
 @numba.njit("int64(uint8[:,::1], int64, int64, float64, float64)", cache=True)

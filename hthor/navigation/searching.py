@@ -1,6 +1,7 @@
 """Compiled: shortest paths on a grid of cells and levels (see `marching`); knows nothing of records.
 
-Costs are whole numbers, 100 for a step of one clear cell, so that paths do not depend on rounding.
+Costs are whole numbers, 100 for a step of one clear cell, so that paths do not depend on rounding. A search works on a
+window of the map with a closed border of one cell, laid out flat, so that no step has to look where the map ends.
 """
 
 from __future__ import annotations
@@ -15,10 +16,26 @@ STEP, DIAGONAL = 100, 141
 TIGHT, TIGHT_DIAGONAL = 120, 169
 FAR = 1 << 30
 BUCKETS = 512
-_CLOSED = 16
+_LAST = BUCKETS - 1
+_SLACK = 108.24
+"""Of a straight line's length in cells, the most that its way along the lattice costs."""
+CLOSED, CLEAR, CLOSE, WATCHED = 0, 1, 2, 4
+"""States of a window's cells: no way or done, else the level plus one; and whether it is news that it was reached."""
 
 _DX = np.array([1, 0, -1, 0, 1, -1, -1, 1], dtype=np.int64)
 _DY = np.array([0, 1, 0, -1, 1, 1, -1, -1], dtype=np.int64)
+
+
+def rank(columns: int, rows: int, within: float) -> int:
+    """The least cost to within ``within`` cells of a goal so many columns and rows away."""
+    slack = math.ceil(within * _SLACK) if within > 0.0 else 0
+    return max(0, STEP * max(columns, rows) + (DIAGONAL - STEP) * min(columns, rows) - slack)
+
+
+@numba.njit("int64[::1](int64)", cache=True)
+def _offsets(width: int) -> Any:
+    """Where the neighbours of a cell are in a flat window, in the order of `_DX` and `_DY`."""
+    return np.array([1, width, -1, -width, width + 1, width - 1, -width - 1, 1 - width], dtype=np.int64)
 
 
 @numba.njit("boolean(uint8[:,::1], uint8[:,::1], boolean, int64, int64)", cache=True)
@@ -31,6 +48,8 @@ def passable(cells: Any, level: Any, optimistic: bool, row: int, column: int) ->
 def nearest(cells: Any, level: Any, optimistic: bool, row: int, column: int, reach: int) -> int:
     """Flat index of the passable cell nearest to a cell, within ``reach`` cells; -1 when there is none."""
     ny, nx = cells.shape
+    if 0 <= row < ny and 0 <= column < nx and passable(cells, level, optimistic, row, column):
+        return int(row * nx + column)
     best, best2 = -1, reach * reach + 1
     for j in range(max(row - reach, 0), min(row + reach + 1, ny)):
         for i in range(max(column - reach, 0), min(column + reach + 1, nx)):
@@ -41,109 +60,200 @@ def nearest(cells: Any, level: Any, optimistic: bool, row: int, column: int, rea
 
 
 @numba.njit(
-    "int64(uint8[:,::1], uint8[:,::1], boolean, int64, int64, float64, float64, float64, boolean, int64[::1],"
-    " int32[:,::1], int8[:,::1], int32[::1], int32[::1])",
+    "void(uint8[:,::1], uint8[:,::1], boolean, int64[::1], int64, uint8[::1], int32[::1], int8[::1],"
+    " int32[::1], int32[::1], int32[::1], int64[::1], int64)",
     cache=True,
 )
-def search(
+def prepare(
     cells: Any,
     level: Any,
     optimistic: bool,
-    row: int,
-    column: int,
+    window: Any,
+    start: int,
+    state: Any,
+    cost: Any,
+    came: Any,
+    heads: Any,
+    chain: Any,
+    item: Any,
+    memo: Any,
+    key: int,
+) -> None:
+    """Lay a window out flat, border included, and put its cell ``start`` in the queue, in bucket ``key``.
+
+    Args:
+        window: first and last column, first and last row that may be used.
+        state, cost, came: out, one entry a cell of the bordered window.
+        heads, chain, item: out, the queue: `BUCKETS` entries, and eight a cell. memo: out, (3,) the queue's numbers.
+    """
+    x0, x1, y0, y1 = window[0], window[1], window[2], window[3]
+    width = x1 - x0 + 3
+    cost[:] = FAR
+    state[:] = CLOSED
+    for j in range(y0, y1 + 1):  # loops that a compiler can turn into vector instructions
+        row = state[(j - y0 + 1) * width + 1 : (j - y0 + 2) * width - 1]
+        tight, known = level[j, x0 : x1 + 1], cells[j, x0 : x1 + 1]
+        if optimistic:
+            for i in range(len(row)):
+                row[i] = tight[i] + CLEAR if tight[i] < 2 else CLOSED
+        else:
+            for i in range(len(row)):
+                row[i] = tight[i] + CLEAR if (tight[i] < 2) & (known[i] == 1) else CLOSED
+    heads[:] = -1
+    heads[key & _LAST] = 0
+    item[0], chain[0] = start, -1
+    cost[start], came[start] = 0, 0
+    memo[0], memo[1], memo[2] = key, 1, 1
+
+
+@numba.njit(
+    "int64(uint8[::1], int32[::1], int8[::1], int64, int64, int64, float64, float64, float64,"
+    " int32[::1], int32[::1], int32[::1], int64[::1])",
+    cache=True,
+)
+def seek(
+    state: Any,
+    cost: Any,
+    came: Any,
+    width: int,
+    left: int,
+    bottom: int,
     goal_x: float,
     goal_y: float,
     within: float,
-    aimed: bool,
-    window: Any,
-    cost: Any,
-    came: Any,
+    heads: Any,
     chain: Any,
     item: Any,
+    memo: Any,
 ) -> int:
-    """Shortest paths from a cell, by a queue of buckets: to within ``within`` cells of a goal, or to everywhere.
+    """The cheapest way to within ``within`` cells of a goal (A*); the cell where it ends, -1 when there is none.
 
     Args:
-        aimed: stop at the goal (A*); otherwise visit every cell of the window (Dijkstra).
-        window: first and last column, first and last row that may be used.
-        cost: out, (ny, nx) cost from the start, `FAR` where not reached. came: out, direction of the last step.
-        chain, item: scratch of at least eight entries a cell of the window.
-
-    Returns:
-        Flat index of the goal cell reached; -1 when there is none or when not aimed.
+        width: of the bordered window. left, bottom: the map's column and row of the window's cell 0.
+        goal_x, goal_y: the goal [cells of the map].
     """
-    nx = cells.shape[1]
-    x0, x1, y0, y1 = window[0], window[1], window[2], window[3]
-    for j in range(y0, y1 + 1):
-        for i in range(x0, x1 + 1):
-            cost[j, i] = FAR
-            came[j, i] = 0
-    heads = np.full(BUCKETS, -1, dtype=np.int32)
-    slack = math.ceil(within * 108.24) if within > 0.0 else 0
+    offsets = _offsets(width)
+    slack = math.ceil(within * _SLACK) if within > 0.0 else 0
     gx, gy = math.floor(goal_x), math.floor(goal_y)
     near2 = within * within
-    used, waiting = 1, 1
-    item[0] = row * nx + column
-    chain[0] = -1
-    cost[row, column] = 0
-    key = 0
-    if aimed:
-        dx, dy = abs(column - gx), abs(row - gy)
-        key = max(0, STEP * max(dx, dy) + (DIAGONAL - STEP) * min(dx, dy) - slack)
-    heads[key % BUCKETS] = 0
+    key, used, waiting = memo[0], memo[1], memo[2]
     while waiting > 0:
-        slot = key % BUCKETS
-        entry = heads[slot]
+        entry = heads[key & _LAST]
         if entry < 0:
             key += 1
             continue
-        heads[slot] = chain[entry]
+        heads[key & _LAST] = chain[entry]
         waiting -= 1
         here = item[entry]
-        j, i = here // nx, here % nx
-        if came[j, i] & _CLOSED:
+        if state[here] == CLOSED:
             continue
-        came[j, i] |= _CLOSED
-        if aimed:
-            ex, ey = i + 0.5 - goal_x, j + 0.5 - goal_y
-            if (i == gx and j == gy) or ex * ex + ey * ey <= near2:
-                return int(here)
-        base = cost[j, i]
+        state[here] = CLOSED
+        row = here // width
+        i, j = here - row * width + left, row + bottom
+        ex, ey = i + 0.5 - goal_x, j + 0.5 - goal_y
+        if (i == gx and j == gy) or ex * ex + ey * ey <= near2:
+            return int(here)
+        base = cost[here]
         for d in range(8):
-            a, b = i + _DX[d], j + _DY[d]
-            if a < x0 or a > x1 or b < y0 or b > y1 or came[b, a] & _CLOSED:
+            there = here + offsets[d]
+            kind = state[there]
+            if kind == CLOSED:
                 continue
-            if level[b, a] >= 2 or not (optimistic or cells[b, a] == 1):
-                continue
-            if level[b, a] == 0:
+            if kind == CLEAR:
                 reached = base + (STEP if d < 4 else DIAGONAL)
             else:
                 reached = base + (TIGHT if d < 4 else TIGHT_DIAGONAL)
-            if reached >= cost[b, a]:
+            if reached >= cost[there]:
                 continue
-            cost[b, a] = reached
-            came[b, a] = d
-            rank = reached
-            if aimed:
-                dx, dy = abs(a - gx), abs(b - gy)
-                rank += max(0, STEP * max(dx, dy) + (DIAGONAL - STEP) * min(dx, dy) - slack)
-            item[used] = b * nx + a
-            chain[used] = heads[rank % BUCKETS]
-            heads[rank % BUCKETS] = used
+            cost[there] = reached
+            came[there] = d
+            dx, dy = abs(i + _DX[d] - gx), abs(j + _DY[d] - gy)
+            ahead = reached + max(0, STEP * max(dx, dy) + (DIAGONAL - STEP) * min(dx, dy) - slack)
+            item[used] = there
+            chain[used] = heads[ahead & _LAST]
+            heads[ahead & _LAST] = used
             used += 1
             waiting += 1
     return -1
 
 
-@numba.njit("int64(int8[:,::1], int64, int64, int64[::1])", cache=True)
-def trace(came: Any, start: int, end: int, out: Any) -> int:
-    """Flat indices from ``end`` back to ``start`` into ``out``; returns how many."""
-    nx = came.shape[1]
+@numba.njit(
+    "int64(uint8[::1], int32[::1], int8[::1], int64, int64, int64, int32[::1], int32[::1], int32[::1], int64[::1])",
+    cache=True,
+)
+def spread(
+    state: Any,
+    cost: Any,
+    came: Any,
+    width: int,
+    watched: int,
+    most: int,
+    heads: Any,
+    chain: Any,
+    item: Any,
+    memo: Any,
+) -> int:
+    """Cheapest ways to ever farther cells (Dijkstra), until ``watched`` more of the watched cells are reached.
+
+    Call it again to go on. Cells that are `CLOSED` and cheaper than `FAR` are settled: no way to them is cheaper.
+
+    Args:
+        most: stop before a cell that costs more.
+
+    Returns:
+        The watched cell reached last; -1 when the search ended before so many were reached.
+    """
+    offsets = _offsets(width)
+    key, used, waiting = memo[0], memo[1], memo[2]
+    found = -1
+    while waiting > 0 and key <= most:
+        entry = heads[key & _LAST]
+        if entry < 0:
+            key += 1
+            continue
+        heads[key & _LAST] = chain[entry]
+        waiting -= 1
+        here = item[entry]
+        kind = state[here]
+        if kind == CLOSED:
+            continue
+        state[here] = CLOSED
+        base = cost[here]
+        for d in range(8):
+            there = here + offsets[d]
+            next_kind = state[there] & (CLEAR | CLOSE)
+            if next_kind == CLOSED:
+                continue
+            if next_kind == CLEAR:
+                reached = base + (STEP if d < 4 else DIAGONAL)
+            else:
+                reached = base + (TIGHT if d < 4 else TIGHT_DIAGONAL)
+            if reached >= cost[there]:
+                continue
+            cost[there] = reached
+            came[there] = d
+            item[used] = there
+            chain[used] = heads[reached & _LAST]
+            heads[reached & _LAST] = used
+            used += 1
+            waiting += 1
+        if kind & WATCHED:
+            watched -= 1
+            if watched == 0:
+                found = here
+                break
+    memo[0], memo[1], memo[2] = key, used, waiting
+    return int(found)
+
+
+@numba.njit("int64(int8[::1], int64, int64, int64, int64[::1])", cache=True)
+def trace(came: Any, width: int, start: int, end: int, out: Any) -> int:
+    """Cells from ``end`` back to ``start`` into ``out``; returns how many."""
+    offsets = _offsets(width)
     here, count = end, 0
     out[0] = here
     while here != start and count < len(out) - 1:
-        d = came[here // nx, here % nx] & 7
-        here -= _DY[d] * nx + _DX[d]
+        here -= offsets[came[here]]
         count += 1
         out[count] = here
     return count + 1
