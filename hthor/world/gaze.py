@@ -12,7 +12,7 @@ from msgspec import Struct
 from hthor import catalog
 from hthor.geometry import to_house
 from hthor.houses.solids import WALL_M
-from hthor.types import HUMAN, Detection, Opening, Pose, Thing, Vec3
+from hthor.types import HUMAN, Detection, Opening, Pose, Thing, Vec2, Vec3
 from hthor.world import sight
 from hthor.world.doors import Doors
 from hthor.world.objects import Item, Objects
@@ -21,7 +21,10 @@ from hthor.world.seats import Seat
 
 BODY_RANGE_M = 3.0
 """People and robots are noticed at least this far away."""
+CLUTTER_RANGE_M = 2.0
+"""The many small things of a house that no task asks for are noticed within this."""
 _DOORWAY_HEIGHT_M = 1.0
+_ROUNDING_M = 1e-6
 _INSET, _PROUD_M = 0.85, 0.02
 """A piece of furniture is looked for at its upper corners, pulled in to this share, and just off its surfaces."""
 
@@ -50,11 +53,19 @@ class Gaze:
         openings: Iterable[Opening],
         seats: Sequence[Seat],
     ) -> None:
-        self._scene, self._objects, self._doors, self._seats = scene, objects, doors, seats
+        self._scene, self._objects, self._doors, self._seats = (
+            scene,
+            objects,
+            doors,
+            seats,
+        )
         self._items: tuple[Item, ...] = tuple(objects)
         furniture = [_furniture(thing) for thing in statics if _counts(thing)]
         doorways = [_doorway(opening) for opening in openings if opening.passable]
-        self._fixed = (*sorted(furniture, key=lambda sight: sight.id), *sorted(doorways, key=lambda sight: sight.id))
+        self._fixed = (
+            *sorted(furniture, key=lambda sight: sight.id),
+            *sorted(doorways, key=lambda sight: sight.id),
+        )
         counts = [2] * len(self._items) + [len(sight.points) for sight in self._fixed] + [2] * len(seats)
         self._first = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
         self._points = np.zeros((int(self._first[-1]), 3))
@@ -65,22 +76,42 @@ class Gaze:
         self._points[begin : begin + len(fixed)] = np.array(fixed).reshape(-1, 3)
         self._bodies = begin + len(fixed)
         self._reach = {seat.name: self._ranges(seat) for seat in seats}
-        self._present = np.zeros(len(self._items), np.bool_)
+        self._tops = np.array([0.4 * item.size[2] for item in self._items])
+        self._clutter = np.array([item.clutter for item in self._items], np.bool_)
         self._near = np.zeros(len(self._items))
         self._version = -1
+        self._apart: dict[tuple[str, float], tuple[int, Vec2, float]] = {}
+        self._reach_version = dict.fromkeys(self._reach, -2)
+        self._stood: list[Pose | None] = [None] * len(seats)
+        for number, seat in enumerate(seats):
+            self._points[self._bodies + 2 * number, 2] = 0.5 * seat.spec.height
+            self._points[self._bodies + 2 * number + 1, 2] = 0.9 * seat.spec.height
+        self._rank = [0] * len(names)
+        for rank, index in enumerate(sorted(range(len(names)), key=names.__getitem__)):
+            self._rank[index] = rank
 
     def detections(self, seat: Seat) -> tuple[Detection, ...]:
         """What the seat's detector reports now, by id."""
         self._refresh()
         for number, other in enumerate(self._seats):
-            row, pose, height = self._bodies + 2 * number, other.pose, other.spec.height
-            self._points[row] = (pose.x, pose.y, 0.5 * height)
-            self._points[row + 1] = (pose.x, pose.y, 0.9 * height)
+            if self._stood[number] is not other.pose:
+                self._stood[number] = pose = other.pose
+                row = self._bodies + 2 * number
+                self._points[row, 0] = self._points[row + 1, 0] = pose.x
+                self._points[row, 1] = self._points[row + 1, 1] = pose.y
+        reach = self._within(seat)
+        seen = self._see(seat, reach, len(reach)).nonzero()[0].tolist()
+        eye = sight.eye(seat.pose, seat.spec)
+        return tuple([self._detection(index, eye) for index in sorted(seen, key=self._rank.__getitem__)])
+
+    def _within(self, seat: Seat) -> Any:
+        """How far each target is noticed [m], 0 for objects that are not in the episode."""
         reach = self._reach[seat.name]
-        reach[: len(self._items)] = np.where(self._present, seat.spec.sight_range, 0.0)
-        seen = self._see(seat, reach, len(reach))
-        found = [self._detection(index, seat) for index in seen.nonzero()[0].tolist()]
-        return tuple(sorted(found, key=lambda detection: detection.id))
+        if self._reach_version[seat.name] != self._version:
+            self._reach_version[seat.name] = self._version
+            small = min(CLUTTER_RANGE_M, seat.spec.sight_range)
+            reach[: len(self._items)] = np.where(self._clutter, small, seat.spec.sight_range) * self._objects.present
+        return reach
 
     def in_view(self, seat: Seat, reach: float) -> tuple[str, ...]:
         """Ids of the objects that the seat has in view within ``reach`` [m] of its eye, or in its hand."""
@@ -88,7 +119,9 @@ class Gaze:
         count = len(self._items)
         if not count:
             return ()
-        np.multiply(self._present, reach, out=self._near)
+        if not self._any_near(seat, reach):
+            return ()
+        np.multiply(self._objects.present, reach, out=self._near)
         seen = self._see(seat, self._near, count)
         if not seen.any() and not seat.holding:
             return ()
@@ -96,10 +129,24 @@ class Gaze:
             item.id for item, visible in zip(self._items, seen, strict=True) if visible or item.held_by == seat.name
         )
 
+    def _any_near(self, seat: Seat, reach: float) -> bool:
+        """Whether any object's centre is within ``reach`` [m] of the eye; worked out anew after a long enough way."""
+        x, y, z = sight.eye(seat.pose, seat.spec)
+        version, there, spare = self._apart.get((seat.name, reach), (-1, (x, y), 0.0))
+        if version != self._version or math.dist(there, (x, y)) >= spare:
+            spare = sight.nearest(x, y, z, self._objects.positions) - reach - _ROUNDING_M
+            self._apart[seat.name, reach] = self._version, (x, y), spare
+            return bool(spare <= 0.0)
+        return False
+
     def _see(self, seat: Seat, reach: Any, count: int) -> Any:
         scene, points = self._scene, self._points[: self._first[count]]
         view = sight.camera(seat.pose, seat.spec)
-        small, first, own = len(self._items), self._first[: count + 1], self._own[:count]
+        small, first, own = (
+            len(self._items),
+            self._first[: count + 1],
+            self._own[:count],
+        )
         solids = scene.half, scene.pos, scene.mat, scene.radius, scene.ids
         return sight.see(view, reach, small, points, first, own, *solids)
 
@@ -107,9 +154,9 @@ class Gaze:
         if self._version == self._objects.changes:
             return
         self._version = self._objects.changes
-        for index, item in enumerate(self._items):
-            self._present[index] = item.present
-            self._points[2 * index : 2 * index + 2] = sight.points(item.position, item.size)
+        end = 2 * len(self._items)
+        self._points[0:end:2] = self._points[1:end:2] = self._objects.positions
+        self._points[1:end:2, 2] += self._tops
 
     def _ranges(self, seat: Seat) -> Any:
         reach = np.full(len(self._own), seat.spec.sight_range)
@@ -117,17 +164,16 @@ class Gaze:
             reach[number] = 0.0 if other is seat else max(BODY_RANGE_M, seat.spec.sight_range)
         return reach
 
-    def _detection(self, index: int, seat: Seat) -> Detection:
+    def _detection(self, index: int, eye: Vec3) -> Detection:
         if index < len(self._items):
-            return _of_item(self._items[index], seat)
+            return _of_item(self._items[index], eye)
         index -= len(self._items)
         if index < len(self._fixed):
-            return self._of_fixed(self._fixed[index], seat)
-        return _of_body(self._seats[index - len(self._fixed)], seat)
+            return self._of_fixed(self._fixed[index], eye)
+        return _of_body(self._seats[index - len(self._fixed)], eye)
 
-    def _of_fixed(self, thing: Sight, seat: Seat) -> Detection:
+    def _of_fixed(self, thing: Sight, eye: Vec3) -> Detection:
         leaf = self._doors.get(thing.id)
-        state = "" if leaf is None else "open" if leaf.open else "closed"
         return Detection(
             id=thing.id,
             kind=thing.kind,
@@ -135,16 +181,12 @@ class Gaze:
             position=thing.position,
             size=thing.size,
             yaw=thing.yaw,
-            distance=_distance(seat, thing.position),
-            state=state,
+            distance=math.dist(eye, thing.position),
+            state="" if leaf is None else "open" if leaf.open else "closed",
         )
 
 
-def _distance(seat: Seat, point: Vec3) -> float:
-    return math.dist(sight.eye(seat.pose, seat.spec), point)
-
-
-def _of_item(item: Item, seat: Seat) -> Detection:
+def _of_item(item: Item, eye: Vec3) -> Detection:
     return Detection(
         id=item.id,
         kind=item.kind,
@@ -152,13 +194,13 @@ def _of_item(item: Item, seat: Seat) -> Detection:
         position=item.position,
         size=item.size,
         yaw=item.yaw,
-        distance=_distance(seat, item.position),
+        distance=math.dist(eye, item.position),
         support=item.support,
         held_by=item.held_by,
     )
 
 
-def _of_body(other: Seat, seat: Seat) -> Detection:
+def _of_body(other: Seat, eye: Vec3) -> Detection:
     pose: Pose = other.pose
     position = (pose.x, pose.y, other.spec.height / 2)
     human = other.name == HUMAN
@@ -169,12 +211,12 @@ def _of_body(other: Seat, seat: Seat) -> Detection:
         position=position,
         size=(2 * other.spec.radius, 2 * other.spec.radius, other.spec.height),
         yaw=pose.yaw,
-        distance=_distance(seat, position),
+        distance=math.dist(eye, position),
     )
 
 
 def _counts(thing: Thing) -> bool:
-    """Small things that lie about on others are scenery, not furniture."""
+    """Small things that lie about are scenery, not furniture."""
     return not thing.parent or catalog.kind(thing.kind).receptacle
 
 

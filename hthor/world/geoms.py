@@ -27,8 +27,9 @@ STATIC: Bits = {"contype": 1, "conaffinity": 0}
 MOVABLE: Bits = {"contype": 2, "conaffinity": 3}
 GHOST: Bits = {"contype": 0, "conaffinity": 0}
 """Collision bits: movable things meet each other and what is static; ghosts (bodies, floors' looks) meet nothing."""
-LEAF: Bits = {"contype": 4, "conaffinity": 0}
-"""A door's leaf meets nothing either, but unlike a ghost it counts as solid: it hides what is behind it."""
+LEAF: Bits = {"contype": 5, "conaffinity": 0}
+"""A door's leaf. Closed it meets what static things meet; `SWUNG`, on its way or open, nothing, but it still hides."""
+SHUT, SWUNG = 1, 4
 
 
 def quaternion(yaw: float) -> Quaternion:
@@ -64,6 +65,11 @@ def volume(part: Part) -> float:
     return {"box": 8.0, "cylinder": 2.0 * math.pi, "sphere": 4.0 / 3.0 * math.pi}[part.shape] * x * y * z
 
 
+def orientation(part: Part, yaw: float) -> Quaternion:
+    """How a part of a thing turned by ``yaw`` [rad] is turned; MuJoCo's cylinders stand upright by themselves."""
+    return multiply(quaternion(yaw), _AXES[part.axis]) if part.shape == "cylinder" else quaternion(yaw)
+
+
 def add_part(body: Any, name: str, part: Part, centre: Vec3 = (0.0, 0.0, 0.0), yaw: float = 0.0, **more: Any) -> Any:
     """Add a part of a thing that stands at ``centre`` [m] turned by ``yaw`` [rad], in the frame of ``body``."""
     return body.add(
@@ -72,7 +78,7 @@ def add_part(body: Any, name: str, part: Part, centre: Vec3 = (0.0, 0.0, 0.0), y
         type=part.shape,
         size=size(part),
         pos=to_house(part.centre, centre, yaw),
-        quat=multiply(quaternion(yaw), _AXES[part.axis]) if part.shape == "cylinder" else quaternion(yaw),
+        quat=orientation(part, yaw),
         rgba=part.rgba,
         **more,
     )

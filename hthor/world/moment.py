@@ -6,6 +6,11 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from hthor.types import BodySpec, Pose
+from hthor.world import geoms
+from hthor.world.engine import mujoco
+
+FAR_AWAY = (0.0, 0.0, -100.0)
+"""Where a viewer's own body is while a picture is taken through its eyes [m]."""
 
 
 class Moment(NamedTuple):
@@ -13,3 +18,11 @@ class Moment(NamedTuple):
 
     qpos: Any
     seats: Mapping[str, tuple[Pose, BodySpec]]
+
+    def restore(self, model: Any, data: Any, without: str = "") -> None:
+        """Put everything in ``data``, a copy that nobody steps, where it was; the body ``without`` far away."""
+        data.qpos[:] = self.qpos
+        for index, (name, (pose, _)) in enumerate(self.seats.items()):
+            data.mocap_pos[index] = FAR_AWAY if name == without else (pose.x, pose.y, 0.0)
+            data.mocap_quat[index] = geoms.quaternion(pose.yaw)
+        mujoco.mj_kinematics(model, data)

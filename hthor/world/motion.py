@@ -49,6 +49,8 @@ def refusal(seat: Seat, motion: Move | Rotate | Wait) -> str:
 
 def _finite(**numbers: object) -> str:
     for name, value in numbers.items():
+        if type(value) is float and math.isfinite(value):
+            continue
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
             return f"{name} must be a finite number, got {value!r:.40}"
     return ""

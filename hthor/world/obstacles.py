@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from hthor import geometry
 from hthor.houses import solids
-from hthor.types import HouseSpec, Vec2
+from hthor.houses.freespace import STEP_M
+from hthor.types import HouseSpec, Opening, Vec2
+from hthor.world import passages
 
 WALL = "wall"
+_JAMB_M = 0.05
+"""A wall beside a shut door sticks out this much farther."""
 
 
 class Obstacles:
@@ -14,14 +20,22 @@ class Obstacles:
 
     def __init__(self, house: HouseSpec) -> None:
         self._slabs = [(WALL, slab) for slab in solids.walls(house)]
-        self._slabs += [(thing.id, slab) for thing, slab in solids.furniture(house)]
+        self._slabs += [(thing.id, slab) for thing, slab in solids.furniture(house) if slab.high > STEP_M]
 
-    def nearest(self, place: Vec2, height: float) -> str:
-        """Id of the thing nearest to ``place`` [m] that stands in the way of a body ``height`` [m] tall, or "wall"."""
+    def nearest(self, place: Vec2, height: float, shut: Iterable[Opening] = ()) -> str:
+        """Id of the thing nearest to ``place`` [m] that stands in the way of a body ``height`` [m] tall, or "wall".
+
+        Args:
+            shut: the doorways that are shut now; they count before what is not nearer.
+        """
         gaps = (
             (geometry.distance_to_rectangle(place, slab.centre, slab.size, slab.yaw), index)
             for index, (_, slab) in enumerate(self._slabs)
             if slab.low < height
         )
-        _, index = min(gaps, default=(0.0, -1))
+        gap, index = min(gaps, default=(0.0, -1))
+        for opening in shut:
+            x, y, half, deep, yaw = passages.rectangle(opening)
+            if geometry.distance_to_rectangle(place, (x, y), (2 * half, 2 * deep), yaw) <= gap + _JAMB_M:
+                return opening.id
         return self._slabs[index][0] if index >= 0 else WALL

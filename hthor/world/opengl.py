@@ -1,4 +1,8 @@
-"""Finding an OpenGL back end that works, with or without a display; knows nothing of scenes."""
+"""Finding an OpenGL back end that works, with or without a display; knows nothing of scenes.
+
+Where Mesa draws without a graphics card it starts a thread for every core. Whoever runs one process a core does well to
+set ``LP_NUM_THREADS=0`` before: the same work, without threads that get in each other's way.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +21,7 @@ _PLATFORM = "PYOPENGL_PLATFORM"
 _BACKENDS = ("egl", "osmesa", "glfw")
 _CURE = (
     "On Debian or Ubuntu run 'apt-get install libegl1 libgl1-mesa-dri' (or 'libosmesa6'), or set MUJOCO_GL to the "
-    "back end that you have: egl, osmesa or glfw. Only pictures need it."
+    "back end that you have: egl, osmesa or glfw. Only pictures in the profile nice need it; fast draws without."
 )
 
 

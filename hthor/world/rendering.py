@@ -1,43 +1,65 @@
-"""Pictures through OpenGL, drawn only when asked for: colour, depth, segmentation, and the house from above.
+"""Pictures in the ``nice`` profile, through OpenGL: colour, depth, segmentation, and the house from above.
 
-It draws copied moments on a copy of the model, so a picture never touches the world; knows nothing of seats' doings.
+It draws copied moments on a stage of its own (see `hthor.world.stage`), so a picture never touches the world; knows
+nothing of seats' doings.
 """
 
 from __future__ import annotations
 
 import atexit
-import copy
 import math
 import weakref
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor.types import BodySpec, Pose
-from hthor.world import geoms, opengl, sight
+from hthor.types import BodySpec, HouseSpec, Pose
+from hthor.world import bodies, geoms, opengl
+from hthor.world.contents import Contents
 from hthor.world.engine import mujoco
 from hthor.world.moment import Moment
 from hthor.world.scene import Scene
+from hthor.world.stage import camera
+from hthor.world.stage.dressing import Dressing
+from hthor.world.stage.fabric import Fabric, Pack
+from hthor.world.stage.items import ABOVE, ALWAYS, INSIDE
+from hthor.world.stage.lamps import Lamps
+from hthor.world.stage.puppets import Puppets
 
-_NEAR_M, _FAR_M = 0.02, 80.0
-_ABOVE_M = 20.0
-_FAR_AWAY = (0.0, 0.0, -100.0)
+_FINER = 2
+"""Colour is drawn finer and averaged: the engine's own smoothing leaves dotted edges where shadows are."""
+_FAR_AWAY = (0.0, 0.0, -200.0)
 _MODES = ("rgb", "depth", "segmentation")
 
 
 class Studio:
     """Draws moments of one world.
 
+    Args:
+        house: the floor plan. contents: its things, split. seats: body of each seat, in the order of the seats.
+        model: the compiled physics. scene: who owns its geoms. pack: furniture to draw instead of our own.
+
     Raises:
         RenderingUnavailable: when no OpenGL back end works.
     """
 
-    def __init__(self, model: Any, scene: Scene) -> None:
-        self._model = copy.copy(model)
-        self._model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+    def __init__(
+        self,
+        house: HouseSpec,
+        contents: Contents,
+        seats: Mapping[str, BodySpec],
+        model: Any,
+        scene: Scene,
+        pack: Pack | None = None,
+    ) -> None:
+        self._puppets, self._lamps = Puppets(model, scene), Lamps(house)
+        dressed = Dressing(house, contents, self._puppets, Fabric(pack)).build(seats, self._lamps)
+        self._model, self._followers, self._seats = dressed.model, dressed.followers, dressed.seats
+        number = {name: index for index, name in enumerate(scene.names)}
+        self._numbers = np.array([number.get(owner, -1) for owner in dressed.owner], np.int32)
         self._data = mujoco.MjData(self._model)
-        self._numbers = scene.numbers
         self._gl = opengl.context(64, 64)
         with opengl.named(self._gl):
             self._context = mujoco.MjrContext(self._model, int(mujoco.mjtFontScale.mjFONTSCALE_100))
@@ -56,59 +78,72 @@ class Studio:
             raise ValueError(f"mode must be one of {', '.join(_MODES)}, got '{mode}'")
         pose, spec = moment.seats[seat]
         self._pose(moment, without=seat)
-        self._compose(_lamp(pose, spec), ceilings=True)
-        for camera in self._scene.camera:
-            _aim(camera, pose, spec)
+        self._compose(INSIDE)
+        for eye in self._scene.camera:
+            camera.look(eye, pose, spec)
+        self._lamps.light(self._scene, pose)
         return self._shoot(mode, size)
 
     def top_view(self, moment: Moment, bounds: tuple[float, float, float, float], pixels_per_metre: float) -> Any:
         """The area x0, y0, x1, y1 [m] from straight above without ceilings, (H, W, 3) uint8."""
         x0, y0, x1, y1 = bounds
         self._pose(moment)
-        self._compose(_lamp(Pose(x=x0, y=y0, yaw=math.pi / 2, pitch=-math.pi / 2)), ceilings=False)
-        for camera in self._scene.camera:
-            camera.pos, camera.forward, camera.up = ((x0 + x1) / 2, (y0 + y1) / 2, _ABOVE_M), (0, 0, -1), (0, 1, 0)
-            camera.orthographic = 1
-            camera.frustum_center, camera.frustum_width = 0.0, (x1 - x0) / 2
-            camera.frustum_bottom, camera.frustum_top = -(y1 - y0) / 2, (y1 - y0) / 2
-            camera.frustum_near, camera.frustum_far = _NEAR_M, _FAR_M
+        self._compose(ABOVE)
+        for eye in self._scene.camera:
+            camera.hover(eye, bounds)
+        self._lamps.daylight(self._scene, ((x0 + x1) / 2, (y0 + y1) / 2), camera.ABOVE_M)
         return self._shoot("rgb", (round((x1 - x0) * pixels_per_metre), round((y1 - y0) * pixels_per_metre)))
 
     def _pose(self, moment: Moment, without: str = "") -> None:
         """Everything where it was; the viewer's own body is out of the picture."""
-        self._data.qpos[:] = moment.qpos
-        for index, (name, (pose, _)) in enumerate(moment.seats.items()):
-            self._data.mocap_pos[index] = _FAR_AWAY if name == without else (pose.x, pose.y, 0.0)
-            self._data.mocap_quat[index] = geoms.quaternion(pose.yaw)
+        position, turn = self._puppets.at(moment.qpos)
+        count = len(self._followers)
+        self._data.mocap_pos[:count], self._data.mocap_quat[:count] = position[self._followers], turn[self._followers]
+        for seat, (pose, spec) in moment.seats.items():
+            body, head = self._seats[seat]
+            self._stand(body, head, pose, spec)
+            if seat == without:
+                self._data.mocap_pos[[body, head]] = _FAR_AWAY
         mujoco.mj_kinematics(self._model, self._data)
-        mujoco.mj_camlight(self._model, self._data)
 
-    def _compose(self, lamp: Any, ceilings: bool) -> None:
-        shown = {geoms.FURNITURE, geoms.WALLS, geoms.OBJECTS, geoms.BODIES} | ({geoms.CEILINGS} if ceilings else set())
-        self._option.geomgroup[:] = [group in shown for group in range(6)]
+    def _stand(self, body: int, head: int, pose: Pose, spec: BodySpec) -> None:
+        turn, shift = bodies.head(spec, pose.pitch)
+        about, cos, sin = geoms.quaternion(pose.yaw), math.cos(pose.yaw), math.sin(pose.yaw)
+        self._data.mocap_pos[body], self._data.mocap_quat[body] = (pose.x, pose.y, 0.0), about
+        x, y, z = shift
+        self._data.mocap_pos[head] = (pose.x + cos * x - sin * y, pose.y + sin * x + cos * y, z)
+        tilt = np.empty(4)
+        mujoco.mju_mat2Quat(tilt, np.asarray(turn, float).ravel())
+        mujoco.mju_mulQuat(self._data.mocap_quat[head], np.array(about), tilt)
+
+    def _compose(self, extra: int) -> None:
+        self._option.geomgroup[:] = [group in (ALWAYS, extra) for group in range(6)]
         everything = int(mujoco.mjtCatBit.mjCAT_ALL)
-        mujoco.mjv_updateScene(self._model, self._data, self._option, None, lamp, everything, self._scene)
+        blank = mujoco.MjvCamera()
+        mujoco.mjv_updateScene(self._model, self._data, self._option, None, blank, everything, self._scene)
 
     def _shoot(self, mode: str, size: tuple[int, int]) -> Any:
-        width, height = size
+        fine = _FINER if mode == "rgb" else 1
+        width, height = size[0] * fine, size[1] * fine
         self._gl.make_current()
-        if (self._context.offWidth, self._context.offHeight) != size:
+        if (self._context.offWidth, self._context.offHeight) != (width, height):
             mujoco.mjr_resizeOffscreen(width, height, self._context)
         for flag in (mujoco.mjtRndFlag.mjRND_SEGMENT, mujoco.mjtRndFlag.mjRND_IDCOLOR):
             self._scene.flags[int(flag)] = mode == "segmentation"
+        self._scene.flags[int(mujoco.mjtRndFlag.mjRND_SHADOW)] = mode == "rgb"
         area = mujoco.MjrRect(0, 0, width, height)
         mujoco.mjr_render(area, self._scene, self._context)
         if mode == "depth":
             return self._depth(area)
         pixels = np.empty((height, width, 3), np.uint8)
         mujoco.mjr_readPixels(pixels, None, area, self._context)
-        pixels = np.ascontiguousarray(pixels[::-1])
-        return self._owners(pixels) if mode == "segmentation" else pixels
+        return self._owners(pixels[::-1]) if mode == "segmentation" else _coarser(pixels[::-1], fine)
 
     def _depth(self, area: Any) -> NDArray[np.float32]:
         buffer = np.empty((area.height, area.width), np.float32)
         mujoco.mjr_readPixels(None, buffer, area, self._context)
-        depth = _NEAR_M / (1.0 - buffer[::-1].astype(np.float64) * (1.0 - _NEAR_M / _FAR_M))
+        near, far = camera.NEAR_M, camera.FAR_M
+        depth = near / (1.0 - buffer[::-1].astype(np.float64) * (1.0 - near / far))
         return np.asarray(depth, np.float32)
 
     def _owners(self, pixels: NDArray[np.uint8]) -> NDArray[np.int32]:
@@ -122,25 +157,14 @@ class Studio:
         return numbers
 
 
+def _coarser(pixels: NDArray[np.uint8], times: int) -> NDArray[np.uint8]:
+    """Each block of pixels as one of their mean colour."""
+    height, width, channels = pixels.shape
+    blocks = pixels.reshape(height // times, times, width // times, times, channels).sum(axis=(1, 3), dtype=np.uint16)
+    return np.asarray((blocks + times * times // 2) // (times * times), np.uint8)
+
+
 def _free(gl: Any, context: Any) -> None:
     gl.make_current()
     context.free()
     gl.free()
-
-
-def _lamp(pose: Pose, spec: BodySpec | None = None) -> Any:
-    """The engine's own camera at a pose: it carries the headlight."""
-    lamp = mujoco.MjvCamera()
-    lamp.lookat[:] = (pose.x, pose.y, _ABOVE_M if spec is None else spec.eye)
-    lamp.distance, lamp.azimuth, lamp.elevation = 0.01, math.degrees(pose.yaw), math.degrees(pose.pitch)
-    return lamp
-
-
-def _aim(camera: Any, pose: Pose, spec: BodySpec) -> None:
-    view = sight.camera(pose, spec)
-    camera.pos, camera.forward, camera.up = view[:3], view[3:6], view[9:12]
-    camera.orthographic, camera.frustum_center = 0, 0.0
-    camera.frustum_near, camera.frustum_far = _NEAR_M, _FAR_M
-    top = _NEAR_M * math.tan(spec.fov[1] / 2)
-    camera.frustum_bottom, camera.frustum_top = -top, top
-    camera.frustum_width = _NEAR_M * math.tan(spec.fov[0] / 2)

@@ -20,12 +20,11 @@ class Scanner:
         half = spec.fov[0] / 2
         self._bearings = np.linspace(-half, half, spec.scan_beams)
         self._bearings.setflags(write=False)
-        self._limit, self._space = spec.scan_range, space
+        self._limit = spec.scan_range
         self._tops = _tops(house, space, spec.height)
 
-    def scan(self, pose: Pose) -> Scan:
-        """What the sensor measures from ``pose``, exact on the obstacle raster of 5 cm cells."""
-        space = self._space
+    def scan(self, pose: Pose, space: FreeSpace) -> Scan:
+        """What the sensor measures from ``pose`` now, exact on the obstacle raster of 5 cm cells."""
         ranges, tops = _march(
             space.raw, self._tops, *space.origin, space.cell, pose.x, pose.y, pose.yaw, self._bearings, self._limit
         )

@@ -57,9 +57,23 @@ class Scene:
         ends = np.array(eye), np.array(point)
         return bool(blocked(*ends, self.half, self.pos, self.mat, self.radius, self._without(ignore), 0, 0))
 
+    def first(self, start: Vec3, end: Vec3, ignore: str = "") -> str:
+        """Owner of a solid other than ``ignore`` that stands between two points [m], empty for none."""
+        ends, ids = (np.array(start), np.array(end)), self._without(ignore)
+        solids = self.half, self.pos, self.mat, self.radius
+        met = (self.owner[geom] for geom in ids if blocked(*ends, *solids, np.array([geom]), 0, 0))
+        return next(met, "") if blocked(*ends, *solids, ids, 0, 0) else ""
+
+    def boxes_but(self, *without: str) -> tuple[Any, Any]:
+        """As `boxes`, without those of several owners."""
+        keep = self.ids[~np.isin(self.numbers[self.ids], [self._number[owner] for owner in without])]
+        return self._upright(keep)
+
     def boxes(self, without: str) -> tuple[Any, Any]:
         """Centres (M, 3) and half extents (M, 3) [m] of upright boxes around all solids but those of ``without``."""
-        keep = self._without(without)
+        return self._upright(self._without(without))
+
+    def _upright(self, keep: Any) -> tuple[Any, Any]:
         rotation = np.abs(self.mat[keep].reshape(-1, 3, 3))
         return self.pos[keep], np.einsum("nij,nj->ni", rotation, self.half[keep])
 

@@ -8,21 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hthor.errors import StaleObservation
-from hthor.types import Detection, Scan
+from hthor.types import Camera, Detection, Scan, View
 
 if TYPE_CHECKING:
-    from hthor.world.world import World
+    from hthor.world.by_sight import SeenWorld
 
 
 class Senses:
     """A seat's detector, range scanner and camera at the tick at which this was made."""
 
-    __slots__ = ("_detections", "_moment", "_scan", "_seat", "_world")
+    __slots__ = ("_detections", "_moment", "_scan", "_seat", "_view", "_world")
 
-    def __init__(self, world: World, seat: str) -> None:
+    def __init__(self, world: SeenWorld, seat: str) -> None:
         self._world, self._seat, self._moment = world, seat, world.moment
         self._detections: tuple[Detection, ...] | None = None
         self._scan: Scan | None = None
+        self._view: View | None = None
 
     def detections(self) -> tuple[Detection, ...]:
         """Objects, furniture, doorways, people and robots in view, by id."""
@@ -53,9 +54,17 @@ class Senses:
         image: NDArray[np.int32] = self._picture("segmentation")
         return image
 
-    def _picture(self, mode: str) -> Any:
+    def camera(self) -> Camera:
+        """Where the camera is and how it projects."""
         self._check()
-        return self._world.picture(self._seat, mode)
+        return self._world.camera(self._seat)
+
+    def _picture(self, mode: str) -> Any:
+        """From one glance, kept, so that the three pictures cost little more than one."""
+        self._check()
+        if self._view is None:
+            self._view = self._world.look(self._seat)
+        return getattr(self._view, mode)
 
     def _check(self) -> None:
         if self._world.moment != self._moment:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 
 from hthor import rules
-from hthor.types import Part, Rgba, RobotSpec
+from hthor.looks.mesh import Piece
+from hthor.types import Part, Rgba, RobotSpec, Vec3
+from hthor.world import skin
+from hthor.world.solid import HEAD, ball, box, post, rod, wheel
 
 SPEC = RobotSpec(
     name="scout",
@@ -23,26 +26,56 @@ SPEC = RobotSpec(
     capabilities=frozenset({"navigate"}),
 )
 
+NECK: Vec3 = (-0.02, 0.0, 0.88)
+
 _WHITE: Rgba = (0.92, 0.92, 0.93, 1.0)
 _DARK: Rgba = (0.15, 0.16, 0.18, 1.0)
+_RUBBER: Rgba = (0.08, 0.08, 0.09, 1.0)
+_STEEL: Rgba = (0.62, 0.64, 0.67, 1.0)
 _MINT: Rgba = (0.30, 0.72, 0.62, 1.0)
 
 
 def look() -> tuple[Part, ...]:
-    """Drum, wheels, deck, mast and camera head."""
+    """Drum on two wheels, two decks on posts with the computer between them, mast and camera head."""
     return (
-        Part(shape="cylinder", centre=(0.0, 0.0, 0.10), half=(0.17, 0.17, 0.06), rgba=_DARK),
-        *(
-            Part(shape="box", centre=(0.0, side * 0.165, 0.05), half=(0.05, 0.015, 0.05), rgba=_DARK)
-            for side in (-1.0, 1.0)
-        ),
-        Part(shape="cylinder", centre=(0.0, 0.0, 0.17), half=(0.18, 0.18, 0.012), rgba=_MINT),
-        Part(shape="cylinder", centre=(0.0, 0.0, 0.28), half=(0.15, 0.15, 0.10), rgba=_WHITE),
-        Part(shape="cylinder", centre=(-0.04, 0.0, 0.60), half=(0.025, 0.025, 0.24), rgba=_WHITE),
-        Part(shape="box", centre=(0.0, 0.0, 0.895), half=(0.05, 0.09, 0.055), rgba=_WHITE),
-        Part(shape="box", centre=(0.051, 0.0, 0.90), half=(0.004, 0.07, 0.025), rgba=_DARK),
-        *(
-            Part(shape="sphere", centre=(0.054, side * 0.045, 0.90), half=(0.013, 0.013, 0.013), rgba=_MINT)
-            for side in (-1.0, 1.0)
-        ),
+        *(wheel((0.0, side * 0.15, 0.052), 0.052, 0.018, _RUBBER) for side in (-1.0, 1.0)),
+        post((0.0, 0.0, 0.075), 0.165, 0.045, _DARK),
+        post((0.0, 0.0, 0.127), 0.172, 0.007, _MINT),
+        *(post((x, y, 0.195), 0.008, 0.062, _STEEL) for x in (-0.09, 0.09) for y in (-0.09, 0.09)),
+        box((-0.01, 0.0, 0.18), (0.075, 0.065, 0.035), _WHITE),
+        post((0.0, 0.0, 0.262), 0.155, 0.006, _MINT),
+        box((-0.04, 0.0, 0.56), (0.018, 0.022, 0.295), _STEEL),
+        box((-0.03, 0.0, 0.865), (0.03, 0.03, 0.025), _DARK),
+        box((0.0, 0.0, 0.912), (0.045, 0.085, 0.035), _WHITE, HEAD),
+        box((0.042, 0.0, 0.905), (0.006, 0.075, 0.022), _DARK, HEAD),
+        *(rod((0.05, side * 0.045, 0.905), 0.014, 0.006, _STEEL, HEAD) for side in (-1.0, 1.0)),
+        ball((0.048, 0.0, 0.905), 0.008, _MINT, HEAD),
+    )
+
+
+def pieces() -> tuple[Piece, ...]:
+    """The same in meshes."""
+    white, dark, mint = skin.gloss(_WHITE), skin.matte(_DARK), skin.gloss(_MINT)
+    steel, rubber = skin.metal(_STEEL), skin.matte(_RUBBER)
+    drum = [(0.0, 0.028), (0.15, 0.028), (0.168, 0.045), (0.172, 0.075), (0.168, 0.105), (0.155, 0.12), (0.0, 0.12)]
+    return (
+        *(skin.tire((0.0, side * 0.15, 0.052), 0.052, 0.02, rubber) for side in (-1.0, 1.0)),
+        *(skin.rod((0.0, side * 0.168, 0.052), 0.024, 0.008, "y", steel) for side in (-1.0, 1.0)),
+        skin.turned(drum, dark),
+        skin.rod((0.0, 0.0, 0.127), 0.174, 0.012, "z", mint),
+        *(skin.rod((x, y, 0.195), 0.007, 0.13, "z", steel) for x in (-0.09, 0.09) for y in (-0.09, 0.09)),
+        skin.box((-0.01, 0.0, 0.176), (0.078, 0.068, 0.042), white, 0.014),
+        *(skin.box((0.069, y, 0.176), (0.001, 0.003, 0.02), dark, 0.0005) for y in (-0.03, -0.015, 0.0, 0.015, 0.03)),
+        skin.rod((0.0, 0.0, 0.262), 0.157, 0.012, "z", mint),
+        skin.rod((0.075, 0.0, 0.288), 0.036, 0.04, "z", dark),
+        skin.box((-0.04, 0.0, 0.56), (0.018, 0.022, 0.295), steel, 0.004),
+        *(skin.box((-0.04, side * 0.0225, 0.56), (0.004, 0.001, 0.28), dark, 0.0005) for side in (-1.0, 1.0)),
+        skin.tube(((-0.064, 0.0, 0.27), (-0.066, 0.01, 0.55), (-0.06, 0.0, 0.86)), 0.005, dark),
+        skin.rod((-0.03, 0.0, 0.862), 0.034, 0.03, "z", dark),
+        skin.rod((-0.02, 0.0, 0.885), 0.018, 0.09, "y", steel, HEAD),
+        skin.box((0.0, 0.0, 0.914), (0.044, 0.088, 0.034), white, 0.022, HEAD),
+        skin.box((0.040, 0.0, 0.908), (0.006, 0.076, 0.022), skin.gloss(_DARK), 0.005, HEAD),
+        *(skin.rod((0.048, side * 0.045, 0.908), 0.015, 0.010, "x", steel, HEAD) for side in (-1.0, 1.0)),
+        *(skin.ball((0.050, side * 0.045, 0.908), 0.010, skin.gloss(_RUBBER), HEAD) for side in (-1.0, 1.0)),
+        skin.ball((0.046, 0.0, 0.908), 0.007, skin.glow(_MINT), HEAD),
     )

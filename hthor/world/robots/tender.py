@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from hthor import rules
-from hthor.types import Part, Rgba, RobotSpec
+from typing import Any
 
+from hthor import rules
+from hthor.looks import sweeps
+from hthor.looks.mesh import Piece
+from hthor.types import Part, Rgba, RobotSpec, Vec3
+from hthor.world import skin
+from hthor.world.solid import HEAD, ball, box, post, rod, wheel
+
+# Published of Hello Robot's Stretch: 0.33 by 0.34 m on the floor, 1.41 m tall; the arm goes out by 0.52 m and up by
+# 1.10 m, and holds 2 kg. Speed, turn rate, field of view and handling time are our choice.
 SPEC = RobotSpec(
     name="tender",
     title="tender",
     radius=0.20,
-    height=1.42,
+    height=1.41,
     eye=1.35,
     fov=(1.2, 1.2),
     speed=0.8,
@@ -19,35 +27,79 @@ SPEC = RobotSpec(
     scan_beams=61,
     pitch_limit=rules.PITCH_LIMIT_RAD,
     capabilities=frozenset({"navigate", "pick", "open"}),
-    reach=0.9,
+    reach=0.9,  # half the base, the arm's 0.52 m, and 0.2 m of wrist and gripper
     reach_low=0.0,
-    reach_high=1.6,
+    reach_high=1.4,  # the lift's 1.10 m, the wrist above it, and the gripper tilted up
     strength=2.0,
     handling=2.0,
 )
 
+NECK: Vec3 = (-0.03, 0.0, 1.325)
+HAND: Vec3 = (0.34, 0.0, 0.835)
+
 _WHITE: Rgba = (0.90, 0.90, 0.91, 1.0)
+_GREY: Rgba = (0.55, 0.57, 0.60, 1.0)
 _DARK: Rgba = (0.17, 0.18, 0.20, 1.0)
+_RUBBER: Rgba = (0.08, 0.08, 0.09, 1.0)
 _AMBER: Rgba = (0.93, 0.62, 0.24, 1.0)
 
 
 def look() -> tuple[Part, ...]:
-    """Base, column, lift, arm, gripper and head."""
+    """Base, column, lift, telescoping arm, gripper and head."""
     return (
-        Part(shape="box", centre=(0.0, 0.0, 0.09), half=(0.16, 0.12, 0.06), rgba=_DARK),
-        Part(shape="cylinder", centre=(0.0, 0.0, 0.16), half=(0.14, 0.14, 0.015), rgba=_AMBER),
-        *(
-            Part(shape="box", centre=(0.04, side * 0.15, 0.05), half=(0.05, 0.02, 0.05), rgba=_DARK)
-            for side in (-1.0, 1.0)
-        ),
-        Part(shape="cylinder", centre=(-0.06, 0.0, 0.74), half=(0.035, 0.035, 0.58), rgba=_WHITE),
-        Part(shape="box", centre=(-0.04, 0.0, 0.88), half=(0.07, 0.06, 0.06), rgba=_DARK),
-        Part(shape="box", centre=(0.12, 0.0, 0.88), half=(0.14, 0.025, 0.025), rgba=_WHITE),
-        *(
-            Part(shape="box", centre=(0.30, side * 0.05, 0.88), half=(0.05, 0.008, 0.02), rgba=_AMBER)
-            for side in (-1.0, 1.0)
-        ),
-        Part(shape="box", centre=(0.0, 0.0, 1.35), half=(0.06, 0.09, 0.05), rgba=_WHITE),
-        Part(shape="box", centre=(0.061, 0.0, 1.35), half=(0.004, 0.07, 0.025), rgba=_DARK),
-        Part(shape="cylinder", centre=(0.0, 0.0, 1.41), half=(0.04, 0.04, 0.01), rgba=_AMBER),
+        *(wheel((0.03, side * 0.145, 0.05), 0.05, 0.015, _RUBBER) for side in (-1.0, 1.0)),
+        box((-0.02, 0.0, 0.085), (0.14, 0.125, 0.05), _DARK),
+        box((-0.02, 0.0, 0.14), (0.13, 0.115, 0.008), _WHITE),
+        post((-0.08, 0.0, 0.72), 0.034, 0.58, _WHITE),
+        box((-0.06, 0.0, 0.88), (0.065, 0.06, 0.075), _DARK),
+        rod((0.06, 0.0, 0.88), 0.032, 0.07, _WHITE),
+        rod((0.16, 0.0, 0.88), 0.025, 0.05, _GREY),
+        rod((0.22, 0.0, 0.88), 0.018, 0.03, _WHITE),
+        ball((0.255, 0.0, 0.88), 0.03, _DARK),
+        *(box((0.30, side * 0.052, 0.88), (0.05, 0.006, 0.022), _AMBER) for side in (-1.0, 1.0)),
+        *(wheel((0.355, side * 0.05, 0.88), 0.02, 0.01, _DARK) for side in (-1.0, 1.0)),
+        post((-0.06, 0.0, 1.312), 0.028, 0.015, _DARK),
+        box((-0.015, 0.0, 1.355), (0.035, 0.075, 0.028), _WHITE, HEAD),
+        box((0.021, 0.0, 1.355), (0.004, 0.066, 0.02), _DARK, HEAD),
+        post((-0.015, 0.0, 1.396), 0.026, 0.013, _AMBER, HEAD),
     )
+
+
+def pieces() -> tuple[Piece, ...]:
+    """The same in meshes."""
+    white, dark, grey = skin.gloss(_WHITE), skin.gloss(_DARK), skin.metal(_GREY)
+    rubber, amber = skin.matte(_RUBBER), skin.gloss(_AMBER)
+    arm = (
+        (0.045, 0.034, 0.16, white),
+        (0.13, 0.029, 0.13, grey),
+        (0.19, 0.024, 0.11, white),
+        (0.225, 0.019, 0.06, grey),
+    )
+    return (
+        *(skin.tire((0.03, side * 0.148, 0.05), 0.05, 0.017, rubber) for side in (-1.0, 1.0)),
+        *(skin.rod((0.03, side * 0.162, 0.05), 0.022, 0.008, "y", grey) for side in (-1.0, 1.0)),
+        skin.ball((-0.13, 0.0, 0.024), 0.024, rubber),
+        skin.box((-0.02, 0.0, 0.085), (0.142, 0.127, 0.048), dark, 0.03),
+        skin.box((-0.02, 0.0, 0.138), (0.132, 0.117, 0.010), white, 0.009),
+        skin.box((0.06, 0.0, 0.150), (0.045, 0.07, 0.008), amber, 0.006),
+        skin.box((-0.10, 0.0, 0.20), (0.055, 0.07, 0.06), dark, 0.02),
+        skin.rod((-0.08, 0.0, 0.72), 0.034, 1.16, "z", white),
+        skin.box((-0.045, 0.0, 0.72), (0.002, 0.008, 0.55), dark, 0.0015),
+        skin.box((-0.065, 0.0, 0.88), (0.068, 0.062, 0.078), dark, 0.022),
+        skin.box((0.004, 0.0, 0.93), (0.002, 0.04, 0.008), skin.glow(_AMBER), 0.0015),
+        *(skin.rod((x, 0.0, 0.88), radius, length, "x", material) for x, radius, length, material in arm),
+        skin.ball((0.258, 0.0, 0.88), 0.03, dark),
+        *(skin.tube(_finger(side), 0.0075, amber) for side in (-1.0, 1.0)),
+        *(skin.rod((0.352, side * 0.05, 0.88), 0.021, 0.016, "y", rubber) for side in (-1.0, 1.0)),
+        skin.rod((-0.06, 0.0, 1.305), 0.030, 0.05, "z", dark),
+        skin.rod((-0.03, 0.0, 1.33), 0.017, 0.10, "y", grey, HEAD),
+        skin.box((-0.012, 0.0, 1.358), (0.034, 0.078, 0.028), white, 0.018, HEAD),
+        skin.box((0.018, 0.0, 1.357), (0.006, 0.068, 0.020), dark, 0.005, HEAD),
+        *(skin.ball((0.022, y, 1.357), 0.009, skin.gloss(_RUBBER), HEAD) for y in (-0.045, 0.0, 0.045)),
+        skin.rod((-0.015, 0.0, 1.396), 0.027, 0.028, "z", skin.glow(_AMBER), HEAD),
+    )
+
+
+def _finger(side: float) -> Any:
+    """A bow that ends in a suction cup."""
+    return sweeps.bend((0.262, side * 0.012, 0.88), (0.29, side * 0.066, 0.88), (0.352, side * 0.062, 0.88))

@@ -1,0 +1,234 @@
+"""A hand on one body: calls that take as long as they take, and what the body sees and says; knows nothing of minds.
+
+Each call here starts motions and lets ticks pass until the body is free again; the other bodies stand meanwhile, unless
+something else moves them. An umpire, which moves all bodies at once, uses `hthor.world.by_tick.TickedWorld` instead.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from hthor import rules
+from hthor.errors import HthorError
+from hthor.types import (
+    BodySpec,
+    Close,
+    Detection,
+    Drop,
+    Message,
+    Motion,
+    Move,
+    Open,
+    Outcome,
+    Pick,
+    Place,
+    Pose,
+    Receipt,
+    Reply,
+    Rotate,
+    Scan,
+    Send,
+    Vec2,
+    Vec3,
+    Wait,
+)
+from hthor.world import journey
+from hthor.world.pictures import IMAGE_SIZE
+
+if TYPE_CHECKING:
+    from hthor.types import View
+    from hthor.world.world import World
+
+_EPS = 1e-9
+
+
+class Actor:
+    """One seat of a `World`: the person, or a robot.
+
+    Calls that move return the `Outcome`: ``ok``, or the ``reason`` why not. None of them raises because of what the
+    house or a law forbids; wrong arguments, such as a name that does not exist, do.
+    """
+
+    def __init__(self, world: World, seat: str) -> None:
+        self._world, self.seat = world, seat
+
+    def __repr__(self) -> str:
+        pose = self.pose
+        return f"<{self.body.title} '{self.seat}' at ({pose.x:.2f}, {pose.y:.2f}) in {self.room}>"
+
+    # ------------------------------------------------------------------------------------------------------- state
+
+    @property
+    def body(self) -> BodySpec:
+        """What the body can do."""
+        return self._world.bodies[self.seat]
+
+    @property
+    def pose(self) -> Pose:
+        """Where the body is, house frame."""
+        return self._world.pose(self.seat)
+
+    @property
+    def room(self) -> str:
+        """Id of the room that the body is in."""
+        return self._world.room(self.seat)
+
+    @property
+    def holding(self) -> str:
+        """Id of the object in its hand, empty for none."""
+        return self._world.holding(self.seat)
+
+    # ----------------------------------------------------------------------------------------------------- control
+
+    def do(self, motion: Motion) -> Outcome:
+        """Carry out any motion and wait for its end."""
+        return self._world.run(self.seat, motion)
+
+    def move(self, forward: float, left: float = 0.0) -> Outcome:
+        """Go by the vector (``forward``, ``left``) [m] of the body's own frame, in steps of at most 0.5 m.
+
+        Returns:
+            the outcome of the last step; a step that is blocked is the last.
+        """
+        length = math.hypot(forward, left)
+        steps = max(1, math.ceil(length / rules.MOVE_MAX_M - _EPS)) if math.isfinite(length) else 1
+        outcome = Outcome(motion="move", ok=True)
+        for _ in range(steps):
+            outcome = self.do(Move(forward=forward / steps, left=left / steps))
+            if not outcome.ok:
+                break
+        return outcome
+
+    def rotate(self, yaw: float, pitch: float = 0.0) -> Outcome:
+        """Turn by the vector (``yaw``, ``pitch``) [rad]: the body to the left, the camera up."""
+        return self.do(Rotate(yaw=yaw, pitch=pitch))
+
+    def look_at(self, target: str | Vec3) -> Outcome:
+        """Turn body and camera towards a thing, an object, a seat or a point [m] of the house frame."""
+        point = self._world.position(target) if isinstance(target, str) else target
+        return self.do(journey.towards(self.pose, self.body, point))
+
+    def go_to(self, target: str | Vec2) -> Outcome:
+        """Walk the shortest way to a point (x, y) [m], or to where a thing, an object or a seat is in reach.
+
+        The way is worked out on the house's own plan, as if by someone who lives there. Going to a thing ends
+        facing it.
+        """
+        return journey.go(self, self._world, target)
+
+    def teleport(self, x: float, y: float, yaw: float | None = None, pitch: float | None = None) -> Pose:
+        """Be at (x, y) [m] at once, facing ``yaw`` [rad], camera at ``pitch`` [rad]; None keeps what is.
+
+        Raises:
+            HthorError: when the body does not fit there; names the nearest place where it does.
+        """
+        now = self.pose
+        self._world.teleport(
+            self.seat, Pose(x=x, y=y, yaw=now.yaw if yaw is None else yaw, pitch=now.pitch if pitch is None else pitch)
+        )
+        return self.pose
+
+    def pick(self, object: str) -> Outcome:
+        """Take an object in hand."""
+        return self.do(Pick(object=object))
+
+    def place(self, on: str, position: Vec3 | None = None) -> Outcome:
+        """Put what is held on or in a thing, near ``position`` [m] if given."""
+        return self.do(Place(on=on, position=position))
+
+    def drop(self) -> Outcome:
+        """Let go of what is held, right here."""
+        return self.do(Drop())
+
+    def open(self, thing: str) -> Outcome:
+        """Open a fridge, a drawer, a door."""
+        return self.do(Open(thing=thing))
+
+    def close(self, thing: str) -> Outcome:
+        """Close it again."""
+        return self.do(Close(thing=thing))
+
+    def wait(self, seconds: float = rules.TICK_S) -> Outcome:
+        """Stand still; the rest of the world goes on."""
+        return self.do(Wait(seconds=seconds))
+
+    # -------------------------------------------------------------------------------------------------- perception
+
+    def look(self, size: tuple[int, int] = IMAGE_SIZE) -> View:
+        """Colour, depth, segmentation and the camera of one glance; ``size`` is (width, height) [pixels]."""
+        return self._world.look(self.seat, size)
+
+    def rgb(self, size: tuple[int, int] = IMAGE_SIZE, profile: str = "fast") -> Any:
+        """(H, W, 3) uint8, what its camera sees; ``profile`` is fast or nice."""
+        return self._world.picture(self.seat, "rgb", size, profile=profile)
+
+    def depth(self, size: tuple[int, int] = IMAGE_SIZE) -> Any:
+        """(H, W) float32 [m] along the optical axis."""
+        return self._world.picture(self.seat, "depth", size)
+
+    def segmentation(self, size: tuple[int, int] = IMAGE_SIZE) -> Any:
+        """(H, W) int32, indices into ``World.names``, -1 for nothing."""
+        return self._world.picture(self.seat, "segmentation", size)
+
+    def detections(self) -> tuple[Detection, ...]:
+        """What its detector reports now, by id."""
+        return self._world.detections(self.seat)
+
+    def sees(self, id: str) -> bool:
+        """Whether its detector reports this object, thing or seat now."""
+        return any(seen.id == id for seen in self.detections())
+
+    def scan(self) -> Scan:
+        """Ranges to what would stop this body."""
+        return self._world.scan(self.seat)
+
+    # ----------------------------------------------------------------------------------------------- communication
+
+    def send(self, text: str, object: str = "", position: Vec3 | None = None) -> Receipt:
+        """Send the person an image-text message: the image is this body's own view now.
+
+        Args:
+            text: what it says. object: id of what it is about. position: [m] where that is believed to be.
+
+        Raises:
+            HthorError: when this seat may not send, or the arguments do not fit.
+        """
+        mail, tick = self._world.mail, self._world.tick
+        self._post(mail.send(tick, self.seat, Send(text=text, object=object, position=position), self._frame()))
+        receipt = mail.receipt(self.seat)
+        assert receipt is not None
+        return receipt
+
+    def inbox(self) -> tuple[Message, ...]:
+        """The message that waits for an answer; the person's only. Reading it shows it."""
+        messages = self._world.mail.inbox(self.seat)
+        if messages:
+            self._post(self._world.mail.shown(self._world.tick))
+        return messages
+
+    def reply(self, accept: bool, message: int | None = None) -> None:
+        """Confirm or decline a message by its number, or the one that waits when None.
+
+        Raises:
+            HthorError: when nothing waits, or this seat may not reply.
+        """
+        if message is None:
+            waiting = self.inbox()
+            if not waiting:
+                raise HthorError(f"no message waits for an answer of {self.seat}")
+            message = waiting[0].id
+        self._post(self._world.mail.reply(self._world.tick, self.seat, Reply(message=message, accept=accept)))
+
+    def receipt(self) -> Receipt | None:
+        """What became of this robot's last message: sent, shown, confirmed, declined or covered; None before any."""
+        return self._world.mail.receipt(self.seat)
+
+    def _frame(self) -> Any:
+        return self._world.frame(self.seat)
+
+    def _post(self, events: Any) -> None:
+        for event in events:
+            if event.kind == "refused":
+                raise HthorError(f"{self.seat}: {event.data['reason']}")
+        self._world.note(events)

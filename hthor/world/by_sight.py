@@ -1,0 +1,105 @@
+"""What is seen of a house tick by tick: senses, detections, ranges, pictures; knows nothing of minds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from hthor.looks import pack as packs
+from hthor.looks.pack import Pack
+from hthor.types import Camera, Detection, DetectorSpec, HouseSpec, RobotSpec, Scan, Senses, View
+from hthor.world import contents
+from hthor.world.by_tick import TickedWorld
+from hthor.world.pictures import IMAGE_SIZE, Pictures
+from hthor.world.senses import Senses as SeatSenses
+
+
+class SeenWorld(TickedWorld):
+    """A `TickedWorld` with eyes.
+
+    Args:
+        house, robots, objects, detectors: see `TickedWorld`.
+        profile: how pictures are drawn unless a call says otherwise: "fast" needs the processor alone, "nice" is for
+            people and needs OpenGL.
+        assets: a furniture pack, or its name, that the profile "nice" shows instead of our own furniture where it can.
+    """
+
+    def __init__(
+        self,
+        house: HouseSpec | str,
+        robots: Iterable[RobotSpec | str] = (),
+        objects: Iterable[tuple[str, str]] = contents.DEFAULT_OBJECTS,
+        detectors: Iterable[DetectorSpec | str] = (),
+        profile: str = "fast",
+        assets: Pack | str = "",
+    ) -> None:
+        self._pack = (packs.load(assets) if assets else None) if isinstance(assets, str) else assets
+        super().__init__(house, robots, objects, detectors)
+        self._pictures = Pictures(self.house, self._env, self._scene, self._seats, self._studio, profile)
+
+    # -------------------------------------------------------------------------------------------------------- senses
+
+    def senses(self, seat: str) -> Senses:
+        """What the seat perceives at this tick."""
+        return SeatSenses(self, seat)
+
+    def detections(self, seat: str) -> tuple[Detection, ...]:
+        """What the seat's detector reports now, by id, with the errors that it has."""
+        found, noise = self._gaze.detections(self._seats[seat]), self._detectors.get(seat)
+        return found if noise is None else noise.report(found, self._objects, self._seed, self.tick)
+
+    def scan(self, seat: str) -> Scan:
+        """What the seat's range scanner measures now."""
+        body = self._seats[seat]
+        return self._scanners[seat].scan(body.pose, body.space)
+
+    # ------------------------------------------------------------------------------------------------------ pictures
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What the numbers of a segmentation stand for: things, seats, rooms, walls and openings."""
+        return self._scene.names
+
+    def picture(
+        self, seat: str, mode: str = "rgb", size: tuple[int, int] = IMAGE_SIZE, profile: str | None = None
+    ) -> Any:
+        """The seat's own view now, without its own body.
+
+        Args:
+            mode: rgb (H, W, 3) uint8, depth (H, W) float32 [m] along the optical axis, or segmentation (H, W) int32,
+                indices into `names`, -1 for nothing. Depth and segmentation look through glass.
+            size: (width, height) [pixels].
+            profile: "fast", "nice", or None for the world's own.
+
+        Raises:
+            ValueError: when mode, size or profile are none of these.
+            RenderingUnavailable: when the profile is nice and no OpenGL back end works.
+        """
+        return self._pictures.view(seat, mode, size, profile)
+
+    def look(self, seat: str, size: tuple[int, int] = IMAGE_SIZE) -> View:
+        """All pictures of one glance and the camera they were taken with, in the profile fast."""
+        return self._pictures.look(seat, size)
+
+    def camera(self, seat: str, size: tuple[int, int] = IMAGE_SIZE) -> Camera:
+        """The seat's camera now: how it projects pictures of ``size`` (width, height) [pixels], and where it is."""
+        return self._pictures.camera(seat, size)
+
+    def frame(self, seat: str, size: tuple[int, int] = IMAGE_SIZE, profile: str | None = None) -> Callable[[], Any]:
+        """The seat's own view of this very moment, (H, W, 3) uint8, drawn if and when it is called."""
+        return self._pictures.frame(seat, size, profile)
+
+    def top_view(self, pixels_per_metre: float = 50.0, profile: str | None = None) -> Any:
+        """The house from above without its ceilings, (H, W, 3) uint8, covering `top_view_bounds`; north (+y) is up."""
+        return self._pictures.top_view(pixels_per_metre, profile)
+
+    def _studio(self) -> Any:
+        """What draws the profile nice; its module wakes OpenGL, so it is loaded only now."""
+        from hthor.world.rendering import Studio
+
+        return Studio(self.house, self._contents, self.bodies, self._env.model, self._scene, self._pack)
+
+    @property
+    def top_view_bounds(self) -> tuple[float, float, float, float]:
+        """x0, y0, x1, y1 [m] of the top view: the rooms and a small margin."""
+        return self._pictures.bounds

@@ -1,0 +1,316 @@
+"""A house with bodies and objects in it, one tick at a time; knows nothing of minds, messages, goals or pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from hthor import geometry, houses
+from hthor.errors import HthorError, TaskError, UnknownName
+from hthor.houses.freespace import FreeSpace
+from hthor.types import (
+    BodySpec,
+    DetectorSpec,
+    Event,
+    HouseSpec,
+    Motion,
+    Outcome,
+    Placement,
+    Pose,
+    RobotSpec,
+    Snapshot,
+    TaskSpec,
+    ThingState,
+    Vec3,
+)
+from hthor.world import avatar, bodies, contents, detector, interaction, starts
+from hthor.world.arranging import Arranging
+from hthor.world.doors import Doors
+from hthor.world.env import FastEnv
+from hthor.world.gaze import Gaze
+from hthor.world.hinges import Hinges
+from hthor.world.interaction import Hands
+from hthor.world.objects import Objects
+from hthor.world.passages import Passages
+from hthor.world.places import Places
+from hthor.world.scan import Scanner
+from hthor.world.scene import Scene
+from hthor.world.seats import Seat
+from hthor.world.starting import Starting
+from hthor.world.task import HouseTask
+from hthor.world.touch import Touch
+from hthor.world.truth import Truth
+
+
+class TickedWorld:
+    """A house, one person and any number of robots.
+
+    The model is compiled once, here; `reset` only writes poses. After it a world gives the same states for the same
+    motions, bit for bit, however often it was reset before.
+
+    Args:
+        house: a floor plan, or the name of one.
+        robots: the robots' bodies or their names; they sit at "robot", "robot2", ...
+        objects: (id, kind) pairs of the movable objects that tasks may place, besides the house's own.
+        detectors: how the robots' detectors err, in their order: a record, or what `hthor.detectors.read` reads; "own",
+            and where there is none, stands for what the body declares.
+
+    Attributes:
+        house: the floor plan. seats: names of all seats, the person's first. bodies: what each seat's body can do.
+        tick: ticks since the last reset. space: each seat's free-space grid.
+    """
+
+    def __init__(
+        self,
+        house: HouseSpec | str,
+        robots: Iterable[RobotSpec | str] = (),
+        objects: Iterable[tuple[str, str]] = contents.DEFAULT_OBJECTS,
+        detectors: Iterable[DetectorSpec | str] = (),
+    ) -> None:
+        self.house = houses.load(house) if isinstance(house, str) else house
+        specs: list[BodySpec] = [avatar.HUMAN]
+        specs += [bodies.robot(robot) if isinstance(robot, str) else robot for robot in robots]
+        self.seats = bodies.seat_names(len(specs) - 1)
+        self.bodies = dict(zip(self.seats, specs, strict=True))
+        self.space = {seat: FreeSpace.of(self.house, spec.radius, spec.height) for seat, spec in self.bodies.items()}
+        self.detectors = detector.assign(self.seats[1:], self.bodies, detectors)
+        self._contents = contents.split(self.house, objects)
+        self._task = HouseTask(self.house, self._contents, self.bodies)
+        self._env = FastEnv(self._task)
+        self._assemble()
+        self.tick, self._episode = 0, 0
+        starts.stand(tuple(self._seats.values()), self.house.start, ())
+        self._begin({})
+
+    def _assemble(self) -> None:
+        """The parts that share the compiled model."""
+        statics, env = self._contents.statics, self._env
+        places = Places(statics)
+        self._scene = Scene(env, self._task)
+        self._objects = Objects(self._contents.movables, env, self._scene, places)
+        self._doors = Doors(self._task.doors, env, places)
+        self._seats = {name: Seat(name, spec, self.space[name]) for name, spec in self.bodies.items()}
+        self._scanners = {name: Scanner(seat.spec, seat.space, self.house) for name, seat in self._seats.items()}
+        seats, touch = tuple(self._seats.values()), Touch(env, self._scene)
+        self._passages = Passages(seats, self.space)
+        self._hinges = Hinges(self._scene, self._objects, self._doors, places, self._passages, seats)
+        self._hands = Hands(self.house, self._scene, self._objects, self._doors, places, self._hinges, touch)
+        self._arranging = Arranging(self._task, env, self._scene, self._objects, places, touch)
+        self._gaze = Gaze(self._scene, self._objects, self._doors, statics, self.house.openings, seats)
+        self._starting = Starting(self.house, self._hands, self._doors, seats)
+        self._truth = Truth(self._objects, self._doors, self._gaze, seats)
+        self._detectors = {
+            name: detector.Detector(spec, self._seats[name], self._scene, places)
+            for name, spec in self.detectors.items()
+            if spec.miss or spec.false_alarm or spec.position_sigma
+        }
+
+    @property
+    def model(self) -> Any:
+        """The compiled `mujoco.MjModel`, for whoever wants the engine itself; changing it voids every promise here."""
+        return self._env.model
+
+    # ------------------------------------------------------------------------------------------------------- episodes
+
+    def reset(self, task: TaskSpec, seed: int = 0) -> None:
+        """Begin a task: its objects in place and asleep, the house's own where the house has them, what opens closed,
+        all doorways open.
+
+        A body whose start is not free stands at the nearest free place; a robot for which the task gives no start,
+        at the nearest place to the first robot's start that keeps clear of the others.
+
+        Args:
+            seed: of all chance in the episode: the errors of noisy detectors.
+
+        Raises:
+            TaskError: when the task belongs to another house or places an object that this world does not have.
+        """
+        if task.house_sha256 and self.house.sha256 and task.house_sha256 != self.house.sha256:
+            raise TaskError(task.id, "house_sha256", f"made for another version of house '{task.house}'; make it anew")
+        self._begin({placement.id: placement for placement in task.objects}, task.id)
+        self._seed = seed
+        starts.stand(tuple(self._seats.values()), task.human_start, task.robot_starts)
+
+    def _begin(self, placements: dict[str, Placement], task: str = "") -> None:
+        movables = {movable.id: movable for movable in self._contents.movables}
+        for id in placements:
+            if id not in movables:
+                raise TaskError(task, "objects", str(UnknownName("object", id, movables)))
+        self._rooms = dict.fromkeys(self.seats, 0)
+        self._seed = 0
+        begin: dict[str, tuple[Vec3, float, str]] = {}
+        for id, movable in movables.items():
+            placed = placements.get(id)
+            if placed is not None:
+                begin[id] = (placed.position, placed.yaw, placed.support)
+            elif movable.home is not None:
+                begin[id] = (movable.home, movable.yaw, movable.support)
+        self._task.starts = {id: begin[id][:2] for id in placements}
+        self._env.reset()
+        self._objects.reset(begin)
+        self._doors.reset()
+        self._passages.update({})
+        self.tick = 0
+        self._episode += 1
+        self._events: list[Event] = []
+
+    # -------------------------------------------------------------------------------------------------------- motions
+
+    def idle(self, seat: str) -> bool:
+        """Whether the seat's body is free for a new motion."""
+        return self._seats[seat].activity is None
+
+    def start(self, seat: str, action: Motion) -> None:
+        """Begin a motion. One that a law forbids is refused: see `outcome`, and the next `advance` reports it."""
+        body = self._seats[seat]
+        verb = interaction.verb_of(action)
+        reason = (
+            f"{seat} is busy with another motion" if body.activity is not None else self._starting.refusal(body, action)
+        )
+        if reason:
+            body.outcome = Outcome(motion=verb, ok=False, reason=reason)
+            data = {"motion": verb, "reason": reason}
+            self._events.append(Event(tick=self.tick, seat=seat, kind="refused", data=data))
+            return
+        body.activity = self._starting.activity(body, action)
+
+    def outcome(self, seat: str) -> Outcome | None:
+        """How the seat's last motion ended, None before any has."""
+        return self._seats[seat].outcome
+
+    def advance(self) -> tuple[Event, ...]:
+        """Let one tick pass: every busy body moves, in the order of the seats, then objects fall and doors swing.
+
+        Returns:
+            what happened: picked, placed, dropped, opened, closed, refused, blocked (by the house), in_way (of another
+            body).
+
+        Raises:
+            RuntimeError: when the engine reports a state it cannot go on from.
+        """
+        self.tick += 1
+        events, self._events = self._events, []
+        for seat in self._seats.values():
+            if seat.activity is None:
+                continue
+            pose = seat.pose
+            outcome, news = seat.activity.advance(self.tick)
+            if news:
+                events.extend(news)
+            if outcome is not None:
+                seat.activity, seat.outcome = None, outcome
+            if seat.holding and seat.pose is not pose:
+                self._objects.follow(seat.holding)
+        if self._env.tick():
+            self._objects.settle()
+            self._check()
+        return tuple(sorted(events, key=lambda event: event.tick)) if events else ()
+
+    def _check(self) -> None:
+        complaints = self._env.warnings()
+        if complaints:
+            raise RuntimeError(
+                f"the physics of house '{self.house.id}' broke down at tick {self.tick}: {', '.join(complaints)}; "
+                "most likely two objects were placed into each other, see `houses.check` and the task's objects"
+            )
+
+    def teleport(self, seat: str, pose: Pose) -> None:
+        """Put a body somewhere at once; what it was doing ends.
+
+        Raises:
+            HthorError: when its body does not fit there.
+        """
+        body = self._seats[seat]
+        if not body.space.is_free(pose.x, pose.y):
+            raise HthorError(f"({pose.x:.2f}, {pose.y:.2f}) is not free for {seat}; try space['{seat}'].nearest_free")
+        body.pose, body.activity = pose, None
+        self._hinges.let_go(seat)
+        if body.holding:
+            self._objects.follow(body.holding)
+
+    # -------------------------------------------------------------------------------------------------------- objects
+
+    def put_object(
+        self,
+        id: str,
+        position: Sequence[float] | None = None,
+        *,
+        on: str = "",
+        yaw: float = 0.0,
+        velocity: Sequence[float] = (0.0, 0.0, 0.0),
+    ) -> None:
+        """Set one of this world's objects somewhere at once; the engine takes it from there.
+
+        Args:
+            id: an object of the house or of ``objects``, whether it is in the episode by now or not.
+            position: [m] of its centre; with ``on``, where it should be as nearly as there is room.
+            on: id of a thing to put it on, or in when it has no top, along the thing's edges when ``yaw`` is 0.
+            yaw: [rad] its heading; with ``on``, relative to the thing.
+            velocity: [m/s] to throw it with.
+
+        Raises:
+            UnknownName: when there is no such object, or nothing can be put on that thing.
+            HthorError: when it is in someone's hand, would be inside something, or has no room there.
+        """
+        self._arranging.put(id, position, on, yaw, velocity)
+
+    def remove_object(self, id: str) -> None:
+        """Take an object out of the episode; `put_object` brings it back.
+
+        Raises:
+            UnknownName: when there is no such object.
+            HthorError: when it is in someone's hand.
+        """
+        self._arranging.remove(id)
+
+    def set_open(self, thing: str, wanted: bool = True) -> None:
+        """Open or close a fridge, a drawer or a door at once.
+
+        Raises:
+            UnknownName: when no such thing opens.
+            HthorError: when something is in its way.
+        """
+        self._hinges.put(thing, wanted)
+
+    # ---------------------------------------------------------------------------------------------------------- truth
+
+    @property
+    def still(self) -> bool:
+        """Whether every object and door is at rest, but for what someone carries."""
+        return self._env.still
+
+    @property
+    def moment(self) -> tuple[int, int]:
+        """Episode and tick: what an observation belongs to."""
+        return (self._episode, self.tick)
+
+    def pose(self, seat: str) -> Pose:
+        """Where the seat's body is."""
+        return self._seats[seat].pose
+
+    def poses(self) -> dict[str, Pose]:
+        """Where every seat's body is, the person first."""
+        return {name: seat.pose for name, seat in self._seats.items()}
+
+    def holding(self, seat: str) -> str:
+        """Id of the object in the seat's hand, empty for none."""
+        return self._seats[seat].holding
+
+    def room(self, seat: str) -> str:
+        """Id of the room the seat's body is in, the last one while it is between rooms."""
+        rooms, place = self.house.rooms, self._seats[seat].pose
+        last = self._rooms[seat]
+        if not geometry.inside((place.x, place.y), rooms[last].polygon):
+            for number, room in enumerate(rooms):
+                if geometry.inside((place.x, place.y), room.polygon):
+                    self._rooms[seat] = last = number
+                    break
+        return rooms[last].id
+
+    def truth(self) -> tuple[ThingState, ...]:
+        """True states of all objects and openable things, by id."""
+        return tuple(self._truth.states().values())
+
+    def snapshot(self) -> Snapshot:
+        """The truth at this tick, for the umpire and the log."""
+        return self._truth.snapshot(self.tick)

@@ -1,0 +1,43 @@
+"""From a motion's record to a body at it, or the reason why not: which law, which activity; knows nothing of time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hthor.types import Close, Drop, HouseSpec, Motion, Move, Open, Pick, Place, Rotate, Vec2, Wait
+from hthor.world import interaction, motion
+from hthor.world.doors import Doors
+from hthor.world.interaction import Hands
+from hthor.world.obstacles import Obstacles
+from hthor.world.seats import Activity, Seat
+
+
+class Starting:
+    """What every body of a world can begin to do."""
+
+    def __init__(self, house: HouseSpec, hands: Hands, doors: Doors, seats: Sequence[Seat]) -> None:
+        self._hands, self._doors, self._obstacles = hands, doors, Obstacles(house)
+        self._others = {seat.name: tuple(other for other in seats if other is not seat) for seat in seats}
+
+    def refusal(self, seat: Seat, action: object) -> str:
+        """Why the motion cannot be started, empty when it can."""
+        if isinstance(action, (Pick, Place, Drop, Open, Close)):
+            return self._hands.refusal(seat, action)
+        if isinstance(action, (Move, Rotate, Wait)):
+            return motion.refusal(seat, action)
+        return f"{type(action).__name__} is not a motion; valid: Move, Rotate, Pick, Place, Drop, Open, Close, Wait"
+
+    def activity(self, seat: Seat, action: Motion) -> Activity:
+        """The motion under way."""
+        if isinstance(action, Move):
+            return motion.Going(seat, action, self._others[seat.name], self._culprit)
+        if isinstance(action, Rotate):
+            return motion.Turning(seat, action)
+        if isinstance(action, Wait):
+            return motion.Waiting(action)
+        return interaction.Handing(seat, action, self._hands)
+
+    def _culprit(self, seat: Seat, step: Vec2) -> str:
+        """What the body would have run into: the nearest thing's id, or "wall"."""
+        shut = [leaf.opening for leaf in self._doors if leaf.opening is not None and not leaf.open]
+        return self._obstacles.nearest((seat.pose.x + step[0], seat.pose.y + step[1]), seat.spec.height, shut)

@@ -1,0 +1,56 @@
+"""What an object would be inside of, exactly as the engine's shapes are; knows nothing of who puts it there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from hthor.world import geoms
+from hthor.world.engine import mujoco
+from hthor.world.env import FastEnv
+from hthor.world.objects import Item
+from hthor.world.scene import Scene
+
+DEEP_M = 0.005
+"""Two things that are deeper in one another than this are in the same place."""
+FLOOR = "floor"
+_MEETS = geoms.MOVABLE["conaffinity"]
+
+
+class Touch:
+    """Asks the engine for distances between shapes."""
+
+    def __init__(self, env: FastEnv, scene: Scene) -> None:
+        self._env, self._scene = env, scene
+
+    def inside(self, item: Item, deep: float = DEEP_M) -> str:
+        """Id of the thing, wall or object that the object is in where the engine has it now, empty for none.
+
+        Being less than ``deep`` [m] in it does not count. The object counts as solid for this even when it is carried.
+        """
+        model, data, scene = self._env.model, self._env.data, self._scene
+        mujoco.mj_kinematics(model, data)
+        solid = (model.geom_contype & _MEETS) != 0
+        solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)
+        solid[item.geoms] = False
+        others = np.flatnonzero(solid)
+        for geom in range(item.geoms.start, item.geoms.stop):
+            if data.geom_xpos[geom, 2] - _extent(model, data, scene, geom) < -deep:
+                return FLOOR
+            apart = np.linalg.norm(data.geom_xpos[others] - data.geom_xpos[geom], axis=1)
+            near = others[apart < scene.radius[others] + scene.radius[geom]]
+            for other in near.tolist():
+                if mujoco.mj_geomDistance(model, data, geom, other, 1.0, None) < -deep:
+                    return str(scene.owner[other])
+        return ""
+
+
+def _extent(model: Any, data: Any, scene: Scene, geom: int) -> float:
+    """Half the height [m] of a solid."""
+    shape, half, up = model.geom_type[geom], scene.half[geom], data.geom_xmat[geom, 6:9]
+    if shape == int(mujoco.mjtGeom.mjGEOM_SPHERE):
+        return float(half[0])
+    if shape == int(mujoco.mjtGeom.mjGEOM_CYLINDER):
+        return float(abs(up[2]) * half[2] + half[0] * np.hypot(up[0], up[1]))
+    return float(np.abs(up) @ half)
