@@ -6,6 +6,10 @@ import difflib
 from collections.abc import Iterable
 
 
+_LISTED = 24
+"""Names that an error lists before it only counts the rest."""
+
+
 class HthorError(Exception):
     """Root of every error that is the user's to mend: the CLI prints no traceback and exits with ``exit_code``."""
 
@@ -26,7 +30,9 @@ class UnknownName(HthorError):
         self.what, self.given, self.valid = what, given, tuple(valid)
         near = difflib.get_close_matches(given, self.valid, n=1, cutoff=0.5)
         guess = f" Did you mean '{near[0]}'?" if near else ""
-        listed = ", ".join(self.valid) or "none"
+        listed = ", ".join(self.valid[:_LISTED]) or "none"
+        if len(self.valid) > _LISTED:
+            listed += f" and {len(self.valid) - _LISTED} more"
         super().__init__(f"unknown {what} '{given}'.{guess} Valid: {listed}.{' ' + hint if hint else ''}")
 
 

@@ -1,9 +1,16 @@
-"""Finding plug-ins by file name: one file in a package is one plug-in; knows nothing of what they are."""
+"""Finding plug-ins by file name: one file in a package is one plug-in; knows nothing of what they are.
+
+A plug-in may also be a file of the user's, named by its path. Once loaded it goes by its file name like any other.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import importlib
+import importlib.util
+import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from hthor.errors import HthorError, UnknownName
@@ -14,10 +21,11 @@ _PACKAGES = {
     "robot": ("hthor.world.robots", "SPEC"),
     "task kind": ("hthor.tasks.kinds", "KIND"),
 }
+_SUFFIX = ".py"
 
 
 def names(sort: str) -> tuple[str, ...]:
-    """The names of every plug-in of a sort, without importing any.
+    """The names of every plug-in of a sort that ships with hthor, without importing any.
 
     Args:
         sort: "agent", "human model", "robot" or "task kind".
@@ -30,16 +38,61 @@ def names(sort: str) -> tuple[str, ...]:
 def load(sort: str, name: str) -> Any:
     """The plug-in's class or record.
 
+    Args:
+        name: its name, or the path of a Python file that defines one.
+
     Raises:
         UnknownName: when no file has that name.
-        HthorError: when the file does not define what its sort asks for.
+        HthorError: when the file does not define what its sort asks for, or does not load.
     """
     package, attribute = _PACKAGES[sort]
     known = names(sort)
-    if name not in known:
+    if name in known:
+        module = importlib.import_module(f"{package}.{name}")
+    elif name.endswith(_SUFFIX):
+        module = _from_file(sort, Path(name))
+    elif (there := loaded(sort, name)) is not None:
+        module = there
+    else:
         raise UnknownName(sort, name, known)
-    module = importlib.import_module(f"{package}.{name}")
     try:
         return getattr(module, attribute)
     except AttributeError:
         raise HthorError(f"{module.__file__}: a {sort} file must define '{attribute}'.") from None
+
+
+def loaded(sort: str, name: str) -> ModuleType | None:
+    """The plug-in's module if it was loaded before, from wherever it lies."""
+    package, _ = _PACKAGES[sort]
+    return sys.modules.get(f"{package}.{name}")
+
+
+def sha256(path: str) -> str:
+    """Hash of a user's plug-in: of its file alone, not of what it imports."""
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
+def _from_file(sort: str, path: Path) -> ModuleType:
+    """Load a user's file as if it lay in the package of its sort."""
+    package, _ = _PACKAGES[sort]
+    if not path.is_file():
+        raise UnknownName(sort, str(path), names(sort), "A path must lead to a Python file.")
+    if path.stem in names(sort) or not path.stem.isidentifier():
+        raise HthorError(f"{path}: a {sort}'s file name must be a Python name that no {sort} of ours has; rename it.")
+    name, place = f"{package}.{path.stem}", path.resolve()
+    there = sys.modules.get(name)
+    if there is not None:
+        if there.__file__ == str(place):
+            return there
+        raise HthorError(f"{path}: a {sort} called '{path.stem}' was loaded from {there.__file__}; rename one of them.")
+    spec = importlib.util.spec_from_file_location(name, place)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[name]
+        raise HthorError(f"{path}: {type(error).__name__}: {error}. The file must load by itself.") from error
+    return module

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from hthor import __version__
-from hthor.cli import boards, lists, runs
+from hthor.cli import assets, boards, homes, lists, runs
 from hthor.errors import HthorError
 
 EPILOG = (
@@ -30,6 +30,8 @@ app.command("eval")(runs.evaluate)
 app.command("score")(runs.score)
 app.command("replay")(runs.replay)
 app.add_typer(boards.app, name="leaderboard")
+app.add_typer(assets.app, name="assets")
+app.add_typer(homes.app, name="houses")
 for _name, _group in lists.GROUPS.items():
     app.add_typer(_group, name=_name)
 

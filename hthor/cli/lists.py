@@ -1,4 +1,4 @@
-"""`hthor houses`, `tasks`, `agents`, `agent`, `humans` and `robots`: what there is; evaluates nothing."""
+"""`hthor tasks`, `agents`, `agent`, `humans` and `robots`: what there is; evaluates nothing."""
 
 from __future__ import annotations
 
@@ -13,60 +13,16 @@ import typer
 from hthor.cli import screen
 from hthor.cli.runs import Json
 
-houses = typer.Typer(no_args_is_help=True, help="Floor plans.")
 tasks = typer.Typer(no_args_is_help=True, help="Suites of tasks.")
 agents = typer.Typer(no_args_is_help=True, help="Robots' minds that ship with hthor.")
 agent = typer.Typer(no_args_is_help=True, help="Your own robot's mind.")
 humans = typer.Typer(no_args_is_help=True, help="Human models.")
 robots = typer.Typer(no_args_is_help=True, help="Robots' bodies.")
 
-GROUPS = {"houses": houses, "tasks": tasks, "agents": agents, "agent": agent, "humans": humans, "robots": robots}
+GROUPS = {"tasks": tasks, "agents": agents, "agent": agent, "humans": humans, "robots": robots}
 
 for _group in GROUPS.values():
     _group.callback()(lambda: None)  # a group of one command would otherwise swallow the command's name
-
-
-@houses.command("list")
-def list_houses(json: Json = False) -> None:
-    """The houses that ship with hthor."""
-    from hthor import houses as rooms
-
-    found = [(name, rooms.load(name)) for name in rooms.names()]
-    rows = [
-        {
-            "name": name,
-            "rooms": [room.name or room.kind for room in house.rooms],
-            "things": len(house.things),
-            "sha256": house.sha256,
-        }
-        for name, house in found
-    ]
-    _put(rows, json, short=("sha256",))
-
-
-@houses.command("check")
-def check_house(
-    file: Annotated[str, typer.Argument(metavar="HOUSE", help="A house file (ProcTHOR's JSON), or a house's name.")],
-    radius: Annotated[
-        float, typer.Option(min=0.01, max=2.0, help="Radius of the body that shall live in it [m].")
-    ] = 0.2,
-    json: Json = False,
-) -> None:
-    """Say whether a house is sound for a body: exit code 1 when it is not, 2 when the file is broken."""
-    from hthor import houses as rooms
-
-    findings = rooms.check(rooms.load(file), radius)
-    errors = sum(finding.severity == "error" for finding in findings)
-    if json:
-        screen.put_json({"house": file, "radius": radius, "sound": not errors, "findings": findings})
-    else:
-        for finding in findings:
-            sys.stdout.write(f"{finding}\n")
-        warnings = len(findings) - errors
-        verdict = "unsound" if errors else "sound"
-        sys.stdout.write(f"{file}: {verdict} for a radius of {radius} m ({errors} errors, {warnings} warnings)\n")
-    if errors:
-        raise typer.Exit(1)
 
 
 @tasks.command("list")

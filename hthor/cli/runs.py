@@ -31,7 +31,24 @@ def evaluate(
     ],
     humans: Annotated[str, typer.Option(help="The human model that the people are ('hthor humans list').")] = "proxy",
     suite: Annotated[str, typer.Option(help="The tasks ('hthor tasks list').")] = "smoke",
-    robot: Annotated[str, typer.Option(help="The robot's body ('hthor robots list').")] = "scout",
+    robot: Annotated[
+        str, typer.Option(help="The robot's body ('hthor robots list'), or a Python file, my_robot.py.")
+    ] = "scout",
+    detector: Annotated[
+        str,
+        typer.Option(
+            help="How the robot's detector errs: own (as its body says), ideal, noisy, or rates such as "
+            "miss=0.2,false_alarm=0.05,position_sigma=0.03."
+        ),
+    ] = "own",
+    assets: Annotated[
+        str,
+        typer.Option(
+            help="A furniture pack ('hthor assets list'): the robot's camera then shows it, in the profile nice. "
+            "[default: our own furniture, in the profile fast]",
+            show_default=False,
+        ),
+    ] = "",
     seed: Annotated[int, typer.Option(help="Equal seeds give equal people, dealt the same tasks.")] = 0,
     participants: Annotated[
         int | None,
@@ -66,6 +83,8 @@ def evaluate(
         human=humans,
         suite=suite,
         robot=robot,
+        assets=assets,
+        detector=detector,
         seed=seed,
         participants=participants,
         jobs=jobs,

@@ -8,10 +8,11 @@ import msgspec
 from msgspec import Struct
 
 from hthor import jsonio
+from hthor.detectors import OWN
 from hthor.errors import RunError
 from hthor.eval import score
 from hthor.eval.score import Counts, Hashes, Scores
-from hthor.eval.setup import Setup, SuiteRef
+from hthor.eval.setup import PROCEDURAL, AssetsRef, Setup, SuiteRef
 from hthor.types import AgentRef
 
 ENTRY_SCHEMA = "hthor.entry/1"
@@ -25,6 +26,7 @@ class Entry(Struct, frozen=True, kw_only=True):
     id: str
     agent: AgentRef
     robot: str
+    detector: str
     human: str
     suite: SuiteRef
     seed: int
@@ -33,6 +35,7 @@ class Entry(Struct, frozen=True, kw_only=True):
     counts: Counts
     versions: dict[str, str]
     hashes: Hashes
+    assets: AssetsRef
 
 
 class Board(Struct, frozen=True, kw_only=True):
@@ -59,6 +62,7 @@ def add(folder: Path, board: Path) -> tuple[Entry, Path]:
         id=plan.folder_name,
         agent=result.agent,
         robot=result.robot,
+        detector=result.detector,
         human=result.human,
         suite=result.suite,
         seed=result.seed,
@@ -67,6 +71,7 @@ def add(folder: Path, board: Path) -> tuple[Entry, Path]:
         counts=result.counts,
         versions=result.versions,
         hashes=result.hashes,
+        assets=result.assets,
     )
     path = board / "entries" / f"{entry.id}.json"
     jsonio.write(path, jsonio.pretty(entry))
@@ -96,7 +101,9 @@ def _read(path: Path) -> Entry:
 def command(folder: Path, plan: Setup) -> str:
     """The command that finishes a run."""
     agent = plan.agent.name if plan.agent.source.startswith("hthor.agents.") else plan.agent.source
-    robot = f" --robot {plan.robot}" if plan.robot else ""
+    robot = f" --robot {plan.robot}{'.py' if plan.robot_sha256 else ''}" if plan.robot else ""
+    robot += "" if plan.assets.name == PROCEDURAL else f" --assets {plan.assets.name}"
+    robot += f" --detector {plan.detector}" if plan.detector not in ("", OWN) else ""
     return (
         f"hthor eval --agent {agent} --humans {plan.human} --suite {plan.suite.name}{robot} --seed {plan.seed} "
         f"--participants {plan.participants} --out {folder}"

@@ -10,7 +10,7 @@ from typing import Protocol
 
 from msgspec import Struct
 
-from hthor import plugins, tasks
+from hthor import detectors, plugins, tasks
 from hthor.errors import HthorError, UnknownName
 from hthor.eval import cast, run, setup
 from hthor.eval.run import Watcher
@@ -28,6 +28,8 @@ class Options(Struct, frozen=True, kw_only=True):
     human: str = "proxy"
     suite: str = "smoke"
     robot: str = "scout"
+    assets: str = ""
+    detector: str = detectors.OWN
     seed: int = 0
     participants: int | None = None
     jobs: int | None = None
@@ -58,9 +60,10 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
         watcher: makes who follows the run of the agent with this name.
     """
     suite = tasks.suite(options.suite)
-    for sort, name, option in (("human model", options.human, "--humans"), ("robot", options.robot, "--robot")):
-        if name not in plugins.names(sort):
-            raise UnknownName(sort, name, plugins.names(sort), f"Choose one with {option}.")
+    if options.human not in plugins.names("human model"):
+        raise UnknownName("human model", options.human, plugins.names("human model"), "Choose one with --humans.")
+    body, pack = cast.embody(options.robot), cast.furnish(options.assets)
+    detector = detectors.tidy(options.detector)
     characters = [cast.introduce(agent) for agent in options.agents]
     names = [character.ref.name for character in characters]
     twice = sorted({name for name in names if names.count(name) > 1})
@@ -70,10 +73,13 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
         setup.settle(
             suite,
             character,
-            robot=options.robot,
+            robot=body.name,
             human=options.human,
             seed=options.seed,
             participants=options.participants,
+            detector=detector,
+            robot_sha256=body.sha256,
+            assets=setup.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None,
         )
         for character in characters
     ]
@@ -85,14 +91,17 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
         dealt = sessions(
             suite,
             agent=character,
-            robot=options.robot,
+            robot=body.name,
             human=options.human,
             seed=options.seed,
             participants=plan.participants,
+            detector=detector,
+            robot_sha256=body.sha256,
+            assets_sha256=pack.sha256 if pack else "",
         )
         watch = watcher(plan.agent.name)
         try:
-            make = functools.partial(cast.player, character.path)
+            make = functools.partial(cast.player, character.path, body.path, options.assets)
             result = run.evaluate(plan, dealt, make, folder=folder, jobs=jobs, watch=watch)
         finally:
             watch.close()

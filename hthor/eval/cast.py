@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any
 from msgspec import Struct
 
 from hthor import plugins
-from hthor.errors import AgentError, UnknownName
+from hthor.detectors import OWN
+from hthor.errors import AgentError, HthorError, UnknownName
 from hthor.types import AgentRef, Mind, RobotSeat, TrialSpec
 
 if TYPE_CHECKING:
     from hthor.eval.record import Record
     from hthor.eval.session import Session
+    from hthor.looks.pack import Pack
     from hthor.world import World
 
 
@@ -33,8 +35,8 @@ class Character(Struct, frozen=True, kw_only=True):
     bodies: tuple[str, ...] = ()
     absent: bool = False
 
-    def seats(self, robot: str) -> tuple[RobotSeat, ...]:
-        """The robots of a trial with this mind in the body ``robot``.
+    def seats(self, robot: str, detector: str = OWN, robot_sha256: str = "") -> tuple[RobotSeat, ...]:
+        """The robots of a trial with this mind in the body ``robot``, with this detector.
 
         Raises:
             UnknownName: when it is not made for that body.
@@ -43,7 +45,37 @@ class Character(Struct, frozen=True, kw_only=True):
             return ()
         if self.bodies and robot not in self.bodies:
             raise UnknownName(f"robot for the agent {self.ref.name}", robot, self.bodies, "Choose one with --robot.")
-        return (RobotSeat(seat="robot", robot=robot, agent=self.ref),)
+        seat = RobotSeat(seat="robot", robot=robot, agent=self.ref, detector=detector, robot_sha256=robot_sha256)
+        return (seat,)
+
+
+class Shape(Struct, frozen=True, kw_only=True):
+    """A robot's body: its name, and for a user's own the hash and the path of its file."""
+
+    name: str
+    sha256: str = ""
+    path: str = ""
+
+
+def embody(robot: str) -> Shape:
+    """Find out what a robot's body is.
+
+    Args:
+        robot: the name of a robot that ships with hthor, or the path of a Python file, ``my_robot.py``.
+
+    Raises:
+        UnknownName: when it is neither.
+        HthorError: when the file does not load or does not define a robot.
+    """
+    known = plugins.names("robot")
+    if robot in known:
+        return Shape(name=robot)
+    if not robot.endswith(".py"):
+        hint = "Choose one with --robot, or give the path of a Python file, such as my_robot.py."
+        raise UnknownName("robot", robot, known, hint)
+    from hthor.world import bodies
+
+    return Shape(name=bodies.robot(robot).name, sha256=plugins.sha256(robot), path=str(Path(robot).resolve()))
 
 
 def introduce(agent: str) -> Character:
@@ -100,15 +132,30 @@ def _tidy(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9_+-]+", "-", name).strip("-")[:60] or "agent"
 
 
+def furnish(assets: str) -> Pack | None:
+    """The furniture pack of this name, None for our own furniture.
+
+    Raises:
+        UnknownName: when there is none.
+    """
+    if not assets:
+        return None
+    from hthor.looks import pack
+
+    return pack.load(assets)
+
+
 class Stage:
     """Makes worlds and companies, and keeps worlds for the next trial in the same house.
 
     Args:
         path: the agent's ``file.py`` or ``file.py:Class``, for an agent that is not one of ours.
+        robot: the robot's file, for a robot that is not one of ours.
+        assets: name of the furniture pack that pictures show; empty for our own furniture.
     """
 
-    def __init__(self, path: str = "") -> None:
-        self._path = path
+    def __init__(self, path: str = "", robot: str = "", assets: str = "") -> None:
+        self._path, self._robot, self._assets = path, robot, assets
         self._worlds: dict[object, World] = {}
 
     def enter(self, session: Session) -> Company:
@@ -116,18 +163,39 @@ class Stage:
         return Company(session.trials[0], self._mind)
 
     def world(self, trial: TrialSpec) -> World:
-        """The world of a trial; the one of an earlier trial where house, robots and objects are the same."""
+        """The world of a trial; the one of an earlier trial where house, robots, detectors and objects are the same."""
         task = trial.task
         bodies = tuple(seat.robot for seat in trial.robots)
         objects = tuple((placed.id, placed.kind) for placed in task.objects)
-        key = (task.house, task.house_sha256, bodies, objects)
+        detectors = tuple(seat.detector for seat in trial.robots)
+        key = (task.house, task.house_sha256, bodies, detectors, objects)
         if key not in self._worlds:
             from hthor import houses
             from hthor.world import World
 
-            specs = tuple(plugins.load("robot", name) for name in bodies)
-            self._worlds[key] = World(houses.load(task.house), robots=specs, objects=objects)
+            specs = tuple(self._body(seat) for seat in trial.robots)
+            pack = furnish(self._assets)
+            if pack is not None and pack.sha256 != trial.assets_sha256:
+                raise HthorError(
+                    f"the pack '{self._assets}' was built anew while its run was going on; begin a new run."
+                )
+            self._worlds[key] = World(
+                houses.load(task.house),
+                robots=specs,
+                objects=objects,
+                detectors=detectors,
+                profile="fast" if pack is None else "nice",
+                assets=pack or "",
+            )
         return self._worlds[key]
+
+    def _body(self, seat: RobotSeat) -> Any:
+        if seat.robot_sha256 and plugins.sha256(self._robot) != seat.robot_sha256:
+            raise HthorError(
+                f"{self._robot} was changed while its run was going on. Change it back and repeat the command to "
+                "finish this run, or evaluate the new version in a run of its own."
+            )
+        return plugins.load("robot", self._robot if seat.robot_sha256 else seat.robot)
 
     def _mind(self, seat: RobotSeat) -> Mind:
         if not self._path:
@@ -178,12 +246,12 @@ class Company:
             mind.close()
 
 
-def player(path: str = "") -> Callable[[Session], Iterator[Record]]:
+def player(path: str = "", robot: str = "", assets: str = "") -> Callable[[Session], Iterator[Record]]:
     """What a worker does with each session: play its trials in order. Called in the worker; imports what is heavy."""
     from hthor.episode import play
     from hthor.eval import record
 
-    stage = Stage(path)
+    stage = Stage(path, robot, assets)
 
     def perform(session: Session) -> Iterator[Record]:
         with stage.enter(session) as company:

@@ -13,7 +13,7 @@ from hthor import jsonio
 from hthor.errors import RunError
 from hthor.eval import log, metrics, setup, stats
 from hthor.eval.record import Record
-from hthor.eval.setup import Setup, SuiteRef
+from hthor.eval.setup import AssetsRef, Setup, SuiteRef
 from hthor.eval.stats import Estimate
 from hthor.types import AgentRef
 
@@ -41,13 +41,17 @@ class Counts(Struct, frozen=True, kw_only=True):
 
 
 class Hashes(Struct, frozen=True, kw_only=True):
-    """Hashes of what decides the records, and of the records themselves, whatever their order in the log."""
+    """Hashes of what decides the records, and of the records themselves, whatever their order in the log.
+
+    ``robot`` is that of a user's own robot file, empty for a robot that ships with hthor: ``code`` covers those.
+    """
 
     run: str
     human: str
     rules: str
     code: str
     trials: str
+    robot: str = ""
 
 
 class Effort(Struct, frozen=True, kw_only=True):
@@ -64,6 +68,7 @@ class Result(Struct, frozen=True, kw_only=True):
     schema: str = SCHEMA
     agent: AgentRef
     robot: str
+    detector: str
     human: str
     suite: SuiteRef
     seed: int
@@ -73,6 +78,7 @@ class Result(Struct, frozen=True, kw_only=True):
     counts: Counts
     versions: dict[str, str]
     hashes: Hashes
+    assets: AssetsRef
     effort: Effort | None = None
 
 
@@ -101,6 +107,8 @@ def _check_origin(folder: Path, record: Record, plan: Setup) -> None:
         "rules_sha256": (spec.rules_sha256, plan.rules_sha256),
         "code_sha256": (spec.code_sha256, plan.code_sha256),
         "robots": ([seat.agent for seat in spec.robots], [plan.agent] if plan.robot else []),
+        "bodies": ([seat.robot_sha256 for seat in spec.robots], [plan.robot_sha256] if plan.robot else []),
+        "detectors": ([seat.detector for seat in spec.robots], [plan.detector] if plan.robot else []),
     }
     for field, (here, there) in pairs.items():
         if here != there:
@@ -116,6 +124,7 @@ def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], ef
     return Result(
         agent=plan.agent,
         robot=plan.robot,
+        detector=plan.detector,
         human=plan.human,
         suite=plan.suite,
         seed=plan.seed,
@@ -136,7 +145,9 @@ def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], ef
             rules=plan.rules_sha256,
             code=plan.code_sha256,
             trials=hashlib.sha256(b"".join(lines)).hexdigest(),
+            robot=plan.robot_sha256,
         ),
+        assets=plan.assets,
         effort=effort,
     )
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from msgspec import Struct
 
 from hthor import humans, rules, seeds
+from hthor.detectors import OWN
 from hthor.eval import cast, provenance
 from hthor.tasks import Suite
 from hthor.types import TaskSpec, TrialSpec
@@ -33,6 +34,9 @@ def sessions(
     human: str = "proxy",
     seed: int = 0,
     participants: int | None = None,
+    detector: str = OWN,
+    robot_sha256: str = "",
+    assets_sha256: str = "",
 ) -> tuple[Session, ...]:
     """The sessions of a run.
 
@@ -42,9 +46,12 @@ def sessions(
     Args:
         agent: a built-in agent's name, an agent file, or what `cast.introduce` made of either.
         participants: how many people; by default as many as let every task be done exactly once.
+        detector: how the robot's detector errs, as `hthor.detectors.tidy` spells it.
+        robot_sha256: hash of the robot's file, for a robot that is not one of ours.
+        assets_sha256: hash of the furniture pack that pictures show, if any.
     """
     character = cast.introduce(agent) if isinstance(agent, str) else agent
-    seats, fingerprint = character.seats(robot), humans.fingerprint(human)
+    seats, fingerprint = character.seats(robot, detector, robot_sha256), humans.fingerprint(human)
     rules_hash, code_hash = rules.sha256(), provenance.code_sha256()
 
     def trial(task: TaskSpec, participant: int, index: int) -> TrialSpec:
@@ -59,6 +66,7 @@ def sessions(
             suite_sha256=suite.sha256,
             rules_sha256=rules_hash,
             code_sha256=code_hash,
+            assets_sha256=assets_sha256,
         )
 
     count = people_for(len(suite.tasks)) if participants is None else participants

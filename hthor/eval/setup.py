@@ -10,6 +10,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor import humans, jsonio, rules
+from hthor.detectors import OWN
 from hthor.errors import RunError
 from hthor.eval import cast, provenance
 from hthor.eval.session import people_for
@@ -28,12 +29,28 @@ class SuiteRef(Struct, frozen=True, kw_only=True):
     sha256: str
 
 
+PROCEDURAL = "procedural"
+"""Name of the furniture that ships with hthor."""
+
+
+class AssetsRef(Struct, frozen=True, kw_only=True):
+    """What the furniture in pictures is: our own, made by the code of this hash, or a pack with its own hash."""
+
+    name: str = PROCEDURAL
+    sha256: str
+
+
 class Setup(Struct, frozen=True, kw_only=True):
-    """A run's configuration. ``robot`` is empty without a robot; ``trials`` is how many there are in a whole run."""
+    """A run's configuration. ``robot`` and ``detector`` are empty without a robot.
+
+    ``trials`` is how many there are in a whole run. ``robot_sha256`` is the hash of a user's own robot file, empty for
+    a robot that ships with hthor.
+    """
 
     schema: str = SCHEMA
     agent: AgentRef
     robot: str
+    detector: str
     human: str
     human_sha256: str
     suite: SuiteRef
@@ -43,6 +60,8 @@ class Setup(Struct, frozen=True, kw_only=True):
     rules_sha256: str
     code_sha256: str
     versions: dict[str, str]
+    assets: AssetsRef
+    robot_sha256: str = ""
 
     @property
     def sha256(self) -> str:
@@ -56,7 +75,16 @@ class Setup(Struct, frozen=True, kw_only=True):
 
 
 def settle(
-    suite: Suite, character: cast.Character, *, robot: str, human: str, seed: int, participants: int | None
+    suite: Suite,
+    character: cast.Character,
+    *,
+    robot: str,
+    human: str,
+    seed: int,
+    participants: int | None,
+    detector: str = OWN,
+    robot_sha256: str = "",
+    assets: AssetsRef | None = None,
 ) -> Setup:
     """The configuration of a run, every default resolved."""
     hands = people_for(len(suite.tasks))
@@ -66,6 +94,7 @@ def settle(
     return Setup(
         agent=character.ref,
         robot="" if character.absent else robot,
+        detector="" if character.absent else detector,
         human=human,
         human_sha256=humans.fingerprint(human),
         suite=SuiteRef(name=suite.name, version=str(suite.version), sha256=suite.sha256),
@@ -75,6 +104,8 @@ def settle(
         rules_sha256=rules.sha256(),
         code_sha256=provenance.code_sha256(),
         versions=provenance.versions(),
+        assets=assets or AssetsRef(sha256=provenance.code_sha256()),
+        robot_sha256="" if character.absent else robot_sha256,
     )
 
 

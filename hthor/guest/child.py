@@ -24,7 +24,7 @@ import msgspec
 
 from hthor.errors import StaleObservation
 from hthor.guest import wire
-from hthor.types import Action, Detection, Message, Observation, Scan
+from hthor.types import Action, Camera, Detection, Message, Observation, Scan
 
 _PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
 _TEXT_MAX = 8000
@@ -98,6 +98,9 @@ class RemoteSenses:
 
     def segmentation(self) -> Any:
         return self._get("segmentation", _array)
+
+    def camera(self) -> Camera:
+        return self._get("camera", _camera)  # type: ignore[no-any-return]
 
     def image(self, number: int) -> Any:
         """The picture of message ``number``."""
@@ -244,6 +247,11 @@ def _scan(data: bytes) -> Scan:
         ranges=wire.decode_array(scan.ranges),
         tops=scan.tops if scan.tops is None else wire.decode_array(scan.tops),
     )
+
+
+def _camera(data: bytes) -> Camera:
+    camera = msgspec.msgpack.decode(data, type=Camera)
+    return msgspec.structs.replace(camera, matrix=wire.decode_array(camera.matrix), pose=wire.decode_array(camera.pose))
 
 
 def _array(data: bytes) -> Any:

@@ -192,7 +192,7 @@ class Guest:
     def _sense(self, observation: Observation, ask: wire.Ask) -> Any:
         """What was asked for. A failure to sense is ours, so the guest is let go and the error passed on."""
         try:
-            if ask.what in ("detections", "scan", "rgb", "depth", "segmentation"):
+            if ask.what in ("detections", "scan", "rgb", "depth", "segmentation", "camera"):
                 return getattr(observation.senses, ask.what)()
             pictures = [message.image for message in observation.inbox if message.id == ask.which]
             if ask.what == "image" and pictures and callable(pictures[0]):

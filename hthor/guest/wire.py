@@ -69,7 +69,7 @@ class Done(Struct, tag="done", frozen=True, kw_only=True):
 
 
 class Ask(Struct, tag="ask", frozen=True, kw_only=True):
-    """Guest: needs one of rgb, depth, segmentation, scan, detections, or the image of message ``which``."""
+    """Guest: needs one of rgb, depth, segmentation, camera, scan, detections, or the image of message ``which``."""
 
     what: str
     which: int = -1
