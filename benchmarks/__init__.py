@@ -1,1 +1,1 @@
-"""Timings, which belong here and never in a test."""
+"""How fast hthor is: ``python -m benchmarks`` prints it as one table. Nothing here is a test."""

@@ -1,0 +1,50 @@
+"""``python -m benchmarks``: how fast hthor is, as one table.
+
+Times are CPU time of one process unless a row says otherwise; whatever is compiled is compiled before. Numbers that
+are compared come from the same run, so that ratios hold on a noisy machine too.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Iterator
+
+from benchmarks import environment, rendering, scaling, scenes, table, trials
+from hthor import tasks
+from hthor.eval import provenance
+
+PARTS = ("trials", "environment", "rendering", "processes")
+
+
+def main() -> None:
+    """Measure and print."""
+    options = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__.splitlines()[0])
+    options.add_argument("--quick", action="store_true", help="fewer repeats: a first idea in about a minute")
+    options.add_argument("--json", action="store_true", help="JSON instead of a table")
+    options.add_argument("--suite", default=scenes.largest(), help=f"one of {', '.join(tasks.suites())} (%(default)s)")
+    options.add_argument("--part", action="append", choices=PARTS, help="only this part; may be given more than once")
+    options.add_argument("--profile", default="fast,nice", help="profiles of pictures, comma-separated (%(default)s)")
+    given = options.parse_args()
+    provenance.compiled()
+    rows: list[table.Row] = []
+    for part in given.part or PARTS:
+        print(f"measuring {part} ...", file=sys.stderr)
+        rows += _measures(given)[part]()
+    table.put(rows, given.json)
+
+
+def _measures(given: argparse.Namespace) -> dict[str, Callable[[], Iterator[table.Row]]]:
+    suite, quick = given.suite, given.quick
+    sizes = (128,) if quick else rendering.SIZES
+    profiles = [name for name in given.profile.split(",") if name]
+    return {
+        "trials": lambda: trials.rows(suite, 2 if quick else 6),
+        "environment": lambda: environment.rows(scenes.scenes(suite), suite, 1 if quick else 5),
+        "rendering": lambda: rendering.rows(scenes.scenes(suite), profiles, sizes),
+        "processes": lambda: scaling.rows(suite, 5 if quick else 30),
+    }
+
+
+if __name__ == "__main__":
+    main()
