@@ -35,7 +35,8 @@ def check_form(kind: Kind, size: Vec3) -> None:
         assert len(set(part.rgba)) > 0
         assert all(0 <= channel <= 1 for channel in part.rgba)
         if part.shape != "box":
-            assert part.half[0] == pytest.approx(part.half[1], abs=1e-6)
+            along = "xyz".index(part.axis)
+            assert part.half[along - 1] == pytest.approx(part.half[along - 2], abs=1e-6)
         if part.shape == "sphere":
             assert part.half[0] == pytest.approx(part.half[2], abs=1e-6)
     for surface in form.surfaces:
@@ -52,7 +53,7 @@ def test_every_kind_is_sound(kind: Kind) -> None:
     assert kind.mass > 0
     assert kind.title
     assert kind.indefinite.endswith(kind.title)
-    assert 1 <= len(kind.parts()) <= (3 if kind.pickable else 10)
+    assert 1 <= len(kind.parts()) <= (3 if kind.pickable else 16 if kind.openable else 10)
     assert kind.openable == bool(kind.joints()) == any(part.moves for part in kind.parts())
     assert kind.receptacle == bool(kind.surfaces())
     heights = [surface.centre[2] for surface in kind.surfaces()]
@@ -206,3 +207,28 @@ def test_an_asset_database(tmp_path: Path) -> None:
         procthor.read(path)
     with pytest.raises(HouseError, match="cannot read"):
         procthor.read(tmp_path / "absent.json")
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind.finishes], ids=lambda kind: kind.name)
+def test_finishes_change_looks_only(kind: Kind) -> None:
+    assert kind.family != "target"
+    seen = set()
+    for variant in range(1 + len(kind.finishes)):
+        form = kind.form(variant=variant)
+        seen.add(tuple(part.rgba for part in form.parts))
+        assert [(part.centre, part.half, part.moves) for part in form.parts] == [
+            (part.centre, part.half, part.moves) for part in kind.parts()
+        ]
+    assert len(seen) == 1 + len(kind.finishes)
+
+
+def test_a_drawer_s_floor_moves_with_it_and_stays_inside_when_pulled() -> None:
+    for name in ("dresser", "side_table", "desk"):
+        kind = catalog.kind(name)
+        (joint,) = kind.joints()
+        (floor,) = (surface for surface in kind.surfaces() if surface.moves)
+        assert (joint.kind, joint.name, floor.moves, floor.inside) == ("slide", "drawer", "drawer", True)
+        assert 0.25 < joint.travel < kind.size[1]
+        assert kind.rests() == tuple(surface for surface in kind.surfaces() if not surface.inside)
+        assert not kind.hides
+    assert [kind.name for kind in KINDS if kind.hides] == ["fridge"]

@@ -85,6 +85,10 @@ def test_version(hthor):
             ("unknown human model 'prox'", "'proxy'"),
         ),
         (("eval", "--agent", "silent", "--suite", "fake", "--robot", "scuot"), ("unknown robot 'scuot'", "'scout'")),
+        (
+            ("eval", "--agent", "silent", "--suite", "fake", "--detector", "perfect"),
+            ("unknown detector 'perfect'", "own, ideal, noisy"),
+        ),
         (("score", "nowhere"), ("nowhere is not a run's folder", "hthor eval")),
     ],
 )

@@ -59,7 +59,7 @@ class Stage:
         self.started: list[tuple[int, str, Motion]] = []
         self.frames = 0
 
-    def reset(self, task: TaskSpec) -> None:
+    def reset(self, task: TaskSpec, seed: int = 0) -> None:
         self.tick, self.free_at = 0, dict.fromkeys(self.seats, 0)
 
     def idle(self, seat: str) -> bool:

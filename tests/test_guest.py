@@ -17,6 +17,7 @@ from hthor.types import (
     Action,
     BodySpec,
     Briefing,
+    Camera,
     Detection,
     Message,
     Move,
@@ -81,6 +82,10 @@ class Sensors:
     def depth(self) -> Any:
         raise ValueError("no picture today")
 
+    def camera(self) -> Camera:
+        self.read.append("camera")
+        return Camera(size=(400, 300), matrix=np.diag((200.0, 200.0, 1.0)), pose=np.eye(4), near=0.02, far=80.0)
+
 
 def look(tick: int = 0, senses: object = None, **more: Any) -> Observation:
     return Observation(tick=tick, pose=Pose(x=0.1, y=0.2, yaw=0.3), idle=True, senses=senses or Sensors(), **more)
@@ -133,6 +138,8 @@ if observation.tick == 0:
     return Action(motion=Move(forward=float(observation.scan.ranges.min()) / 10))
 picture = observation.rgb
 assert picture.shape == (300, 400, 3) and picture[0, 1, 2] == 5 and (observation.rgb is picture)
+assert observation.camera.size == (400, 300) and observation.camera.matrix[1, 1] == 200.0
+assert observation.camera.pose.shape == (4, 4)
 assert observation.detections[0].position == (1.0, 2.0, 0.8)
 assert observation.receipt.status == "declined" and observation.outcome.by == "human" and observation.truth[0].open
 assert observation.inbox[0].image()[0, 0] == 7
@@ -155,7 +162,7 @@ return Action(say=Send(text="Here.", object="apple", position=(1.0, 2.0, 0.8)))
         )
     )
     assert action.say == Send(text="Here.", object="apple", position=(1.0, 2.0, 0.8))
-    assert senses.read == ["rgb", "detections"]
+    assert senses.read == ["rgb", "camera", "detections"]
     assert "this is no message" in guest.log
     assert "neither is this" in guest.log
 

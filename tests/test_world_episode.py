@@ -12,7 +12,7 @@ from pathlib import Path
 import msgspec
 import pytest
 import world_house as tiny
-from world_house import COFFEE, FRIDGE, TABLE, do, on, reason, task, wait
+from world_house import COFFEE, COUNTER, FRIDGE, TABLE, do, on, reason, task, wait
 
 from hthor import houses, plugins, rules
 from hthor.errors import HthorError, TaskError, UnknownName
@@ -122,7 +122,7 @@ def test_objects_start_where_the_task_says_asleep_and_stay(world: World) -> None
     apple = on(TABLE, "apple")
     world.reset(task(apple))
     before = {state.id: state for state in world.truth()}
-    assert set(before) == {"apple", "book|old", FRIDGE}
+    assert set(before) == {"apple", "book|old", "vase|1", COUNTER, FRIDGE}
     assert (before["apple"].position, before["apple"].support) == (apple.position, TABLE)
     wait(world, 30)
     assert {state.id: state for state in world.truth()} == before

@@ -12,7 +12,7 @@ from world_house import COFFEE, FRIDGE, TABLE, do, on, task, wait
 from hthor import rules
 from hthor.errors import StaleObservation
 from hthor.types import Close, Open, Pick, Pose, Rotate
-from hthor.world import World
+from hthor.world import World, bodies
 
 AT_FRIDGE = Pose(x=0.75, y=2.6, yaw=math.pi / 2)
 
@@ -109,14 +109,15 @@ def test_what_is_held_is_seen_at_the_hand_and_hides_nothing(world: World) -> Non
     world.teleport("human", Pose(x=6.2, y=1.4, yaw=0.0))
     world.teleport("robot", Pose(x=7.3, y=1.35, yaw=math.pi))
     apple = seen(world, "robot")["apple"]
+    hand = bodies.hand(world.bodies["human"])
     assert apple.held_by == "human"
-    assert apple.position[:2] == pytest.approx((6.54, 1.4))
+    assert apple.position[:2] == pytest.approx((6.2 + hand[0], 1.4 + hand[1]))
 
 
 def test_in_view_is_near_and_before_the_eyes(world: World) -> None:
-    assert world.snapshot().in_view == {"human": ()}  # 1.8 m away
+    assert world.snapshot().in_view == {"human": ("vase|1",)}  # the apple is 1.8 m away
     world.teleport("human", Pose(x=2.5, y=3.4, yaw=-math.pi / 2))
-    assert world.snapshot().in_view == {"human": ("apple",)}
+    assert world.snapshot().in_view == {"human": ("apple", "vase|1")}
     do(world, "human", Rotate(yaw=math.pi))
     assert world.snapshot().in_view == {"human": ()}
 

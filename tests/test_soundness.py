@@ -1,0 +1,168 @@
+"""What the engine says of a house: what penetrates, which surfaces hold what, and that a proof is repeatable."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from test_check import SIDE, TABLE, house, on, thing
+
+from hthor import catalog
+from hthor.errors import HthorError
+from hthor.houses.check import check
+from hthor.houses.findings import error, sound
+from hthor.world import homes, penetration, trial_drop
+from hthor.world.penetration import DEEP_M, penetrations
+from hthor.world.soundness import prove
+from hthor.world.trial_drop import drops
+
+FURNITURE = [
+    name for name in catalog.names() if not catalog.kind(name).pickable and not catalog.kind(name).wall_mounted
+]
+RECEPTACLES = [name for name in FURNITURE if catalog.kind(name).rests()]
+
+
+def pairs(*things):
+    return {pair: depth for pair, depth in penetration.depths(house(*things)).items() if depth > DEEP_M}
+
+
+def test_what_stands_apart_or_rests_does_not_penetrate():
+    assert pairs(TABLE, on("bowl", "bowl", TABLE), thing("chair", "chair", 2.5, 1.75, 0.0)) == {}
+
+
+@given(st.floats(0.006, 0.2), st.sampled_from(("bin", "bowl", "side_table", "vase")))
+@settings(max_examples=20, deadline=None)
+def test_the_depth_is_how_far_one_thing_was_pushed_into_another(depth: float, kind: str):
+    """Blocks side by side, pushed together, or a round thing pressed into the table's top."""
+    if kind == "side_table":
+        other = thing("it", "ottoman", 1.0 + 0.7 - depth, 1.0)
+        found = pairs(thing("block", "ottoman", 1.0, 1.0), other)
+        assert found == {("block", "it"): pytest.approx(depth, abs=1e-6)}
+    else:
+        low = catalog.kind(kind).size[2]
+        deep = min(depth, 0.01, 0.4 * low)
+        other = thing("it", kind, 2.5, 2.5, bottom=0.74 - deep)
+        assert pairs(TABLE, other)["it", "table"] == pytest.approx(deep, abs=1e-4)
+
+
+def test_an_empty_space_under_a_table_is_no_penetration():
+    """Exact over parts: a bin under the table is inside its bounding box, yet touches nothing."""
+    assert pairs(TABLE, thing("bin", "bin", 2.5, 2.5)) == {}
+
+
+def test_walls_and_the_floor_count_and_are_named():
+    sunk = thing("sunk", "bin", 1.0, 1.0, bottom=-0.02)
+    stuck = thing("stuck", "dresser", 2.5, 0.05 + 0.24 - 0.03)
+    words = {finding.where: finding.problem for finding in penetrations(house(sunk, stuck))}
+    assert words == {"sunk": "the bin is 20 mm deep in the floor", "stuck": "the dresser is 30 mm deep in the wall"}
+
+
+def test_both_things_are_named():
+    (finding,) = penetrations(house(TABLE, thing("other", "dining_table", 3.0, 2.5)))
+    assert finding.rule == "penetration"
+    assert "'table' (dining table)" in f"'{finding.where}' {finding.problem}"
+    assert "'other'" in finding.problem or finding.where == "other"
+
+
+# --------------------------------------------------------------------------------------------------------------- drops
+
+
+@pytest.mark.parametrize("name", RECEPTACLES)
+def test_every_surface_of_every_kind_takes_every_target(name: str):
+    spec = house(thing("it", name, 2.5, 2.5, math.pi / 2))
+    trials = list(trial_drop._trials(spec))
+    assert len(trials) == len(catalog.kind(name).rests()) * len(catalog.TARGETS)
+    assert [str(finding) for finding in drops(spec)] == []
+
+
+def test_a_full_surface_takes_nothing_and_says_what_does_not_fit():
+    table = thing("it", "side_table", 2.5, 2.5)
+    (board,) = catalog.kind("side_table").rests()
+    spec = house(table, on("lamp", "lamp", table))
+    problems = [finding.problem for finding in drops(spec)]
+    assert any("no free place for the lettuce" in problem and board.name in problem for problem in problems)
+    assert not any("remote control" in problem for problem in problems)
+    assert {finding.rule for finding in drops(spec)} == {"surface-takes"}
+
+
+def test_what_does_not_stay_is_told(monkeypatch: pytest.MonkeyPatch):
+    """A ball let go half over the edge falls to the floor."""
+    table = thing("it", "side_table", 2.5, 2.5)
+
+    def edge(place, size, solids, near):
+        return [(place.centre[0] + place.half[0] + 0.05, place.centre[1], place.centre[2] + size[2] / 2 + 0.005)]
+
+    monkeypatch.setattr(trial_drop, "candidates", edge)
+    problems = [finding.problem for finding in drops(house(table))]
+    assert any("the apple put on the top of the side table strays" in problem for problem in problems)
+
+
+def test_objects_tried_together_do_not_meet():
+    """Six targets at the same spot, none pushes another."""
+    spec = house(thing("it", "stool", 2.5, 2.5))
+    spots = {trial.at[:2] for trial in trial_drop._trials(spec) if trial.at is not None}
+    assert len(spots) == 1
+    assert drops(spec) == ()
+
+
+# --------------------------------------------------------------------------------------------------------------- homes
+
+
+def test_a_home_that_the_proof_refuses_is_followed_by_the_next_attempt(monkeypatch: pytest.MonkeyPatch):
+    tried = []
+
+    def generate(seed, rooms, *, first, tries):
+        tried.append((seed, rooms, first, first + tries))
+        return {"metadata": {"generator": {"attempt": first + 1}}}
+
+    refusal = error("penetration", "sofa", "is deep in the wall")
+    verdicts = iter([(refusal,), ()])
+    monkeypatch.setattr(homes.generator, "generate", generate)
+    monkeypatch.setattr(homes.loader, "build", lambda document, name: house())
+    monkeypatch.setattr(homes, "prove", lambda spec, radius: next(verdicts))
+    home = homes.make(7, 5)
+    assert tried == [(7, 5, 0, homes.ATTEMPTS), (7, 5, 2, homes.ATTEMPTS)]
+    assert (home.attempt, home.refused) == (3, (refusal,))
+    monkeypatch.setattr(homes, "prove", lambda spec, radius: (refusal,))
+    with pytest.raises(HthorError, match=r"seed 7 gave no sound home of 5 rooms.*deep in the wall.*another seed"):
+        homes.make(7, 5)
+
+
+def test_a_home_is_sound_and_the_same_every_time():
+    home = homes.make(11, 4)
+    assert prove(home.house, homes.RADIUS_M) == home.findings
+    assert sound(home.findings)
+    assert len(home.house.rooms) == 4
+    assert homes.make(11, 4).document == home.document
+
+
+# --------------------------------------------------------------------------------------------------------------- proof
+
+
+def test_a_proof_is_the_strict_check_and_the_engine_s_word():
+    spec = house(TABLE, thing("stuck", "dresser", 2.5, 0.05 + 0.24 - 0.03), start=(1.0, 1.5))
+    findings = prove(spec)
+    assert set(check(spec, 0.25, strict=True)) < set(findings)
+    assert {finding.rule for finding in findings} == {"penetration", "receptacles-present"}
+    assert prove(spec) == findings
+
+
+def test_the_leaf_in_a_doorway_needs_room_to_swing():
+    """It hangs at the doorway's lower end and turns into room a: a bin there is in its way, one in room b is not."""
+    spec = house(TABLE)
+    hung = msgspec.structs.replace(spec, openings=(msgspec.structs.replace(spec.openings[0], openable=True),))
+    for x, hit in ((SIDE - 0.7, True), (SIDE + 0.7, False)):
+        things = (TABLE, thing("bin", "bin", x, SIDE / 2 - 0.2))
+        found = [f for f in prove(msgspec.structs.replace(hung, things=things), 0.2) if f.rule == "swing-free"]
+        assert [f.where for f in found] == ["door"] * hit
+        assert all("in 'bin'" in f.problem for f in found)
+
+
+def test_a_furnished_room_is_proved_sound_but_for_what_it_lacks():
+    bed = thing("bed", "bed", 0.9, SIDE - 0.05 - 1.06, math.pi)
+    fridge = thing("fridge", "fridge", SIDE + 2.5, SIDE - 0.05 - 0.37, math.pi)
+    spec = house(TABLE, bed, fridge, on("egg", "egg", fridge, v=0.8, surface=2), on("pillow", "pillow", bed, v=-0.6))
+    assert {finding.rule for finding in prove(spec)} == {"receptacles-present"}

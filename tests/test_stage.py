@@ -1,0 +1,252 @@
+"""The stage of the profile nice: its building, its lamps, its puppets; and what is drawn there, where OpenGL works."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import world_house as tiny
+from hypothesis import given
+from hypothesis import strategies as st
+from world_house import COFFEE, FRIDGE, TABLE, do, on, task
+
+from hthor import geometry, houses, looks
+from hthor.errors import RenderingUnavailable
+from hthor.types import HUMAN, Close, Open, Pick, Pose
+from hthor.world import World, contents, sheet
+from hthor.world.stage import lamps, outdoors, partitions
+from hthor.world.stage.dressing import Dressing
+from hthor.world.stage.fabric import Fabric
+from hthor.world.stage.grids import facet, slab
+from hthor.world.stage.puppets import Puppets
+
+AT_THE_FRIDGE = Pose(x=0.75, y=2.5, yaw=math.pi / 2)
+
+
+class Pack:
+    """A pack that has red cubes for apples and nothing else."""
+
+    name, sha256 = "cubes", "0" * 64
+
+    def look(self, kind: str, size: Any, variant: int) -> tuple[looks.Piece, ...] | None:
+        if kind != "apple":
+            return None
+        return (looks.Piece(slab((0.0, 0.0, 0.0), (0.04, 0.04, 0.04)), looks.Material(texture="red")),)
+
+    def texture(self, name: str) -> Any:
+        assert name == "red"
+        return np.full((4, 4, 3), (255, 0, 0), np.uint8)
+
+
+@pytest.fixture(scope="module")
+def world() -> World:
+    return World(tiny.house(), robots=("scout",), profile="nice")
+
+
+@pytest.fixture(autouse=True)
+def _again(world: World) -> None:
+    human = Pose(x=4.0, y=2.0, yaw=math.atan2(0.6, -1.5), pitch=-0.3)
+    start = task(on(TABLE, "apple"), on(COFFEE, "lettuce"), human=human, robots=(Pose(x=6.2, y=2.0, yaw=math.pi),))
+    world.reset(start)
+
+
+@pytest.fixture(scope="module")
+def drawn(world: World) -> World:
+    try:
+        world.picture(HUMAN)
+    except RenderingUnavailable as error:
+        pytest.skip(str(error))
+    return world
+
+
+def undressed(world: World, pack: Any = None) -> Any:
+    """The visual model of a world, without any OpenGL."""
+    split = contents.split(world.house, contents.DEFAULT_OBJECTS)
+    dressing = Dressing(world.house, split, Puppets(world.model, world._scene), Fabric(pack))
+    return dressing.build(world.bodies, lamps.Lamps(world.house))
+
+
+# ------------------------------------------------------------------------------------------------- without any OpenGL
+
+
+@given(st.floats(0.1, 9.0), st.floats(0.1, 9.0), st.floats(-3.0, 3.0))
+def test_a_facet_has_its_area_and_faces_one_way(width: float, height: float, yaw: float) -> None:
+    along = (width * math.cos(yaw), width * math.sin(yaw), 0.0)
+    mesh = facet((1.0, 2.0, 0.5), along, (0.0, 0.0, height))
+    a, b, c = (mesh.vertices[mesh.faces[:, k]].astype(float) for k in range(3))
+    crosses = np.cross(b - a, c - a)
+    assert np.linalg.norm(crosses, axis=1).sum() / 2 == pytest.approx(width * height, rel=1e-3)
+    facing = np.array((math.sin(yaw), -math.cos(yaw), 0.0))
+    assert (crosses @ facing > 0.0).all()
+    assert mesh.normals @ facing == pytest.approx(1.0, abs=1e-5)
+    assert np.ptp(mesh.uv, axis=0) == pytest.approx((width, height), rel=1e-4)
+
+
+@pytest.mark.parametrize("name", houses.names()[:4])
+def test_walls_meet_without_two_in_one_place(name: str) -> None:
+    pieces = list(partitions.slabs(houses.load(name)))
+    assert len(pieces) > 20
+    for a, b in itertools.combinations(pieces, 2):
+        if a.face.id != b.face.id:
+            shared = [min(a.centre[k] + p, b.centre[k] + q) - max(a.centre[k] - p, b.centre[k] - q)
+                      for k, (p, q) in enumerate(zip(_extent(a), _extent(b), strict=True))]  # fmt: skip
+            assert min(shared) < 1e-4 or max(shared[:2]) < 0.051, (a.face.id, b.face.id)  # only corners are shared
+
+
+@pytest.mark.parametrize("name", houses.names()[:4])
+def test_walls_close_every_corner_and_leave_every_opening(name: str) -> None:
+    house = houses.load(name)
+    pieces = list(partitions.slabs(house))
+
+    def solid(x: float, y: float, z: float) -> bool:
+        return any(
+            abs(x - piece.centre[0]) <= _extent(piece)[0] + 1e-6
+            and abs(y - piece.centre[1]) <= _extent(piece)[1] + 1e-6
+            and abs(z - piece.centre[2]) <= piece.half[2] + 1e-6
+            for piece in pieces
+        )
+
+    for face in house.walls:
+        for x, y in (face.a, face.b):
+            if any(face.id != other.id and (x, y) in (other.a, other.b) for other in house.walls):
+                assert solid(x + 0.02, y + 0.02, 2.4) or solid(x - 0.02, y - 0.02, 2.4)
+    for opening in house.openings:
+        x, y = (opening.a[0] + opening.b[0]) / 2, (opening.a[1] + opening.b[1]) / 2
+        assert not solid(x, y, (opening.low + opening.high) / 2)
+        assert solid(x, y, opening.high + 0.1)
+
+
+def _extent(piece: partitions.Slab) -> tuple[float, float, float]:
+    cos, sin = abs(math.cos(piece.yaw)), abs(math.sin(piece.yaw))
+    return (cos * piece.half[0] + sin * piece.half[1], sin * piece.half[0] + cos * piece.half[1], piece.half[2])
+
+
+@pytest.mark.parametrize("name", houses.names()[:4])
+def test_every_room_has_lamps_of_its_own(name: str) -> None:
+    house = houses.load(name)
+    places = lamps.Lamps(house).places
+    for room in house.rooms:
+        assert 1 <= len(places[room.id]) <= 3
+        assert all(geometry.inside(place, room.polygon) for place in places[room.id])
+        assert len(set(places[room.id])) == len(places[room.id])
+
+
+def test_the_sky_is_bright_blue_above_and_the_same_every_time() -> None:
+    sky = outdoors.sky()
+    assert np.array_equal(sky, outdoors.sky())
+    right, _, up, *_ = np.split(sky, 6)
+    assert sky.min() > 40
+    red, _, blue = up[100:156, 100:156].reshape(-1, 3).mean(axis=0)
+    assert blue > red + 20
+    assert right[200, 128, 1] > right[200, 128, 2]  # grass below the horizon
+
+
+def test_the_stage_touches_no_physics_and_everything_has_its_owner(world: World) -> None:
+    dressed = undressed(world)
+    assert not dressed.model.geom_contype.any()
+    assert not dressed.model.geom_conaffinity.any()
+    assert set(dressed.owner) <= set(world.names)
+    things = {thing.id for thing in world.house.things}
+    assert things | {"apple", "mug", HUMAN, "robot", "window|1", "outdoors"} <= set(dressed.owner)
+
+
+def test_a_pack_comes_first_and_brings_its_own_textures(world: World) -> None:
+    plain, packed = undressed(world).model, undressed(world, Pack()).model
+    red = [bool((packed.tex_data[at : at + 3] == (255, 0, 0)).all()) for at in packed.tex_adr]
+    assert sum(red) == 1
+    assert packed.nmeshface < plain.nmeshface
+
+
+def test_puppets_follow_doors(world: World) -> None:
+    puppets = Puppets(world.model, world._scene)
+    body = puppets.hung[FRIDGE, world._doors.get(FRIDGE).joints[0].name]
+    closed = puppets.at(world._env.data.qpos)[1][body].copy()
+    _, (w, *_rest) = puppets.relative(body, ((0.0, 0.0, 0.0), tuple(closed)))
+    assert abs(w) == pytest.approx(1.0, abs=1e-9)  # at rest it is what it is closed
+    world.teleport(HUMAN, AT_THE_FRIDGE)
+    do(world, HUMAN, Open(thing=FRIDGE))
+    opened = puppets.at(world._env.data.qpos)[1][body]
+    assert 2.0 * math.acos(min(1.0, abs(float(opened @ closed)))) > 1.0
+
+
+# ------------------------------------------------------------------------------------------------------- with OpenGL
+
+
+def test_both_profiles_show_the_same_world(drawn: World) -> None:
+    fast, nice = (drawn.picture(HUMAN, "segmentation", profile=profile) for profile in ("fast", "nice"))
+    assert (fast == nice).mean() > 0.85
+    apple = drawn.names.index("apple")
+    assert (nice == apple).sum() >= 4
+    centres = [np.argwhere(picture == apple).mean(axis=0) for picture in (fast, nice)]
+    assert np.abs(centres[0] - centres[1]).max() < 1.5
+    depths = [drawn.picture(HUMAN, "depth", profile=profile) for profile in ("fast", "nice")]
+    assert np.median(np.abs(depths[0] - depths[1])) < 0.03
+
+
+def test_no_picture_is_dark_or_has_a_hole(drawn: World) -> None:
+    for x, y in ((1.0, 1.0), (4.2, 3.3), (6.0, 3.0)):
+        for turn in range(0, 4, 2) if x < 5.0 else range(1, 4, 2):
+            drawn.teleport(HUMAN, Pose(x=x, y=y, yaw=turn * math.pi / 2))
+            picture = drawn.picture(HUMAN, size=(64, 64)).astype(int)
+            assert (picture.max(axis=2) < 12).mean() < 0.02
+            seen = drawn.picture(HUMAN, "segmentation", size=(64, 64))
+            assert (seen < 0).mean() < 0.05  # the sky through the window
+            ahead = drawn.picture(HUMAN, "depth", size=(64, 64))
+            assert (ahead > 12.0).mean() < 0.25  # only through the window can one look far
+
+
+def test_drawing_leaves_the_world_alone_and_is_repeatable(drawn: World) -> None:
+    before, qpos = drawn.snapshot(), drawn._env.data.qpos.copy()
+    first = drawn.picture("robot", size=(96, 64)), drawn.top_view(20.0)
+    again = drawn.picture("robot", size=(96, 64)), drawn.top_view(20.0)
+    assert all(np.array_equal(one, other) for one, other in zip(first, again, strict=True))
+    assert drawn.snapshot() == before
+    assert np.array_equal(drawn._env.data.qpos, qpos)
+
+
+def test_bodies_are_seen_by_others_only(drawn: World) -> None:
+    human = drawn.names.index(HUMAN)
+    assert human not in drawn.picture(HUMAN, "segmentation")
+    assert human in drawn.picture("robot", "segmentation")
+
+
+def test_what_opens_and_what_is_carried_is_drawn_so(drawn: World) -> None:
+    drawn.teleport(HUMAN, AT_THE_FRIDGE)
+    closed = drawn.picture(HUMAN, "depth")
+    do(drawn, HUMAN, Open(thing=FRIDGE))
+    assert np.abs(drawn.picture(HUMAN, "depth") - closed).max() > 0.3
+    do(drawn, HUMAN, Close(thing=FRIDGE))
+    assert np.abs(drawn.picture(HUMAN, "depth") - closed).max() < 0.01
+    drawn.teleport(HUMAN, Pose(x=2.5, y=3.4, yaw=-math.pi / 2))
+    do(drawn, HUMAN, Pick(object="apple"))
+    assert drawn.holding(HUMAN) == "apple"
+    drawn.teleport(HUMAN, Pose(x=4.3, y=3.4, yaw=-math.pi / 2, pitch=-0.9))
+    assert (drawn.picture(HUMAN, "segmentation") == drawn.names.index("apple")).sum() > 20
+
+
+def test_the_plan_is_to_scale(drawn: World) -> None:
+    x0, y0, x1, y1 = drawn.top_view_bounds
+    image = drawn.top_view(pixels_per_metre=40.0)
+    assert image.shape == (round((y1 - y0) * 40), round((x1 - x0) * 40), 3)
+    lettuce = image[int((y1 - 1.9) * 40), int((7.5 - x0) * 40)].astype(int)
+    assert lettuce[1] > max(lettuce[0], lettuce[2])
+
+
+def test_a_sheet_has_four_views_and_a_plan(drawn: World, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sheet, "_PLACES", 8)
+    monkeypatch.setattr(sheet, "_TURNS", 4)
+    photographer = sheet.Photographer(drawn.house)
+    shots = sheet.choose(photographer)
+    assert [shot.room.kind for shot in shots] == ["kitchen", "living_room", "kitchen", "living_room"]
+    assert shots == sheet.choose(photographer)
+    whole = sheet.sheet(drawn.house)
+    assert whole.shape[0] > 2 * sheet.VIEW[1]
+    assert whole.shape[1] > 2 * sheet.VIEW[0] + 320
+
+
+def test_a_house_that_cannot_be_read_is_an_error(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert sheet.main([str(tmp_path / "none.json"), "--out", str(tmp_path)]) == 2
+    assert "none.json" in capsys.readouterr().err
