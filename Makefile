@@ -16,7 +16,8 @@ test: .venv/.installed-dev
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n $(JOBS) --dist loadgroup
+	@# a file's tests share worlds and runs, so one process does them all
+	$(BIN)/pytest -n $(JOBS) --dist loadfile
 
 install: .venv/.installed
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-
 _LISTED = 24
 """Names that an error lists before it only counts the rest."""
 
@@ -28,7 +27,7 @@ class UnknownName(HthorError):
 
     def __init__(self, what: str, given: str, valid: Iterable[str], hint: str = "") -> None:
         self.what, self.given, self.valid = what, given, tuple(valid)
-        near = difflib.get_close_matches(given, self.valid, n=1, cutoff=0.5)
+        near = difflib.get_close_matches(str(given), self.valid, n=1, cutoff=0.5)
         guess = f" Did you mean '{near[0]}'?" if near else ""
         listed = ", ".join(self.valid[:_LISTED]) or "none"
         if len(self.valid) > _LISTED:

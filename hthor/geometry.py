@@ -48,6 +48,18 @@ def inside(point: Vec2, polygon: Sequence[Vec2]) -> bool:
     return crossing
 
 
+def distance_to_edge(point: Vec2, polygon: Sequence[Vec2]) -> float:
+    """Distance [m] from a point to the nearest edge of a polygon, inside or outside."""
+    x, y = point
+    best = math.inf
+    for (ax, ay), (bx, by) in zip(polygon, (*polygon[1:], polygon[0]), strict=True):
+        ex, ey = bx - ax, by - ay
+        share = ((x - ax) * ex + (y - ay) * ey) / (ex * ex + ey * ey or 1.0)
+        share = min(1.0, max(0.0, share))
+        best = min(best, math.hypot(ax + share * ex - x, ay + share * ey - y))
+    return best
+
+
 def rectangle(centre: Vec2, size: Vec2, yaw: float) -> tuple[Vec2, Vec2, Vec2, Vec2]:
     """Corners of a turned rectangle, counter-clockwise; ``size`` [m] is its full width and depth."""
     corners = []

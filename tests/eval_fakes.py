@@ -81,7 +81,7 @@ def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
     )
 
 
-def player(path: str = "") -> Callable[[Session], Iterator[Record]]:
+def player(path: str = "", robot: str = "", assets: str = "") -> Callable[[Session], Iterator[Record]]:
     """Plays a session in no time; the fake person counts the trials so far, so sessions cannot be cut in pieces."""
 
     def perform(session_: Session) -> Iterator[Record]:

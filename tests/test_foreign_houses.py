@@ -124,9 +124,12 @@ def test_a_floor_may_touch_itself_at_a_corner():
 
 
 def test_things_put_down_badly_load_and_are_told_of():
+    """Near the outline of the floor, that is: what is far from every room is a mistake of the file."""
+
     def push(document: Any) -> None:
-        row = document["objects"][0]
-        row["position"]["x"] = -0.6
+        corners = [corner for room in document["rooms"] for corner in room["floorPolygon"]]
+        west = min(corners, key=lambda corner: (corner["x"], corner["z"]))
+        document["objects"][0]["position"] |= {"x": west["x"] - 0.6, "z": west["z"] + 0.5}
         document["objects"][1]["position"]["y"] = -0.3
 
     house = built(push)

@@ -1,11 +1,12 @@
 from __future__ import annotations
 
 import copy
+import functools
 import json
 import math
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -16,19 +17,25 @@ from hypothesis import strategies as st
 
 from hthor import catalog, houses, jsonio
 from hthor.errors import HouseError, UnknownName
-from hthor.geometry import distance_to_rectangle, inside, rectangle, signed_area, to_local, turn
+from hthor.geometry import inside, rectangle, signed_area, turn
 from hthor.houses.polygons import crossing, distance_to_segment, overlap_area, simplified
-from hthor.types import HouseSpec, Thing, Vec2
+from hthor.types import HouseSpec, Opening, Vec2, Wall
+from hthor.world.soundness import prove
 
 OWN = houses.names()
 DATA = Path(houses.__file__).parent / "data"
-PRESENT = ("sink", "chair", "armchair", "television", "laptop", "shelf", "dresser", "pillow", "bowl", "plate")
-LIVED_IN = (*PRESENT, "lamp", "house_plant", "painting", "bread", "coffee_machine")
+PRESENT = ("sink", "chair", "house_plant", "painting")
+"""What every home has besides the receptacles; test_generator knows which has what of the rest."""
+
+
+@functools.cache
+def loaded(name: str) -> HouseSpec:
+    return houses.load(name)
 
 
 @pytest.fixture(params=OWN)
 def house(request: pytest.FixtureRequest) -> HouseSpec:
-    return houses.load(request.param)
+    return loaded(request.param)
 
 
 def own_document() -> Any:
@@ -38,99 +45,53 @@ def own_document() -> Any:
 # ------------------------------------------------------------------------------------------------------- our own houses
 
 
-def on_floor(house: HouseSpec) -> Iterator[Thing]:
-    return (thing for thing in house.things if not thing.parent and not catalog.kind(thing.kind).wall_mounted)
-
-
-def overlap(a: Thing, b: Thing) -> bool:
-    """Whether two upright boxes share space, by the separating axis theorem."""
-    if abs(a.centre[2] - b.centre[2]) >= (a.size[2] + b.size[2]) / 2 - 1e-6:
-        return False
-    corners = [rectangle((t.centre[0], t.centre[1]), (t.size[0], t.size[1]), t.yaw) for t in (a, b)]
-    for yaw in (a.yaw, b.yaw):
-        for ux, uy in (turn((1.0, 0.0), yaw), turn((0.0, 1.0), yaw)):
-            first, second = ([x * ux + y * uy for x, y in polygon] for polygon in corners)
-            if min(max(first), max(second)) - max(min(first), min(second)) <= 1e-6:
-                return False
-    return True
-
-
-def test_there_are_three_houses_of_different_size() -> None:
+def test_there_are_ten_houses_of_many_sizes() -> None:
+    assert OWN == ("alder", "birch", "cedar", "elder", "hazel", "juniper", "linden", "maple", "rowan", "willow")
     specs = [houses.load(name) for name in OWN]
-    assert sorted(len(spec.rooms) for spec in specs) == [4, 5, 6]
-    assert all(75 <= sum(signed_area(room.polygon) for room in spec.rooms) <= 120 for spec in specs)
+    assert {len(spec.rooms) for spec in specs} == {4, 5, 6, 7}
+    areas = [sum(signed_area(room.polygon) for room in spec.rooms) for spec in specs]
+    assert all(70 <= area <= 180 for area in areas)
+    assert max(areas) > 2 * min(areas)
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_a_house_of_our_own_is_proved_sound(name: str) -> None:
+    """Every rule, the engine's among them: nothing floats, sticks in something or bars a door; all can be reached."""
+    assert [str(finding) for finding in prove(houses.load(name))] == []
 
 
 def test_rooms_tile_the_floor_and_have_names_of_their_own(house: HouseSpec) -> None:
+    """Beyond every stretch of a room's outline is another room, or a wall to the outside runs along it."""
     assert len({room.name for room in house.rooms}) == len(house.rooms)
     assert {room.kind for room in house.rooms} == {"kitchen", "living_room", "bedroom", "bathroom"}
-    for room in house.rooms:
-        assert signed_area(room.polygon) >= 4
+    outside = [wall for wall in house.walls if wall.room == "exterior"]
     for index, room in enumerate(house.rooms):
         assert all(overlap_area(room.polygon, other.polygon) < 1e-9 for other in house.rooms[:index])
-    xs, ys = zip(*(corner for room in house.rooms for corner in room.polygon), strict=True)
-    hull = (max(xs) - min(xs)) * (max(ys) - min(ys))
-    assert sum(signed_area(room.polygon) for room in house.rooms) == pytest.approx(hull)
+        for (ax, ay), (bx, by) in pairwise((*room.polygon, room.polygon[0])):
+            length = math.dist((ax, ay), (bx, by))
+            for share in (0.03, 0.23, 0.49, 0.77, 0.97):
+                x, y = ax + share * (bx - ax), ay + share * (by - ay)
+                beyond = (x + 0.05 * (by - ay) / length, y - 0.05 * (bx - ax) / length)
+                neighbours = sum(inside(beyond, other.polygon) for other in house.rooms)
+                shut = any(distance_to_segment((x, y), wall.a, wall.b) < 1e-6 for wall in outside)
+                assert (neighbours, shut) in ((1, False), (0, True)), (room.id, x, y)
 
 
 def test_every_receptacle_and_a_lived_in_home(house: HouseSpec) -> None:
     kinds = {thing.kind for thing in house.things}
-    assert set(catalog.RECEPTACLES) <= kinds
-    assert set(LIVED_IN) <= kinds
+    assert {*catalog.RECEPTACLES, *PRESENT} <= kinds
     assert not kinds & set(catalog.TARGETS)
     assert len({thing.id for thing in house.things}) == len(house.things)
     assert {room.id for room in house.rooms} == {thing.room for thing in house.things}
+    assert len(house.things) >= 18 * len(house.rooms), "a home holds many things"
+    assert len(kinds) >= 50
 
 
-def test_no_two_pieces_overlap(house: HouseSpec) -> None:
-    things = house.things
-    for index, thing in enumerate(things):
-        for other in things[:index]:
-            if other.id != thing.parent and thing.id != other.parent:
-                assert not overlap(thing, other), (thing.id, other.id)
-
-
-def test_everything_stands_hangs_or_rests(house: HouseSpec) -> None:
-    by_id = {thing.id: thing for thing in house.things}
-    for thing in house.things:
-        bottom = thing.centre[2] - thing.size[2] / 2
-        if thing.parent:
-            parent = by_id[thing.parent]
-            x, y, z = to_local((thing.centre[0], thing.centre[1], bottom), parent.centre, parent.yaw)
-            half = max(thing.size[:2]) / 2 if abs(math.sin(2 * (thing.yaw - parent.yaw))) > 1e-6 else None
-            assert half is None, "things lie square on their support"
-            across = abs(math.sin(thing.yaw - parent.yaw)) > 0.5
-            width, depth = (thing.size[1], thing.size[0]) if across else (thing.size[0], thing.size[1])
-            assert any(
-                abs(z - surface.centre[2]) < 1e-4
-                and abs(x - surface.centre[0]) + width / 2 <= surface.half[0] + 1e-3
-                and abs(y - surface.centre[1]) + depth / 2 <= surface.half[1] + 1e-3
-                and thing.size[2] <= surface.clearance + 1e-9
-                for surface in catalog.kind(parent.kind).surfaces(parent.size)
-            ), thing.id
-        elif catalog.kind(thing.kind).wall_mounted:
-            back = turn((0.0, -thing.size[1] / 2), thing.yaw)
-            point = (thing.centre[0] + back[0], thing.centre[1] + back[1])
-            assert min(distance_to_segment(point, wall.a, wall.b) for wall in house.walls) < 0.06
-            assert bottom > 0.5
-        else:
-            assert abs(bottom) < 1e-4, thing.id
-
-
-def test_things_stand_within_their_room_clear_of_walls_and_doors(house: HouseSpec) -> None:
+def test_things_are_in_the_room_that_they_name(house: HouseSpec) -> None:
     rooms = {room.id: room for room in house.rooms}
     for thing in house.things:
         corners = rectangle((thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw)
         assert all(inside(corner, rooms[thing.room].polygon) for corner in corners), thing.id
-    for thing in on_floor(house):
-        centre, size = (thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1])
-        for corner in rectangle(centre, size, thing.yaw):
-            assert min(distance_to_segment(corner, wall.a, wall.b) for wall in house.walls) > 0.06, thing.id
-        for opening in house.openings:
-            if opening.kind == "door":
-                marks = [0.0, 0.5, 1.0]
-                line = [tuple(a + m * (b - a) for a, b in zip(opening.a, opening.b, strict=True)) for m in marks]
-                assert all(distance_to_rectangle((p[0], p[1]), centre, size, thing.yaw) > 0.35 for p in line), thing.id
 
 
 def test_doors_and_windows(house: HouseSpec) -> None:
@@ -138,51 +99,30 @@ def test_doors_and_windows(house: HouseSpec) -> None:
     outside = [door for door in doors if "exterior" in door.rooms]
     assert len(outside) == 1
     assert all(door.passable == (door not in outside) for door in doors)
-    assert all(0.9 - 1e-9 <= math.dist(door.a, door.b) <= 1.2 + 1e-9 for door in doors)
+    assert all(0.9 - 1e-9 <= math.dist(door.a, door.b) <= 1.6 + 1e-9 for door in doors)
     windows = [opening for opening in house.openings if opening.kind == "window"]
-    assert len(windows) >= len(house.rooms)
+    assert 2 * len(windows) >= len(house.rooms)
     assert not any(window.passable for window in windows)
-    walls = {(wall.room, wall.a, wall.b): wall for wall in house.walls}
+    faces = [wall for wall in house.walls if wall.room == "exterior"]
     for opening in house.openings:
-        for side in opening.rooms:
-            assert any(
-                room == side and max(distance_to_segment(p, a, b) for p in (opening.a, opening.b)) < 1e-6
-                for room, a, b in walls
-            ), (opening.id, side)
+        sides = [wall for wall in house.walls if wall.room in opening.rooms]
+        along = [wall.room for wall in sides if on_line(opening, wall)]
+        assert set(along) == set(opening.rooms), opening.id
+        if opening.kind == "window":
+            assert any(on_line(opening, wall) for wall in faces), "there is sky behind a window"
 
 
-def test_one_house_has_an_open_plan() -> None:
-    empty = {
-        name: [wall for wall in json.loads((DATA / f"{name}.json").read_bytes())["walls"] if wall.get("empty")]
-        for name in OWN
-    }
-    assert sum(bool(walls) for walls in empty.values()) == 1
-    name, walls = next((name, walls) for name, walls in empty.items() if walls)
-    assert not {wall["id"] for wall in walls} & {wall.id for wall in houses.load(name).walls}
+def on_line(opening: Opening, wall: Wall) -> bool:
+    return max(distance_to_segment(point, wall.a, wall.b) for point in (opening.a, opening.b)) < 1e-6
 
 
-def test_a_fridge_s_door_has_room_to_swing(house: HouseSpec) -> None:
-    for fridge in (thing for thing in house.things if thing.kind == "fridge"):
-        kind = catalog.kind("fridge")
-        (hinge,) = kind.joints(fridge.size)
-        for step in range(1, 21):
-            for reach in (0.25, 0.5, 0.75, 1.0):
-                tip = turn((reach * fridge.size[0], 0.0), hinge.travel * step / 20)
-                x, y = turn((hinge.anchor[0] + tip[0], hinge.anchor[1] + tip[1]), fridge.yaw)
-                point = (fridge.centre[0] + x, fridge.centre[1] + y)
-                for thing in on_floor(house):
-                    if thing.id != fridge.id:
-                        size = (thing.size[0], thing.size[1])
-                        assert distance_to_rectangle(point, (thing.centre[0], thing.centre[1]), size, thing.yaw) > 0.03
-                assert min(distance_to_segment(point, wall.a, wall.b) for wall in house.walls) > 0.05
-
-
-def test_the_start_is_free_floor(house: HouseSpec) -> None:
-    start = (house.start.x, house.start.y)
-    assert any(inside(start, room.polygon) for room in house.rooms)
-    for thing in on_floor(house):
-        size = (thing.size[0], thing.size[1])
-        assert distance_to_rectangle(start, (thing.centre[0], thing.centre[1]), size, thing.yaw) > 0.3
+def test_some_houses_have_an_open_plan() -> None:
+    empty = {}
+    for name in OWN:
+        walls = json.loads((DATA / f"{name}.json").read_bytes())["walls"]
+        empty[name] = {wall["id"] for wall in walls if wall.get("empty")}
+        assert not empty[name] & {wall.id for wall in houses.load(name).walls}
+    assert 0 < sum(bool(walls) for walls in empty.values()) < len(OWN)
 
 
 # ------------------------------------------------------------------------------------------------------------- loading

@@ -69,9 +69,8 @@ SETTEE = boxes(((0, 0, 0), (180, 40, 90)), ((0, 40, 0), (180, 80, 22)), ((0, 40,
 def library(catalogue: str, files: dict[str, bytes]) -> bytes:
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
-        archive.writestr("PluginFurnitureCatalog.properties", catalogue)
-        for name, data in files.items():
-            archive.writestr(name, data)
+        for name, data in {"PluginFurnitureCatalog.properties": catalogue, **files}.items():
+            archive.writestr(zipfile.ZipInfo(name), data)  # without the time, so that it is the same every time
     return buffer.getvalue()
 
 

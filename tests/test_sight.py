@@ -43,19 +43,37 @@ def slowly(view, reach, small, points, first, own, half, pos, mat, radius, ids) 
     return found
 
 
-@settings(max_examples=60, deadline=None)
-@given(st.integers(0, 10**6), st.floats(-3.1, 3.1), st.floats(-0.8, 0.8))
-def test_a_look_finds_what_ray_after_ray_finds(seed: int, yaw: float, pitch: float) -> None:
+def balls(points, first, small) -> np.ndarray:
+    """Balls around the points of the targets that are not small."""
+    rows = []
+    for low, high in zip(first[small:-1], first[small + 1 :], strict=True):
+        middle = points[low:high].mean(axis=0)
+        rows.append((*middle, np.linalg.norm(points[low:high] - middle, axis=1).max()))
+    return np.array(rows).reshape(-1, 4)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6), st.lists(st.tuples(st.floats(-3.1, 3.1), st.floats(-0.8, 0.8)), min_size=1, max_size=4))
+def test_a_look_finds_what_ray_after_ray_finds(seed: int, turns: list[tuple[float, float]]) -> None:
+    """Whatever the eye remembers of where it looked before, and though small things and loose solids move meanwhile."""
     chance, (half, pos, mat, radius, ids) = np.random.default_rng(seed + 1), solids(seed, 40)
     targets, small = 30, 10
     first = np.concatenate(([0], np.cumsum(chance.integers(1, 6, targets))))
     points = np.column_stack([chance.uniform(-5.0, 5.0, (first[-1], 2)), chance.uniform(0.0, 2.0, first[-1])])
     start = chance.integers(0, 38, targets)
     own = np.column_stack([start, start + chance.integers(0, 3, targets)])
-    reach = chance.choice([0.0, 1.5, 4.0, 12.0], targets)
-    view = sight.camera(Pose(x=0.1, y=-0.2, yaw=yaw, pitch=pitch), BODY)
-    given = (view, reach, small, points, first, own, half, pos, mat, radius, ids)
-    assert sight.see(*given).tolist() == slowly(*given).tolist()
+    fixed, sure, order = chance.random(len(ids)) < 0.7, np.zeros((first[-1], 3)), chance.permutation(targets)
+    for number, (yaw, pitch) in enumerate(turns):
+        reach = chance.choice([0.0, 1.5, 4.0, 12.0], targets)
+        points[: first[small], :2] += chance.uniform(-0.3, 0.3, 2)
+        pos[~fixed, :2] += chance.uniform(-0.3, 0.3, 2)
+        view = sight.camera(Pose(x=0.1 + chance.choice([0.03, 0.3]) * number, y=-0.2, yaw=yaw, pitch=pitch), BODY)
+        scene = (half, pos, mat, radius, ids)
+        found = slowly(view, reach, small, points, first, own, *scene)
+        seen = sight.see(
+            view, reach, small, points, first, own, balls(points, first, small), *scene, fixed, sure, order
+        )
+        assert seen.tolist() == [k for k in order if found[k]]
 
 
 def test_the_nearest_of_none_is_nowhere() -> None:

@@ -72,24 +72,33 @@ def apple_on(thing, u=0.0, v=0.0):
 
 def test_the_suite_has_its_sixty_tasks():
     counts = Counter((task.house, task.kind) for task in SMOKE.tasks)
-    assert set(counts.values()) == {8, 12}
+    assert {house for house, _ in counts} == set(houses.names())
+    assert {kind: {count for (_, other), count in counts.items() if other == kind} for _, kind in counts} == {
+        FIND.name: {2},
+        MOVE.name: {4},
+    }
     assert len({task.id for task in SMOKE.tasks}) == len(SMOKE.tasks) == 60
     assert len({jsonio.canonical((task.house, task.objects, task.goal)) for task in SMOKE.tasks}) == 60
 
 
-def test_any_ten_tasks_running_are_a_mixture():
+def test_tasks_that_follow_one_another_are_a_mixture():
+    """Ten are in ten houses; with three of each house come the two kinds, as often as in the whole suite."""
     for first in range(len(SMOKE.tasks) - 9):
         ten = SMOKE.tasks[first : first + 10]
-        assert len({task.house for task in ten}) == 3
-        assert min(Counter(task.kind for task in ten).values()) >= 3
-        assert len({task.goal.target for task in ten}) >= 4
+        assert len({task.house for task in ten}) == 10
+        assert len({task.goal.target for task in ten}) >= 3
+    for first in range(len(SMOKE.tasks) - 29):
+        assert Counter(task.kind for task in SMOKE.tasks[first : first + 30])[FIND.name] == 10
+    assert min(Counter(task.goal.target for task in SMOKE.tasks).values()) >= 5
 
 
-def test_difficulty_spreads():
-    times = sorted(task.t_star for task in SMOKE.tasks)
-    assert times[0] < 5.5
-    assert times[-1] > 20.0
-    assert np.diff(times).max() < 3.0
+@pytest.mark.parametrize("name", houses.names())
+def test_difficulty_spreads(name):
+    """Each house has easy and hard tasks, and none far from the next."""
+    times = sorted(task.t_star for task in SMOKE.tasks if task.house == name)
+    assert times[0] < 7.5
+    assert times[-1] > 17.5
+    assert np.diff(times).max() < 5.5
 
 
 def test_every_target_is_placed_exactly_on_the_surface_that_it_names(task):

@@ -72,8 +72,11 @@ def list_packs(json: Json = False) -> None:
     if json:
         screen.put_json(rows)
         return
+    if not rows:
+        sys.stdout.write("no packs yet; 'hthor assets build' makes one\n")
+        return
     shown = [{**row, "sha256": str(row["sha256"])[:10], "kinds": len(row["kinds"])} for row in rows]
-    headings = list(shown[0]) if shown else ["nothing"]
+    headings = list(shown[0])
     screen.put_table(headings, [[row[heading] for heading in headings] for row in shown])
 
 

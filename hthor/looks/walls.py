@@ -14,6 +14,8 @@ from hthor.looks.tableware import filled
 
 _ART = ("landscape_1", "landscape_2", "abstract_1", "landscape_3", "still_life", "landscape_4", "abstract_2")
 _RUGS = ("rug_red", "rug_blue", "rug_green")
+_NARROW_M = 0.6
+"""Less than this, and a curtain is one of two, one at either side of a window."""
 
 
 def _of(draft: Draft, choices: tuple[str, ...]) -> str:
@@ -86,7 +88,7 @@ def clock(draft: Draft) -> list[Piece]:
 
 
 def curtain(draft: Draft) -> list[Piece]:
-    """Two pleated panels drawn a little aside, on a rod with knobs."""
+    """Two pleated panels drawn a little aside, one where it is narrow, on a rod with knobs."""
     w, d, h = draft.size
     coat, iron = Material(rgba=draft.colour(0), specular=0.0, shininess=0.0), materials.metal(c.IRON)
     found = [materials.piece(sweeps.tube([(-0.49 * w, 0.0, h - 0.03), (0.49 * w, 0.0, h - 0.03)], 0.010, 10), iron)]
@@ -94,11 +96,12 @@ def curtain(draft: Draft) -> list[Piece]:
         materials.piece(solids.ball((s * (w / 2 - 0.02), 0.0, h - 0.03), (0.02, 0.02, 0.02), 12), iron)
         for s in (-1.0, 1.0)
     ]
-    for s in (-1.0, 1.0):
+    pair = w > _NARROW_M
+    for s in (-1.0, 1.0) if pair else (-1.0,):
         u, v = np.meshgrid(np.linspace(0.0, 1.0, 37), np.linspace(0.0, 1.0, 5), indexing="ij")
-        breadth = (0.31 - 0.03 * np.sin(np.pi * v)) * w
+        breadth = ((0.31 if pair else 0.95) - 0.03 * np.sin(np.pi * v)) * w
         x = s * (0.475 * w - breadth * u)
-        y = (0.26 + 0.20 * v) * d * np.sin(2 * np.pi * 6.0 * u + 0.5 * v)
+        y = (0.20 + (0.14 + 0.10 * v) * np.sin(2 * np.pi * 6.0 * u + 0.5 * v)) * d  # clear of a window's trim
         z = (h - 0.012) * (1.0 - v)
         points, uv = np.stack([x, y, z], -1), np.stack([u * w * 0.6, z], -1)
         if s < 0:

@@ -110,11 +110,10 @@ class Survey:
         members: NDArray[np.int32] = np.empty(len(marked), dtype=np.int32)
         count = grouping.clusters(mask, marked, bit, members, out)
         names, columns, offset = self._names[bit - 1], grid.cells.shape[1], window.flat(0, 0)
+        frame, number = (columns, window.width, offset), len(self._groups)
+        count = grouping.watch(members, out, count, CELL_M, least - 1e-9, *frame, window.state, names, number)
         for row, column, first, last in out[:count].tolist():
-            if (last - first) * CELL_M >= least - 1e-9:
-                self._groups.append(_Group((row, column), last - first, bit == _EDGE))
-                number = len(self._groups)
-                grouping.watch(members, first, last, columns, window.width, offset, window.state, names, number)
+            self._groups.append(_Group((row, column), last - first, bit == _EDGE))
 
     def _reach(self, goal: int = -1) -> bool:
         """Go on to the next group, or to a member of one; False when there is no way to any more of them."""

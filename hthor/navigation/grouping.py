@@ -5,8 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numba
+import numpy as np
 
 from hthor.navigation.searching import _DX, _DY, FAR, WATCHED, spread
+
+_STRETCH = 32
+"""So many cells are looked at together for whether any of them is marked: few are."""
 
 
 @numba.njit(
@@ -35,10 +39,16 @@ def mark(cells: Any, level: Any, beside: Any, near: Any, bounds: Any, mask: Any,
             edge = room & ((west[i] == 0) | (east[i] == 0) | (south[i] == 0) | (north[i] == 0))
             unvisited = room & (tight[i] == 1) & (along[i] != 0) & (seen[i] == 0)
             out[i] = (1 if edge else 0) | (2 if unvisited else 0)
-        for i in range(len(out)):
-            if out[i]:
-                marked[count] = j * nx + x0 + i
-                count += 1
+        for begin in range(0, len(out), _STRETCH):
+            some = np.uint8(0)
+            stretch = out[begin : begin + _STRETCH]
+            for i in range(len(stretch)):
+                some |= stretch[i]
+            if some:
+                for i in range(len(stretch)):
+                    if stretch[i]:
+                        marked[count] = j * nx + x0 + begin + i
+                        count += 1
     return count
 
 
@@ -84,20 +94,48 @@ def clusters(mask: Any, marked: Any, bit: int, members: Any, out: Any) -> int:
     return groups
 
 
-@numba.njit("void(int32[::1], int64, int64, int64, int64, int64, uint8[::1], int16[::1], int64)", cache=True)
+@numba.njit(
+    "int64(int32[::1], int64[:,::1], int64, float64, float64, int64, int64, int64, uint8[::1], int16[::1], int64)",
+    cache=True,
+)
 def watch(
-    members: Any, first: int, last: int, width: int, columns: int, offset: int, state: Any, names: Any, number: int
-) -> None:
-    """Have a search stop at the members ``first`` to ``last``, which it then finds under ``number`` in ``names``.
+    members: Any,
+    groups: Any,
+    count: int,
+    cell: float,
+    least: float,
+    width: int,
+    columns: int,
+    offset: int,
+    state: Any,
+    names: Any,
+    number: int,
+) -> int:
+    """Have a search stop at the members of the large groups, which it then finds under their numbers in ``names``.
 
     Args:
+        groups: as `clusters` gives them, ``count`` of them; the large ones move to the front.
+        cell, least: a group is large when its number of members times ``cell`` is at least ``least``.
         width: columns of the map. columns: of the search's window. offset: of the map's cell 0 in the window.
+        number: of the last group before.
+
+    Returns:
+        How many groups are large.
     """
-    for s in range(first, last):
-        row = members[s] // width
-        here = row * columns + members[s] - row * width + offset
-        state[here] |= WATCHED
-        names[here] = number
+    large = 0
+    for k in range(count):
+        first, last = groups[k, 2], groups[k, 3]
+        if (last - first) * cell < least:
+            continue
+        for c in range(4):
+            groups[large, c] = groups[k, c]
+        large += 1
+        for s in range(first, last):
+            row = members[s] // width
+            here = row * columns + members[s] - row * width + offset
+            state[here] |= WATCHED
+            names[here] = number + large
+    return large
 
 
 @numba.njit(

@@ -153,15 +153,19 @@ class GridMap:
     def _cover(self, x0: float, y0: float, x1: float, y1: float) -> None:
         """Grow by whole chunks until the rectangle [m] lies inside, one cell of border included."""
         ny, nx = self.cells.shape
-        column0, row0 = self._index(x0, y0)
-        column1, row1 = self._index(x1, y1)
+        left, bottom = self.left, self.bottom
+        column0, row0 = math.floor(x0 / CELL_M) - left, math.floor(y0 / CELL_M) - bottom
+        column1, row1 = math.floor(x1 / CELL_M) - left, math.floor(y1 / CELL_M) - bottom
         if column0 >= 1 and row0 >= 1 and column1 + 2 <= nx and row1 + 2 <= ny:
             return
         left, bottom = _chunks(1 - column0), _chunks(1 - row0)
         right, top = _chunks(column1 + 2 - nx), _chunks(row1 + 2 - ny)
-        widths = ((bottom, top), (left, right))
-        self.cells, self.near = np.pad(self.cells, widths), np.pad(self.near, widths)
-        self.beside = np.pad(self.beside, widths)
+        shape, old = (ny + bottom + top, nx + left + right), np.s_[bottom : bottom + ny, left : left + nx]
+        grown = []
+        for layer in (self.cells, self.near, self.beside):
+            grown.append(np.zeros(shape, dtype=np.uint8))
+            grown[-1][old] = layer
+        self.cells, self.near, self.beside = grown
         self.bounds += np.array([left, left, bottom, bottom], dtype=np.int64)
         self.left, self.bottom = self.left - left, self.bottom - bottom
         self.version += 1

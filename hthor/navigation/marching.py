@@ -10,6 +10,7 @@ import math
 from typing import Any
 
 import numba
+import numpy as np
 
 
 @numba.njit("void(uint8[:,::1], int64, int64, int64[::1])", cache=True)
@@ -69,10 +70,10 @@ def integrate(
     """March every beam, and beams between neighbours so that no cell is skipped; returns the count of obstacles."""
     px, py = x / cell - left, y / cell - bottom
     row, column = math.floor(py), math.floor(px)
-    for j in range(row - 2, row + 3):
-        for i in range(column - 2, column + 3):
-            _open(cells, j, i, bounds)
-            near[j, i] = 1
+    for b in range(row - 2, row + 3):
+        for a in range(column - 2, column + 3):
+            _open(cells, b, a, bounds)
+            near[b, a] = 1
     n = len(ranges)
     look = look_m / cell
     for k in range(n):
@@ -83,15 +84,16 @@ def integrate(
         looking = abs(bearings[k]) <= look_rad
         t = 0.0
         end = reach - 0.3 if hit else reach
-        while t < end:
-            j, i = math.floor(py + t * uy), math.floor(px + t * ux)
-            _open(cells, j, i, bounds)
+        while t < end:  # the map reaches farther than any beam, so that truncating is rounding down
+            j, i = np.uint64(int(py + t * uy)), np.uint64(int(px + t * ux))
+            if cells[j, i] == 0:
+                _open(cells, np.int64(j), np.int64(i), bounds)
             if looking and t <= look:
                 near[j, i] = 1
             t += 1.0
         if hit:
-            j, i = math.floor(py + (reach + 0.2) * uy), math.floor(px + (reach + 0.2) * ux)
-            count = _fill(cells, j, i, left, bottom, bounds, found, count, low[k])
+            b, a = math.floor(py + (reach + 0.2) * uy), math.floor(px + (reach + 0.2) * ux)
+            count = _fill(cells, b, a, left, bottom, bounds, found, count, low[k])
         # Between this beam and the next: free as far as the shorter one, from where a gap could open.
         m = k + 1 if k + 1 < n else 0
         gap = bearings[m] - bearings[k] if m else bearings[0] + 2.0 * math.pi - bearings[k]
@@ -105,7 +107,9 @@ def integrate(
             vx, vy = math.cos(angle), math.sin(angle)
             t = 1.0 / gap
             while t < shorter:
-                _open(cells, math.floor(py + t * vy), math.floor(px + t * vx), bounds)
+                j, i = np.uint64(int(py + t * vy)), np.uint64(int(px + t * vx))
+                if cells[j, i] == 0:
+                    _open(cells, np.int64(j), np.int64(i), bounds)
                 t += 1.0
         # Two hits closer together than any body is wide belong to one obstacle.
         if hit and ranges[m] < limit - 1e-6:
@@ -116,8 +120,8 @@ def integrate(
             if 1.0 < apart < 6.0:
                 for s in range(1, int(apart) + 1):
                     f = s / (int(apart) + 1)
-                    j, i = math.floor(ay + f * (by - ay)), math.floor(ax + f * (bx - ax))
-                    count = _fill(cells, j, i, left, bottom, bounds, found, count, low[k] and low[m])
+                    b, a = math.floor(ay + f * (by - ay)), math.floor(ax + f * (bx - ax))
+                    count = _fill(cells, b, a, left, bottom, bounds, found, count, low[k] and low[m])
     return count
 
 
@@ -174,5 +178,5 @@ def inflate(level: Any, obstacles: Any, first: int, last: int, left: int, bottom
         column, row = obstacles[k, 0] - left, obstacles[k, 1] - bottom
         for d in range(disc.shape[0]):
             i, j = column + disc[d, 0], row + disc[d, 1]
-            if 0 <= i < nx and 0 <= j < ny and level[j, i] < disc[d, 2]:
-                level[j, i] = disc[d, 2]
+            if 0 <= i < nx and 0 <= j < ny and level[np.uint64(j), np.uint64(i)] < disc[d, 2]:
+                level[np.uint64(j), np.uint64(i)] = disc[d, 2]

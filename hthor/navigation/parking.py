@@ -133,16 +133,20 @@ def _pieces(free: Any, row: int, column: int, inner: float, outer: float) -> int
     return pieces
 
 
-@numba.njit("int64(int64[:,::1], int64, int64, float64)", cache=True)
-def _passing(flow: Any, row: int, column: int, radius: float) -> int:
-    """The strongest stream within a radius [cells] of a cell."""
+@numba.njit("int64(int64[:,::1], int64, int64, float64, int64)", cache=True)
+def _passing(flow: Any, row: int, column: int, radius: float, enough: int) -> int:
+    """The strongest stream within a radius [cells] of a cell, or one that is at least ``enough``."""
     ny, nx = flow.shape
     reach = math.ceil(radius)
-    most = 0
+    most = flow[row, column]
+    if most >= enough:
+        return int(most)
     for j in range(max(row - reach, 0), min(row + reach + 1, ny)):
         for i in range(max(column - reach, 0), min(column + reach + 1, nx)):
             if flow[j, i] > most and math.hypot(j - row, i - column) <= radius:
                 most = flow[j, i]
+                if most >= enough:
+                    return int(most)
     return int(most)
 
 
@@ -177,7 +181,7 @@ def _search(
         j, i = queue[done] // nx, queue[done] % nx
         done += 1
         if free[j, i] and (i + j) % 2 == 0 and math.hypot(i + 0.5 - x, j + 0.5 - y) >= apart:
-            passing = _passing(flow, j, i, inner)
+            passing = _passing(flow, j, i, inner, least)
             if passing < least and _pieces(free, j, i, inner, outer) <= 1:
                 best, least = j * nx + i, passing
         for dj, di in ((0, 1), (1, 0), (0, -1), (-1, 0)):

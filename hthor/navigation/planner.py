@@ -106,12 +106,26 @@ class Planner:
         if self._version == grid.version:
             return
         if self._frame != (grid.left, grid.bottom, *grid.cells.shape):
-            self._allocate()
+            self._grow()
         self._cells = grid.cells
         obstacles = grid.obstacles
         marching.inflate(self._level, obstacles, self._stamped, len(obstacles), grid.left, grid.bottom, self._disc)
         self._stamped = len(obstacles)
         self._version = grid.version
+
+    def _grow(self) -> None:
+        """The map has grown: levels move to a larger array; what stands by the old one's edges reaches beyond them now."""
+        (left, bottom, ny, nx), level, stamped = self._frame, self._level, self._stamped
+        self._allocate()
+        column, row = left - self.grid.left, bottom - self.grid.bottom
+        self._level[row : row + ny, column : column + nx] = level
+        x, y = (self.grid.obstacles[:stamped, axis] - edge for axis, edge in ((0, left), (1, bottom)))
+        reach = int(self._disc.max())
+        off = (x < reach) | (y < reach) | (x >= nx - reach) | (y >= ny - reach)
+        obstacles = self.grid.obstacles[:stamped][off]
+        frame = self.grid.left, self.grid.bottom
+        marching.inflate(self._level, obstacles, 0, len(obstacles), *frame, self._disc)
+        self._stamped = stamped
 
     def _allocate(self) -> None:
         grid = self.grid

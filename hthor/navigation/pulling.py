@@ -11,7 +11,9 @@ import numpy as np
 from hthor.navigation.searching import STEP, TIGHT
 
 
-@numba.njit("float64(uint8[:,::1], uint8[:,::1], boolean, float64, float64, float64, float64)", cache=True)
+@numba.njit(
+    "float64(uint8[:,::1], uint8[:,::1], boolean, float64, float64, float64, float64)", cache=True, error_model="numpy"
+)
 def line_cost(cells: Any, level: Any, optimistic: bool, ax: float, ay: float, bx: float, by: float) -> float:
     """Cost of the straight line between two points [cells]; negative when the body does not fit on it."""
     ny, nx = cells.shape
@@ -21,13 +23,21 @@ def line_cost(cells: Any, level: Any, optimistic: bool, ax: float, ay: float, bx
     for s in range(1, n + 1):
         f = s / n
         i, j = math.floor(ax + f * (bx - ax)), math.floor(ay + f * (by - ay))
-        if not (0 <= i < nx and 0 <= j < ny) or level[j, i] >= 2 or not (optimistic or cells[j, i] == 1):
+        if not (0 <= i < nx and 0 <= j < ny):
             return -1.0
-        tight += level[j, i]
+        row, column = np.uint64(j), np.uint64(i)
+        rank = level[row, column]
+        if rank >= 2 or not (optimistic or cells[row, column] == 1):
+            return -1.0
+        tight += rank
     return length * (STEP + (TIGHT - STEP) * tight / n)
 
 
-@numba.njit("int64(uint8[:,::1], uint8[:,::1], boolean, float64[:,::1], float64[::1], int64[::1])", cache=True)
+@numba.njit(
+    "int64(uint8[:,::1], uint8[:,::1], boolean, float64[:,::1], float64[::1], int64[::1])",
+    cache=True,
+    error_model="numpy",
+)
 def pull(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep: Any) -> int:
     """Pull the string tight: indices of the points to keep; a shortcut is taken when it costs no more.
 
@@ -53,7 +63,11 @@ def pull(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep:
     return kept
 
 
-@numba.njit("int64(uint8[:,::1], uint8[:,::1], boolean, float64[:,::1], float64[::1], int64[::1])", cache=True)
+@numba.njit(
+    "int64(uint8[:,::1], uint8[:,::1], boolean, float64[:,::1], float64[::1], int64[::1])",
+    cache=True,
+    error_model="numpy",
+)
 def straighten(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep: Any) -> int:
     """Pull the string from both ends, and take the cheapest way over the bends of both; as `pull`."""
     n = len(points)

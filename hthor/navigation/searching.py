@@ -2,6 +2,7 @@
 
 Costs are whole numbers, 100 for a step of one clear cell, so that paths do not depend on rounding. A search works on a
 window of the map with a closed border of one cell, laid out flat, so that no step has to look where the map ends.
+Indices are unsigned in the inner loops, so that none has to be looked at for whether it counts from the end.
 """
 
 from __future__ import annotations
@@ -138,24 +139,25 @@ def seek(
     near2 = within * within
     key, used, waiting = memo[0], memo[1], memo[2]
     while waiting > 0:
-        entry = heads[key & _LAST]
+        bucket = np.uint64(key & _LAST)
+        entry = heads[bucket]
         if entry < 0:
             key += 1
             continue
-        heads[key & _LAST] = chain[entry]
+        heads[bucket] = chain[np.uint64(entry)]
         waiting -= 1
-        here = item[entry]
-        if state[here] == CLOSED:
+        here = np.int64(item[np.uint64(entry)])
+        if state[np.uint64(here)] == CLOSED:
             continue
-        state[here] = CLOSED
+        state[np.uint64(here)] = CLOSED
         row = here // width
         i, j = here - row * width + left, row + bottom
         ex, ey = i + 0.5 - goal_x, j + 0.5 - goal_y
         if (i == gx and j == gy) or ex * ex + ey * ey <= near2:
             return int(here)
-        base = cost[here]
+        base = cost[np.uint64(here)]
         for d in range(8):
-            there = here + offsets[d]
+            there = np.uint64(here + offsets[np.uint64(d)])
             kind = state[there]
             if kind == CLOSED:
                 continue
@@ -169,9 +171,10 @@ def seek(
             came[there] = d
             dx, dy = abs(i + _DX[d] - gx), abs(j + _DY[d] - gy)
             ahead = reached + max(0, STEP * max(dx, dy) + (DIAGONAL - STEP) * min(dx, dy) - slack)
-            item[used] = there
-            chain[used] = heads[ahead & _LAST]
-            heads[ahead & _LAST] = used
+            last, bucket = np.uint64(used), np.uint64(ahead & _LAST)
+            item[last] = there
+            chain[last] = heads[bucket]
+            heads[bucket] = used
             used += 1
             waiting += 1
     return -1
@@ -207,20 +210,21 @@ def spread(
     key, used, waiting = memo[0], memo[1], memo[2]
     found = -1
     while waiting > 0 and key <= most:
-        entry = heads[key & _LAST]
+        bucket = np.uint64(key & _LAST)
+        entry = heads[bucket]
         if entry < 0:
             key += 1
             continue
-        heads[key & _LAST] = chain[entry]
+        heads[bucket] = chain[np.uint64(entry)]
         waiting -= 1
-        here = item[entry]
+        here = np.uint64(item[np.uint64(entry)])
         kind = state[here]
         if kind == CLOSED:
             continue
         state[here] = CLOSED
         base = cost[here]
         for d in range(8):
-            there = here + offsets[d]
+            there = np.uint64(np.int64(here) + offsets[np.uint64(d)])
             next_kind = state[there] & (CLEAR | CLOSE)
             if next_kind == CLOSED:
                 continue
@@ -232,28 +236,40 @@ def spread(
                 continue
             cost[there] = reached
             came[there] = d
-            item[used] = there
-            chain[used] = heads[reached & _LAST]
-            heads[reached & _LAST] = used
+            last, bucket = np.uint64(used), np.uint64(reached & _LAST)
+            item[last] = there
+            chain[last] = heads[bucket]
+            heads[bucket] = used
             used += 1
             waiting += 1
         if kind & WATCHED:
             watched -= 1
             if watched == 0:
-                found = here
+                found = np.int64(here)
                 break
     memo[0], memo[1], memo[2] = key, used, waiting
     return int(found)
 
 
-@numba.njit("int64(int8[::1], int64, int64, int64, int64[::1])", cache=True)
-def trace(came: Any, width: int, start: int, end: int, out: Any) -> int:
-    """Cells from ``end`` back to ``start`` into ``out``; returns how many."""
+@numba.njit("int64(int8[::1], int64, int64, int64, int64)", cache=True)
+def steps(came: Any, width: int, start: int, end: int, most: int) -> int:
+    """How many cells there are on the way from ``start`` to ``end``, at most ``most``."""
     offsets = _offsets(width)
-    here, count = end, 0
-    out[0] = here
-    while here != start and count < len(out) - 1:
+    here, count = end, 1
+    while here != start and count < most:
         here -= offsets[came[here]]
         count += 1
-        out[count] = here
-    return count + 1
+    return count
+
+
+@numba.njit("void(int8[::1], int32[::1], int64, int64, int64, int64, float64[:,::1], float64[::1])", cache=True)
+def trace(came: Any, cost: Any, width: int, end: int, left: int, bottom: int, points: Any, costs: Any) -> None:
+    """The last cells of the way to ``end``, as many as ``points`` holds, as `hthor.navigation.window.Window.trace`."""
+    offsets = _offsets(width)
+    here = end
+    for k in range(len(points) - 1, -1, -1):
+        row = here // width
+        points[k, 0] = here - row * width + (left + 0.5)
+        points[k, 1] = row + (bottom + 0.5)
+        costs[k] = cost[here]
+        here -= offsets[came[here]]

@@ -95,10 +95,7 @@ class Window:
 
     def trace(self, end: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Cell centres (N, 2) [cells of the map] and costs (N,) on the way to the cell ``end``."""
-        buffer = np.empty(min(self.cost.size, _LONGEST), dtype=np.int64)
-        count = searching.trace(self.came, self.width, self.start, end, buffer)
-        cells = buffer[:count][::-1]
-        points = np.empty((count, 2), dtype=np.float64)
-        points[:, 0] = cells % self.width + (self.left + 0.5)
-        points[:, 1] = cells // self.width + (self.bottom + 0.5)
-        return points, self.cost[cells].astype(np.float64)
+        count = searching.steps(self.came, self.width, self.start, end, min(self.cost.size, _LONGEST))
+        points, costs = np.empty((count, 2), dtype=np.float64), np.empty(count, dtype=np.float64)
+        searching.trace(self.came, self.cost, self.width, end, self.left, self.bottom, points, costs)
+        return points, costs

@@ -110,10 +110,14 @@ class Actor:
         return self.do(journey.towards(self.pose, self.body, point))
 
     def go_to(self, target: str | Vec2) -> Outcome:
-        """Walk the shortest way to a point (x, y) [m], or to where a thing, an object or a seat is in reach.
+        """Walk the shortest way to the free floor nearest to a point (x, y) [m], or to where a thing, an object or a
+        seat is in reach: an object where it can be seen from, if there is such a place.
 
         The way is worked out on the house's own plan, as if by someone who lives there. Going to a thing ends
         facing it.
+
+        Raises:
+            UnknownName: when there is no such thing. HthorError: when the point is in no room.
         """
         return journey.go(self, self._world, target)
 
@@ -176,7 +180,12 @@ class Actor:
         return self._world.detections(self.seat)
 
     def sees(self, id: str) -> bool:
-        """Whether its detector reports this object, thing or seat now."""
+        """Whether its detector reports this object, thing or seat now.
+
+        Raises:
+            UnknownName: when there is no such thing in the house now.
+        """
+        self._world.position(id)  # raises when it is not there
         return any(seen.id == id for seen in self.detections())
 
     def scan(self) -> Scan:

@@ -15,6 +15,8 @@ from hthor.world import geoms, paint, walls
 from hthor.world.engine import Arena
 
 _SLAB_M = 0.01
+_ROOF_M = 1.0
+"""So thick that nothing flies through it between two steps. It is not drawn; the ceilings are."""
 _TILT = (1.0, 5e-6, 5e-6, 0.0)
 """Off level by a tenth of a millimetre in ten metres: an upright cylinder on a plane that is exactly level meets it
 in points that the engine works out from rounding errors.
@@ -70,6 +72,10 @@ class HouseArena(Arena):
         world = self.mjcf_model.worldbody
         hidden: dict[str, Any] = {"group": 5, "rgba": (0, 0, 0, 0), "quat": _TILT}
         world.add("geom", name=self._name("ground"), type="plane", size=(50, 50, 1), **geoms.STATIC, **hidden)
+        x, y = ([corner[axis] for room in house.rooms for corner in room.polygon] for axis in (0, 1))
+        roof = ((min(x) + max(x)) / 2, (min(y) + max(y)) / 2, house.height + _ROOF_M / 2)
+        half = ((max(x) - min(x)) / 2 + 1.0, (max(y) - min(y)) / 2 + 1.0, _ROOF_M / 2)
+        geoms.add_box(world, self._name("roof"), roof, half, 0.0, group=5, rgba=(0, 0, 0, 0), **geoms.STATIC)
         lawn: dict[str, Any] = {"pos": (0, 0, -2 * _SLAB_M), "rgba": paint.GROUND, "group": geoms.FURNITURE}
         world.add("geom", name=self._name("outdoors"), type="plane", size=(50, 50, 1), **geoms.GHOST, **lawn)
         for room in house.rooms:

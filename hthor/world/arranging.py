@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from hthor import geometry
 from hthor.errors import HthorError, UnknownName
-from hthor.types import Vec3
+from hthor.types import HouseSpec, Vec3
 from hthor.world import geoms, places
 from hthor.world.env import FastEnv, QPose
 from hthor.world.objects import Item, Objects
@@ -15,13 +16,24 @@ from hthor.world.scene import Scene
 from hthor.world.task import HouseTask
 from hthor.world.touch import Touch
 
+FASTEST_M_S = 30.0
+"""The speed limit of what is thrown: nobody throws faster, and much faster things would pass through walls."""
+
 
 class Arranging:
     """Moves the objects of one world about."""
 
     def __init__(
-        self, task: HouseTask, env: FastEnv, scene: Scene, objects: Objects, surfaces: Places, touch: Touch
+        self,
+        house: HouseSpec,
+        task: HouseTask,
+        env: FastEnv,
+        scene: Scene,
+        objects: Objects,
+        surfaces: Places,
+        touch: Touch,
     ) -> None:
+        self._house = house
         self._env, self._scene, self._objects, self._places, self._touch = env, scene, objects, surfaces, touch
         self._parking = {prop.id: task.parking(number) for number, prop in enumerate(task.props)}
 
@@ -32,6 +44,8 @@ class Arranging:
         speed = _vector("velocity", velocity)
         if not (isinstance(yaw, (int, float)) and math.isfinite(yaw)):
             raise HthorError(f"yaw must be a finite number of radians, got {yaw!r:.40}")
+        if math.hypot(*speed) > FASTEST_M_S:
+            raise HthorError(f"velocity must be at most {FASTEST_M_S:.0f} m/s, got {math.hypot(*speed):.3g} m/s")
         if on:
             self._objects.move(id, self._on(item, on, at, yaw), speed)
         elif at is not None:
@@ -53,7 +67,7 @@ class Arranging:
         return item
 
     def _on(self, item: Item, on: str, near: Vec3 | None, yaw: float) -> QPose:
-        """A free place on the thing, nearest to ``near``, or to a surface's middle: inside it only where it has no top."""
+        """A free place on the thing, nearest to ``near`` or to a surface's middle: inside only where it has no top."""
         surfaces = self._places.of(on)
         if not surfaces:
             known = sorted({place.thing for place in self._places.all()})
@@ -78,6 +92,10 @@ class Arranging:
 
     def _at(self, item: Item, pose: QPose, velocity: Vec3) -> None:
         """There and nowhere else; back to where it was if something is there already."""
+        indoors = any(geometry.inside(pose[:2], room.polygon) for room in self._house.rooms)
+        if not indoors or pose[2] > self._house.height:
+            at = ", ".join(f"{value:.2f}" for value in pose[:3])
+            raise HthorError(f"({at}) is in no room of the house; give a position indoors")
         data = self._env.data
         rows, speeds = slice(item.qpos, item.qpos + 7), slice(item.dof, item.dof + 6)
         old = data.qpos[rows].copy(), data.qvel[speeds].copy()

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from hthor.errors import UnknownName
 from hthor.looks import pack as packs
 from hthor.looks.pack import Pack
-from hthor.types import Camera, Detection, DetectorSpec, HouseSpec, RobotSpec, Scan, Senses, View
-from hthor.world import contents
+from hthor.types import Camera, Detection, DetectorSpec, HouseSpec, RobotSpec, Scan, Senses, Vec3, View
+from hthor.world import contents, sight
 from hthor.world.by_tick import TickedWorld
 from hthor.world.pictures import IMAGE_SIZE, Pictures
 from hthor.world.senses import Senses as SeatSenses
@@ -47,6 +48,17 @@ class SeenWorld(TickedWorld):
         """What the seat's detector reports now, by id, with the errors that it has."""
         found, noise = self._gaze.detections(self._seats[seat]), self._detectors.get(seat)
         return found if noise is None else noise.report(found, self._objects, self._seed, self.tick)
+
+    def hidden(self, id: str, eye: Vec3) -> bool:
+        """Whether furniture, walls or other objects hide an object from an eye at (x, y, z) [m].
+
+        Raises:
+            UnknownName: when there is no such object.
+        """
+        item = self._objects.known(id)
+        if item is None:
+            raise UnknownName("object", id, [one.id for one in self._objects])
+        return all(self._scene.hidden(eye, point, id) for point in sight.points(item.position, item.size))
 
     def scan(self, seat: str) -> Scan:
         """What the seat's range scanner measures now."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -35,11 +36,13 @@ from hthor.world.passages import Passages
 from hthor.world.places import Places
 from hthor.world.scan import Scanner
 from hthor.world.scene import Scene
-from hthor.world.seats import Seat
+from hthor.world.seats import Seat, Seats
 from hthor.world.starting import Starting
 from hthor.world.task import HouseTask
 from hthor.world.touch import Touch
 from hthor.world.truth import Truth
+
+_ROUNDING_M = 1e-9
 
 
 class TickedWorld:
@@ -69,6 +72,7 @@ class TickedWorld:
     ) -> None:
         self.house = houses.load(house) if isinstance(house, str) else house
         specs: list[BodySpec] = [avatar.HUMAN]
+        robots = (robots,) if isinstance(robots, str) else robots
         specs += [bodies.robot(robot) if isinstance(robot, str) else robot for robot in robots]
         self.seats = bodies.seat_names(len(specs) - 1)
         self.bodies = dict(zip(self.seats, specs, strict=True))
@@ -89,13 +93,13 @@ class TickedWorld:
         self._scene = Scene(env, self._task)
         self._objects = Objects(self._contents.movables, env, self._scene, places)
         self._doors = Doors(self._task.doors, env, places)
-        self._seats = {name: Seat(name, spec, self.space[name]) for name, spec in self.bodies.items()}
+        self._seats = Seats((name, Seat(name, spec, self.space[name])) for name, spec in self.bodies.items())
         self._scanners = {name: Scanner(seat.spec, seat.space, self.house) for name, seat in self._seats.items()}
         seats, touch = tuple(self._seats.values()), Touch(env, self._scene)
         self._passages = Passages(seats, self.space)
         self._hinges = Hinges(self._scene, self._objects, self._doors, places, self._passages, seats)
         self._hands = Hands(self.house, self._scene, self._objects, self._doors, places, self._hinges, touch)
-        self._arranging = Arranging(self._task, env, self._scene, self._objects, places, touch)
+        self._arranging = Arranging(self.house, self._task, env, self._scene, self._objects, places, touch)
         self._gaze = Gaze(self._scene, self._objects, self._doors, statics, self.house.openings, seats)
         self._starting = Starting(self.house, self._hands, self._doors, seats)
         self._truth = Truth(self._objects, self._doors, self._gaze, seats)
@@ -137,6 +141,7 @@ class TickedWorld:
             if id not in movables:
                 raise TaskError(task, "objects", str(UnknownName("object", id, movables)))
         self._rooms = dict.fromkeys(self.seats, 0)
+        self._roam = dict.fromkeys(self.seats, (0.0, 0.0, 0.0))
         self._seed = 0
         begin: dict[str, tuple[Vec3, float, str]] = {}
         for id, movable in movables.items():
@@ -163,11 +168,11 @@ class TickedWorld:
     def start(self, seat: str, action: Motion) -> None:
         """Begin a motion. One that a law forbids is refused: see `outcome`, and the next `advance` reports it."""
         body = self._seats[seat]
-        verb = interaction.verb_of(action)
         reason = (
             f"{seat} is busy with another motion" if body.activity is not None else self._starting.refusal(body, action)
         )
         if reason:
+            verb = interaction.verb_of(action)
             body.outcome = Outcome(motion=verb, ok=False, reason=reason)
             data = {"motion": verb, "reason": reason}
             self._events.append(Event(tick=self.tick, seat=seat, kind="refused", data=data))
@@ -250,7 +255,8 @@ class TickedWorld:
 
         Raises:
             UnknownName: when there is no such object, or nothing can be put on that thing.
-            HthorError: when it is in someone's hand, would be inside something, or has no room there.
+            HthorError: when it is in someone's hand, would be outdoors or inside something, has no room there, or is
+                to fly faster than anyone throws.
         """
         self._arranging.put(id, position, on, yaw, velocity)
 
@@ -298,13 +304,17 @@ class TickedWorld:
 
     def room(self, seat: str) -> str:
         """Id of the room the seat's body is in, the last one while it is between rooms."""
-        rooms, place = self.house.rooms, self._seats[seat].pose
-        last = self._rooms[seat]
-        if not geometry.inside((place.x, place.y), rooms[last].polygon):
-            for number, room in enumerate(rooms):
-                if geometry.inside((place.x, place.y), room.polygon):
-                    self._rooms[seat] = last = number
-                    break
+        rooms, pose = self.house.rooms, self._seats[seat].pose
+        last, (x, y, spare) = self._rooms[seat], self._roam[seat]
+        if math.hypot(pose.x - x, pose.y - y) < spare:
+            return rooms[last].id
+        here, spare = (pose.x, pose.y), 0.0
+        for number in (last, *range(len(rooms))):
+            if geometry.inside(here, rooms[number].polygon):
+                self._rooms[seat] = last = number
+                spare = geometry.distance_to_edge(here, rooms[number].polygon) - _ROUNDING_M
+                break
+        self._roam[seat] = (*here, spare)  # as long as it goes no farther than that, it is still there
         return rooms[last].id
 
     def truth(self) -> tuple[ThingState, ...]:

@@ -1,9 +1,9 @@
 """What of a house moves and what stays: the split that decides which things the engine simulates; knows no engine.
 
 Free to move are the objects that a world is built with, and of the house's own things all that can be picked up and lie
-on a surface of something. What lies there in a way that no real thing could (deeper than `SUNK_M` in its neighbour, or
-over no surface at all) stays where the house puts it, as furniture does; so does what lies on the bare floor, where the
-free-space grid counts it as an obstacle.
+on a surface of something. What lies there in a way that no real thing could (deeper than `SUNK_M` in its neighbour or
+in the ceiling, or over no surface at all) stays where the house puts it, as furniture does; so does what lies on the
+bare floor, where the free-space grid counts it as an obstacle.
 """
 
 from __future__ import annotations
@@ -86,7 +86,12 @@ def _free(house: HouseSpec) -> Iterator[Movable]:
         if thing.id in small and thing.parent:
             placed = _placed(thing, supports.get(thing.parent))
             body = None if placed is None else _box(placed)
-            if placed is not None and body is not None and not any(_deep(body, other) for other in solid):
+            if (
+                placed is not None
+                and body is not None
+                and body.high <= house.height + SUNK_M
+                and not any(_deep(body, other) for other in solid)
+            ):
                 solid.append(body)
                 yield placed
             else:

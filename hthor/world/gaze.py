@@ -41,6 +41,17 @@ class Sight(Struct, frozen=True):
     points: tuple[Vec3, ...]
 
 
+class _Look:
+    """What a seat saw last: ``records`` are of what does not move, from the eye at ``place``."""
+
+    __slots__ = ("found", "place", "records", "version")
+
+    def __init__(self) -> None:
+        self.version, self.place = (-1, -1, -1), (math.nan, math.nan)
+        self.records: dict[int, Detection] = {}
+        self.found: tuple[Detection, ...] = ()
+
+
 class Gaze:
     """Looks for objects, furniture, doorways and bodies, in this order, in one compiled call."""
 
@@ -86,23 +97,42 @@ class Gaze:
         for number, seat in enumerate(seats):
             self._points[self._bodies + 2 * number, 2] = 0.5 * seat.spec.height
             self._points[self._bodies + 2 * number + 1, 2] = 0.9 * seat.spec.height
-        self._rank = [0] * len(names)
-        for rank, index in enumerate(sorted(range(len(names)), key=names.__getitem__)):
-            self._rank[index] = rank
+        self._balls = np.array([_ball(sight.points) for sight in self._fixed]).reshape(-1, 4).T.copy()
+        self._order = np.array(sorted(range(len(names)), key=names.__getitem__), np.int64)
+        self._targets = {
+            count: (self._points[: self._first[count]], self._first[: count + 1], self._own[:count])
+            for count in (len(self._items), len(names))
+        }
+        self._every = np.arange(len(self._items))
+        self._spheres: Any = None
+        self._sure = {seat.name: np.zeros((len(self._points), 3)) for seat in seats}
+        self._moves = 0
+        self._looks = {seat.name: _Look() for seat in seats}
 
     def detections(self, seat: Seat) -> tuple[Detection, ...]:
-        """What the seat's detector reports now, by id."""
+        """What the seat's detector reports now, by id; the same records as long as neither eye nor world changes."""
         self._refresh()
+        moved = False
         for number, other in enumerate(self._seats):
             if self._stood[number] is not other.pose:
                 self._stood[number] = pose = other.pose
                 row = self._bodies + 2 * number
                 self._points[row, 0] = self._points[row + 1, 0] = pose.x
                 self._points[row, 1] = self._points[row + 1, 1] = pose.y
+                moved = True
+        if moved:
+            self._moves += 1
+        look, pose, version = self._looks[seat.name], seat.pose, (self._moves, self._version, self._doors.changes)
+        if look.version == version:
+            return look.found
+        if look.place != (pose.x, pose.y) or look.version[1:] != version[1:]:
+            look.place, look.records = (pose.x, pose.y), {}
+        look.version = version
         reach = self._within(seat)
-        seen = self._see(seat, reach, len(reach)).nonzero()[0].tolist()
-        eye = sight.eye(seat.pose, seat.spec)
-        return tuple([self._detection(index, eye) for index in sorted(seen, key=self._rank.__getitem__)])
+        seen = self._see(seat, reach, len(reach), self._order, self._sure[seat.name]).tolist()
+        eye = sight.eye(pose, seat.spec)
+        look.found = tuple([look.records.get(index) or self._detection(index, eye, look.records) for index in seen])
+        return look.found
 
     def _within(self, seat: Seat) -> Any:
         """How far each target is noticed [m], 0 for objects that are not in the episode."""
@@ -122,12 +152,10 @@ class Gaze:
         if not self._any_near(seat, reach):
             return ()
         np.multiply(self._objects.present, reach, out=self._near)
-        seen = self._see(seat, self._near, count)
-        if not seen.any() and not seat.holding:
+        seen = set(self._see(seat, self._near, count, self._every, self._sure[seat.name]).tolist())
+        if not seen and not seat.holding:
             return ()
-        return tuple(
-            item.id for item, visible in zip(self._items, seen, strict=True) if visible or item.held_by == seat.name
-        )
+        return tuple(item.id for item in self._items if item.number in seen or item.held_by == seat.name)
 
     def _any_near(self, seat: Seat, reach: float) -> bool:
         """Whether any object's centre is within ``reach`` [m] of the eye; worked out anew after a long enough way."""
@@ -139,16 +167,13 @@ class Gaze:
             return bool(spare <= 0.0)
         return False
 
-    def _see(self, seat: Seat, reach: Any, count: int) -> Any:
-        scene, points = self._scene, self._points[: self._first[count]]
-        view = sight.camera(seat.pose, seat.spec)
-        small, first, own = (
-            len(self._items),
-            self._first[: count + 1],
-            self._own[:count],
-        )
-        solids = scene.half, scene.pos, scene.mat, scene.radius, scene.ids
-        return sight.see(view, reach, small, points, first, own, *solids)
+    def _see(self, seat: Seat, reach: Any, count: int, order: Any, sure: Any) -> Any:
+        scene, view = self._scene, sight.camera(seat.pose, seat.spec)
+        small, (points, first, own) = len(self._items), self._targets[count]
+        if self._spheres is None:
+            self._spheres = np.vstack([scene.pos[scene.walls].T, scene.radius[scene.walls]])
+        solids = scene.half, scene.pos, scene.mat, scene.radius, scene.walls, self._spheres, scene.loose
+        return sight.see(view, reach, small, points, first, own, self._balls, *solids, sure, order)
 
     def _refresh(self) -> None:
         if self._version == self._objects.changes:
@@ -164,13 +189,16 @@ class Gaze:
             reach[number] = 0.0 if other is seat else max(BODY_RANGE_M, seat.spec.sight_range)
         return reach
 
-    def _detection(self, index: int, eye: Vec3) -> Detection:
+    def _detection(self, index: int, eye: Vec3, records: dict[int, Detection]) -> Detection:
+        """A new record, which is kept in ``records`` unless it is of a body."""
         if index < len(self._items):
-            return _of_item(self._items[index], eye)
-        index -= len(self._items)
-        if index < len(self._fixed):
-            return self._of_fixed(self._fixed[index], eye)
-        return _of_body(self._seats[index - len(self._fixed)], eye)
+            records[index] = found = _of_item(self._items[index], eye)
+            return found
+        place = index - len(self._items)
+        if place < len(self._fixed):
+            records[index] = found = self._of_fixed(self._fixed[place], eye)
+            return found
+        return _of_body(self._seats[place - len(self._fixed)], eye)
 
     def _of_fixed(self, thing: Sight, eye: Vec3) -> Detection:
         leaf = self._doors.get(thing.id)
@@ -213,6 +241,12 @@ def _of_body(other: Seat, eye: Vec3) -> Detection:
         yaw=pose.yaw,
         distance=math.dist(eye, position),
     )
+
+
+def _ball(points: Sequence[Vec3]) -> tuple[float, float, float, float]:
+    """Middle and radius [m] of a ball around the points, a little larger than it need be."""
+    x, y, z = (0.5 * (min(axis) + max(axis)) for axis in zip(*points, strict=True))
+    return x, y, z, max(math.dist((x, y, z), point) for point in points) + _ROUNDING_M
 
 
 def _counts(thing: Thing) -> bool:

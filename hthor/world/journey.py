@@ -12,7 +12,6 @@ from hthor.errors import HthorError
 from hthor.houses.freespace import FreeSpace
 from hthor.houses.geodesic import Geodesics
 from hthor.types import BodySpec, Outcome, Pose, Rotate, Vec2, Vec3
-
 from hthor.world import passages
 
 if TYPE_CHECKING:
@@ -21,7 +20,19 @@ if TYPE_CHECKING:
 
 _NEAR_M = 0.8
 """How close to go to something: this share of the arm's reach, or as many metres for a body without hands."""
+_FAR_M = 0.97
+"""And to an object that cannot be seen from any place so close."""
+_SHORT_M = 0.3
+"""Ending this much farther away than the house alone asks means that somebody is in the way."""
+_BESIDE_M = 1.0
+"""As near as one can be expected to come to a place that another body has."""
 _TURN_RAD = 1e-3
+_ROUND = ((1.0, 0.5), (0.87, 0.8), (0.6, 1.0))
+"""Half sides of rectangles that cover a disc of radius 1."""
+_MARGIN_M = 0.04
+"""Half the diagonal of a cell: ways run anywhere in free cells, but what is asked is whether their middles are free."""
+_LOOKS = 100
+"""From how many of the places in reach of an object a line of sight to it is tried."""
 
 
 def towards(pose: Pose, body: BodySpec, point: Vec3) -> Rotate:
@@ -36,26 +47,77 @@ def go(actor: Actor, world: World, target: str | Vec2) -> Outcome:
     """Walk ``actor`` to a place, or to where a thing is in reach, and face it then."""
     pose = actor.pose
     ways = Geodesics(_around(world, actor))
-    here = (pose.x, pose.y)
-    space = ways.space
-    place = target if not isinstance(target, str) else _stand(world, actor, ways, target)
+    space, here = ways.space, (pose.x, pose.y)
+    if not space.is_free(*here):
+        here = _aside(world, actor, space)
+    place = _stand(world, actor, ways, here, target) if isinstance(target, str) else _point(world, target)
     path = ways.path(here, space.nearest_free(*place, within=space.component(*here)))
-    for point in path[1:]:
+    for point in path if here != (pose.x, pose.y) else path[1:]:
         outcome = _leg(actor, point)
         if not outcome.ok:
             return outcome
+    if _short(world, actor, target) > _SHORT_M:
+        by = _nearest(world, actor)
+        return Outcome(motion="move", ok=False, reason=f"{by} is in the way", by=by)
     return actor.look_at(target) if isinstance(target, str) else Outcome(motion="move", ok=True)
+
+
+def _nearest(world: World, actor: Actor) -> str:
+    """The seat of the body next to this one."""
+    pose = actor.pose
+    others = {seat: other for seat, other in world.poses().items() if seat != actor.seat}
+    return min(others, key=lambda seat: math.dist((others[seat].x, others[seat].y), (pose.x, pose.y)))
+
+
+def _short(world: World, actor: Actor, target: str | Vec2) -> float:
+    """How much nearer [m] the body could be if it were alone in the house."""
+    if len(world.seats) == 1:
+        return 0.0
+    pose, space = actor.pose, world.space[actor.seat]
+    alone = space.component(*space.nearest_free(pose.x, pose.y))
+    here = np.array([(pose.x, pose.y)])
+    if not isinstance(target, str):
+        goal = space.nearest_free(*target, within=alone)
+        return math.dist((pose.x, pose.y), goal) - (_BESIDE_M if _taken(world, actor, goal) else 0.0)
+    enough = max(_FAR_M * (actor.body.reach or 1.0), float(_gaps(world, target, space.centres(alone)).min()))
+    return float(_gaps(world, target, here)[0]) - enough
+
+
+def _taken(world: World, actor: Actor, goal: Vec2) -> bool:
+    """Whether somebody stands where this body should: then beside them is as good."""
+    others = [(world.pose(seat), world.bodies[seat].radius) for seat in world.seats if seat != actor.seat]
+    return any(math.dist((pose.x, pose.y), goal) < _SHORT_M + actor.body.radius + radius for pose, radius in others)
+
+
+def _point(world: World, target: Vec2) -> Vec2:
+    x, y = target
+    if not any(geometry.inside((x, y), room.polygon) for room in world.house.rooms):
+        raise HthorError(f"({x:.2f}, {y:.2f}) is in no room of the house; give a point indoors, or the id of a thing")
+    return (x, y)
+
+
+def _aside(world: World, actor: Actor, space: FreeSpace) -> Vec2:
+    """The nearest free floor for a body that stands close to others, on a straight way that leads past none of them."""
+    pose = actor.pose
+    places = space.centres(space.free)
+    order = np.argsort(np.hypot(places[:, 0] - pose.x, places[:, 1] - pose.y), kind="stable")[:_LOOKS]
+    others = [(world.pose(seat), world.bodies[seat].radius) for seat in world.seats if seat != actor.seat]
+    for x, y in places[order].tolist():
+        way = np.linspace((pose.x, pose.y), (x, y), 20)
+        gaps = (np.hypot(way[:, 0] - other.x, way[:, 1] - other.y).min() - radius for other, radius in others)
+        if all(gap >= actor.body.radius for gap in gaps):
+            return (x, y)
+    return space.nearest_free(pose.x, pose.y)
 
 
 def _around(world: World, actor: Actor) -> FreeSpace:
     """The floor that is free for this body while the others stand where they are."""
     rows = []
     for seat, pose in world.poses().items():
-        radius = world.bodies[seat].radius
         if seat != actor.seat:
-            rows.append((pose.x, pose.y, radius, radius, 0.0))
-    space = passages.without(world.space[actor.seat], rows)
-    return space if space.is_free(actor.pose.x, actor.pose.y) else world.space[actor.seat]
+            radius = world.bodies[seat].radius + _MARGIN_M
+            rows += [(pose.x, pose.y, a * radius, b * radius, 0.0) for a, b in _ROUND]
+    return passages.without(world.space[actor.seat], rows)
 
 
 def _leg(actor: Actor, point: Vec2) -> Outcome:
@@ -67,16 +129,22 @@ def _leg(actor: Actor, point: Vec2) -> Outcome:
     return actor.move(length)
 
 
-def _stand(world: World, actor: Actor, ways: Geodesics, target: str) -> Vec2:
+def _stand(world: World, actor: Actor, ways: Geodesics, here: Vec2, target: str) -> Vec2:
     """The free place by ``target`` that is the shortest walk away: in front of a thing, within reach of an object."""
-    pose = actor.pose
-    places = ways.space.centres(ways.space.component(pose.x, pose.y))
+    places = ways.space.centres(ways.space.component(*here))
     if not len(places):
         raise HthorError(f"{actor.seat} stands where it cannot move")
     gaps = _gaps(world, target, places)
-    near = places[gaps <= max(_NEAR_M * (actor.body.reach or 1.0), float(gaps.min()) + 1e-9)]
-    x, y = near[int(np.argmin(ways.distances((pose.x, pose.y), near)))]
-    return (float(x), float(y))
+    small = {state.id for state in world.objects()}
+    found: list[Vec2] = []
+    for share in (_NEAR_M, _FAR_M) if target in small else (_NEAR_M,):
+        near = places[gaps <= max(share * (actor.body.reach or 1.0), float(gaps.min()) + 1e-9)]
+        near = near[np.argsort(ways.distances(here, near), kind="stable")]
+        for x, y in near[:: max(1, len(near) // _LOOKS)].tolist():
+            if target not in small or not world.hidden(target, (x, y, actor.body.eye)):
+                return (x, y)
+            found.append((x, y))
+    return found[0]
 
 
 def _gaps(world: World, target: str, places: Any) -> Any:

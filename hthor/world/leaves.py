@@ -101,7 +101,7 @@ def _leaf(thing: Thing, name: str, hinge: float, rim: float) -> tuple[Part, Part
     grip = rim + math.copysign(0.09, hinge - rim)
     handle = (grip, 0.0, min(_HANDLE_M - thing.size[2] / 2, 0.0))
     return (
-        Part(shape="box", centre=centre, half=half, rgba=paint.DOOR, moves=name),
+        Part(shape="box", centre=centre, half=half, rgba=paint.LEAF, moves=name),
         Part(shape="box", centre=handle, half=(0.06, LEAF_M / 2 + 0.045, 0.012), rgba=STEEL, moves=name),
     )
 

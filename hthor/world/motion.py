@@ -27,16 +27,18 @@ Step = tuple[Outcome | None, tuple[Event, ...]]
 def refusal(seat: Seat, motion: Move | Rotate | Wait) -> str:
     """Why the motion cannot be started, empty when it can."""
     if isinstance(motion, Wait):
-        return _finite(seconds=motion.seconds)
+        return "" if _is_plain(motion.seconds) else _finite(seconds=motion.seconds)
     if "navigate" not in seat.spec.capabilities:
         return f"{seat.spec.title} cannot move"
     if isinstance(motion, Move):
-        reason = _finite(forward=motion.forward, left=motion.left)
+        plain = _is_plain(motion.forward) and _is_plain(motion.left)
+        reason = "" if plain else _finite(forward=motion.forward, left=motion.left)
         length = 0.0 if reason else math.hypot(motion.forward, motion.left)
         if length > rules.MOVE_MAX_M + _EPS:
             return f"move is {length:.2f} m long; at most {rules.MOVE_MAX_M:.2f} m"
         return reason
-    reason = _finite(yaw=motion.yaw, pitch=motion.pitch)
+    plain = _is_plain(motion.yaw) and _is_plain(motion.pitch)
+    reason = "" if plain else _finite(yaw=motion.yaw, pitch=motion.pitch)
     if reason:
         return reason
     if abs(motion.yaw) > 2 * math.pi + _EPS:
@@ -47,10 +49,12 @@ def refusal(seat: Seat, motion: Move | Rotate | Wait) -> str:
     return ""
 
 
+def _is_plain(value: object) -> bool:
+    return type(value) is float and math.isfinite(value)
+
+
 def _finite(**numbers: object) -> str:
     for name, value in numbers.items():
-        if type(value) is float and math.isfinite(value):
-            continue
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
             return f"{name} must be a finite number, got {value!r:.40}"
     return ""

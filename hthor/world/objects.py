@@ -79,6 +79,7 @@ class Objects:
         self.present = np.zeros(len(items), np.bool_)
         self._ghosts: set[str] = set()
         self._loose: set[int] = set()
+        self._news: set[int] = set()
         self.changes = 0
 
     def __iter__(self) -> Iterator[Item]:
@@ -92,6 +93,11 @@ class Objects:
     def known(self, id: str) -> Item | None:
         """The object of that id, in this episode or not."""
         return self._items.get(id)
+
+    def news(self) -> list[Item]:
+        """The objects that may have changed since this was last asked, by id; all of them after a reset."""
+        news, self._news = self._news, set()
+        return [self._list[number] for number in sorted(news)]
 
     def reset(self, starts: Mapping[str, tuple[Vec3, float, str]]) -> None:
         """Begin an episode, the engine having been reset: id -> (position, yaw, what the task says it lies on)."""
@@ -109,12 +115,14 @@ class Objects:
                 beneath = self._beneath[item.id] if home == position else self._below(item)
                 item.support = beneath or support
         self._scene.hide_all_but(())
+        self._news.update(range(len(self._list)))
         self.changes += 1
 
     def take(self, id: str, seat: str, hand: Callable[[], QPose]) -> None:
         """From now on the object is in the hand of ``seat``, which ``hand()`` says where it is."""
         item = self._items[id]
         item.held_by, item.support = seat, ""
+        self._news.add(item.number)
         self._loose.discard(item.number)
         self._collide(item, False)
         self._env.carry(item.tree, item.qpos, item.dof, hand)
@@ -152,6 +160,7 @@ class Objects:
         item.clear()
         self.positions[item.number], self.present[item.number] = AWAY, False
         self._loose.discard(item.number)
+        self._news.add(item.number)
         self._env.touch()
         self.changes += 1
 
@@ -199,6 +208,7 @@ class Objects:
     def _read(self, item: Item, pose: Sequence[float]) -> None:
         item.at(pose)
         self.positions[item.number] = item.position
+        self._news.add(item.number)
 
     def _below(self, item: Item) -> str:
         return self._places.support(item.position, item.size[2])

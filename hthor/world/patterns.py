@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from hthor.looks import finishes
 from hthor.types import HouseSpec
 from hthor.world import geoms, shading
 
-_HARD = ("tile", "marble", "concrete", "stone", "mosaic", "brick")
-_SOFT = ("carpet", "rug", "fabric")
+_BOARDS = ("planks", "parquet", "herringbone", "wicker")
 _CLOTH = ("armchair", "bed", "cloth", "curtain", "dog_bed", "ottoman", "pillow", "rug", "sofa", "teddy_bear", "towel")
 
 
@@ -40,11 +40,10 @@ def of(model: Any, owners: Sequence[str], house: HouseSpec, rgba: Any) -> Any:
 
 
 def _floor(material: str) -> int:
-    """As `hthor.world.paint.floor` reads a material's name."""
-    name = material.lower()
-    if any(word in name for word in _HARD):
-        return shading.TILES
-    return shading.CARPET if any(word in name for word in _SOFT) else shading.PLANKS
+    texture = finishes.floor(material)[0]
+    if texture == "carpet":
+        return shading.CARPET
+    return shading.PLANKS if texture.startswith(_BOARDS) else shading.TILES
 
 
 def _wooden(rgba: Any) -> bool:

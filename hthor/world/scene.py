@@ -23,6 +23,7 @@ class Scene:
     Attributes:
         half: (N, 3) half extents [m]. pos: (N, 3) centres. mat: (N, 9) rotations; both are live views of the engine.
         radius: (N,) bounding radii [m]. owner: id of each geom's thing, seat, room, wall or opening.
+        walls: indices of what hides and never moves, furniture too, largest first. loose: the rest of ``ids``.
         ids: indices of what hides, largest first; carried objects are not among them.
         names: the owners in alphabetic order. numbers: (N,) index of each geom's owner in them.
         span: owner -> [first, last + 1) of its geoms; of a thing with a door, those that do not move.
@@ -41,7 +42,10 @@ class Scene:
         self.solid = model.geom_contype != 0
         self.solid &= model.geom_rgba[:, 3] >= _CLEAR
         self.solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)
-        self.ids = np.zeros(0, np.int64)
+        fixed = self.solid & (model.body_weldid[model.geom_bodyid] == 0)
+        self.walls = self._sorted(fixed)
+        self._moving = self.solid & ~fixed
+        self.ids = self.loose = np.zeros(0, np.int64)
         self.hide_all_but(())
 
     def hide_all_but(self, ghosts: Iterable[str]) -> None:
@@ -49,8 +53,12 @@ class Scene:
         solid = self.solid.copy()
         for id in ghosts:
             solid[slice(*self.span[id])] = False
-        ids = np.flatnonzero(solid)
-        self.ids = ids[np.argsort(-self.radius[ids], kind="stable")]
+        self.ids, self.loose = self._sorted(solid), self._sorted(solid & self._moving)
+
+    def _sorted(self, chosen: Any) -> Any:
+        """Indices of the chosen geoms, largest first."""
+        ids = np.flatnonzero(chosen)
+        return ids[np.argsort(-self.radius[ids], kind="stable")]
 
     def hidden(self, eye: Vec3, point: Vec3, ignore: str = "") -> bool:
         """Whether something other than ``ignore`` stands between the two points [m]."""

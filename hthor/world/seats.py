@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from hthor.errors import UnknownName
 from hthor.houses.freespace import FreeSpace
 from hthor.types import BodySpec, Event, Outcome, Pose
 
@@ -30,3 +31,10 @@ class Seat:
         self.activity: Activity | None = None
         self.outcome: Outcome | None = None
         self.holding = ""
+
+
+class Seats(dict[str, Seat]):
+    """The bodies of one world by name; asking for one that is not there says which are."""
+
+    def __missing__(self, name: str) -> Seat:
+        raise UnknownName("seat", name, self)

@@ -60,7 +60,7 @@ def points(position: Vec3, size: Vec3) -> tuple[Vec3, Vec3]:
     return position, (x, y, z + 0.4 * size[2])
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def nearest(x: float, y: float, z: float, positions: Any) -> float:
     """Distance [m] from an eye to the nearest of ``positions`` (N, 3), infinite when there is none."""
     best = math.inf
@@ -70,69 +70,148 @@ def nearest(x: float, y: float, z: float, positions: Any) -> float:
     return math.sqrt(best)
 
 
-@numba.njit(cache=True)
-def _aim(view: Any, reach: Any, small: int, points: Any, first: Any, out: Any, framed: Any) -> float:
-    """Mark the targets in reach that have points in the field of view, and these points; the square of the farthest."""
+@numba.njit(cache=True, error_model="numpy")
+def _blocks(g: int, px: float, py: float, pz: float, ux: float, uy: float, uz: float, half: Any, mat: Any) -> bool:
+    """Whether a solid whose middle is at (px, py, pz) from the eye meets the line of sight; as `hthor.rays` has it."""
+    near, far = 0.0, 1.0
+    for axis in range(3):
+        o = -(mat[g, axis] * px + mat[g, 3 + axis] * py + mat[g, 6 + axis] * pz)
+        v = mat[g, axis] * ux + mat[g, 3 + axis] * uy + mat[g, 6 + axis] * uz
+        if abs(v) < 1e-12:
+            v = 1e-12
+        t1, t2 = (-half[g, axis] - o) / v, (half[g, axis] - o) / v
+        if t1 > t2:
+            t1, t2 = t2, t1
+        near, far = max(near, t1), min(far, t2)
+    return near <= far
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _leeway(g: int, px: float, py: float, pz: float, ux: float, uy: float, uz: float, half: Any, mat: Any) -> float:
+    """How far [m] the eye may go before the line of sight (ux, uy, uz) can miss a solid that it meets, 0 when unknown.
+
+    The line crosses the solid's middle plane, across its thinnest side. While the eye goes by d, at most half its way
+    D from that plane to the target's, the crossing moves by no more than d times twice the target's share of D, times
+    1 + L / D, L being the line's length.
+    """
+    thin = 0
+    for axis in range(1, 3):
+        if half[g, axis] < half[g, thin]:
+            thin = axis
+    o = -(mat[g, thin] * px + mat[g, 3 + thin] * py + mat[g, 6 + thin] * pz)
+    v = mat[g, thin] * ux + mat[g, 3 + thin] * uy + mat[g, 6 + thin] * uz
+    if abs(v) < 1e-3 or o * v >= 0.0 or abs(o) >= abs(v):
+        return 0.0
+    share, slack = -o / v, math.inf
+    for axis in range(3):
+        if axis != thin:
+            at = -(mat[g, axis] * px + mat[g, 3 + axis] * py + mat[g, 6 + axis] * pz)
+            at += share * (mat[g, axis] * ux + mat[g, 3 + axis] * uy + mat[g, 6 + axis] * uz)
+            slack = min(slack, half[g, axis] - abs(at))
+    line = math.sqrt(ux * ux + uy * uy + uz * uz)
+    most = slack / (2.0 * (1.0 - share) * (1.0 + line / abs(v)))
+    return max(0.0, min(most, abs(o), 0.5 * abs(v)) - 1e-6)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _touched(view: Any, reach: float, balls: Any, out: Any) -> None:
+    """Mark the balls (4, N), middles and radii [m], that are within reach and in the field of view, in part at least.
+
+    Nothing branches and rows are contiguous, so that this becomes vector instructions.
+    """
+    ex, ey, ez, fx, fy, fz = view[0], view[1], view[2], view[3], view[4], view[5]
+    lx, ly, lz, ux, uy, uz, w, h = view[6], view[7], view[8], view[9], view[10], view[11], view[12], view[13]
+    wide, high = math.sqrt(1.0 + w * w), math.sqrt(1.0 + h * h)
+    x, y, z, r = balls[0], balls[1], balls[2], balls[3]
+    for i in range(len(out)):
+        dx, dy, dz, size = x[i] - ex, y[i] - ey, z[i] - ez, r[i]
+        limit = reach + size
+        ahead = dx * fx + dy * fy + dz * fz
+        left = dx * lx + dy * ly + dz * lz
+        up = dx * ux + dy * uy + dz * uz
+        near = (dx * dx + dy * dy + dz * dz <= limit * limit) & (ahead >= -size)
+        out[i] = near & (abs(left) - ahead * w <= size * wide) & (abs(up) - ahead * h <= size * high)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _aim(
+    view: Any,
+    reach: Any,
+    small: int,
+    points: Any,
+    first: Any,
+    balls: Any,
+    sure: Any,
+    out: Any,
+    framed: Any,
+) -> float:
+    """Mark the targets in reach that have points in the field of view, and these points; the square of the farthest.
+
+    A point is left out when it is sure to be hidden still.
+    """
     ex, ey, ez = view[0], view[1], view[2]
-    farthest = 0.0
+    farthest, end = 0.0, small + balls.shape[1]
+    likely = np.empty(balls.shape[1], dtype=np.bool_)
+    _touched(view, reach[small:end].max() if small < end <= len(reach) else 0.0, balls, likely)
     for k in range(len(reach)):
-        if reach[k] <= 0.0:
+        if reach[k] <= 0.0 or (small <= k < end and not likely[k - small]):
             continue
         limit, near, most = reach[k] * reach[k], False, 0.0
-        for p in range(first[k], first[k + 1]):
+        for p in range(first[k], first[k + 1]):  # no branches: they would be guessed wrong too often
             dx, dy, dz = points[p, 0] - ex, points[p, 1] - ey, points[p, 2] - ez
             d2 = dx * dx + dy * dy + dz * dz
-            if d2 <= limit and (k >= small or p == first[k]):
-                near = True
-            elif k < small and not near:
-                break
+            near |= (d2 <= limit) & ((k >= small) | (p == first[k]))
             ahead = dx * view[3] + dy * view[4] + dz * view[5]
-            if ahead > 0.0:
-                left = dx * view[6] + dy * view[7] + dz * view[8]
-                up = dx * view[9] + dy * view[10] + dz * view[11]
-                if abs(left) <= ahead * view[12] and abs(up) <= ahead * view[13]:
-                    framed[p] = True
-                    most = max(most, d2)
+            left = dx * view[6] + dy * view[7] + dz * view[8]
+            up = dx * view[9] + dy * view[10] + dz * view[11]
+            inside = (ahead > 0.0) & (abs(left) <= ahead * view[12]) & (abs(up) <= ahead * view[13])
+            wx, wy, leeway = sure[p, 0] - ex, sure[p, 1] - ey, sure[p, 2]
+            inside &= wx * wx + wy * wy >= leeway * leeway
+            framed[p] = inside
+            most = max(most, d2 * inside)
+            if k < small and not near:
+                break
         if near and most > 0.0:
             out[k] = True
             farthest = max(farthest, most)
     return farthest
 
 
-@numba.njit(cache=True)
-def _gather(view: Any, farthest: float, pos: Any, radius: Any, ids: Any, close: Any, rel: Any) -> int:
-    """List the solids that reach into the field of view, no farther away than ``farthest``; returns how many.
+@numba.njit(cache=True, error_model="numpy")
+def _gather(
+    view: Any, farthest: float, pos: Any, radius: Any, walls: Any, balls: Any, ids: Any, close: Any, rel: Any
+) -> tuple[int, int]:
+    """List the solids that reach into the field of view, no farther away than ``farthest``, first those of ``walls``.
 
     ``rel`` (N, 5) holds for each the way from the eye to its middle, the square of that and of its radius.
+
+    Returns:
+        how many of the walls there are, and how many in all.
     """
-    wide, high = (
-        math.sqrt(1.0 + view[12] * view[12]),
-        math.sqrt(1.0 + view[13] * view[13]),
-    )
-    n = 0
-    for g in ids:
+    likely, moving = np.empty(len(walls), dtype=np.bool_), np.empty(len(ids), dtype=np.bool_)
+    _touched(view, farthest, balls, likely)
+    around = np.empty((4, len(ids)))
+    for c in range(len(ids)):
+        g = ids[c]
+        around[0, c], around[1, c], around[2, c], around[3, c] = pos[g, 0], pos[g, 1], pos[g, 2], radius[g]
+    _touched(view, farthest, around, moving)
+    firm = 0
+    for c in range(len(walls)):
+        close[firm] = walls[c]
+        firm += likely[c]
+    n = firm
+    for c in range(len(ids)):
+        close[n] = ids[c]
+        n += moving[c]
+    for c in range(n):
+        g = close[c]
         dx, dy, dz = pos[g, 0] - view[0], pos[g, 1] - view[1], pos[g, 2] - view[2]
-        size, d2 = radius[g], dx * dx + dy * dy + dz * dz
-        limit = farthest + size
-        ahead = dx * view[3] + dy * view[4] + dz * view[5]
-        if ahead < -size or d2 > limit * limit:
-            continue
-        left = dx * view[6] + dy * view[7] + dz * view[8]
-        up = dx * view[9] + dy * view[10] + dz * view[11]
-        if abs(left) - ahead * view[12] <= size * wide and abs(up) - ahead * view[13] <= size * high:
-            close[n] = g
-            rel[n, 0], rel[n, 1], rel[n, 2], rel[n, 3], rel[n, 4] = (
-                dx,
-                dy,
-                dz,
-                d2,
-                size * size,
-            )
-            n += 1
-    return n
+        rel[c, 0], rel[c, 1], rel[c, 2] = dx, dy, dz
+        rel[c, 3], rel[c, 4] = dx * dx + dy * dy + dz * dz, radius[g] * radius[g]
+    return firm, n
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _reveal(
     view: Any,
     points: Any,
@@ -142,11 +221,19 @@ def _reveal(
     mat: Any,
     close: Any,
     rel: Any,
+    firm: int,
     n: int,
+    begin: int,
+    end: int,
+    sure: Any,
     out: Any,
     framed: Any,
 ) -> None:
-    """Unmark the targets all of whose points are hidden by a solid that is close; the test is that of `hthor.rays`."""
+    """Unmark the targets all of whose points are hidden by a solid that is close; the test is that of `hthor.rays`.
+
+    The targets from ``begin`` to ``end`` never move, nor do the first ``firm`` solids: of points of these that are
+    hidden by one of those it is noted how long they are sure to be.
+    """
     last = -1  # what hid one point probably hides the next
     for k in range(len(out)):
         if not out[k]:
@@ -155,11 +242,7 @@ def _reveal(
         for p in range(first[k], first[k + 1]):
             if not framed[p]:
                 continue
-            ux, uy, uz = (
-                points[p, 0] - view[0],
-                points[p, 1] - view[1],
-                points[p, 2] - view[2],
-            )
+            ux, uy, uz = points[p, 0] - view[0], points[p, 1] - view[1], points[p, 2] - view[2]
             length2 = ux * ux + uy * uy + uz * uz
             hidden = False
             for step in range(-1, n):
@@ -175,27 +258,18 @@ def _reveal(
                     continue
                 t = min(1.0, max(0.0, along / length2))
                 ex, ey, ez = px - t * ux, py - t * uy, pz - t * uz
-                if ex * ex + ey * ey + ez * ez > rel[c, 4]:
-                    continue
-                near, far = 0.0, 1.0
-                for axis in range(3):
-                    o = -(mat[g, axis] * px + mat[g, 3 + axis] * py + mat[g, 6 + axis] * pz)
-                    v = mat[g, axis] * ux + mat[g, 3 + axis] * uy + mat[g, 6 + axis] * uz
-                    if abs(v) < 1e-12:
-                        v = 1e-12
-                    t1, t2 = (-half[g, axis] - o) / v, (half[g, axis] - o) / v
-                    if t1 > t2:
-                        t1, t2 = t2, t1
-                    near, far = max(near, t1), min(far, t2)
-                if near <= far:
+                if ex * ex + ey * ey + ez * ez <= rel[c, 4] and _blocks(g, px, py, pz, ux, uy, uz, half, mat):
                     last, hidden = c, True
+                    if begin <= k < end and c < firm:
+                        leeway = _leeway(g, px, py, pz, ux, uy, uz, half, mat)
+                        sure[p, 0], sure[p, 1], sure[p, 2] = view[0], view[1], leeway
                     break
             if not hidden:
                 out[k] = True
                 break
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def see(
     view: Any,
     reach: Any,
@@ -203,11 +277,16 @@ def see(
     points: Any,
     first: Any,
     own: Any,
+    balls: Any,
     half: Any,
     pos: Any,
     mat: Any,
     radius: Any,
+    walls: Any,
+    spheres: Any,
     ids: Any,
+    sure: Any,
+    order: Any,
 ) -> Any:
     """Which targets are in view: within reach by any of their points, and any point in the field of view and unhidden.
 
@@ -216,16 +295,29 @@ def see(
         small: how many targets, counted from the front, are in reach only by their first point, their centre.
         points: (P, 3) [m] sample points. first: (T + 1,) target k has the points [first[k], first[k + 1]).
         own: (T, 2) ranges of geoms that do not hide the target: its own.
-        half, pos, mat, radius, ids: solids as for `hthor.rays.blocked`.
+        balls: (4, B) middles and radii [m] of balls around all points of the targets after the small ones, which never
+            move.
+        half, pos, mat, radius: solids as for `hthor.rays.blocked`.
+        walls: indices of those that never move. spheres: (4, W) their middles and radii. ids: indices of the others.
+        sure: (P, 3) in and out, zeros at first: where this eye was, x and y [m], when a point turned out to be hidden,
+            and how far [m] from there it is sure to be hidden still. The eye always has the same height.
+        order: (T,) in which order to name the targets.
 
     Returns:
-        (T,) bool.
+        (N,) the targets in view.
     """
     out = np.zeros(len(reach), dtype=np.bool_)
     framed = np.zeros(len(points), dtype=np.bool_)
-    farthest = _aim(view, reach, small, points, first, out, framed)
+    seen, count = np.empty(len(order), dtype=np.int64), 0
+    farthest = _aim(view, reach, small, points, first, balls, sure, out, framed)
     if farthest > 0.0:
-        close, rel = np.empty(len(ids), dtype=np.int64), np.empty((len(ids), 5))
-        n = _gather(view, math.sqrt(farthest), pos, radius, ids, close, rel)
-        _reveal(view, points, first, own, half, mat, close, rel, n, out, framed)
-    return out
+        most = len(walls) + len(ids)
+        close, rel = np.empty(most + 1, dtype=np.int64), np.empty((most, 5))
+        firm, n = _gather(view, math.sqrt(farthest), pos, radius, walls, spheres, ids, close, rel)
+        end = small + balls.shape[1]
+        _reveal(view, points, first, own, half, mat, close, rel, firm, n, small, end, sure, out, framed)
+        for k in order:
+            if out[k]:
+                seen[count] = k
+                count += 1
+    return seen[:count]

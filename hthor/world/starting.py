@@ -21,10 +21,10 @@ class Starting:
 
     def refusal(self, seat: Seat, action: object) -> str:
         """Why the motion cannot be started, empty when it can."""
-        if isinstance(action, (Pick, Place, Drop, Open, Close)):
-            return self._hands.refusal(seat, action)
         if isinstance(action, (Move, Rotate, Wait)):
             return motion.refusal(seat, action)
+        if isinstance(action, (Pick, Place, Drop, Open, Close)):
+            return self._hands.refusal(seat, action)
         return f"{type(action).__name__} is not a motion; valid: Move, Rotate, Pick, Place, Drop, Open, Close, Wait"
 
     def activity(self, seat: Seat, action: Motion) -> Activity:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from hthor import geometry, houses
+from hthor import catalog, geometry, houses
 from hthor.comms.mailbox import Mailbox
 from hthor.errors import UnknownName
 from hthor.types import (
@@ -72,20 +72,30 @@ class World(SeenWorld):
         """True states of the objects that can be picked up, by id; of one kind, or in one room (its id), when given.
 
         Raises:
-            UnknownName: when there is no such room.
+            UnknownName: when there is no such room or kind.
         """
+        _known(kind)
         where = self._room(room).polygon if room else ()
         states = (item.state() for item in self._objects if item.present and kind in ("", item.kind))
         return tuple(state for state in states if not where or geometry.inside(state.position[:2], where))
 
     def furniture(self, kind: str = "", room: str = "") -> tuple[Thing, ...]:
-        """The things that stay where they are, as the house file has them; of one kind, or in one room, when given."""
+        """The things that stay where they are, as the house file has them; of one kind, or in one room, when given.
+
+        Raises:
+            UnknownName: when there is no such room or kind.
+        """
+        _known(kind)
         where = self._room(room).id if room else ""
         things = self._contents.statics
         return tuple(thing for thing in things if kind in ("", thing.kind) and where in ("", thing.room))
 
     def count(self, kind: str) -> int:
-        """How many things of a kind are in the house now, those in hands included."""
+        """How many things of a kind are in the house now, those in hands included.
+
+        Raises:
+            UnknownName: when there is no such kind.
+        """
         return len(self.objects(kind)) + len(self.furniture(kind))
 
     def state(self, id: str) -> ThingState:
@@ -183,3 +193,9 @@ class World(SeenWorld):
             if name in (room.id, room.name):
                 return room
         raise UnknownName("room", name, [room.name for room in self.house.rooms])
+
+
+def _known(kind: str) -> None:
+    """Complain of a kind that does not exist; "" stands for all."""
+    if kind:
+        catalog.kind(kind)

@@ -88,7 +88,7 @@ def _window(owner: str, hole: Hole) -> Iterator[Item]:
         ((inner, outer), across, (bottom, top)),
         ((-inner, inner), across, (bottom, low)),
         ((-inner, inner), across, (high, top)),
-        ((-outer - 0.02, outer + 0.02), (-jut, jut), (low - 0.03, low + 0.004)),
+        ((-inner, inner), (-jut, jut), (low - 0.03, low + 0.004)),  # no wider: curtains hang beside it
     ):
         yield Item(owner, hole.box(s, t, z), finish.TRIM)
     yield from _sash(owner, hole, inner, low, high)

@@ -22,7 +22,7 @@ from hthor.world.stage.puppets import Puppets
 from hthor.world.stage.shell import shell
 from hthor.world.stage.wardrobe import Wardrobe
 
-_SHADOW_TEXELS, _SAMPLES = 1536, 0
+_SHADOW_TEXELS, _SAMPLES = 2048, 0
 _EXTENT_M = 30.0
 """Half the side of what the sun's shadows cover."""
 _STILL = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
