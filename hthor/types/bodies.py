@@ -1,0 +1,120 @@
+"""Bodies, tasks and trials as data; knows nothing of what happens in them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from msgspec import Struct
+
+from hthor.types.places import Pose, Vec2, Vec3
+
+
+class BodySpec(Struct, frozen=True, kw_only=True):
+    """What a body can do, of a robot or of the person's avatar.
+
+    ``eye`` [m] is the camera's height; ``fov`` [rad] its horizontal and vertical field of view; ``sight_range`` [m]
+    bounds what its detector reports, ``scan_range`` [m] its range scan. ``reach`` [m] is horizontal, from the body's
+    axis; ``reach_low`` and ``reach_high`` [m] bound the height of a grasp; ``strength`` [kg] what it can lift.
+    ``handling`` [s] is how long pick, place, open and close take. ``pitch_limit`` [rad] bounds the camera either way.
+    ``detector`` is how its detector errs unless a trial says otherwise, as `hthor.detectors.read` reads it.
+    """
+
+    name: str
+    title: str
+    radius: float
+    height: float
+    eye: float
+    fov: Vec2
+    speed: float
+    turn_rate: float
+    sight_range: float
+    scan_range: float
+    scan_beams: int
+    pitch_limit: float
+    capabilities: frozenset[Literal["navigate", "pick", "open"]]
+    reach: float = 0.0
+    reach_low: float = 0.0
+    reach_high: float = 0.0
+    strength: float = 0.0
+    handling: float = 1.0
+    detector: str = "ideal"
+
+
+class RobotSpec(BodySpec, frozen=True, kw_only=True):
+    """A robot's body, one file each in ``hthor/world/robots``."""
+
+
+class Placement(Struct, frozen=True, kw_only=True):
+    """Where an object starts: ``position`` [m] of its centre, and what it rests ``on`` or lies ``in``."""
+
+    id: str
+    kind: str
+    position: Vec3
+    yaw: float = 0.0
+    support: str = ""
+    relation: Literal["on", "in"] = "on"
+
+
+class Goal(Struct, frozen=True, kw_only=True):
+    """What ends a task well: find or place ``target`` (an object's id); ``destination`` is a thing's *kind*."""
+
+    target: str
+    relation: Literal["find", "on", "in"]
+    destination: str = ""
+
+
+class TaskSpec(Struct, frozen=True, kw_only=True):
+    """One task, as frozen data; ``t_star`` [s] is the least time by the shortest path."""
+
+    id: str
+    kind: str
+    house: str
+    house_sha256: str
+    human_start: Pose
+    robot_starts: tuple[Pose, ...]
+    objects: tuple[Placement, ...]
+    goal: Goal
+    instruction: str
+    time_limit: float
+    t_star: float
+
+
+class AgentRef(Struct, frozen=True, kw_only=True):
+    """Which mind a robot has: a name, where it was loaded from, and the hash of its code."""
+
+    name: str
+    source: str
+    sha256: str
+    privileges: tuple[str, ...] = ()
+
+
+class RobotSeat(Struct, frozen=True, kw_only=True):
+    """One robot of a trial: its body and its mind. ``detector`` as `hthor.detectors.read` reads it.
+
+    ``robot_sha256`` is the hash of a user's own robot file, empty for a robot that ships with hthor.
+    """
+
+    seat: str
+    robot: str
+    agent: AgentRef
+    detector: str = "own"
+    robot_sha256: str = ""
+
+
+class TrialSpec(Struct, frozen=True, kw_only=True):
+    """Everything that decides a trial's course; its content hash is the trial's key.
+
+    ``assets_sha256`` is the hash of the furniture pack that the robots' pictures show, empty for our own furniture.
+    """
+
+    task: TaskSpec
+    robots: tuple[RobotSeat, ...]
+    human: str
+    human_sha256: str
+    participant: int
+    index: int
+    seed: int
+    suite_sha256: str
+    rules_sha256: str
+    code_sha256: str
+    assets_sha256: str = ""
