@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from hthor.rays import blocked
 from hthor.types import BodySpec, Pose
-from hthor.world import avatar, sight
+from hthor.world import avatar, glance, sight
 
 BODY: BodySpec = avatar.HUMAN
 
@@ -28,7 +28,7 @@ def solids(seed: int, count: int) -> tuple[np.ndarray, ...]:
 
 
 def slowly(view, reach, small, points, first, own, half, pos, mat, radius, ids) -> np.ndarray:
-    """What `sight.see` promises, word for word."""
+    """What `glance.see` promises, word for word."""
     found = np.zeros(len(reach), np.bool_)
     for k in range(len(reach)):
         mine = points[first[k] : first[k + 1]]
@@ -49,7 +49,7 @@ def balls(points, first, small) -> np.ndarray:
     for low, high in zip(first[small:-1], first[small + 1 :], strict=True):
         middle = points[low:high].mean(axis=0)
         rows.append((*middle, np.linalg.norm(points[low:high] - middle, axis=1).max()))
-    return np.array(rows).reshape(-1, 4)
+    return np.array(rows).reshape(-1, 4).T.copy()
 
 
 @settings(max_examples=40, deadline=None)
@@ -62,7 +62,12 @@ def test_a_look_finds_what_ray_after_ray_finds(seed: int, turns: list[tuple[floa
     points = np.column_stack([chance.uniform(-5.0, 5.0, (first[-1], 2)), chance.uniform(0.0, 2.0, first[-1])])
     start = chance.integers(0, 38, targets)
     own = np.column_stack([start, start + chance.integers(0, 3, targets)])
-    fixed, sure, order = chance.random(len(ids)) < 0.7, np.zeros((first[-1], 3)), chance.permutation(targets)
+    fixed, sure, order = (
+        chance.random(len(ids)) < 0.7,
+        np.zeros((3, first[-1] - first[small])),
+        chance.permutation(targets),
+    )
+    spots = points[first[small] :].T.copy()
     for number, (yaw, pitch) in enumerate(turns):
         reach = chance.choice([0.0, 1.5, 4.0, 12.0], targets)
         points[: first[small], :2] += chance.uniform(-0.3, 0.3, 2)
@@ -70,9 +75,10 @@ def test_a_look_finds_what_ray_after_ray_finds(seed: int, turns: list[tuple[floa
         view = sight.camera(Pose(x=0.1 + chance.choice([0.03, 0.3]) * number, y=-0.2, yaw=yaw, pitch=pitch), BODY)
         scene = (half, pos, mat, radius, ids)
         found = slowly(view, reach, small, points, first, own, *scene)
-        seen = sight.see(
-            view, reach, small, points, first, own, balls(points, first, small), *scene, fixed, sure, order
-        )
+        walls, loose = (ids[chosen[ids]] for chosen in (fixed, ~fixed))
+        spheres, around = np.vstack([pos[walls].T, radius[walls]]), balls(points, first, small)
+        bodies = half, pos, mat, radius, walls, spheres, loose
+        seen = glance.see(view, reach, small, points, first, own, spots, around, *bodies, sure, order)
         assert seen.tolist() == [k for k in order if found[k]]
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
 from functools import lru_cache
+from typing import Any
 
 from hthor import catalog
-from hthor.looks import build, textures
 from hthor.looks.mesh import Material, Mesh, Piece
 from hthor.types import Vec3
 
@@ -30,4 +31,13 @@ def look(kind: str, size: Vec3 | None = None, variant: int = 0) -> tuple[Piece, 
     Raises:
         UnknownName: when there is no such kind.
     """
+    from hthor.looks import build  # only who draws needs the shapes of everything
+
     return build.pieces(catalog.kind(kind), size, variant)
+
+
+def __getattr__(name: str) -> Any:
+    """`textures`, imported on first use."""
+    if name == "textures":
+        return importlib.import_module("hthor.looks.textures")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

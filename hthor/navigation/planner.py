@@ -114,7 +114,7 @@ class Planner:
         self._version = grid.version
 
     def _grow(self) -> None:
-        """The map has grown: levels move to a larger array; what stands by the old one's edges reaches beyond them now."""
+        """The map has grown: levels move to a larger array. What stands by the old edges now reaches beyond them."""
         (left, bottom, ny, nx), level, stamped = self._frame, self._level, self._stamped
         self._allocate()
         column, row = left - self.grid.left, bottom - self.grid.bottom

@@ -245,7 +245,7 @@ def spread(
         if kind & WATCHED:
             watched -= 1
             if watched == 0:
-                found = np.int64(here)
+                found = int(here)
                 break
     memo[0], memo[1], memo[2] = key, used, waiting
     return int(found)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from hthor import geometry, houses
+from hthor import houses
 from hthor.errors import HthorError, TaskError, UnknownName
 from hthor.houses.freespace import FreeSpace
 from hthor.types import (
@@ -28,6 +27,7 @@ from hthor.world import avatar, bodies, contents, detector, interaction, starts
 from hthor.world.arranging import Arranging
 from hthor.world.doors import Doors
 from hthor.world.env import FastEnv
+from hthor.world.garbage import uncollected
 from hthor.world.gaze import Gaze
 from hthor.world.hinges import Hinges
 from hthor.world.interaction import Hands
@@ -41,8 +41,7 @@ from hthor.world.starting import Starting
 from hthor.world.task import HouseTask
 from hthor.world.touch import Touch
 from hthor.world.truth import Truth
-
-_ROUNDING_M = 1e-9
+from hthor.world.whereabouts import Whereabouts
 
 
 class TickedWorld:
@@ -79,9 +78,10 @@ class TickedWorld:
         self.space = {seat: FreeSpace.of(self.house, spec.radius, spec.height) for seat, spec in self.bodies.items()}
         self.detectors = detector.assign(self.seats[1:], self.bodies, detectors)
         self._contents = contents.split(self.house, objects)
-        self._task = HouseTask(self.house, self._contents, self.bodies)
-        self._env = FastEnv(self._task)
-        self._assemble()
+        with uncollected():
+            self._task = HouseTask(self.house, self._contents, self.bodies)
+            self._env = FastEnv(self._task)
+            self._assemble()
         self.tick, self._episode = 0, 0
         starts.stand(tuple(self._seats.values()), self.house.start, ())
         self._begin({})
@@ -96,6 +96,7 @@ class TickedWorld:
         self._seats = Seats((name, Seat(name, spec, self.space[name])) for name, spec in self.bodies.items())
         self._scanners = {name: Scanner(seat.spec, seat.space, self.house) for name, seat in self._seats.items()}
         seats, touch = tuple(self._seats.values()), Touch(env, self._scene)
+        self._whereabouts = Whereabouts(self.house, self.seats)
         self._passages = Passages(seats, self.space)
         self._hinges = Hinges(self._scene, self._objects, self._doors, places, self._passages, seats)
         self._hands = Hands(self.house, self._scene, self._objects, self._doors, places, self._hinges, touch)
@@ -140,8 +141,7 @@ class TickedWorld:
         for id in placements:
             if id not in movables:
                 raise TaskError(task, "objects", str(UnknownName("object", id, movables)))
-        self._rooms = dict.fromkeys(self.seats, 0)
-        self._roam = dict.fromkeys(self.seats, (0.0, 0.0, 0.0))
+        self._whereabouts.reset()
         self._seed = 0
         begin: dict[str, tuple[Vec3, float, str]] = {}
         for id, movable in movables.items():
@@ -304,18 +304,7 @@ class TickedWorld:
 
     def room(self, seat: str) -> str:
         """Id of the room the seat's body is in, the last one while it is between rooms."""
-        rooms, pose = self.house.rooms, self._seats[seat].pose
-        last, (x, y, spare) = self._rooms[seat], self._roam[seat]
-        if math.hypot(pose.x - x, pose.y - y) < spare:
-            return rooms[last].id
-        here, spare = (pose.x, pose.y), 0.0
-        for number in (last, *range(len(rooms))):
-            if geometry.inside(here, rooms[number].polygon):
-                self._rooms[seat] = last = number
-                spare = geometry.distance_to_edge(here, rooms[number].polygon) - _ROUNDING_M
-                break
-        self._roam[seat] = (*here, spare)  # as long as it goes no farther than that, it is still there
-        return rooms[last].id
+        return self._whereabouts.room(seat, self._seats[seat].pose)
 
     def truth(self) -> tuple[ThingState, ...]:
         """True states of all objects and openable things, by id."""

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from copy import copy
 from typing import Any
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from hthor import catalog
 from hthor.geometry import to_house
 from hthor.houses.solids import WALL_M
 from hthor.types import HUMAN, Detection, Opening, Pose, Thing, Vec2, Vec3
-from hthor.world import sight
+from hthor.world import glance, sight
 from hthor.world.doors import Doors
 from hthor.world.objects import Item, Objects
 from hthor.world.scene import Scene
@@ -85,6 +87,7 @@ class Gaze:
         begin = 2 * len(self._items)
         fixed = [point for sight in self._fixed for point in sight.points]
         self._points[begin : begin + len(fixed)] = np.array(fixed).reshape(-1, 3)
+        self._spots = self._points[begin : begin + len(fixed)].T.copy()
         self._bodies = begin + len(fixed)
         self._reach = {seat.name: self._ranges(seat) for seat in seats}
         self._tops = np.array([0.4 * item.size[2] for item in self._items])
@@ -105,7 +108,9 @@ class Gaze:
         }
         self._every = np.arange(len(self._items))
         self._spheres: Any = None
-        self._sure = {seat.name: np.zeros((len(self._points), 3)) for seat in seats}
+        self._shown = -1
+        self._records: list[Detection] = []
+        self._sure = {seat.name: np.zeros((3, len(fixed))) for seat in seats}
         self._moves = 0
         self._looks = {seat.name: _Look() for seat in seats}
 
@@ -137,8 +142,8 @@ class Gaze:
     def _within(self, seat: Seat) -> Any:
         """How far each target is noticed [m], 0 for objects that are not in the episode."""
         reach = self._reach[seat.name]
-        if self._reach_version[seat.name] != self._version:
-            self._reach_version[seat.name] = self._version
+        if self._reach_version[seat.name] != self._objects.roster:
+            self._reach_version[seat.name] = self._objects.roster
             small = min(CLUTTER_RANGE_M, seat.spec.sight_range)
             reach[: len(self._items)] = np.where(self._clutter, small, seat.spec.sight_range) * self._objects.present
         return reach
@@ -173,7 +178,7 @@ class Gaze:
         if self._spheres is None:
             self._spheres = np.vstack([scene.pos[scene.walls].T, scene.radius[scene.walls]])
         solids = scene.half, scene.pos, scene.mat, scene.radius, scene.walls, self._spheres, scene.loose
-        return sight.see(view, reach, small, points, first, own, self._balls, *solids, sure, order)
+        return glance.see(view, reach, small, points, first, own, self._spots, self._balls, *solids, sure, order)
 
     def _refresh(self) -> None:
         if self._version == self._objects.changes:
@@ -196,11 +201,20 @@ class Gaze:
             return found
         place = index - len(self._items)
         if place < len(self._fixed):
-            records[index] = found = self._of_fixed(self._fixed[place], eye)
+            records[index] = found = self._of_fixed(place, eye)
             return found
         return _of_body(self._seats[place - len(self._fixed)], eye)
 
-    def _of_fixed(self, thing: Sight, eye: Vec3) -> Detection:
+    def _of_fixed(self, place: int, eye: Vec3) -> Detection:
+        """A copy of the record that fits from everywhere, with its distance."""
+        if self._shown != self._doors.changes:
+            self._shown = self._doors.changes
+            self._records = [self._record(thing) for thing in self._fixed]
+        found: Detection = copy(self._records[place])
+        force_setattr(found, "distance", math.dist(eye, found.position))  # nobody else has seen it yet
+        return found
+
+    def _record(self, thing: Sight) -> Detection:
         leaf = self._doors.get(thing.id)
         return Detection(
             id=thing.id,
@@ -209,7 +223,7 @@ class Gaze:
             position=thing.position,
             size=thing.size,
             yaw=thing.yaw,
-            distance=math.dist(eye, thing.position),
+            distance=math.nan,
             state="" if leaf is None else "open" if leaf.open else "closed",
         )
 

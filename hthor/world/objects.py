@@ -62,7 +62,8 @@ class Objects:
     """All movable objects of a world.
 
     Attributes:
-        changes: grows whenever any object's position, holder or support changes.
+        changes: grows whenever any object's position, holder or support changes. roster: grows whenever one may have
+            come into the episode or left it.
         positions: (N, 3) float64 [m], the objects' centres. present: (N,) bool, which are in the episode.
     """
 
@@ -80,7 +81,7 @@ class Objects:
         self._ghosts: set[str] = set()
         self._loose: set[int] = set()
         self._news: set[int] = set()
-        self.changes = 0
+        self.changes = self.roster = 0
 
     def __iter__(self) -> Iterator[Item]:
         return iter(self._list)
@@ -117,6 +118,7 @@ class Objects:
         self._scene.hide_all_but(())
         self._news.update(range(len(self._list)))
         self.changes += 1
+        self.roster += 1
 
     def take(self, id: str, seat: str, hand: Callable[[], QPose]) -> None:
         """From now on the object is in the hand of ``seat``, which ``hand()`` says where it is."""
@@ -151,6 +153,7 @@ class Objects:
         item.support = self._below(item)
         self._env.touch()
         self.changes += 1
+        self.roster += 1
 
     def remove(self, id: str, parking: QPose) -> None:
         """Take an object that nobody holds out of the world."""
@@ -163,6 +166,7 @@ class Objects:
         self._news.add(item.number)
         self._env.touch()
         self.changes += 1
+        self.roster += 1
 
     def ride(self, ids: Iterable[str], way: Vec3) -> None:
         """Carry objects along by ``way`` [m], as a drawer does that they lie in."""

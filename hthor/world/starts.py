@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hthor.geometry import wrap
 from hthor.types import Pose, Vec2
 from hthor.world.seats import Seat
@@ -29,12 +32,22 @@ def stand(seats: Sequence[Seat], human: Pose, robots: Sequence[Pose]) -> None:
 
 def _clear_place(seat: Seat, pose: Pose, others: Sequence[Seat]) -> Vec2:
     space, free = seat.space, seat.space.free.copy()
-    for row, column in zip(*free.nonzero(), strict=True):
+    for row, column in zip(*(free & _about(seat, others)).nonzero(), strict=True):
         if not _apart(space.centre_of(int(row), int(column)), seat, others):
             free[row, column] = False
     if _apart((pose.x, pose.y), seat, others):
         return space.nearest_free(pose.x, pose.y)
     return space.nearest_free(pose.x, pose.y, free)
+
+
+def _about(seat: Seat, others: Sequence[Seat]) -> NDArray[np.bool_]:
+    """(ny, nx) cells around the others, a little more than those from which the body would touch them."""
+    space, cells = seat.space, np.zeros_like(seat.space.free)
+    for other in others:
+        reach = math.ceil((seat.spec.radius + other.spec.radius) / space.cell) + 1
+        row, column = space.cell_of(other.pose.x, other.pose.y)
+        cells[max(row - reach, 0) : row + reach + 1, max(column - reach, 0) : column + reach + 1] = True
+    return cells
 
 
 def _apart(place: Vec2, seat: Seat, others: Sequence[Seat]) -> bool:

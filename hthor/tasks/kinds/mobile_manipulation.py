@@ -93,7 +93,10 @@ def _relation(destination: str) -> Literal["on", "in"]:
 
 def _kind_of(thing_id: str, house: HouseSpec) -> str:
     """The kind of the house's thing with this id, empty when there is none."""
-    return next((thing.kind for thing in house.things if thing.id == thing_id), "") if thing_id else ""
+    for thing in house.things if thing_id else ():  # asked at every tick of a trial
+        if thing.id == thing_id:
+            return thing.kind
+    return ""
 
 
 KIND = MobileManipulation()
