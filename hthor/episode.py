@@ -185,6 +185,9 @@ class _Episode:
             teammates=tuple(other for other in self.minds if other != seat),
             privileges=granted,
             house=self.world.house if "house_map" in granted else None,
+            kind=self.task.kind,
+            jobs=goal.todo,
+            crew=dict(self.world.bodies),
         )
 
     def _guarded(self, seat: str, call: Callable[[], _T]) -> _T | None:

@@ -52,7 +52,7 @@ class Plan(Struct, frozen=True, kw_only=True):
 PLANS = {
     "smoke": Plan(
         name="smoke",
-        version=2,
+        version=3,
         root=20240608,
         houses=("alder", "birch", "cedar", "elder", "hazel", "juniper", "linden", "maple", "rowan", "willow"),
         counts=(("object_goal_navigation", 2), ("mobile_manipulation", 4)),

@@ -7,6 +7,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from hthor import seeds
+from hthor.errors import HthorError
 from hthor.types import Goal, HouseSpec, Placement, Snapshot, TaskSpec
 
 if TYPE_CHECKING:
@@ -20,11 +22,13 @@ LeastTimes = Callable[[Any], "NDArray[np.float64]"]
 class TaskKind(ABC):
     """A kind of task. One file in ``hthor/tasks/kinds`` defines one as ``KIND``; its name is the file's.
 
-    ``short`` is the word that stands for it in the ids of tasks.
+    ``short`` is the word that stands for it in the ids of tasks, and names its own suite where it has one. ``crew``
+    names the robots' bodies that a trial has unless its caller says otherwise.
     """
 
     name: str
     short: str
+    crew: tuple[str, ...] = ("scout",)
 
     @abstractmethod
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
@@ -49,6 +53,24 @@ class TaskKind(ABC):
     @abstractmethod
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
         """T* as a function of where the person starts."""
+
+    def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]:
+        """A goal and an arrangement that does not meet it, drawn from ``root``.
+
+        Raises:
+            HthorError: when the house has nothing for a task of this kind.
+        """
+        from hthor.tasks.arrange import arrange
+
+        known = self.goals(house)
+        if not known:
+            raise HthorError(f"house '{house.id}' has nothing for a task of kind '{self.name}'")
+        goal = known[seeds.choice([1.0] * len(known), root, "goal")]
+        return goal, arrange(house, root, {goal.target: goal.destination})
+
+    def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> float:
+        """The share of the goal that is met at the snapshot's tick, from 0 to 1."""
+        return float(self.met(task, snapshot, house))
 
     def t_star(self, task: TaskSpec, house: HouseSpec) -> float:
         """T* [s] of a task, rounded to a millisecond; inf when it cannot be done."""

@@ -8,7 +8,7 @@ frame* (origin at the centre of its bounding box, front towards +y) counter-cloc
 from __future__ import annotations
 
 from hthor.types.acting import Action, Close, Drop, Motion, Move, Open, Pick, Place, Reply, Rotate, Send, Wait
-from hthor.types.bodies import AgentRef, BodySpec, Goal, Placement, RobotSeat, RobotSpec, TaskSpec, TrialSpec
+from hthor.types.bodies import AgentRef, BodySpec, Goal, Job, Placement, RobotSeat, RobotSpec, TaskSpec, TrialSpec
 from hthor.types.happening import Event, Mind, Snapshot
 from hthor.types.places import (
     HUMAN,
@@ -55,6 +55,7 @@ __all__ = [
     "Event",
     "Goal",
     "HouseSpec",
+    "Job",
     "Joint",
     "Message",
     "Mind",

@@ -44,8 +44,12 @@ class RobotSpec(BodySpec, frozen=True, kw_only=True):
     """A robot's body, one file each in ``hthor/world/robots``."""
 
 
-class Placement(Struct, frozen=True, kw_only=True):
-    """Where an object starts: ``position`` [m] of its centre, and what it rests ``on`` or lies ``in``."""
+class Placement(Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """Where an object starts: ``position`` [m] of its centre, and what it rests ``on`` or lies ``in``.
+
+    ``near`` is the id of the thing or object that a scene prior wanted it near to, empty for one that is about
+    ``support``.
+    """
 
     id: str
     kind: str
@@ -53,18 +57,49 @@ class Placement(Struct, frozen=True, kw_only=True):
     yaw: float = 0.0
     support: str = ""
     relation: Literal["on", "in"] = "on"
+    near: str = ""
 
 
-class Goal(Struct, frozen=True, kw_only=True):
-    """What ends a task well: find or place ``target`` (an object's id); ``destination`` is a thing's *kind*."""
+class Job(Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """One thing to be done with one object, ``target``: find it, or bring it on, in or to where it belongs.
+
+    ``destinations`` are the kinds or the ids of things, or the ids of rooms, any of which will do. ``place`` [m] is
+    where exactly, where that matters. ``hands`` says how many bodies it takes to carry the object.
+    """
 
     target: str
-    relation: Literal["find", "on", "in"]
+    relation: Literal["find", "on", "in", "at"]
+    destinations: tuple[str, ...] = ()
+    place: Vec3 | None = None
+    hands: int = 1
+
+
+class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """What ends a task well: find or place ``target`` (an object's id); ``destination`` is a thing's *kind*.
+
+    Where there is more to do than one thing, ``jobs`` lists all of it, and the other fields tell the first of them.
+    """
+
+    target: str
+    relation: Literal["find", "on", "in", "at"]
     destination: str = ""
+    jobs: tuple[Job, ...] = ()
+
+    @property
+    def todo(self) -> tuple[Job, ...]:
+        """All there is to do, in every kind of task."""
+        if self.jobs:
+            return self.jobs
+        destinations = (self.destination,) if self.destination else ()
+        return (Job(target=self.target, relation=self.relation, destinations=destinations),)
 
 
-class TaskSpec(Struct, frozen=True, kw_only=True):
-    """One task, as frozen data; ``t_star`` [s] is the least time by the shortest path."""
+class TaskSpec(Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """One task, as frozen data; ``t_star`` [s] is the least time by the shortest path.
+
+    ``difficulty`` is easy, medium or hard, by the task alone; ``split`` says whether its house is one of the ten scenes
+    (seen) or not (new). Both are empty in suites that do not tell.
+    """
 
     id: str
     kind: str
@@ -77,6 +112,8 @@ class TaskSpec(Struct, frozen=True, kw_only=True):
     instruction: str
     time_limit: float
     t_star: float
+    difficulty: Literal["", "easy", "medium", "hard"] = ""
+    split: Literal["", "seen", "new"] = ""
 
 
 class AgentRef(Struct, frozen=True, kw_only=True):

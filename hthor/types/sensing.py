@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from msgspec import Struct
 
-from hthor.types.bodies import BodySpec
+from hthor.types.bodies import BodySpec, Job
 from hthor.types.places import HouseSpec, Pose, Vec3
 
 if TYPE_CHECKING:
@@ -203,8 +203,10 @@ class Observation(Struct, frozen=True, kw_only=True):
 class Briefing(Struct, frozen=True, kw_only=True):
     """What a mind is told before a trial.
 
-    ``destination`` is the kind of the thing to place the target in or on, empty for a search. ``house`` is given only
-    to a mind that declares the privilege ``house_map``; ``Observation.truth`` is filled only for ``object_poses``.
+    ``kind`` is the kind of task, ``jobs`` all there is to do; ``target``, ``destination`` (the kind of the thing to
+    place the target in or on, empty for a search) and ``relation`` tell the first of them. ``crew`` holds every seat's
+    body, one's own included. ``house`` is given only to a mind that declares the privilege ``house_map``;
+    ``Observation.truth`` is filled only for ``object_poses``.
     """
 
     seat: str
@@ -218,3 +220,6 @@ class Briefing(Struct, frozen=True, kw_only=True):
     teammates: tuple[str, ...] = ()
     privileges: tuple[str, ...] = ()
     house: HouseSpec | None = None
+    kind: str = ""
+    jobs: tuple[Job, ...] = ()
+    crew: dict[str, BodySpec] = {}
