@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 from hypothesis import given, settings
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 from hthor.rays import blocked
 from hthor.types import BodySpec, Pose
 from hthor.world import avatar, glance, sight
+from hthor.world.hiders import Hiders
 
 BODY: BodySpec = avatar.HUMAN
 
@@ -27,59 +29,72 @@ def solids(seed: int, count: int) -> tuple[np.ndarray, ...]:
     return half, pos, mat, radius, np.argsort(-radius, kind="stable")
 
 
-def slowly(view, reach, small, points, first, own, half, pos, mat, radius, ids) -> np.ndarray:
+def slowly(view, small, targets, reach, own, half, pos, mat, radius, ids) -> list[int]:
     """What `glance.see` promises, word for word."""
-    found = np.zeros(len(reach), np.bool_)
-    for k in range(len(reach)):
-        mine = points[first[k] : first[k + 1]]
+    found = []
+    for k, mine in enumerate(targets):
         apart = np.linalg.norm(mine - view[:3], axis=1)
         if not (apart[:1] if k < small else apart).min() <= reach[k]:
             continue
         for point in mine:
             ahead, left, up = (float((point - view[:3]) @ view[at : at + 3]) for at in (3, 6, 9))
             framed = ahead > 0.0 and abs(left) <= ahead * view[12] and abs(up) <= ahead * view[13]
-            if framed and not blocked(view[:3], point, half, pos, mat, radius, ids, own[k, 0], own[k, 1]):
-                found[k] = True
+            if framed and not blocked(view[:3], point, half, pos, mat, radius, ids, *own[k]):
+                found.append(k)
+                break
     return found
 
 
-def balls(points, first, small) -> np.ndarray:
-    """Balls around the points of the targets that are not small."""
-    rows = []
-    for low, high in zip(first[small:-1], first[small + 1 :], strict=True):
-        middle = points[low:high].mean(axis=0)
-        rows.append((*middle, np.linalg.norm(points[low:high] - middle, axis=1).max()))
-    return np.array(rows).reshape(-1, 4).T.copy()
+def house(seed: int, count: int, fixed: float) -> SimpleNamespace:
+    """As much of a `hthor.world.scene.Scene` as `Hiders` asks for: turned boxes, some of which never move."""
+    half, pos, mat, radius, ids = solids(seed, count)
+    still = np.random.default_rng(seed).random(count)[ids] < fixed
+    return SimpleNamespace(half=half, pos=pos, mat=mat, radius=radius, ids=ids, walls=ids[still], loose=ids[~still])
+
+
+def still_targets(targets, own) -> tuple[np.ndarray, np.ndarray]:
+    """``balls`` and ``spots`` of targets that never move, as `glance.see` takes them."""
+    begins = np.cumsum([0, *(len(points) for points in targets)])
+    rows = [
+        (*points.mean(axis=0), np.linalg.norm(points - points.mean(axis=0), axis=1).max(), *span, begin)
+        for points, span, begin in zip(targets, own, begins, strict=False)
+    ]
+    balls = np.array([*rows, (0.0,) * 6 + (begins[-1],)]).T.copy()
+    spots = np.zeros((6, begins[-1]))
+    spots[:3] = np.concatenate(targets).T
+    return balls, spots
 
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10**6), st.lists(st.tuples(st.floats(-3.1, 3.1), st.floats(-0.8, 0.8)), min_size=1, max_size=4))
 def test_a_look_finds_what_ray_after_ray_finds(seed: int, turns: list[tuple[float, float]]) -> None:
     """Whatever the eye remembers of where it looked before, and though small things and loose solids move meanwhile."""
-    chance, (half, pos, mat, radius, ids) = np.random.default_rng(seed + 1), solids(seed, 40)
-    targets, small = 30, 10
-    first = np.concatenate(([0], np.cumsum(chance.integers(1, 6, targets))))
-    points = np.column_stack([chance.uniform(-5.0, 5.0, (first[-1], 2)), chance.uniform(0.0, 2.0, first[-1])])
-    start = chance.integers(0, 38, targets)
-    own = np.column_stack([start, start + chance.integers(0, 3, targets)])
-    fixed, sure, order = (
-        chance.random(len(ids)) < 0.7,
-        np.zeros((3, first[-1] - first[small])),
-        chance.permutation(targets),
-    )
-    spots = points[first[small] :].T.copy()
+    chance, scene = np.random.default_rng(seed + 1), house(seed, 60, 0.7)
+    moving, small, still = 14, 10, 20
+
+    def scattered(count: int) -> np.ndarray:
+        return np.column_stack([chance.uniform(-5.0, 5.0, (count, 2)), chance.uniform(0.0, 2.0, count)])
+
+    points = scattered(2 * moving).reshape(moving, 2, 3)
+    begin = chance.integers(0, 58, moving + still)
+    own = np.column_stack([begin, begin + chance.integers(0, 3, moving + still)])
+    things = [scattered(count) for count in chance.integers(1, 6, still)]
+    balls, spots = still_targets(things, own[moving:])
+    hiders, order = Hiders(scene), chance.permutation(moving + still)
+    far = float(chance.choice([0.0, 1.5, 4.0, 12.0]))
     for number, (yaw, pitch) in enumerate(turns):
-        reach = chance.choice([0.0, 1.5, 4.0, 12.0], targets)
-        points[: first[small], :2] += chance.uniform(-0.3, 0.3, 2)
-        pos[~fixed, :2] += chance.uniform(-0.3, 0.3, 2)
-        view = sight.camera(Pose(x=0.1 + chance.choice([0.03, 0.3]) * number, y=-0.2, yaw=yaw, pitch=pitch), BODY)
-        scene = (half, pos, mat, radius, ids)
-        found = slowly(view, reach, small, points, first, own, *scene)
-        walls, loose = (ids[chosen[ids]] for chosen in (fixed, ~fixed))
-        spheres, around = np.vstack([pos[walls].T, radius[walls]]), balls(points, first, small)
-        bodies = half, pos, mat, radius, walls, spheres, loose
-        seen = glance.see(view, reach, small, points, first, own, spots, around, *bodies, sure, order)
-        assert seen.tolist() == [k for k in order if found[k]]
+        points[..., :2] += chance.uniform(-0.3, 0.3, 2)
+        scene.pos[scene.loose, :2] += chance.uniform(-0.3, 0.3, 2)
+        hiders.follow(number)
+        pose = Pose(x=0.1 + chance.choice([0.03, 0.3]) * number, y=-0.2, yaw=yaw, pitch=pitch)
+        wanted = np.column_stack([chance.choice([0.0, 1.5, 4.0, 12.0], moving), own[:moving]])
+        reach = [*wanted[:, 0], *[far] * still]
+        bodies = scene.half, scene.pos, scene.mat, scene.radius, scene.ids
+        found = slowly(sight.camera(pose, BODY), small, [*points, *things], reach, own, *bodies)
+        eye = pose.x, pose.y, BODY.eye, pose.yaw, pose.pitch, *sight.lens(BODY)
+        around = hiders.groups, hiders.spheres, hiders.boxes, hiders.firm, hiders.count
+        seen = glance.see(*eye, small, points, wanted, far, balls, spots, *around, order)
+        assert seen.tolist() == [k for k in order if k in found]
 
 
 def test_the_nearest_of_none_is_nowhere() -> None:

@@ -64,7 +64,8 @@ class GridMap:
         self._cover(origin.x - margin, origin.y - margin, origin.x + margin, origin.y + margin)
         self._reserve(16 * len(scan.ranges) + 64)
         first = self._count
-        low = np.ones(len(scan.ranges), dtype=np.bool_) if scan.tops is None else np.asarray(scan.tops) < LOW_M
+        ranges = np.ascontiguousarray(scan.ranges, dtype=np.float64)
+        tops = np.zeros(len(ranges)) if scan.tops is None else np.ascontiguousarray(scan.tops, dtype=np.float64)
         self._count = marching.integrate(
             self.cells,
             self.near,
@@ -75,8 +76,9 @@ class GridMap:
             origin.y,
             origin.yaw,
             self._as_bearings(scan.bearings),
-            np.array(scan.ranges, dtype=np.float64),
-            low,
+            ranges,
+            tops,
+            LOW_M,
             scan.limit,
             look_m,
             look_rad,

@@ -12,6 +12,9 @@ from typing import Any
 import numba
 import numpy as np
 
+_BITS = 40
+_ONE = 1 << _BITS
+
 
 @numba.njit("void(uint8[:,::1], int64, int64, int64[::1])", cache=True)
 def _open(cells: Any, row: int, column: int, bounds: Any) -> None:
@@ -43,9 +46,24 @@ def _fill(
     return count + 1
 
 
+@numba.njit("void(uint8[:,::1], float64, float64, float64, float64, int64, int64[::1])", cache=True)
+def _sweep(cells: Any, x: float, y: float, ux: float, uy: float, count: int, bounds: Any) -> None:
+    """Make so many cells along a beam free, from (x, y) on in steps of (ux, uy) cells.
+
+    The map reaches farther than any beam, so that no place is below 0. Places are kept as whole numbers, a cell being
+    `_ONE`, so that a step is one addition and a cell's index one shift.
+    """
+    fx, fy, dx, dy = int(x * _ONE), int(y * _ONE), int(ux * _ONE), int(uy * _ONE)
+    for _ in range(count):
+        j, i = fy >> _BITS, fx >> _BITS
+        if cells[np.uint64(j), np.uint64(i)] == 0:
+            _open(cells, j, i, bounds)
+        fx, fy = fx + dx, fy + dy
+
+
 @numba.njit(
     "int64(uint8[:,::1], uint8[:,::1], int64, int64, float64, float64, float64, float64, float64[::1], float64[::1],"
-    " boolean[::1], float64, float64, float64, int64[::1], int32[:,::1], int64)",
+    " float64[::1], float64, float64, float64, float64, int64[::1], int32[:,::1], int64)",
     cache=True,
 )
 def integrate(
@@ -59,7 +77,8 @@ def integrate(
     yaw: float,
     bearings: Any,
     ranges: Any,
-    low: Any,
+    tops: Any,
+    low: float,
     limit: float,
     look_m: float,
     look_rad: float,
@@ -67,7 +86,10 @@ def integrate(
     found: Any,
     count: int,
 ) -> int:
-    """March every beam, and beams between neighbours so that no cell is skipped; returns the count of obstacles."""
+    """March every beam, and beams between neighbours so that no cell is skipped; returns the count of obstacles.
+
+    ``tops`` are the heights [m] of what the beams met; what is lower than ``low`` is noted as such.
+    """
     px, py = x / cell - left, y / cell - bottom
     row, column = math.floor(py), math.floor(px)
     for b in range(row - 2, row + 3):
@@ -76,24 +98,23 @@ def integrate(
             near[b, a] = 1
     n = len(ranges)
     look = look_m / cell
+    along_x, along_y = np.empty(n), np.empty(n)
     for k in range(n):
-        angle = yaw + bearings[k]
-        ux, uy = math.cos(angle), math.sin(angle)
+        along_x[k], along_y[k] = math.cos(yaw + bearings[k]), math.sin(yaw + bearings[k])
+    for k in range(n):
+        ux, uy = along_x[k], along_y[k]
         reach = ranges[k] / cell
         hit = ranges[k] < limit - 1e-6
-        looking = abs(bearings[k]) <= look_rad
-        t = 0.0
-        end = reach - 0.3 if hit else reach
-        while t < end:  # the map reaches farther than any beam, so that truncating is rounding down
-            j, i = np.uint64(int(py + t * uy)), np.uint64(int(px + t * ux))
-            if cells[j, i] == 0:
-                _open(cells, np.int64(j), np.int64(i), bounds)
-            if looking and t <= look:
-                near[j, i] = 1
-            t += 1.0
+        count_k = math.ceil(reach - 0.3 if hit else reach)
+        if abs(bearings[k]) <= look_rad:
+            fx, fy, dx, dy = int(px * _ONE), int(py * _ONE), int(ux * _ONE), int(uy * _ONE)
+            for _ in range(min(count_k, int(look) + 1)):
+                near[np.uint64(fy >> _BITS), np.uint64(fx >> _BITS)] = 1
+                fx, fy = fx + dx, fy + dy
+        _sweep(cells, px, py, ux, uy, count_k, bounds)
         if hit:
             b, a = math.floor(py + (reach + 0.2) * uy), math.floor(px + (reach + 0.2) * ux)
-            count = _fill(cells, b, a, left, bottom, bounds, found, count, low[k])
+            count = _fill(cells, b, a, left, bottom, bounds, found, count, tops[k] < low)
         # Between this beam and the next: free as far as the shorter one, from where a gap could open.
         m = k + 1 if k + 1 < n else 0
         gap = bearings[m] - bearings[k] if m else bearings[0] + 2.0 * math.pi - bearings[k]
@@ -102,26 +123,21 @@ def integrate(
         other = ranges[m] / cell
         shorter = min(reach, other) - 1.0
         between = math.ceil(shorter * gap) - 1
-        for s in range(1, between + 1):
-            angle = yaw + bearings[k] + gap * s / (between + 1)
-            vx, vy = math.cos(angle), math.sin(angle)
-            t = 1.0 / gap
-            while t < shorter:
-                j, i = np.uint64(int(py + t * vy)), np.uint64(int(px + t * vx))
-                if cells[j, i] == 0:
-                    _open(cells, np.int64(j), np.int64(i), bounds)
-                t += 1.0
+        cos, sin = math.cos(gap / (between + 1)), math.sin(gap / (between + 1))
+        vx, vy, t = ux, uy, 1.0 / gap
+        for _ in range(between):
+            vx, vy = vx * cos - vy * sin, vx * sin + vy * cos
+            _sweep(cells, px + t * vx, py + t * vy, vx, vy, math.ceil(shorter - t), bounds)
         # Two hits closer together than any body is wide belong to one obstacle.
         if hit and ranges[m] < limit - 1e-6:
-            angle = yaw + bearings[m]
             ax, ay = px + (reach + 0.2) * ux, py + (reach + 0.2) * uy
-            bx, by = px + (other + 0.2) * math.cos(angle), py + (other + 0.2) * math.sin(angle)
-            apart = math.hypot(bx - ax, by - ay)
-            if 1.0 < apart < 6.0:
-                for s in range(1, int(apart) + 1):
-                    f = s / (int(apart) + 1)
+            bx, by = px + (other + 0.2) * along_x[m], py + (other + 0.2) * along_y[m]
+            if 1.0 < (bx - ax) * (bx - ax) + (by - ay) * (by - ay) < 36.0:
+                apart = int(math.hypot(bx - ax, by - ay))
+                for s in range(1, apart + 1):
+                    f = s / (apart + 1)
                     b, a = math.floor(ay + f * (by - ay)), math.floor(ax + f * (bx - ax))
-                    count = _fill(cells, b, a, left, bottom, bounds, found, count, low[k] and low[m])
+                    count = _fill(cells, b, a, left, bottom, bounds, found, count, tops[k] < low and tops[m] < low)
     return count
 
 

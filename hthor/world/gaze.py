@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from copy import copy
 from typing import Any
 
 import numpy as np
-from msgspec import Struct
 from msgspec.structs import force_setattr
 
-from hthor import catalog
-from hthor.geometry import to_house
-from hthor.houses.solids import WALL_M
+from hthor import rules
 from hthor.types import HUMAN, Detection, Opening, Pose, Thing, Vec2, Vec3
 from hthor.world import glance, sight
 from hthor.world.doors import Doors
+from hthor.world.hiders import Hiders
+from hthor.world.landmarks import Landmark, landmarks, targets
 from hthor.world.objects import Item, Objects
 from hthor.world.scene import Scene
 from hthor.world.seats import Seat
@@ -25,37 +23,29 @@ BODY_RANGE_M = 3.0
 """People and robots are noticed at least this far away."""
 CLUTTER_RANGE_M = 2.0
 """The many small things of a house that no task asks for are noticed within this."""
-_DOORWAY_HEIGHT_M = 1.0
 _ROUNDING_M = 1e-6
-_INSET, _PROUD_M = 0.85, 0.02
-"""A piece of furniture is looked for at its upper corners, pulled in to this share, and just off its surfaces."""
 
 
-class Sight(Struct, frozen=True):
-    """What stays the same about a thing that never moves: the detection's fields but for distance and state."""
+class _Eye:
+    """A seat's eye, and what it saw last: ``records`` are of what does not move, from ``place``."""
 
-    id: str
-    kind: str
-    family: str
-    position: Vec3
-    size: Vec3
-    yaw: float
-    points: tuple[Vec3, ...]
+    __slots__ = ("found", "lens", "place", "records", "roster", "seat", "seen", "spare", "spots", "version", "wanted")
 
-
-class _Look:
-    """What a seat saw last: ``records`` are of what does not move, from the eye at ``place``."""
-
-    __slots__ = ("found", "place", "records", "version")
-
-    def __init__(self) -> None:
-        self.version, self.place = (-1, -1, -1), (math.nan, math.nan)
+    def __init__(self, seat: Seat, wanted: Any, spots: Any) -> None:
+        self.seat, self.wanted, self.spots = seat, wanted, spots
+        self.lens = sight.lens(seat.spec)
+        self.version, self.place, self.roster = (-1, -1), (math.nan, math.nan), -1
         self.records: dict[int, Detection] = {}
+        self.seen: list[int] = []
         self.found: tuple[Detection, ...] = ()
+        self.spare: tuple[int, Vec2, float] = (-1, (0.0, 0.0), 0.0)
 
 
 class Gaze:
-    """Looks for objects, furniture, doorways and bodies, in this order, in one compiled call."""
+    """Looks for objects, furniture, doorways and bodies, in one compiled call.
+
+    Targets are numbered: the objects, then the bodies, then what never moves, furniture before doorways.
+    """
 
     def __init__(
         self,
@@ -66,155 +56,163 @@ class Gaze:
         openings: Iterable[Opening],
         seats: Sequence[Seat],
     ) -> None:
-        self._scene, self._objects, self._doors, self._seats = (
-            scene,
-            objects,
-            doors,
-            seats,
-        )
+        self._objects, self._doors, self._seats = objects, doors, seats
         self._items: tuple[Item, ...] = tuple(objects)
-        furniture = [_furniture(thing) for thing in statics if _counts(thing)]
-        doorways = [_doorway(opening) for opening in openings if opening.passable]
-        self._fixed = (
-            *sorted(furniture, key=lambda sight: sight.id),
-            *sorted(doorways, key=lambda sight: sight.id),
-        )
-        counts = [2] * len(self._items) + [len(sight.points) for sight in self._fixed] + [2] * len(seats)
-        self._first = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
-        self._points = np.zeros((int(self._first[-1]), 3))
-        names = [item.id for item in self._items] + [sight.id for sight in self._fixed] + [seat.name for seat in seats]
-        self._own = np.array([scene.span.get(name, (0, 0)) for name in names], np.int64)
-        begin = 2 * len(self._items)
-        fixed = [point for sight in self._fixed for point in sight.points]
-        self._points[begin : begin + len(fixed)] = np.array(fixed).reshape(-1, 3)
-        self._spots = self._points[begin : begin + len(fixed)].T.copy()
-        self._bodies = begin + len(fixed)
-        self._reach = {seat.name: self._ranges(seat) for seat in seats}
+        self._fixed = landmarks(statics, openings)
+        moving = [item.id for item in self._items] + [seat.name for seat in seats]
+        names = [*moving, *(landmark.id for landmark in self._fixed)]
+        self._order = np.array(sorted(range(len(names)), key=names.__getitem__), np.int64)
+        self._moving, self._count = len(moving), len(self._items)
+        self._points = np.zeros((len(moving), 2, 3))
+        self._flat = memoryview(self._points).cast("B").cast("d")  # to write single numbers fast
         self._tops = np.array([0.4 * item.size[2] for item in self._items])
         self._clutter = np.array([item.clutter for item in self._items], np.bool_)
-        self._near = np.zeros(len(self._items))
-        self._version = -1
-        self._apart: dict[tuple[str, float], tuple[int, Vec2, float]] = {}
-        self._reach_version = dict.fromkeys(self._reach, -2)
+        for number, seat in enumerate(seats, len(self._items)):
+            self._points[number, :, 2] = 0.5 * seat.spec.height, 0.9 * seat.spec.height
+        own = [scene.span.get(name, (0, 0)) for name in moving]
+        self._balls, spots = targets(self._fixed, scene.span)
+        self._eyes = {seat.name: _Eye(seat, np.column_stack([self._ranges(seat), own]), spots.copy()) for seat in seats}
+        self._near = np.array([(0.0, *span) for span in own[: len(self._items)]]).reshape(-1, 3)
+        self._nothing = np.zeros((7, 1)), np.zeros((6, 0)), np.arange(len(self._items))
+        self._hiders = Hiders(scene)
+        self._objects_then = self._doors_then = -1
         self._stood: list[Pose | None] = [None] * len(seats)
-        for number, seat in enumerate(seats):
-            self._points[self._bodies + 2 * number, 2] = 0.5 * seat.spec.height
-            self._points[self._bodies + 2 * number + 1, 2] = 0.9 * seat.spec.height
-        self._balls = np.array([_ball(sight.points) for sight in self._fixed]).reshape(-1, 4).T.copy()
-        self._order = np.array(sorted(range(len(names)), key=names.__getitem__), np.int64)
-        self._targets = {
-            count: (self._points[: self._first[count]], self._first[: count + 1], self._own[:count])
-            for count in (len(self._items), len(names))
-        }
-        self._every = np.arange(len(self._items))
-        self._spheres: Any = None
-        self._shown = -1
         self._records: list[Detection] = []
-        self._sure = {seat.name: np.zeros((3, len(fixed))) for seat in seats}
-        self._moves = 0
-        self._looks = {seat.name: _Look() for seat in seats}
+        self._world = self._moves = 0
 
     def detections(self, seat: Seat) -> tuple[Detection, ...]:
         """What the seat's detector reports now, by id; the same records as long as neither eye nor world changes."""
         self._refresh()
-        moved = False
-        for number, other in enumerate(self._seats):
-            if self._stood[number] is not other.pose:
-                self._stood[number] = pose = other.pose
-                row = self._bodies + 2 * number
-                self._points[row, 0] = self._points[row + 1, 0] = pose.x
-                self._points[row, 1] = self._points[row + 1, 1] = pose.y
-                moved = True
-        if moved:
-            self._moves += 1
-        look, pose, version = self._looks[seat.name], seat.pose, (self._moves, self._version, self._doors.changes)
-        if look.version == version:
-            return look.found
-        if look.place != (pose.x, pose.y) or look.version[1:] != version[1:]:
-            look.place, look.records = (pose.x, pose.y), {}
-        look.version = version
-        reach = self._within(seat)
-        seen = self._see(seat, reach, len(reach), self._order, self._sure[seat.name]).tolist()
-        eye = sight.eye(pose, seat.spec)
-        look.found = tuple([look.records.get(index) or self._detection(index, eye, look.records) for index in seen])
-        return look.found
+        eye, version = self._eyes[seat.name], (self._world, self._moves)
+        if eye.version != version:
+            pose = seat.pose
+            place = (pose.x, pose.y)
+            if eye.place != place or eye.version[0] != self._world:
+                eye.place, eye.records = place, {}
+            eye.version = version
+            self._look(eye, pose)
+        return eye.found
 
-    def _within(self, seat: Seat) -> Any:
-        """How far each target is noticed [m], 0 for objects that are not in the episode."""
-        reach = self._reach[seat.name]
-        if self._reach_version[seat.name] != self._objects.roster:
-            self._reach_version[seat.name] = self._objects.roster
-            small = min(CLUTTER_RANGE_M, seat.spec.sight_range)
-            reach[: len(self._items)] = np.where(self._clutter, small, seat.spec.sight_range) * self._objects.present
-        return reach
-
-    def in_view(self, seat: Seat, reach: float) -> tuple[str, ...]:
-        """Ids of the objects that the seat has in view within ``reach`` [m] of its eye, or in its hand."""
+    def in_view(self, seat: Seat) -> tuple[str, ...]:
+        """Ids of the objects that the seat has in view within `rules.FIND_RANGE_M` of its eye, or in its hand."""
         self._refresh()
-        count = len(self._items)
-        if not count:
+        eye = self._eyes[seat.name]
+        if not self._count or not self._any_near(eye):
             return ()
-        if not self._any_near(seat, reach):
-            return ()
-        np.multiply(self._objects.present, reach, out=self._near)
-        seen = set(self._see(seat, self._near, count, self._every, self._sure[seat.name]).tolist())
+        seen = self._seen_near(eye)
         if not seen and not seat.holding:
             return ()
         return tuple(item.id for item in self._items if item.number in seen or item.held_by == seat.name)
 
-    def _any_near(self, seat: Seat, reach: float) -> bool:
-        """Whether any object's centre is within ``reach`` [m] of the eye; worked out anew after a long enough way."""
-        x, y, z = sight.eye(seat.pose, seat.spec)
-        version, there, spare = self._apart.get((seat.name, reach), (-1, (x, y), 0.0))
-        if version != self._version or math.dist(there, (x, y)) >= spare:
-            spare = sight.nearest(x, y, z, self._objects.positions) - reach - _ROUNDING_M
-            self._apart[seat.name, reach] = self._version, (x, y), spare
+    def _refresh(self) -> None:
+        """Take over what has moved: ``_world`` counts changes of objects and doors, ``_moves`` those of poses."""
+        objects, doors = self._objects, self._doors
+        if self._objects_then != objects.changes:
+            self._objects_then = objects.changes
+            self._points[: self._count, 0] = self._points[: self._count, 1] = objects.positions
+            self._points[: self._count, 1, 2] += self._tops
+            self._world += 1
+        if self._doors_then != doors.changes:
+            self._doors_then = doors.changes
+            self._records = [self._record(thing) for thing in self._fixed]
+            self._world += 1
+        stood = self._stood
+        for number, other in enumerate(self._seats):
+            if stood[number] is not other.pose:
+                stood[number] = pose = other.pose
+                at, flat = 6 * (self._count + number), self._flat
+                flat[at] = flat[at + 3] = pose.x
+                flat[at + 1] = flat[at + 4] = pose.y
+                self._moves += 1
+
+    def _look(self, eye: _Eye, pose: Pose) -> None:
+        """Bring what an eye sees up to date."""
+        spec = eye.seat.spec
+        if eye.roster != self._objects.roster:
+            eye.roster = self._objects.roster
+            reach = np.where(self._clutter, min(CLUTTER_RANGE_M, spec.sight_range), spec.sight_range)
+            eye.wanted[: self._count, 0] = reach * self._objects.present
+        every = self._points, eye.wanted, spec.sight_range, self._balls, eye.spots
+        eye.seen = self._see(eye, *every, self._order)
+        eye.found = self._reported(eye.seen, (pose.x, pose.y, spec.eye), eye.records)
+
+    def _reported(self, seen: list[int], eye: Vec3, known: dict[int, Detection]) -> tuple[Detection, ...]:
+        """A record of each target; those that are ``known`` from the same eye again, those of bodies always new."""
+        found, moving, count = [], self._moving, self._count
+        for index in seen:
+            record = known.get(index)
+            if record is None:
+                if index >= moving:
+                    record = self._records[index - moving].__copy__()
+                    force_setattr(record, "distance", math.dist(eye, record.position))  # nobody else has seen it yet
+                    known[index] = record
+                elif index < count:
+                    known[index] = record = _of_item(self._items[index], eye)
+                else:
+                    record = _of_body(self._seats[index - count], eye)
+            found.append(record)
+        return tuple(found)
+
+    def _any_near(self, eye: _Eye) -> bool:
+        """Whether any object's centre is that near to the eye; worked out anew after a long enough way."""
+        here = (eye.seat.pose.x, eye.seat.pose.y)
+        version, there, spare = eye.spare
+        if version != self._objects_then or math.dist(there, here) >= spare:
+            apart = sight.nearest(*here, eye.seat.spec.eye, self._objects.positions)
+            spare = apart - rules.FIND_RANGE_M - _ROUNDING_M
+            eye.spare = self._objects_then, here, spare
             return bool(spare <= 0.0)
         return False
 
-    def _see(self, seat: Seat, reach: Any, count: int, order: Any, sure: Any) -> Any:
-        scene, view = self._scene, sight.camera(seat.pose, seat.spec)
-        small, (points, first, own) = len(self._items), self._targets[count]
-        if self._spheres is None:
-            self._spheres = np.vstack([scene.pos[scene.walls].T, scene.radius[scene.walls]])
-        solids = scene.half, scene.pos, scene.mat, scene.radius, scene.walls, self._spheres, scene.loose
-        return glance.see(view, reach, small, points, first, own, self._spots, self._balls, *solids, sure, order)
+    def _seen_near(self, eye: _Eye) -> set[int]:
+        """Numbers of the objects in view that near: a look of its own, unless the eye has just looked at everything."""
+        spec, pose = eye.seat.spec, eye.seat.pose
+        if eye.version == (self._world, self._moves) and min(CLUTTER_RANGE_M, spec.sight_range) >= rules.FIND_RANGE_M:
+            return {index for index in eye.seen if index < self._count and self._is_near(index, pose, spec.eye)}
+        np.multiply(self._objects.present, rules.FIND_RANGE_M, out=self._near[:, 0])
+        return set(self._see(eye, self._points[: self._count], self._near, 0.0, *self._nothing))
 
-    def _refresh(self) -> None:
-        if self._version == self._objects.changes:
-            return
-        self._version = self._objects.changes
-        end = 2 * len(self._items)
-        self._points[0:end:2] = self._points[1:end:2] = self._objects.positions
-        self._points[1:end:2, 2] += self._tops
+    def _see(self, eye: _Eye, points: Any, wanted: Any, reach: float, balls: Any, spots: Any, order: Any) -> list[int]:
+        """Which of these targets an eye sees, as `glance.see` has it."""
+        hiders, pose = self._hiders, eye.seat.pose
+        hiders.follow(self._world)
+        wide, high = eye.lens
+        seen: list[int] = glance.see(
+            pose.x,
+            pose.y,
+            eye.seat.spec.eye,
+            pose.yaw,
+            pose.pitch,
+            wide,
+            high,
+            self._count,
+            points,
+            wanted,
+            reach,
+            balls,
+            spots,
+            hiders.groups,
+            hiders.spheres,
+            hiders.boxes,
+            hiders.firm,
+            hiders.count,
+            order,
+        ).tolist()
+        return seen
+
+    def _is_near(self, index: int, pose: Pose, height: float) -> bool:
+        """The same sum as `glance` makes, so that both agree to the last bit."""
+        x, y, z = self._items[index].position
+        dx, dy, dz = x - pose.x, y - pose.y, z - height
+        return dx * dx + dy * dy + dz * dz <= rules.FIND_RANGE_M * rules.FIND_RANGE_M
 
     def _ranges(self, seat: Seat) -> Any:
-        reach = np.full(len(self._own), seat.spec.sight_range)
-        for number, other in enumerate(self._seats, len(reach) - len(self._seats)):
+        reach = np.full(self._moving, seat.spec.sight_range)
+        for number, other in enumerate(self._seats, len(self._items)):
             reach[number] = 0.0 if other is seat else max(BODY_RANGE_M, seat.spec.sight_range)
         return reach
 
-    def _detection(self, index: int, eye: Vec3, records: dict[int, Detection]) -> Detection:
-        """A new record, which is kept in ``records`` unless it is of a body."""
-        if index < len(self._items):
-            records[index] = found = _of_item(self._items[index], eye)
-            return found
-        place = index - len(self._items)
-        if place < len(self._fixed):
-            records[index] = found = self._of_fixed(place, eye)
-            return found
-        return _of_body(self._seats[place - len(self._fixed)], eye)
-
-    def _of_fixed(self, place: int, eye: Vec3) -> Detection:
-        """A copy of the record that fits from everywhere, with its distance."""
-        if self._shown != self._doors.changes:
-            self._shown = self._doors.changes
-            self._records = [self._record(thing) for thing in self._fixed]
-        found: Detection = copy(self._records[place])
-        force_setattr(found, "distance", math.dist(eye, found.position))  # nobody else has seen it yet
-        return found
-
-    def _record(self, thing: Sight) -> Detection:
+    def _record(self, thing: Landmark) -> Detection:
         leaf = self._doors.get(thing.id)
         return Detection(
             id=thing.id,
@@ -255,36 +253,3 @@ def _of_body(other: Seat, eye: Vec3) -> Detection:
         yaw=pose.yaw,
         distance=math.dist(eye, position),
     )
-
-
-def _ball(points: Sequence[Vec3]) -> tuple[float, float, float, float]:
-    """Middle and radius [m] of a ball around the points, a little larger than it need be."""
-    x, y, z = (0.5 * (min(axis) + max(axis)) for axis in zip(*points, strict=True))
-    return x, y, z, max(math.dist((x, y, z), point) for point in points) + _ROUNDING_M
-
-
-def _counts(thing: Thing) -> bool:
-    """Small things that lie about are scenery, not furniture."""
-    return not thing.parent or catalog.kind(thing.kind).receptacle
-
-
-def _furniture(thing: Thing) -> Sight:
-    kind = catalog.kind(thing.kind)
-    w, d, h = (extent / 2 for extent in thing.size)
-    local: list[Vec3] = [(0.0, 0.0, 0.0), (0.0, 0.0, h + _PROUD_M)]
-    for surface in kind.surfaces(thing.size):
-        if not surface.inside:
-            local.append((surface.centre[0], surface.centre[1], surface.centre[2] + _PROUD_M))
-    local += [(sx * _INSET * w, sy * _INSET * d, _INSET * h) for sx in (-1, 1) for sy in (-1, 1)]
-    if kind.openable:
-        local.append((0.0, d + _PROUD_M, 0.0))
-    points = tuple(to_house(point, thing.centre, thing.yaw) for point in local)
-    return Sight(thing.id, thing.kind, "furniture", thing.centre, thing.size, thing.yaw, points)
-
-
-def _doorway(opening: Opening) -> Sight:
-    (ax, ay), (bx, by) = opening.a, opening.b
-    middle = ((ax + bx) / 2, (ay + by) / 2, _DOORWAY_HEIGHT_M)
-    size = (math.dist(opening.a, opening.b), WALL_M, opening.high - opening.low)
-    yaw = math.atan2(by - ay, bx - ax)
-    return Sight(opening.id, "doorway", "doorway", middle, size, yaw, (middle,))

@@ -20,7 +20,7 @@ def camera(pose: Pose, spec: BodySpec) -> Any:
         math.cos(pose.pitch),
         math.sin(pose.pitch),
     )
-    wide, high = _tangents(spec.fov)
+    wide, high = lens(spec)
     return np.array(
         (
             pose.x,
@@ -42,8 +42,9 @@ def camera(pose: Pose, spec: BodySpec) -> Any:
 
 
 @functools.cache
-def _tangents(fov: Vec2) -> Vec2:
-    return math.tan(fov[0] / 2), math.tan(fov[1] / 2)
+def lens(spec: BodySpec) -> Vec2:
+    """Tangents of half the fields of view, horizontal and vertical."""
+    return math.tan(spec.fov[0] / 2), math.tan(spec.fov[1] / 2)
 
 
 def eye(pose: Pose, spec: BodySpec) -> Vec3:

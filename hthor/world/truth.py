@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from hthor import rules
 from hthor.errors import StaleObservation
 from hthor.types import HUMAN, Pose, Snapshot, ThingState
 from hthor.world.doors import Doors
@@ -72,7 +71,7 @@ class Truth:
                 f"in_view of the snapshot of tick {tick} is asked for only now that the world has moved on; "
                 "read it while the snapshot is new"
             )
-        return self._gaze.in_view(self._human, rules.FIND_RANGE_M)
+        return self._gaze.in_view(self._human)
 
 
 class InView(Mapping[str, tuple[str, ...]]):
