@@ -91,8 +91,8 @@ class FreeSpace:
 
     def segment_free(self, a: Vec2, b: Vec2) -> bool:
         """Whether the axis can go straight from ``a`` to ``b`` through free places only."""
-        ox, oy, c = *self.origin, self.cell
-        return bool(walk(self.free, (a[0] - ox) / c, (a[1] - oy) / c, (b[0] - ox) / c, (b[1] - oy) / c) >= 1.0)
+        (ox, oy), c = self.origin, self.cell
+        return walk(self.free, (a[0] - ox) / c, (a[1] - oy) / c, (b[0] - ox) / c, (b[1] - oy) / c) >= 1.0  # type: ignore[no-any-return]
 
     def advance(self, a: Vec2, b: Vec2) -> float:
         """The share [0, 1] of the way from ``a`` straight to ``b`` that is free; 0 when ``a`` is not."""

@@ -19,6 +19,7 @@ from hthor.world.objects import Item, Objects
 from hthor.world.scene import Scene
 from hthor.world.seats import Seat
 
+_copy = Detection.__copy__
 BODY_RANGE_M = 3.0
 """People and robots are noticed at least this far away."""
 CLUTTER_RANGE_M = 2.0
@@ -138,13 +139,13 @@ class Gaze:
 
     def _reported(self, seen: list[int], eye: Vec3, known: dict[int, Detection]) -> tuple[Detection, ...]:
         """A record of each target; those that are ``known`` from the same eye again, those of bodies always new."""
-        found, moving, count = [], self._moving, self._count
+        found, moving, count, records = [], self._moving, self._count, self._records
+        dist, anew = math.dist, not known
         for index in seen:
-            record = known.get(index)
-            if record is None:
+            if anew or (record := known.get(index)) is None:
                 if index >= moving:
-                    record = self._records[index - moving].__copy__()
-                    force_setattr(record, "distance", math.dist(eye, record.position))  # nobody else has seen it yet
+                    record = _copy(records[index - moving])
+                    force_setattr(record, "distance", dist(eye, record.position))  # nobody else has seen it yet
                     known[index] = record
                 elif index < count:
                     known[index] = record = _of_item(self._items[index], eye)
@@ -175,7 +176,8 @@ class Gaze:
     def _see(self, eye: _Eye, points: Any, wanted: Any, reach: float, balls: Any, spots: Any, order: Any) -> list[int]:
         """Which of these targets an eye sees, as `glance.see` has it."""
         hiders, pose = self._hiders, eye.seat.pose
-        hiders.follow(self._world)
+        if hiders.version != self._world:
+            hiders.follow(self._world)
         wide, high = eye.lens
         seen: list[int] = glance.see(
             pose.x,

@@ -125,13 +125,14 @@ def _leeway(box: Any, px: float, py: float, pz: float, ux: float, uy: float, uz:
     v = box[3 + thin] * ux + box[6 + thin] * uy + box[9 + thin] * uz
     if abs(v) < 1e-3 or o * v >= 0.0 or abs(o) >= abs(v):
         return 0.0
-    share, flat = -o / v, math.hypot(box[3 + thin], box[6 + thin])
+    share, flat = -o / v, math.sqrt(box[3 + thin] * box[3 + thin] + box[6 + thin] * box[6 + thin])
     most = abs(o) / flat if flat > 1e-6 else math.inf
     for axis in range(3):
         if axis != thin:
             u = box[3 + axis] * ux + box[6 + axis] * uy + box[9 + axis] * uz
             at = -(box[3 + axis] * px + box[6 + axis] * py + box[9 + axis] * pz) + share * u
-            slack, aside = box[axis] - abs(at), math.hypot(box[3 + axis], box[6 + axis])
+            slack = box[axis] - abs(at)
+            aside = math.sqrt(box[3 + axis] * box[3 + axis] + box[6 + axis] * box[6 + axis])
             if slack <= 0.0:
                 return 0.0
             pull = (1.0 - share) * (aside + abs(u) * flat / abs(v)) + slack * flat / abs(v)
@@ -240,7 +241,7 @@ def see(
     moving, still = len(points), balls.shape[1] - 1
     out = np.zeros(moving + still, dtype=np.bool_)
     framed, marked = np.zeros((moving, 2), dtype=np.bool_), np.empty(spots.shape[1], dtype=np.bool_)
-    seen, named, farthest = np.empty(len(out), dtype=np.int64), 0, 0.0
+    seen, named, farthest = np.empty(len(out) + 1, dtype=np.int64), 0, 0.0
     if still and reach > 0.0:
         farthest = _aim_still(view, reach, balls, spots, out[moving:], marked)
     for k in range(moving):
@@ -280,7 +281,6 @@ def see(
                     leeway = _leeway(boxes[ids[by]], rel[by, 0], rel[by, 1], rel[by, 2], ux, uy, uz)
                     spots[3, p], spots[4, p], spots[5, p] = x, y, leeway
     for k in order:
-        if out[k]:
-            seen[named] = k
-            named += 1
+        seen[named] = k
+        named += out[k]
     return seen[:named]

@@ -24,6 +24,7 @@ class Hiders:
             move come first, ``firm`` of them; ``count`` says how many there are.
         groups: (5, G + 1) middles and radii [m] of spheres around groups of those that never move, and where each
             begins; the last column only says where they end.
+        version: of the world, when those that move were looked up last.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -39,15 +40,14 @@ class Hiders:
         for number, group in enumerate(groups):
             self.groups[:4, number] = _around(spheres[:, group])
         self.groups[4] = np.concatenate(([0], np.cumsum([len(group) for group in groups])))
-        self._version: object = None
+        self.version = -1
 
-    def follow(self, version: object) -> None:
-        """Look up those that move, when ``version`` says that one of them has."""
-        if version != self._version:
-            self._version = version
-            scene, firm = self._scene, self.firm
-            self.count = firm + len(scene.loose)
-            _copy(scene.pos, scene.radius, scene.half, scene.mat, scene.loose, self.spheres, self.boxes, firm)
+    def follow(self, version: int) -> None:
+        """Look up those that move: one of them has since the last ``version``."""
+        self.version = version
+        scene, firm = self._scene, self.firm
+        self.count = firm + len(scene.loose)
+        _copy(scene.pos, scene.radius, scene.half, scene.mat, scene.loose, self.spheres, self.boxes, firm)
 
 
 def _groups(spheres: Any, members: Any) -> Iterator[Any]:

@@ -21,6 +21,8 @@ _SLIDE = 0.05
 _FREE, _BLOCKED = "", "*"
 """What a trial step meets: nothing, the house, or else the name of the seat in the way."""
 
+_WENT, _TURNED, _WAITED = (Outcome(motion=motion, ok=True) for motion in ("move", "rotate", "wait"))
+
 Step = tuple[Outcome | None, tuple[Event, ...]]
 
 
@@ -68,7 +70,7 @@ class Waiting:
 
     def advance(self, tick: int) -> Step:  # noqa: ARG002
         self._left -= 1
-        return (None if self._left else Outcome(motion="wait", ok=True)), ()
+        return (None if self._left else _WAITED), ()
 
 
 class Turning:
@@ -86,7 +88,7 @@ class Turning:
         pitch = start.pitch + _clip(self._motion.pitch, most)
         yaw = wrap(start.yaw + _clip(self._motion.yaw, most))
         self._seat.pose = Pose(x=start.x, y=start.y, yaw=yaw, pitch=_clip(pitch, limit))
-        return (None if self._done < self._ticks else Outcome(motion="rotate", ok=True)), ()
+        return (None if self._done < self._ticks else _TURNED), ()
 
 
 class Going:
@@ -108,10 +110,12 @@ class Going:
         self._left -= step
         dx, dy = self._along[0] * step, self._along[1] * step
         met = self._try(dx, dy)
+        if not met:
+            return (None if self._left > _EPS else _WENT), ()
         events = self._in_way(tick, met)
-        if met and self._slide(dx, 0.0, step) and self._slide(0.0, dy, step):
+        if self._slide(dx, 0.0, step) and self._slide(0.0, dy, step):
             return self._stop(tick, met, (dx, dy), events)
-        return (None if self._left > _EPS else Outcome(motion="move", ok=True)), events
+        return (None if self._left > _EPS else _WENT), events
 
     def _try(self, dx: float, dy: float) -> str:
         """Go there if it is free; what was met otherwise."""
@@ -158,8 +162,8 @@ def _clip(value: float, most: float) -> float:
 
 
 def _too_close(seat: Seat, other: Seat, x: float, y: float) -> bool:
-    apart = math.hypot(x - other.pose.x, y - other.pose.y)
-    if apart >= seat.spec.radius + other.spec.radius - _EPS:
+    there, least = other.pose, seat.spec.radius + other.spec.radius - _EPS
+    dx, dy = x - there.x, y - there.y
+    if abs(dx) >= least or abs(dy) >= least or math.hypot(dx, dy) >= least:
         return False
-    now = math.hypot(seat.pose.x - other.pose.x, seat.pose.y - other.pose.y)
-    return apart < now
+    return math.hypot(dx, dy) < math.hypot(seat.pose.x - there.x, seat.pose.y - there.y)

@@ -24,13 +24,11 @@ class Truth:
 
     def snapshot(self, tick: int) -> Snapshot:
         """Everything at this tick."""
-        return Snapshot(
-            tick=tick,
-            poses={seat.name: seat.pose for seat in self._seats},
-            things=self.states(),
-            in_view=self._in_view(tick),
-            holding={seat.name: seat.holding for seat in self._seats},
-        )
+        poses, holding = {}, {}
+        for seat in self._seats:  # at every tick of a trial: one loop is cheaper than two comprehensions
+            poses[seat.name], holding[seat.name] = seat.pose, seat.holding
+        view, things = self._in_view(tick), self.states()
+        return Snapshot(tick=tick, poses=poses, things=things, in_view=view, holding=holding)
 
     def states(self) -> dict[str, ThingState]:
         """By id: a fresh dict whenever anything changed, the same one as long as nothing did."""
