@@ -19,7 +19,7 @@ from hthor.world.objects import Item, Objects
 from hthor.world.scene import Scene
 from hthor.world.seats import Seat
 
-_copy = Detection.__copy__
+_copy: Any = Detection.__copy__  # type: ignore[attr-defined]
 BODY_RANGE_M = 3.0
 """People and robots are noticed at least this far away."""
 CLUTTER_RANGE_M = 2.0
@@ -65,7 +65,7 @@ class Gaze:
         self._order = np.array(sorted(range(len(names)), key=names.__getitem__), np.int64)
         self._moving, self._count = len(moving), len(self._items)
         self._points = np.zeros((len(moving), 2, 3))
-        self._flat = memoryview(self._points).cast("B").cast("d")  # to write single numbers fast
+        self._flat = self._points.data.cast("B").cast("d")  # to write single numbers fast
         self._tops = np.array([0.4 * item.size[2] for item in self._items])
         self._clutter = np.array([item.clutter for item in self._items], np.bool_)
         for number, seat in enumerate(seats, len(self._items)):
