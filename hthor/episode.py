@@ -7,11 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, Protocol, TypeVar
 
+import msgspec
 from msgspec import Struct
 
 from hthor import plugins, rules, seeds
+from hthor.comms import claims
 from hthor.comms.mailbox import Mailbox
 from hthor.humans.model import HumanModel
+from hthor.tasks.kind import TaskKind
 from hthor.types import (
     HUMAN,
     Action,
@@ -30,9 +33,11 @@ from hthor.types import (
     TaskSpec,
     ThingState,
     TrialSpec,
+    Wait,
 )
 
 _T = TypeVar("_T")
+_LOOK_TICKS = round(1.0 / rules.TICK_S)
 
 
 class Stage(Protocol):
@@ -74,6 +79,9 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
 
     ``paths`` holds, for each seat and every `rules.LOG_EVERY_TICKS` ticks from tick 0, [x, y, yaw] in whole
     millimetres and milliradians. ``ticks`` is the trial's length; ``trust`` the person's rating, None without a robot.
+    ``progress`` is the share of the goal that is met in the end, from 0 to 1, None where the kind of task counts no
+    parts; whenever it changes there is an event "progress" with its ``value``. ``idle`` says for how many ticks each
+    seat's body carried out no motion, or only waited.
     """
 
     events: tuple[Event, ...]
@@ -82,6 +90,8 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
     met: bool
     trust: int | None
     faults: tuple[Fault, ...]
+    progress: float | None = None
+    idle: dict[str, int] = {}
 
 
 def play(trial: TrialSpec, world: Stage, human: HumanModel, robots: Mapping[str, Mind]) -> EpisodeLog:
@@ -102,27 +112,47 @@ class _Episode:
         self.seed = seeds.derive(trial.seed, "world", trial.participant, trial.index, trial.task.id)
         self.minds: dict[str, Mind] = {HUMAN: human, **robots}
         self.privileges = {robot.seat: robot.agent.privileges for robot in trial.robots}
-        self.kind = plugins.load("task kind", self.task.kind)
+        self.kind: TaskKind = plugins.load("task kind", self.task.kind)
+        self.advances = _Progress(self.kind, self.task)
         self.limit = round(self.task.time_limit / rules.TICK_S)
         self.mailbox = Mailbox(robots=tuple(robots))
         self.events: list[Event] = []
         self.faults: list[Fault] = []
         self.paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in self.minds}
+        self.idle = dict.fromkeys(self.minds, 0)
+        self.resting: dict[str, int | None] = dict.fromkeys(self.minds, 0)
 
     def run(self) -> EpisodeLog:
         self.world.reset(self.task, seed=self.seed)
         self._trace()
+        self.events.extend(self.advances.look(self.world.snapshot(), self.world.house, news=True))
         for seat, mind in tuple(self.minds.items()):
             self._guarded(seat, partial(mind.begin, self._briefing(seat)))
         met = False
         while not met and self.world.tick < self.limit:
+            told = len(self.events)
             self._tick()
-            met = self.kind.met(self.task, self.world.snapshot(), self.world.house)
+            snapshot = self.world.snapshot()
+            met = self.kind.met(self.task, snapshot, self.world.house)
+            if self.advances.value is not None:
+                news = len(self.events) > told
+                self.events.extend(self.advances.look(snapshot, self.world.house, met=met, news=news))
+        return self._log(met)
+
+    def _log(self, met: bool) -> EpisodeLog:
         ticks = self.world.tick
+        for seat in self.resting:
+            self._rest(seat, False)
         self.events.append(Event(tick=ticks, seat=HUMAN, kind="success" if met else "timeout"))
-        trust = self.human.rate(met, ticks)
         return EpisodeLog(
-            events=tuple(self.events), paths=self.paths, ticks=ticks, met=met, trust=trust, faults=tuple(self.faults)
+            events=tuple(self.events),
+            paths=self.paths,
+            ticks=ticks,
+            met=met,
+            trust=self.human.rate(met, ticks),
+            faults=tuple(self.faults),
+            progress=self.advances.value,
+            idle=self.idle,
         )
 
     def _tick(self) -> None:
@@ -139,6 +169,7 @@ class _Episode:
                 self._say(seat, action)
             if world.idle(seat):
                 world.start(seat, action.motion)
+                self._rest(seat, isinstance(action.motion, Wait) or world.idle(seat))
         self.events.extend(world.advance())
         self._trace()
 
@@ -167,9 +198,24 @@ class _Episode:
     def _say(self, seat: str, action: Action) -> None:
         tick, say = self.world.tick, action.say
         if isinstance(say, Send):
-            self.events.extend(self.mailbox.send(tick, seat, say, self.world.frame(seat)))
+            events = self.mailbox.send(tick, seat, say, self.world.frame(seat))
+            self.events.extend(self._judged(event, say) for event in events)
         elif say is not None:
             self.events.extend(self.mailbox.reply(tick, seat, say))
+
+    def _judged(self, event: Event, send: Send) -> Event:
+        """The same event; what was sent, with how far it is from the truth."""
+        if event.kind != "sent":
+            return event
+        claim = claims.off(send, event.data["position"], self.world.snapshot(), self.world.house)
+        return msgspec.structs.replace(event, data={**event.data, **claim})
+
+    def _rest(self, seat: str, resting: bool) -> None:
+        """From now on the seat's body carries out a motion, or none but waiting."""
+        tick, since = self.world.tick, self.resting[seat]
+        if since is not None and not resting:
+            self.idle[seat] += tick - since
+        self.resting[seat] = None if not resting else tick if since is None else since
 
     def _briefing(self, seat: str) -> Briefing:
         goal, granted = self.task.goal, self.privileges.get(seat, ())
@@ -206,6 +252,7 @@ class _Episode:
         detail = str(getattr(error, "detail", "")) or "".join(traceback.format_exception(error, limit=-4))
         self.faults.append(Fault(seat=seat, kind=kind, tick=tick, detail=detail))
         self.events.append(Event(tick=tick, seat=seat, kind="fault", data={"kind": kind}))
+        self._rest(seat, True)
         del self.minds[seat]
 
     def _trace(self) -> None:
@@ -214,6 +261,33 @@ class _Episode:
         for seat, path in self.paths.items():
             pose = self.world.pose(seat)
             path.append((round(pose.x * 1000), round(pose.y * 1000), round(pose.yaw * 1000)))
+
+
+class _Progress:
+    """How much of the goal is met, by the kinds of task that count parts; the others cost nothing."""
+
+    def __init__(self, kind: TaskKind, task: TaskSpec) -> None:
+        counts = type(kind).progress is not TaskKind.progress
+        self.value: float | None = 0.0 if counts else None
+        self._kind, self._task, self._last = kind, task, round(task.time_limit / rules.TICK_S)
+        self._things: Mapping[str, ThingState] | None = None
+
+    def look(self, snapshot: Snapshot, house: HouseSpec, *, met: bool = False, news: bool) -> tuple[Event, ...]:
+        """The event "progress" when it changed.
+
+        It is worked out when a thing has changed by a deed or by itself, once a second, and at the end. While the only
+        news is that something is carried along, it can wait.
+        """
+        stirred = snapshot.things is not self._things and (news or not any(snapshot.holding.values()))
+        due = met or stirred or snapshot.tick % _LOOK_TICKS == 0 or snapshot.tick == self._last
+        if self.value is None or not due:
+            return ()
+        self._things = snapshot.things
+        share = 1.0 if met else round(min(1.0, max(0.0, float(self._kind.progress(self._task, snapshot, house)))), 4)
+        if share == self.value:
+            return ()
+        self.value = share
+        return (Event(tick=snapshot.tick, seat=HUMAN, kind="progress", data={"value": share}),)
 
 
 def _checked(action: object) -> Action:

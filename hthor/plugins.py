@@ -5,6 +5,7 @@ A plug-in may also be a file of the user's, named by its path. Once loaded it go
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import importlib
 import importlib.util
@@ -24,6 +25,7 @@ _PACKAGES = {
 _SUFFIX = ".py"
 
 
+@functools.cache
 def names(sort: str) -> tuple[str, ...]:
     """The names of every plug-in of a sort that ships with hthor, without importing any.
 

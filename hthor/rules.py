@@ -32,6 +32,11 @@ GRID_M = 0.05
 LOG_EVERY_TICKS = 2
 """Poses are logged at 5 Hz."""
 
+HANDLE_STRENGTH = 4.0
+"""By a handle close to the body, a body lifts so many times what it lifts with an outstretched arm."""
+HANDLE_PACE = 0.7
+"""Those who carry something together go at this share of the pace of the slowest."""
+
 PACE_M_S = 1.0
 """T*: walking pace of the shortest path, a person's full stick speed, so that nobody can be faster."""
 HANDLING_S = 0.5

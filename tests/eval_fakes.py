@@ -12,7 +12,7 @@ from unittest import mock
 
 from hthor import humans, seeds
 from hthor.episode import EpisodeLog, Fault
-from hthor.eval import cast, provenance, record, session, setup
+from hthor.eval import cast, crews, provenance, record, session, setup
 from hthor.eval.record import Record
 from hthor.eval.session import Session
 from hthor.eval.setup import Setup
@@ -26,7 +26,7 @@ HOUSES = ("attic", "barn", "cottage")
 def task(number: int = 0) -> TaskSpec:
     return TaskSpec(
         id=f"t{number:03d}",
-        kind=("find", "place")[number % 2],
+        kind=("object_goal_navigation", "mobile_manipulation")[number % 2],
         house=HOUSES[number % 3],
         house_sha256="ab" * 32,
         human_start=Pose(x=1.0, y=2.5),
@@ -43,19 +43,24 @@ def suite(count: int = 60) -> Suite:
     return frozen("fake", 1, tuple(task(number) for number in range(count)))
 
 
-def character(name: str = "helper", *, absent: bool = False) -> cast.Character:
-    return cast.Character(ref=AgentRef(name=name, source=f"{name}.py", sha256="cd" * 32), absent=absent)
+def character(name: str = "helper", *, absent: bool = False) -> crews.Character:
+    return crews.Character(ref=AgentRef(name=name, source=f"{name}.py", sha256="cd" * 32), absent=absent)
+
+
+def crew(*names: str, absent: bool = False, detector: str = "own") -> crews.Crew:
+    """Scouts with minds of these names."""
+    return crews.form(["scout"] * len(names), [character(name, absent=absent) for name in names], detector)
 
 
 def run_of(
     count: int = 30, *, name: str = "helper", absent: bool = False, seed: int = 0
 ) -> tuple[Setup, tuple[Session, ...]]:
-    tasks, who = suite(count), character(name, absent=absent)
+    tasks, who = suite(count), crew(*name.split("+"), absent=absent)
     with (
         mock.patch.object(humans, "fingerprint", return_value="12" * 32),  # the real one imports the whole proxy
         mock.patch.object(provenance, "code_sha256", return_value="34" * 32),
     ):
-        plan = setup.settle(tasks, who, robot="scout", human="proxy", seed=seed, participants=None)
+        plan = setup.settle(tasks, who, human="proxy", seed=seed, participants=None)
         return plan, session.sessions(tasks, agent=who, seed=seed)
 
 
@@ -67,8 +72,9 @@ def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
     events = []
     paths = {"human": [(i, 2 * i, 0) for i in range(ticks // 2)]}
     faults: tuple[Fault, ...] = ()
+    for robot in trial.robots:
+        paths[robot.seat] = [(0, 0, i) for i in range(ticks // 2)]
     if trial.robots:
-        paths["robot"] = [(0, 0, i) for i in range(ticks // 2)]
         claim = [seeds.draw(trial.seed, "claim", *names), 1.0 / 3.0, 0.5]
         events.append(Event(tick=40, seat="robot", kind="sent", data={"message": 0, "text": "here", "position": claim}))
         if seeds.draw(trial.seed, "confirms", *names) < 0.6:
@@ -77,11 +83,17 @@ def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
             faults = (Fault(seat="robot", kind="raised", tick=70, detail="Traceback\n  ...\nValueError: no"),)
     events.append(Event(tick=ticks, seat="human", kind="success" if met else "timeout"))
     return EpisodeLog(
-        events=tuple(events), paths=paths, ticks=ticks, met=met, trust=5 if trial.robots else None, faults=faults
+        events=tuple(events),
+        paths=paths,
+        ticks=ticks,
+        met=met,
+        trust=5 if trial.robots else None,
+        faults=faults,
+        idle=dict.fromkeys(paths, ticks // 10),
     )
 
 
-def player(path: str = "", robot: str = "", assets: str = "") -> Callable[[Session], Iterator[Record]]:
+def player(sources: cast.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
     """Plays a session in no time; the fake person counts the trials so far, so sessions cannot be cut in pieces."""
 
     def perform(session_: Session) -> Iterator[Record]:

@@ -13,7 +13,7 @@ import msgspec
 import pytest
 
 from hthor import __version__, cli, tasks
-from hthor.eval import cast
+from hthor.eval import cast, crews
 
 
 class Said(msgspec.Struct):
@@ -73,7 +73,10 @@ def test_version(hthor):
         (("evla",), ("No such command 'evla'", "eval")),
         (("eval", "--agnet", "silent"), ("No such option", "--agent")),
         (("houses", "chekc", "x"), ("No such command 'chekc'", "check")),
-        (("eval",), ("Missing option", "--agent")),
+        (("eval",), ("name an agent with --agent", "--robots tall:oracle")),
+        (("eval", "--robots", "tall"), ("'tall' has no mind", "--agent")),
+        (("eval", "--robots", "tall:oracle", "--robot", "scout"), ("leave out --robot",)),
+        (("eval", "--agent", "silent", "--kind", "colect"), ("unknown kind of task 'colect'", "'collect'")),
         (("eval", "--agent", "silent", "--jobs", "0"), ("--jobs", "greater than or equal to 1")),
         (
             ("eval", "--agent", "silnt", "--suite", "fake"),
@@ -139,8 +142,8 @@ def test_eval_of_something_else_in_the_same_folder_is_refused(hthor, done: Path)
 
 
 def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    real = cast.introduce
-    monkeypatch.setattr(cast, "introduce", lambda name: real(name) if name == "silent" else fakes.character(name))
+    real = crews.introduce
+    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "silent" else fakes.character(name))
     said = hthor("eval", "--agent", "silent", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path), "--quiet")
     assert said.code == 3, "done, but an agent failed in some trials"
     assert "silent" in said.out
@@ -150,11 +153,26 @@ def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.
 
 
 def test_an_agents_faults_are_shown_with_a_way_to_look(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(cast, "introduce", fakes.character)
+    monkeypatch.setattr(crews, "introduce", fakes.character)
     said = hthor("eval", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path / "run"))
     assert said.code == 3
     assert "failed in 2 of 20 trials" in said.out
     assert "after 7.0 s: raised: ValueError: no" in said.out
+
+
+def test_faults_of_several_robots_are_told_apart(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(crews, "introduce", fakes.character)
+    folder = str(tmp_path / "run")
+    said = hthor("eval", "--robots", "tall:clumsy,small:other", "--suite", "fake", "--out", folder)
+    assert said.code == 3
+    assert "tender-clumsy+puck-other: fake, 20 trials" in said.out
+    assert "An agent failed in 2 of 20 trials (robot in 2); there the others went on without it." in said.out
+    assert "robot (clumsy), after 7.0 s: raised: ValueError: no" in said.out
+    brief, full = hthor("score", folder).out, hthor("score", folder, "--all").out
+    for row in ("person idle", "messages sent, a trial", "messages that were false", "share of the work: robot2"):
+        assert row not in brief
+        assert row in full
+    assert "by kind of task" in full
 
 
 def test_score_says_whether_it_agrees(hthor, done: Path):
@@ -206,7 +224,7 @@ def test_lists_agree_with_their_json(hthor, words):
 
 
 def test_tasks_of_a_suite(hthor):
-    rows = json.loads(hthor("tasks", "list", "--suite", "fake", "--json").out)
+    rows = json.loads(hthor("tasks", "list", "fake", "--json").out)
     assert len(rows) == 20
     assert rows[0]["instruction"] == "Find the apple."
 

@@ -157,18 +157,16 @@ def test_names_of_detectors() -> None:
 
 
 def test_a_run_says_which_detector_it_used() -> None:
-    who, suite = fakes.character(), fakes.suite(10)
+    suite = fakes.suite(10)
     text = detectors.tidy("false_alarm=0.05,miss=0.2")
-    plain, noisy = (
-        setup.settle(suite, who, robot="scout", human="proxy", seed=0, participants=None, detector=detector)
-        for detector in ("own", text)
-    )
-    assert (plain.detector, noisy.detector) == ("own", "miss=0.2,false_alarm=0.05")
+    crews = [fakes.crew("helper", detector=detector) for detector in ("own", text)]
+    plain, noisy = (setup.settle(suite, crew, human="proxy", seed=0, participants=None) for crew in crews)
+    assert [plan.robots[0].detector for plan in (plain, noisy)] == ["own", "miss=0.2,false_alarm=0.05"]
     assert plain.folder_name != noisy.folder_name
-    dealt = session.sessions(suite, agent=who, detector=text)
+    dealt = session.sessions(suite, agent=crews[1])
     assert {seat.detector for trial in dealt[0].trials for seat in trial.robots} == {text}
-    keys = {record.key(trial) for trial in session.sessions(suite, agent=who)[0].trials}
+    keys = {record.key(trial) for trial in session.sessions(suite, agent=crews[0])[0].trials}
     assert keys.isdisjoint(record.key(trial) for trial in dealt[0].trials)
-    assert score.summarise(noisy, [], []).detector == text
-    alone = fakes.character("silent", absent=True)
-    assert setup.settle(suite, alone, robot="scout", human="proxy", seed=0, participants=None).detector == ""
+    assert score.summarise(noisy, [], []).robots[0].detector == text
+    alone = fakes.crew("silent", absent=True)
+    assert setup.settle(suite, alone, human="proxy", seed=0, participants=None).robots[0].detector == ""

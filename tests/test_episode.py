@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from hthor import houses, tasks
+from hthor import episode, houses, tasks
 from hthor.episode import EpisodeLog, play
+from hthor.tasks.kinds.object_goal_navigation import ObjectGoalNavigation
 from hthor.types import (
     HUMAN,
     Action,
@@ -57,7 +58,8 @@ class Stage:
         self.house = houses.load(TASK.house)
         self.seen, self.busy = seen, busy
         self.started: list[tuple[int, str, Motion]] = []
-        self.frames = 0
+        self.frames, self.carrying = 0, False
+        self.things: dict[str, ThingState] = {thing.id: thing for thing in self.truth()}
 
     def reset(self, task: TaskSpec, seed: int = 0) -> None:
         self.tick, self.free_at = 0, dict.fromkeys(self.seats, 0)
@@ -93,7 +95,8 @@ class Stage:
 
     def snapshot(self) -> Snapshot:
         view = (TASK.goal.target,) if self.tick >= self.seen else ()
-        return Snapshot(tick=self.tick, poses={}, things={}, in_view={HUMAN: view}, holding={})
+        held = {HUMAN: "apple" if self.carrying else ""}
+        return Snapshot(tick=self.tick, poses={}, things=self.things, in_view={HUMAN: view}, holding=held)
 
     def frame(self, seat: str) -> Callable[[], Any]:
         def render() -> int:
@@ -237,6 +240,91 @@ def test_a_mind_that_fails_is_retired_and_the_trial_goes_on(where: str) -> None:
         where
     ] in log.faults[0].detail
     assert len(log.paths["robot"]) == len(log.paths[HUMAN])
+
+
+class Counting(ObjectGoalNavigation):
+    """Counts how often it is asked; a tenth of the goal is met after every twelve ticks."""
+
+    asked = 0
+
+    def progress(self, task: TaskSpec, snapshot: Snapshot, house: object = None) -> float:
+        self.asked += 1
+        return snapshot.tick // 12 / 10
+
+
+@pytest.fixture
+def counting(monkeypatch: pytest.MonkeyPatch) -> Counting:
+    kind = Counting()
+    monkeypatch.setattr(episode.plugins, "load", lambda sort, name: kind)
+    return kind
+
+
+def test_progress_is_noticed_within_a_second_and_whole_in_the_end(counting: Counting) -> None:
+    log = run(Stage(seen=47), Mind(), Mind())
+    steps = [(event.tick, event.data["value"]) for event in log.events if event.kind == "progress"]
+    assert steps == [(20, 0.1), (30, 0.2), (40, 0.3), (47, 1.0)]
+    assert log.progress == 1.0
+    assert counting.asked == 5, "at the start and once a second, for no thing has changed"
+
+
+def test_progress_is_noticed_at_once_when_a_thing_changes(counting: Counting) -> None:
+    class Restless(Stage):
+        def advance(self) -> tuple[Event, ...]:
+            self.tick += 1
+            self.things = dict(self.things)
+            return (Event(tick=self.tick, seat="robot", kind="placed"),) if self.tick == 13 else ()
+
+    stage = Restless(seen=30)
+    assert [event.tick for event in run(stage, Mind(), Mind()).events if event.kind == "progress"] == [12, 24, 30]
+    stage.carrying = True
+    ticks = [event.tick for event in run(stage, Mind(), Mind()).events if event.kind == "progress"]
+    assert ticks == [13, 30], "what is only carried along can wait, a deed cannot"
+
+
+def test_a_kind_that_counts_no_parts_has_no_progress() -> None:
+    log = run(Stage(seen=20), Mind(), Mind())
+    assert log.progress is None
+    assert "progress" not in kinds(log)
+
+
+def test_waiting_is_idle_and_moving_is_not() -> None:
+    def script(now: Observation) -> Action:
+        return Action(motion=Move(forward=0.1) if now.tick < 20 else Wait(seconds=0.5))
+
+    log = run(Stage(seen=50, busy=5), Mind(script), Mind(lambda _: Action(motion=Move(forward=0.5))))
+    assert log.idle == {HUMAN: 30, "robot": 0}
+
+
+def test_what_is_refused_leaves_the_body_idle() -> None:
+    class Stubborn(Stage):
+        def start(self, seat: str, motion: Motion) -> None:
+            self.started.append((self.tick, seat, motion))
+
+    log = run(Stubborn(seen=12), Mind(lambda _: Action(motion=Move(forward=0.1))), None)
+    assert log.idle == {HUMAN: 12}
+
+
+def test_a_retired_robot_is_idle_from_then_on() -> None:
+    def fail(now: Observation) -> Action:
+        if now.tick >= 7:
+            raise ValueError("lost")
+        return Action(motion=Move(forward=0.1))
+
+    assert run(Stage(seen=30), Mind(), Mind(fail)).idle["robot"] == 23
+
+
+def test_the_log_knows_how_far_a_claim_is_off_and_nobody_else_does() -> None:
+    claims = {0: ((0.3, 0.4, 0.0), "apple"), 1: ((9.0, 0.0, 0.0), "apple"), 2: (None, "apple"), 3: (None, "ghost")}
+
+    def script(now: Observation) -> Action:
+        position, name = claims.get(now.tick, (None, ""))
+        return Action(say=Send(text="there", object=name, position=position) if name else None)
+
+    human, robot = Mind(), Mind(script)
+    log = run(Stage(seen=9), human, robot)
+    sent = [event.data for event in log.events if event.kind == "sent"]
+    assert [data.get("off", "nothing") for data in sent] == [0.5, 9.0, "nothing", None]
+    assert not any(hasattr(message, "off") for seen in human.observed for message in seen.inbox)
 
 
 def test_a_failing_human_model_is_not_hidden() -> None:

@@ -51,7 +51,8 @@ def test_every_file_is_as_the_schema_says(tmp_path: Path, runs: dict[str, Path],
     rates = [entry["metrics"]["sr"]["mean"] for entry in entries]
     assert rates == sorted(rates, reverse=True)
     for entry in entries:
-        for estimate in entry["metrics"].values():
+        several = [entry["metrics"].pop(name) for name in ("work", "hindered_by")]
+        for estimate in (*entry["metrics"].values(), *(one for named in several for one in named.values())):
             assert estimate["n"] == 0 or estimate["ci95"][0] <= estimate["mean"] <= estimate["ci95"][1]
 
 

@@ -113,7 +113,7 @@ def test_another_run_is_refused_and_told_apart(tmp_path: Path):
     _run(tmp_path, count=10)
     with pytest.raises(RunError, match=r"holds another run: seed is 0 there and 1 here\. Choose another folder"):
         _run(tmp_path, count=10, seed=1)
-    with pytest.raises(RunError, match=r"agent\.name is helper there and other here"):
+    with pytest.raises(RunError, match=r"robots\.0\.agent\.name is helper there and other here"):
         _run(tmp_path, count=10, name="other")
 
 

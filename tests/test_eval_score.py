@@ -44,15 +44,18 @@ def test_a_small_log_worked_out_by_hand():
         msgspec.structs.replace(record.of(trial, _log(*case)), spec=msgspec.structs.replace(trial, participant=number))
         for number, (trial, case) in enumerate(zip(trials, GOLDEN, strict=True))
     ]
-    assert [one.metrics for one in made] == [
-        TrialMetrics(sr=1, twsr=0.5, adoption=1, time_s=16.0, trust=6),
-        TrialMetrics(sr=0, twsr=0.0, adoption=0, time_s=90.0, trust=2),
-        TrialMetrics(sr=1, twsr=1.0, adoption=0, time_s=4.0, trust=4),
+    main = ("sr", "twsr", "adoption", "time_s", "trust")
+    assert [tuple(getattr(one.metrics, name) for name in main) for one in made] == [
+        (1, 0.5, 1, 16.0, 6),
+        (0, 0.0, 0, 90.0, 2),
+        (1, 1.0, 0, 4.0, 4),
     ]
     found = score.scores(made)
-    assert [getattr(found, name).mean for name in metrics.NAMES] == [0.666667, 0.5, 0.333333, 36.666667, 4.0]
+    assert [getattr(found, name).mean for name in main] == [0.666667, 0.5, 0.333333, 36.666667, 4.0]
     assert found.sr.ci95 == (0.0, 1.0)
-    assert all(getattr(found, name).n == 3 for name in metrics.NAMES)
+    assert all(getattr(found, name).n == 3 for name in main)
+    counts = ("sent", "accepted", "declined", "covered", "unanswered", "false_claims")
+    assert [getattr(found, name).mean for name in counts] == [1.0, 0.333333, 0.333333, 0.0, 0.333333, 0.0]
 
 
 @given(st.integers(1, 900), st.booleans(), st.sampled_from(TRIALS))
@@ -86,7 +89,8 @@ def test_without_a_robot_there_is_neither_adoption_nor_trust():
     assert (found.metrics.adoption.mean, found.metrics.adoption.ci95, found.metrics.adoption.n) == (None, None, 0)
     assert found.metrics.trust.n == 0
     assert found.metrics.sr.n == 10
-    assert found.robot == ""
+    assert [robot.robot for robot in found.robots] == [""]
+    assert (found.metrics.sent.n, found.metrics.in_way.n, found.metrics.work) == (0, 0, {})
 
 
 def _played(folder, name: str = "helper"):
@@ -127,7 +131,7 @@ def test_faults_are_counted_and_their_trials_too(tmp_path):
 def test_the_stored_result_says_how_it_came_about(tmp_path):
     _played(tmp_path)
     document = msgspec.json.decode((tmp_path / "result.json").read_bytes())
-    assert document["schema"] == "hthor.result/1"
+    assert document["schema"] == "hthor.result/2"
     assert set(document["versions"]) >= {"hthor", "python", "mujoco", "dm_control", "numpy"}
     assert document["effort"]["trials"] == 20
     assert (tmp_path / "result.json").read_bytes() == jsonio.pretty(document)

@@ -48,7 +48,8 @@ def test_the_agent_has_no_say():
 
 def test_no_robot_is_no_robot():
     plan, dealt = fakes.run_of(20, absent=True)
-    assert plan.robot == ""
+    assert plan.seats == ()
+    assert [robot.agent.name for robot in plan.robots] == ["helper"]
     assert all(trial.robots == () for one in dealt for trial in one.trials)
 
 
@@ -56,8 +57,8 @@ def test_no_robot_is_no_robot():
 def test_the_plan_knows_how_many_trials_there_are(people: int):
     from hthor.eval import setup
 
-    suite, who = fakes.suite(57), fakes.character()
-    plan = setup.settle(suite, who, robot="scout", human="proxy", seed=3, participants=people)
+    suite, who = fakes.suite(57), fakes.crew("helper")
+    plan = setup.settle(suite, who, human="proxy", seed=3, participants=people)
     dealt = session.sessions(suite, agent=who, seed=3, participants=people)
     assert plan.trials == sum(len(one.trials) for one in dealt)
     assert plan.participants == len(dealt) == people

@@ -23,7 +23,7 @@ import msgspec
 import pytest
 
 from hthor import cli, guest, houses, tasks
-from hthor.eval import cast, find, redraw
+from hthor.eval import cast, crews, find, redraw
 from hthor.eval.log import Log
 from hthor.eval.record import Record
 from hthor.eval.session import Session, sessions
@@ -254,16 +254,16 @@ def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(tmp_path
     assert json.loads((folder / "result.json").read_bytes()) == mine
 
 
-def dealt(agent: str, count: int = 2) -> tuple[cast.Character, Session]:
-    """An agent, and the first trials of its first person."""
-    who = cast.introduce(agent)
+def dealt(agent: str, count: int = 2) -> tuple[cast.Sources, Session]:
+    """Where an agent's file lies, and the first trials of its first person."""
+    who = crews.form(["scout"], [agent])
     whole = sessions(tasks.suite(SUITE), agent=who, participants=1)[0]
-    return who, msgspec.structs.replace(whole, trials=whole.trials[:count])
+    return cast.Sources(minds=who.minds), msgspec.structs.replace(whole, trials=whole.trials[:count])
 
 
 def played(agent: str, count: int = 2) -> list[Record]:
-    who, session = dealt(agent, count)
-    return list(cast.player(who.path)(session))
+    sources, session = dealt(agent, count)
+    return list(cast.player(sources)(session))
 
 
 def test_the_example_works(root: Path):
@@ -363,10 +363,10 @@ def test_an_agent_that_does_not_load(text: str, told: str, tmp_path: Path, say: 
 
 
 def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
-    who, session = dealt(written(tmp_path))
+    sources, session = dealt(written(tmp_path))
     written(tmp_path, act="return None")
     with pytest.raises(guest.host.AgentError, match=r"agent\.py was changed while its run was going on"):
-        list(cast.player(who.path)(session))
+        list(cast.player(sources)(session))
 
 
 # ----------------------------------------------------------------------------------------------------- what a run holds

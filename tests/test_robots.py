@@ -15,7 +15,7 @@ from world_house import COUNTER, TABLE, do, on, reason, task
 
 from hthor import catalog, plugins, rules
 from hthor.errors import HthorError, UnknownName
-from hthor.eval import cast
+from hthor.eval import cast, crews
 from hthor.types import Close, Move, Open, Part, Pick, Place, Pose, RobotSpec, Rotate
 from hthor.world import World, avatar, bodies
 
@@ -315,11 +315,11 @@ def test_a_user_s_robot_is_one_file(tmp_path: Path) -> None:
 def test_a_run_knows_the_file_and_notices_a_change(tmp_path: Path) -> None:
     file = tmp_path / "rover_that_changes.py"
     file.write_text(MINE.format(name="rover_that_changes"))
-    shape = cast.embody(str(file))
+    shape = crews.embody(str(file))
     assert (shape.name, shape.path) == ("rover_that_changes", str(file))
-    (seat,) = cast.introduce("frontier").seats(shape.name, robot_sha256=shape.sha256)
+    (seat,) = crews.form([shape], ["frontier"]).seats
     assert seat.robot_sha256 == plugins.sha256(str(file))
-    stage = cast.Stage(robot=shape.path)
+    stage = cast.Stage(cast.Sources(bodies={"robot": shape.path}))
     assert stage._body(seat) == bodies.robot(str(file))
     file.write_text(file.read_text() + "# faster")
     with pytest.raises(HthorError, match="was changed while its run was going on"):
@@ -327,9 +327,9 @@ def test_a_run_knows_the_file_and_notices_a_change(tmp_path: Path) -> None:
 
 
 def test_robots_that_ship_with_hthor_are_covered_by_the_code_s_hash() -> None:
-    assert cast.embody("porter") == cast.Shape(name="porter")
+    assert crews.embody("porter") == crews.Shape(name="porter")
     with pytest.raises(UnknownName, match="or give the path of a Python file"):
-        cast.embody("portr")
+        crews.embody("portr")
 
 
 def test_a_body_made_from_a_record_has_a_plain_look() -> None:

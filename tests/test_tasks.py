@@ -191,8 +191,11 @@ def test_every_kind_keeps_the_contract(name):
     assert kind.name == name
     assert len(set(map(jsonio.canonical, goals))) == len(goals) > 0
     assert all(kind.objection(goal, spec) == "" for goal in goals)
-    objects = SMOKE.tasks[0].objects
-    assert all(kind.instruction(goal, objects).endswith(".") for goal in goals)
+    goal, objects = kind.draw(spec, 3)
+    assert kind.objection(goal, spec) == ""
+    assert kind.instruction(goal, objects).endswith(".")
+    assert not kind.solved(goal, objects, spec)
+    assert {job.target for job in goal.todo} <= {placed.id for placed in objects}
 
 
 def test_there_are_nineteen_templates_and_they_read_well():
@@ -361,6 +364,13 @@ T1 = ("tasks", 1)
         (at(*T1, "objects", 0, "id", value="mug"), "tasks[1].objects[5].id", "taken"),
         (at(*T1, "objects", 0, "support", value="nowhere"), "tasks[1].objects[0].support", "no thing 'nowhere'"),
         (at(*T1, "objects", 0, "position", value=[1.0, 1.0, 9.0]), "tasks[1].objects[0].position", "no surface"),
+        (at(*T1, "objects", 0, "near", value="nowhere"), "tasks[1].objects[0].near", "no thing or object 'nowhere'"),
+        (
+            lambda own: own["tasks"][1]["objects"][0].pop("support"),
+            "tasks[1].objects[0].position",
+            "nor does it lie on",
+        ),
+        (at(*T1, "goal", "destination", value="rocking_horse"), "tasks[1].goal", "rocking_horse"),
         (at(*T1, "goal", "target", value="pear"), "tasks[1].goal.target", "none of the task's objects"),
         (at(*T1, "human_start", "x", value=-50.0), "tasks[1].human_start", "in a wall"),
         (at(*T1, "robot_starts", 1, "y", value=-50.0), "tasks[1].robot_starts[1]", "in a wall"),

@@ -218,3 +218,19 @@ def test_what_could_not_lie_as_the_house_says_stays_like_furniture() -> None:
     wait(world, 5)
     assert world.still
     assert state(world, "egg|1").position == pytest.approx((3.2, 0.42, 0.947))
+
+
+@pytest.mark.parametrize("scene", ["alder", "hazel", "rowan"])
+def test_a_robot_fetches_an_apple_into_the_fridge_by_motions_alone(scene: str) -> None:
+    world = World(scene, robots=("tender", "puck"))
+    tender, puck = world.robot, world.actor("robot2")
+    fridge, counter = world.furniture("fridge")[0].id, world.furniture("counter_top")[0].id
+    world.put_object("apple", on=counter)
+    assert puck.go_to(fridge).ok
+    assert puck.open(fridge).reason == "puck cannot open or close things"
+    puck.teleport(*world.space["robot2"].nearest_free(*world.position(world.furniture("bed")[0].id)[:2]))
+    for outcome in (tender.go_to("apple"), tender.pick("apple"), tender.go_to(fridge), tender.open(fridge)):
+        assert outcome.ok, outcome
+    assert tender.place(fridge).ok
+    assert tender.close(fridge).ok
+    assert (world.state("apple").support, world.state(fridge).open) == (fridge, False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from hthor.types import Briefing, Detection, Observation, Receipt
 
@@ -54,3 +54,14 @@ def sighting(seen: Detection, kinds: Mapping[str, str]) -> str:
 def spot(observation: Observation, name: str) -> Detection | None:
     """The object of this id, when it is in view."""
     return next((seen for seen in observation.detections if seen.id == name and seen.family == "object"), None)
+
+
+def please_look(kind: str, wanted: Sequence[str]) -> str:
+    """What a robot without a hand for doors says in front of a closed one, such as of a "fridge"; ``wanted`` kinds."""
+    things = " and ".join(dict.fromkeys(title(name) for name in wanted))
+    return f"I cannot open {title(kind)} in front of me. Please look inside for {things}."
+
+
+def lend_a_hand(kind: str, held: bool) -> str:
+    """What a robot says of a thing of this kind, which is too heavy for it; ``held``: it has one end already."""
+    return f"Please help me carry {title(kind)}: {'I have one end' if held else 'take one end, I take the other'}."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 
@@ -10,12 +11,14 @@ import numpy as np
 from hthor import geometry
 from hthor.houses.freespace import FreeSpace
 from hthor.houses.geodesic import geodesics
+from hthor.houses.sight import Sight
 from hthor.navigation.parking import park
-from hthor.types import BodySpec, HouseSpec, Room, Vec2, Vec3
+from hthor.types import BodySpec, HouseSpec, Room, Thing, Vec2, Vec3
 
 _MARGIN_M = 0.1
 _MISS_M = 0.4
 _BESIDE_M = 0.2
+_BROAD_M = 0.38
 
 
 def _passes(a: Vec2, b: Vec2, point: Vec2, radius: float) -> bool:
@@ -26,6 +29,12 @@ def _passes(a: Vec2, b: Vec2, point: Vec2, radius: float) -> bool:
     return along <= 0.0 or math.dist((a[0] + share * ex, a[1] + share * ey), point) >= radius
 
 
+@functools.lru_cache(maxsize=8)
+def _sight(house: HouseSpec) -> Sight:
+    """Lines of sight through a house, worked out once a process."""
+    return Sight(house)
+
+
 class Routes:
     """Ways of one body through one house."""
 
@@ -33,10 +42,51 @@ class Routes:
         self.house, self.body = house, body
         self.space = FreeSpace.of(house, body.radius, body.height)
         self.ways = geodesics(house, body.radius, body.height)
+        self._beside = functools.lru_cache(maxsize=256)(self.space.nearest_free)
 
     def fits(self, a: Vec2, b: Vec2) -> bool:
         """Whether the body can go straight from ``a`` to ``b``."""
         return self.space.segment_free(a, b)
+
+    def stands(self, spot: Vec2) -> bool:
+        """Whether the body may be here."""
+        return self.space.is_free(*spot)
+
+    def lengths(self, here: Vec2, spots: Sequence[Vec2]) -> list[float]:
+        """Lengths [m] of the shortest ways to free spots; inf where there is none."""
+        lengths: list[float] = self.ways.distances(self.space.nearest_free(*here), spots).tolist()
+        return lengths
+
+    def way(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
+        """The shortest way from where the body stands to a free spot; () when there is none."""
+        return self.ways.path(self.space.nearest_free(*here), spot)
+
+    def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
+        """A short way with room for something broad to be drawn along, or else the shortest way; () for none."""
+        space = FreeSpace.of(self.house, max(self.body.radius, _BROAD_M), self.body.height)
+        a, b = space.nearest_free(*here), space.nearest_free(*spot)
+        if max(math.dist(a, here), math.dist(b, spot)) < _BROAD_M:
+            way = geodesics(self.house, space.radius, space.height).path(a, b)
+            if way:
+                return (*way, self.space.nearest_free(*spot))
+        return self.way(here, self.space.nearest_free(*spot))
+
+    def loose(self, here: Vec2) -> Vec2:
+        """Where to go first when something stops the body here."""
+        return self.clear(here)
+
+    def sees(self, spot: Vec2, point: Vec3) -> bool:
+        """Whether nothing of the house hides a point from the body's eye, with all doors of furniture open."""
+        speck = Thing(id="", kind="", asset="", centre=point, size=(0.0, 0.0, 0.05), yaw=0.0)
+        return _sight(self.house).visible(speck, point, np.array([(*spot, self.body.eye)]))
+
+    def open_to(self, spot: Vec2, edge: Vec2) -> bool:
+        """Whether no wall is between a spot and the edge of a thing."""
+        return self.same_room(spot, (*edge, 0.0))
+
+    def apart(self, here: Vec2, place: Vec3) -> float:
+        """The same as `near`, quick for few places and bodies that come from ever different sides."""
+        return self.ways.distance(self._beside(place[0], place[1]), self.space.nearest_free(*here))
 
     def near(self, a: Vec2, place: Vec3) -> float:
         """Walking distance [m] between the free places nearest to ``a`` and to ``place``."""

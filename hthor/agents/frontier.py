@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hthor.agents._jobs import PAPER_KINDS
 from hthor.agents._offers import APART_M, Offers, sighting, spot
 from hthor.types import HUMAN, Action, Briefing, Detection, Motion, Observation, Send, Wait
 
 if TYPE_CHECKING:
     from hthor.agents._explorer import Explorer
+    from hthor.agents._gatherer import Gatherer
     from hthor.navigation.courtesy import Courtesy
 
 
@@ -28,6 +30,13 @@ class Agent:
         from hthor.navigation.courtesy import Courtesy
 
         self.briefing = briefing
+        self.gatherer: Gatherer | None = None
+        carries = "pick" in briefing.body.capabilities and briefing.relation != "find"
+        if carries or briefing.kind not in PAPER_KINDS:
+            from hthor.agents._gatherer import Gatherer
+
+            self.gatherer = Gatherer(briefing)
+            return
         self.offers = Offers(briefing, most=2)
         self.explorer: Explorer = Explorer(briefing.body)
         self.courtesy: Courtesy = Courtesy(briefing.body, self.explorer.fits)
@@ -37,6 +46,8 @@ class Agent:
 
     def act(self, observation: Observation) -> Action:
         """Look, tell, and go on."""
+        if self.gatherer is not None:
+            return self.gatherer.act(observation)
         self.explorer.see(observation)
         self.kinds.update((thing.id, thing.kind) for thing in observation.detections)
         seen = spot(observation, self.briefing.target)

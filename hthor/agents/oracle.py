@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
-from hthor import geometry, rules
-from hthor.agents._offers import APART_M, Offers, place, sighting, spot, title
-from hthor.types import HUMAN, Action, Briefing, Motion, Observation, Send, Thing, ThingState, Vec2, Vec3, Wait
+from hthor.agents._crew import able
+from hthor.agents._jobs import PAPER_KINDS, todo
+from hthor.agents._offers import APART_M
+from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Send, Wait
 
 if TYPE_CHECKING:
     from hthor.agents._routes import Routes
     from hthor.navigation.courtesy import Courtesy
     from hthor.navigation.follow import Follower
 
-_LOOKS = 3
-"""Spots to look from before saying that the target must be in there: over the rim of a sink, a low eye sees nothing."""
+_PATIENCE_S = 25.0
+"""How long an object that is another robot's share is not spoken of."""
+_LATER_S = 15.0
+"""How long an object is left alone that was put down and still is not where it belongs."""
 
 
 class Agent:
     """Walks the shortest way to the target and speaks only when it is close enough to detect it.
 
     Behind a closed door it cannot detect, and says so from in front of the door. When the person has the target in
-    hand it goes on to the destination, and tells where that is.
+    hand it goes on to the destination, and tells where that is. With an arm it does what it can of the task itself,
+    and leaves to the others what they are nearer to.
     """
 
     privileges = ("house_map", "ideal_detector", "object_poses")
@@ -30,140 +33,198 @@ class Agent:
 
     def begin(self, briefing: Briefing) -> None:
         """Prepare the shortest ways of this house."""
+        from hthor.agents._crew import Crew
+        from hthor.agents._hands import Worker
+        from hthor.agents._hauling import Hauler
+        from hthor.agents._jobs import Knowledge
+        from hthor.agents._passing import Passing
         from hthor.agents._routes import Routes
+        from hthor.agents._teller import Teller
         from hthor.navigation.courtesy import Courtesy
         from hthor.navigation.follow import Follower
 
         assert briefing.house is not None, "the oracle needs the privilege house_map"
-        self.briefing, self.house = briefing, briefing.house
+        self.briefing, self.jobs = briefing, todo(briefing)
         self.routes: Routes = Routes(briefing.house, briefing.body)
         self.courtesy: Courtesy = Courtesy(briefing.body, self.routes.fits)
+        self.passing = Passing(briefing, self.routes)
+        self.knowledge = Knowledge(briefing.house.things, briefing.house.rooms)
+        self.crew = Crew(briefing, self.routes.apart)
+        self.worker = Worker(briefing.body, self.routes, self.passing, briefing.tick_s)
         self.follower: Follower = Follower(step=0.5)
-        self.offers = {"target": Offers(briefing, most=3), "destination": Offers(briefing, most=1)}
-        self.kinds = {thing.id: thing.kind for thing in briefing.house.things}
-        self.goal: Vec3 | None = None
-        self.misses: list[Vec2] = []
-        self.spoken_about = self.aside = ""
+        many = briefing.kind not in PAPER_KINDS or len(self.jobs) > 1
+        self.teller = Teller(briefing, self.routes, self.follower, self.knowledge, self.passing if many else None)
+        self.many = many
+        self.hauler = Hauler(briefing, self.routes, self.worker, self.crew)
+        self.mine: Job | None = None
+        self.done: Job | None = None
+        self.is_aside = False
+        self._owned: dict[str, int] = {}
+        self._patience = round(_PATIENCE_S / briefing.tick_s)
 
     def act(self, observation: Observation) -> Action:
-        """Tell when it is time, and go to where the errand is."""
-        target = next((thing for thing in observation.truth if thing.id == self.briefing.target), None)
-        if target is None:
+        """Do what one can, tell when it is time."""
+        self.knowledge.states = {thing.id: thing for thing in observation.truth}
+        if self.many:
+            self.crew.see(observation, self.knowledge)
+            self.teller.hear(observation)
+        if observation.idle:
+            self.mine = self._own(observation)
+        told = self._told(observation) if self.mine is None else None
+        if not self.many and self.mine is None and told is None:
             return Action(motion=Wait(seconds=1.0))
-        errand, where = self._errand(target)
-        say = self._say(observation, target, errand, where)
+        say = self._say(observation, told)
         if not observation.idle:
             return Action(say=say)
-        yielding = self.courtesy.motion(observation, observation.tick * self.briefing.tick_s)
-        motion = yielding if yielding is not None else self._go(observation, errand, where)
+        motion = self._motion(observation, told)
+        self.passing.note(observation, motion)
         return Action(motion=motion, say=say)
 
-    def _errand(self, target: ThingState) -> tuple[str, Vec3]:
-        """What to show now, the target or the destination, and where it is [m]."""
-        if target.held_by == HUMAN:
-            thing = self._destination(target)
-            if thing is not None:
-                return "destination", thing.centre
-        return "target", target.position
+    def _say(self, observation: Observation, told: Job | None) -> Send | None:
+        done, self.done = self.done, None
+        if done is not None and self._open() and self._is_only_robot():
+            return self.teller.report(observation, done)
+        if told is not None:
+            return self.teller.say(observation, told)
+        if self.mine is not None and self.mine.hands > 1:
+            if not self.hauler.is_close(observation, self.knowledge, self.mine):
+                return None
+            lifted = bool(self.knowledge.states[self.mine.target].held_by)
+            return None if lifted else self.teller.ask_for_help(observation, self.mine)
+        seen = self.teller.in_view(observation, [job for job in self._open() if job is not self.mine])
+        best = next((job for job in self._for_person() if job in seen), None) if seen else None
+        return None if best is None else self.teller.mention(observation, best)
 
-    def _destination(self, target: ThingState) -> Thing | None:
-        """The thing of the wanted kind that is nearest to the target by the floor."""
-        things = [thing for thing in self.house.things if thing.kind == self.briefing.destination]
-        if not things:
+    def _motion(self, observation: Observation, told: Job | None) -> Motion:
+        mine = self.mine
+        if mine is not None and mine.hands > 1 and self.hauler.is_close(observation, self.knowledge, mine):
+            return self.hauler.motion(observation, self.knowledge, mine)
+        yielding = self.passing.refuge(observation) if self.many else None
+        if yielding is None:
+            yielding = self.courtesy.motion(observation, observation.tick * self.briefing.tick_s)
+        if yielding is None and self.many:
+            yielding = self.passing.motion(observation)
+        if yielding is not None:
+            return yielding
+        if mine is None and self.many:
+            yielding = self.passing.give_way(observation, self.crew.now)
+            if yielding is not None:
+                return yielding
+        if mine is None:
+            return self._rest(observation) if told is None else self.teller.motion(observation, told)
+        self.is_aside = False
+        if mine.hands > 1:
+            return self.hauler.motion(observation, self.knowledge, mine)
+        return self.worker.motion(observation, self.knowledge, mine) or Wait(seconds=0.3)
+
+    # ----------------------------------------------------------------------------------------------- which job is whose
+
+    def _open(self) -> list[Job]:
+        """The jobs that are not done and that nobody has in hand."""
+        states = self.knowledge.states
+        return [
+            job
+            for job in self.jobs
+            if job.target in states and not states[job.target].held_by and not self.knowledge.is_done(job)
+        ]
+
+    def _own(self, observation: Observation) -> Job | None:
+        """The job that this robot does itself now."""
+        if "pick" not in self.briefing.body.capabilities:
             return None
-        here = (target.position[0], target.position[1])
-        return min(things, key=lambda thing: (self.routes.near(here, thing.centre), thing.id))
+        holding = next((job for job in self.jobs if job.target == observation.holding), None)
+        if holding is not None:
+            return holding
+        self._look_back(observation)
+        mine = [job for job in self._open() if self._can(observation, job)]
+        if self.mine in mine:
+            return self.mine
+        self.worker.drop()
+        return self._choice(mine)
 
-    def _say(self, observation: Observation, target: ThingState, errand: str, where: Vec3) -> Send | None:
-        if not self._is_due(observation, errand):
-            return None
-        message = (
-            self._destined(observation, target, where) if errand == "destination" else self._found(observation, target)
-        )
-        if message is not None:
-            self.offers[errand].note(observation.tick)
-            self.spoken_about = errand
-        return message
+    def _choice(self, jobs: list[Job]) -> Job | None:
+        """The one that is this robot's share; or one that is nobody's but the person's, who is not there yet."""
+        left_to = self.crew.reserved(self._open(), self.knowledge)
+        jobs = [job for job in jobs if job.target != left_to] or jobs
+        share = self.crew.share(jobs, self.knowledge)
+        me = self.briefing.seat
+        if me in share:
+            return share[me]
+        others = [job for seat, job in share.items() if seat not in (me, HUMAN)]
+        left = [job for job in jobs if job not in others and not self.crew.leaves_to_person(job, self.knowledge)]
+        return min(left, key=lambda job: self.crew.cost(me, job, self.knowledge), default=None)
 
-    def _is_due(self, observation: Observation, errand: str) -> bool:
-        receipt = observation.receipt if self.spoken_about == errand else None
-        return self.offers[errand].due(observation.tick, receipt)
-
-    def _found(self, observation: Observation, target: ThingState) -> Send | None:
-        seen = spot(observation, target.id)
-        if seen is not None and seen.held_by != HUMAN:
-            return Send(text=sighting(seen, self.kinds), object=seen.id, position=seen.position)
-        support = next((thing for thing in self.house.things if thing.id == target.support), None)
-        if support is None or not self._is_close(observation, support.id):
-            return None
-        if len(self.misses) < _LOOKS and not self._is_shut(observation, support.id):
-            return None
-        text = f"{title(target.kind).capitalize()} is {place(support.kind)}."
-        return Send(text=text, object=target.id, position=target.position)
-
-    def _is_shut(self, observation: Observation, name: str) -> bool:
-        """Whether this is a thing with a door, and the door is closed."""
-        thing = next((thing for thing in observation.truth if thing.id == name), None)
-        return thing is not None and thing.kind == "fridge" and not thing.open
-
-    def _destined(self, observation: Observation, target: ThingState, where: Vec3) -> Send | None:
-        thing = self._destination(target)
-        if thing is None or not self._is_close(observation, thing.id):
-            return None
-        return Send(text=f"{title(thing.kind).capitalize()} is here.", object=thing.id, position=where)
-
-    def _is_close(self, observation: Observation, name: str) -> bool:
-        """Whether the robot is within the detector's range of a thing's outline, in the same room."""
-        thing = next((thing for thing in self.house.things if thing.id == name), None)
-        if thing is None:
+    def _can(self, observation: Observation, job: Job) -> bool:
+        state = self.knowledge.states[job.target]
+        shut = self.knowledge.is_shut(state.support)
+        if job.hands > 1 and len(state.bearers) >= job.hands:
             return False
+        if job.relation == "find" or not able(self.briefing.body, state.kind, job, shut):
+            return False
+        return self.worker.can_try(job.target, observation.tick)
+
+    def _look_back(self, observation: Observation) -> None:
+        """What was put down and still is not where it belongs can wait."""
+        job, outcome = self.mine, observation.outcome
+        if job is None or outcome is None or outcome.motion != "place" or not outcome.ok:
+            return
+        if self.knowledge.is_done(job):
+            self.done = job
+        else:
+            self.worker.leave(job.target, observation.tick + round(_LATER_S / self.briefing.tick_s))
+
+    # ---------------------------------------------------------------------------------------------- what to tell of
+
+    def _told(self, observation: Observation) -> Job | None:
+        """The job to tell the person of now."""
+        if not self.many:
+            job = self.jobs[0]
+            return job if job.target in self.knowledge.states else None
+        held = [job for job in self.jobs if self._held_by_person(job)]
+        if held:
+            self.teller.take(held[0])
+            return held[0]
+        current = next((job for job in self._open() if job.target == self.teller.target), None)
+        if current is not None and self.teller.waits(observation, current):
+            return current
+        due = [job for job in self._for_person() if self.teller.is_due(observation, job)]
+        chosen = due[0] if due else current
+        if chosen is not None:
+            self.teller.take(chosen)
+        return chosen
+
+    def _for_person(self) -> list[Job]:
+        """The open jobs, those first that the person had best do, without those that another robot is about to do."""
+        jobs = [job for job in self._open() if job is not self.mine]
+        if any(state.held_by == HUMAN for state in self.knowledge.states.values()):
+            return []
+        kept = self.crew.reserved(self._open(), self.knowledge)
+        theirs = [job for job in jobs if job.target == kept and not self.teller.is_exhausted(job)]
+        if theirs:
+            return theirs
+        owners = {job.target: seat for seat, job in self.crew.share(jobs, self.knowledge).items()}
+        jobs = [job for job in jobs if not self._is_in_hand(job, owners.get(job.target, HUMAN))]
+        return sorted(jobs, key=lambda job: owners.get(job.target) != HUMAN)
+
+    def _is_in_hand(self, job: Job, owner: str) -> bool:
+        """Whether it is the share of another robot, and it is not high time that somebody else heard of it."""
+        if owner in (HUMAN, self.briefing.seat):
+            self._owned.pop(job.target, None)
+            return False
+        return self.crew.tick < self._owned.setdefault(job.target, self.crew.tick) + self._patience
+
+    def _is_only_robot(self) -> bool:
+        """Whether no other robot may just have sent the person a message, which a new one would cover."""
+        return all(seat in (HUMAN, self.briefing.seat) for seat in self.crew.seats)
+
+    def _held_by_person(self, job: Job) -> bool:
+        state = self.knowledge.states.get(job.target)
+        return state is not None and state.held_by == HUMAN and bool(job.destinations)
+
+    def _rest(self, observation: Observation) -> Motion:
+        """There is nothing to do or to tell: go where one is in nobody's way."""
         here = (observation.pose.x, observation.pose.y)
-        apart = geometry.distance_to_rectangle(
-            here, (thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw
-        )
-        return apart <= rules.DETECTOR_RANGE_M and self.routes.same_room(here, thing.centre)
-
-    def _go(self, observation: Observation, errand: str, where: Vec3) -> Motion:
-        """Walk to where the place is in range, face it, then stand aside; try another spot when it is not seen."""
-        from hthor.navigation.follow import face
-
-        if self.goal is None or math.dist(self.goal, where) > 0.3:
-            self.goal, self.misses = where, []
-            self._route(observation, where)
-        elif self.aside == errand and self._is_due(observation, errand):
-            self.aside = ""
-            self._route(observation, where)
-        elif observation.outcome is not None and observation.outcome.motion == "move" and not observation.outcome.ok:
-            self._reroute(observation, where)
-        step = self.follower.next(observation.pose)
-        if step is not None:
-            return step
-        body = self.briefing.body
-        turn = face(observation.pose, where, body.eye, body.pitch_limit)
-        if turn is not None:
-            return turn
-        if self.offers[errand].sent == 0 and len(self.misses) < 2 * _LOOKS:
-            self.misses.append((observation.pose.x, observation.pose.y))
-            self._route(observation, where)
-            return self.follower.next(observation.pose) or Wait(seconds=0.5)
-        return self._stand_aside(observation, where, errand)
-
-    def _route(self, observation: Observation, where: Vec3) -> None:
-        here = (observation.pose.x, observation.pose.y)
-        self.follower.take(self.routes.to_view(here, where, self.misses))
-
-    def _reroute(self, observation: Observation, where: Vec3) -> None:
-        """Stopped on the way: go round whoever stands there, or step back from a corner that was cut too close."""
-        here = (observation.pose.x, observation.pose.y)
-        people = [seen.position for seen in observation.detections if seen.family == "person"]
-        via = self.routes.around(here, where, people) if people else self.routes.clear(here)
-        self.follower.take((via, *self.routes.to_view(via, where, self.misses)))
-
-    def _stand_aside(self, observation: Observation, where: Vec3, errand: str) -> Motion:
-        """Go where it is in nobody's way, once."""
-        if self.aside == errand:
-            return Wait(seconds=0.5)
-        self.aside = errand
-        here = (observation.pose.x, observation.pose.y)
-        self.follower.take(self.routes.retreat(here, (where[0], where[1]), APART_M))
+        if not self.is_aside:
+            self.is_aside = True
+            self.follower.take(self.routes.retreat(here, here, APART_M))
         return self.follower.next(observation.pose) or Wait(seconds=0.5)

@@ -223,4 +223,19 @@ _SMALL = (
     _small("object", (0.12, 0.12, 0.12), 0.3, partial(props.block, rgba=c.GREY)),
 )
 
-KINDS = (*_FURNITURE, *_FIXTURES, *_SMALL)
+_HEAVY = (
+    Kind(
+        name="trunk",
+        title="trunk",
+        family="background",
+        size=(0.8, 0.4, 0.4),
+        mass=26.0,
+        shape=partial(props.trunk, body=c.TEAL, lid=c.OAK, handle=c.WALNUT),
+        pickable=True,
+        finishes=_paints("body", c.RUST, c.BLUE, c.GREY),
+        handles=True,
+    ),
+)
+"""Too heavy for one, and has handles for two."""
+
+KINDS = (*_FURNITURE, *_FIXTURES, *_SMALL, *_HEAVY)

@@ -36,7 +36,8 @@ class Kind(Struct, frozen=True, kw_only=True):
     ``size`` [m] is what a thing of this kind measures unless its house says otherwise: (width, depth, height) along
     the local x, y and z axes, front towards +y. ``mass`` [kg] belongs to that size. ``relation`` is how an object
     lies there: in a fridge or a sink, on anything else. ``finishes`` are the colours of its variants: what each changes
-    of the shape's own colours; variant 0 is the shape as it is.
+    of the shape's own colours; variant 0 is the shape as it is. ``handles`` says that it has one at either end of its
+    width, by which several can carry what is too heavy for one.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Kind(Struct, frozen=True, kw_only=True):
     wall_mounted: bool = False
     relation: Literal["on", "in"] = "on"
     finishes: tuple[Mapping[str, Rgba], ...] = ()
+    handles: bool = False
 
     def form(self, size: Vec3 | None = None, variant: int = 0) -> Form:
         """Parts, surfaces and joints at ``size`` [m], or at the kind's own size; ``variant`` only picks colours."""

@@ -200,3 +200,14 @@ def figure(size: Vec3, *, rgba: Rgba) -> Form:
         pillar(size, (w / 2, d / 2), 0.22 * min(w, d), 0.72 * h, h, rgba),
     )
     return Form(parts=parts)
+
+
+def trunk(size: Vec3, *, body: Rgba, lid: Rgba, handle: Rgba) -> Form:
+    """A chest with an overhanging lid and a handle at either end, left and right."""
+    w, d, h = size
+    parts = (
+        box(size, (0.05 * w, 0.02 * d, 0.0), (0.95 * w, 0.98 * d, 0.72 * h), body),
+        box(size, (0.035 * w, 0.0, 0.72 * h), (0.965 * w, d, h), lid),
+        box(size, (0.0, 0.35 * d, 0.52 * h), (w, 0.65 * d, 0.6 * h), handle),
+    )
+    return Form(parts=parts)

@@ -1,4 +1,4 @@
-"""`hthor tasks`, `agents`, `agent`, `humans` and `robots`: what there is; evaluates nothing."""
+"""`hthor agents`, `agent`, `humans` and `robots`: what there is; evaluates nothing."""
 
 from __future__ import annotations
 
@@ -13,39 +13,15 @@ import typer
 from hthor.cli import screen
 from hthor.cli.runs import Json
 
-tasks = typer.Typer(no_args_is_help=True, help="Suites of tasks.")
 agents = typer.Typer(no_args_is_help=True, help="Robots' minds that ship with hthor.")
 agent = typer.Typer(no_args_is_help=True, help="Your own robot's mind.")
 humans = typer.Typer(no_args_is_help=True, help="Human models.")
 robots = typer.Typer(no_args_is_help=True, help="Robots' bodies.")
 
-GROUPS = {"tasks": tasks, "agents": agents, "agent": agent, "humans": humans, "robots": robots}
+GROUPS = {"agents": agents, "agent": agent, "humans": humans, "robots": robots}
 
 for _group in GROUPS.values():
     _group.callback()(lambda: None)  # a group of one command would otherwise swallow the command's name
-
-
-@tasks.command("list")
-def list_tasks(
-    suite: Annotated[str | None, typer.Option(help="List the tasks of this suite.")] = None, json: Json = False
-) -> None:
-    """The suites, or the tasks of one."""
-    from hthor import tasks as rooms
-
-    if suite is None:
-        _put([_suite_row(rooms.suite(name)) for name in rooms.suites()], json, short=("sha256",))
-        return
-    rows = [
-        {
-            "id": task.id,
-            "kind": task.kind,
-            "house": task.house,
-            "instruction": task.instruction,
-            "t_star_s": round(task.t_star, 1),
-        }
-        for task in rooms.suite(suite).tasks
-    ]
-    _put(rows, json)
 
 
 @agents.command("list")
@@ -88,6 +64,7 @@ def list_humans(json: Json = False) -> None:
 def list_robots(json: Json = False) -> None:
     """The robots' bodies."""
     from hthor import plugins
+    from hthor.eval import crews
 
     rows = []
     for name in plugins.names("robot"):
@@ -95,6 +72,7 @@ def list_robots(json: Json = False) -> None:
         rows.append(
             {
                 "name": name,
+                "alias": [alias for alias, body in crews.ALIASES.items() if body == name],
                 "title": spec.title,
                 "radius_m": spec.radius,
                 "height_m": spec.height,
@@ -104,18 +82,6 @@ def list_robots(json: Json = False) -> None:
             }
         )
     _put(rows, json)
-
-
-def _suite_row(suite: Any) -> dict[str, Any]:
-    kinds, homes = sorted({task.kind for task in suite.tasks}), sorted({task.house for task in suite.tasks})
-    return {
-        "name": suite.name,
-        "version": str(suite.version),
-        "tasks": len(suite.tasks),
-        "kinds": kinds,
-        "houses": homes,
-        "sha256": suite.sha256,
-    }
 
 
 def _purposes(sort: str) -> list[tuple[str, str]]:

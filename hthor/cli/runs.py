@@ -23,17 +23,41 @@ _FAULTS_EXIT = 3
 
 def evaluate(
     agent: Annotated[
-        list[str],
+        list[str] | None,
         typer.Option(
             help="Who is evaluated: a built-in agent's name ('hthor agents list'), or a Python file, my_agent.py or "
             "my_agent.py:MyClass. Repeat it to compare several.",
+            show_default=False,
         ),
-    ],
+    ] = None,
     humans: Annotated[str, typer.Option(help="The human model that the people are ('hthor humans list').")] = "proxy",
-    suite: Annotated[str, typer.Option(help="The tasks ('hthor tasks list').")] = "smoke",
+    suite: Annotated[
+        str,
+        typer.Option(help="The tasks ('hthor tasks list').", show_default="smoke, or the kind's own"),
+    ] = "",
+    kind: Annotated[
+        str,
+        typer.Option(
+            help="Only tasks of this kind: its name or short name, or a Python file of your own, my_kind.py, of which "
+            "a task is drawn in each of the ten scenes.",
+            show_default="all kinds",
+        ),
+    ] = "",
     robot: Annotated[
-        str, typer.Option(help="The robot's body ('hthor robots list'), or a Python file, my_robot.py.")
-    ] = "scout",
+        str,
+        typer.Option(
+            help="The robot's body ('hthor robots list'), or a Python file, my_robot.py.",
+            show_default="what the kind of task is made for, mostly scout",
+        ),
+    ] = "",
+    robots: Annotated[
+        str,
+        typer.Option(
+            help="Several robots in one trial, each with its own agent: tall:oracle,small:my_agent.py. A body without "
+            "an agent gets the one of --agent.",
+            show_default=False,
+        ),
+    ] = "",
     detector: Annotated[
         str,
         typer.Option(
@@ -44,21 +68,23 @@ def evaluate(
     assets: Annotated[
         str,
         typer.Option(
-            help="A furniture pack ('hthor assets list'): the robot's camera then shows it, in the profile nice. "
-            "[default: our own furniture, in the profile fast]",
-            show_default=False,
+            help="A furniture pack ('hthor assets list'): the robot's camera then shows it, in the profile nice.",
+            show_default="our own furniture, in the profile fast",
         ),
     ] = "",
     seed: Annotated[int, typer.Option(help="Equal seeds give equal people, dealt the same tasks.")] = 0,
     participants: Annotated[
         int | None,
-        typer.Option(min=1, help="How many people, ten tasks each. [default: so many that every task is done once]"),
+        typer.Option(
+            min=1, help="How many people, ten tasks each.", show_default="so many that every task is done once"
+        ),
     ] = None,
-    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one a CPU]")] = None,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one a CPU")] = None,
     out: Annotated[
         Path | None,
         typer.Option(
-            help="The run's folder; with several agents the folder of their folders. [default: runs/AGENT-SUITE-HASH]"
+            help="The run's folder; with several agents the folder of their folders.",
+            show_default="runs/NAME-SUITE-HASH",
         ),
     ] = None,
     json: Json = False,
@@ -79,9 +105,11 @@ def evaluate(
         return progress.Live(talk, name) if screen.live() else progress.Plain(talk, name)
 
     options = campaign.Options(
-        agents=tuple(agent),
+        agents=tuple(agent or ()),
+        robots=robots,
         human=humans,
         suite=suite,
+        kind=kind,
         robot=robot,
         assets=assets,
         detector=detector,
@@ -92,14 +120,15 @@ def evaluate(
     )
     paper = talk if json else screen.console()
     done: list[Done] = []
+    single = len(agent or ()) <= 1
     for one in campaign.conduct(options, watcher):
         done.append(one)
-        if len(agent) == 1 or not quiet:
-            _show(paper if len(agent) == 1 else talk, one)
+        if single or not quiet:
+            _show(paper if single else talk, one)
     if len(done) > 1:
         paper.print(report.comparison_table([one.result for one in done]))
         for one in done:
-            paper.print(f"{one.plan.agent.name}: {one.folder}/", markup=False, highlight=False, soft_wrap=True)
+            paper.print(f"{one.plan.name}: {one.folder}/", markup=False, highlight=False, soft_wrap=True)
     if json:
         results = [one.result for one in done]
         screen.put_json(results[0] if len(results) == 1 else results)
@@ -107,7 +136,14 @@ def evaluate(
         raise typer.Exit(_FAULTS_EXIT)
 
 
-def score(run: Run, json: Json = False) -> None:
+def score(
+    run: Run,
+    everything: Annotated[
+        bool,
+        typer.Option("--all", help="With messages, idle time, bodies in the way, and shares of the work."),
+    ] = False,
+    json: Json = False,
+) -> None:
     """Work out a run's metrics again from its log alone; nothing is simulated."""
     from hthor.eval import report
     from hthor.eval import score as scoring
@@ -117,7 +153,10 @@ def score(run: Run, json: Json = False) -> None:
     if json:
         screen.put_json(result)
     else:
-        screen.console().print(report.result_table(result))
+        paper = screen.console()
+        paper.print(report.result_table(result, everything=everything))
+        if everything and len(result.by_kind) > 1:
+            paper.print(report.kinds_table(result))
     missing = plan.trials - result.counts.trials
     if missing:
         _say(talk, f"{missing} of {plan.trials} trials are missing, so this is no result yet and was not stored.")
@@ -138,13 +177,15 @@ def replay(
         str, typer.Argument(metavar="TRIAL", help="A key or its start, a task's id, or a number counted from 0.")
     ],
     out: Annotated[
-        Path | None, typer.Option(help="The file to write. [default: RUN/replays/TASK-KEY.png, or .mp4]")
+        Path | None, typer.Option(help="The file to write.", show_default="RUN/replays/TASK-KEY.png, or .mp4")
     ] = None,
     video: Annotated[bool, typer.Option("--video", help="Write a film instead of a picture.")] = False,
 ) -> None:
     """Draw one trial from above: the paths, the messages and what came of them."""
+    from hthor import houses
     from hthor.eval import find, redraw
 
+    houses.shelve(run / "houses")  # where the suite brought its own
     record = find.trial(run, trial)
     path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'mp4' if video else 'png'}"
     redraw.draw(record, path, video=video)
@@ -159,10 +200,14 @@ def _show(console: Console, one: Done) -> None:
     console.print(report.result_table(result))
     if result.counts.faults:
         faulty, many = find.first_fault(folder), f"{result.counts.faults} of {result.counts.trials}"
-        _say(console, f"The agent failed in {many} trials; there the person went on alone.")
+        alone = "there the person went on alone" if len(one.plan.seats) == 1 else "there the others went on without it"
+        failed = [f"{seat} in {count}" for seat, count in result.counts.faults_by_seat.items() if count]
+        whose = f" ({', '.join(failed)})" if len(one.plan.seats) > 1 else ""
+        _say(console, f"{'An' if whose else 'The'} agent failed in {many} trials{whose}; {alone}.")
         _say(console, f"First in trial {faulty.key} ({faulty.spec.task.id}), {find.fault_words(faulty)}")
-    _say(console, f"files: {folder}/run.json, trials.jsonl, result.json")
-    _say(console, f"next:  hthor replay {folder} 0    hthor leaderboard add {folder}")
+    more = ", suite.json" if (folder / "suite.json").exists() else ""
+    _say(console, f"files: {folder}/run.json, trials.jsonl, result.json{more}")
+    _say(console, f"next:  hthor replay {folder} 0    hthor score {folder} --all    hthor leaderboard add {folder}")
 
 
 def _say(console: Console, text: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import msgspec
@@ -12,11 +13,11 @@ from hthor.detectors import OWN
 from hthor.errors import RunError
 from hthor.eval import score
 from hthor.eval.score import Counts, Hashes, Scores
-from hthor.eval.setup import PROCEDURAL, AssetsRef, Setup, SuiteRef
-from hthor.types import AgentRef
+from hthor.eval.setup import PROCEDURAL, AssetsRef, KindRef, Setup, SuiteRef
+from hthor.types import RobotSeat
 
-ENTRY_SCHEMA = "hthor.entry/1"
-SCHEMA = "hthor.leaderboard/1"
+ENTRY_SCHEMA = "hthor.entry/2"
+SCHEMA = "hthor.leaderboard/2"
 
 
 class Entry(Struct, frozen=True, kw_only=True):
@@ -24,11 +25,11 @@ class Entry(Struct, frozen=True, kw_only=True):
 
     schema: str = ENTRY_SCHEMA
     id: str
-    agent: AgentRef
-    robot: str
-    detector: str
+    name: str
+    robots: tuple[RobotSeat, ...]
     human: str
     suite: SuiteRef
+    kind: KindRef | None = None
     seed: int
     participants: int
     metrics: Scores
@@ -60,11 +61,11 @@ def add(folder: Path, board: Path) -> tuple[Entry, Path]:
         )
     entry = Entry(
         id=plan.folder_name,
-        agent=result.agent,
-        robot=result.robot,
-        detector=result.detector,
+        name=result.name,
+        robots=result.robots,
         human=result.human,
         suite=result.suite,
+        kind=result.kind,
         seed=result.seed,
         participants=result.participants,
         metrics=result.metrics,
@@ -100,11 +101,27 @@ def _read(path: Path) -> Entry:
 
 def command(folder: Path, plan: Setup) -> str:
     """The command that finishes a run."""
-    agent = plan.agent.name if plan.agent.source.startswith("hthor.agents.") else plan.agent.source
-    robot = f" --robot {plan.robot}{'.py' if plan.robot_sha256 else ''}" if plan.robot else ""
-    robot += "" if plan.assets.name == PROCEDURAL else f" --assets {plan.assets.name}"
-    robot += f" --detector {plan.detector}" if plan.detector not in ("", OWN) else ""
-    return (
-        f"hthor eval --agent {agent} --humans {plan.human} --suite {plan.suite.name}{robot} --seed {plan.seed} "
-        f"--participants {plan.participants} --out {folder}"
-    )
+    parts = [f"hthor eval{_who(plan.robots)} --humans {plan.human}"]
+    if plan.kind is not None and plan.kind.sha256:
+        parts.append(f"--kind {plan.kind.name}.py")
+        parts += [] if (folder / "suite.json").exists() else [f"--suite {plan.suite.name}"]
+    else:
+        parts.append(f"--suite {plan.suite.name}" + (f" --kind {plan.kind.name}" if plan.kind else ""))
+    parts += [] if plan.assets.name == PROCEDURAL else [f"--assets {plan.assets.name}"]
+    detector = next((robot.detector for robot in plan.seats), OWN)
+    parts += [] if detector == OWN else [f"--detector {detector}"]
+    parts.append(f"--seed {plan.seed} --participants {plan.participants} --out {folder}")
+    return " ".join(parts)
+
+
+def _who(robots: Sequence[RobotSeat]) -> str:
+    """The options that name these robots."""
+    minds = [
+        robot.agent.name if robot.agent.source.startswith("hthor.agents.") else robot.agent.source for robot in robots
+    ]
+    bodies = [f"{robot.robot}.py" if robot.robot_sha256 else robot.robot for robot in robots]
+    if len(robots) == 1:
+        return f" --agent {minds[0]}" + (f" --robot {bodies[0]}" if bodies[0] else "")
+    # a mind that wants no robot may have been asked for with any body
+    pairs = (f"{body or 'scout'}:{mind}" for body, mind in zip(bodies, minds, strict=True))
+    return f" --robots {','.join(pairs)}"

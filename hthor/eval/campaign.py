@@ -1,4 +1,4 @@
-"""`hthor eval` as one function: several agents, one after the other, each in its own run; parses and prints nothing."""
+"""`hthor eval` as one function: several crews, one after the other, each in its own run; parses and prints nothing."""
 
 from __future__ import annotations
 
@@ -10,24 +10,29 @@ from typing import Protocol
 
 from msgspec import Struct
 
-from hthor import detectors, plugins, tasks
+from hthor import detectors, plugins
 from hthor.errors import HthorError, UnknownName
-from hthor.eval import cast, run, setup
+from hthor.eval import cast, crews, programme, run, setup
+from hthor.eval.crews import Crew
+from hthor.eval.programme import Programme
 from hthor.eval.run import Watcher
 from hthor.eval.score import Result
 from hthor.eval.session import sessions
 from hthor.eval.setup import Setup
+from hthor.tasks import library
 
 RUNS = Path("runs")
 
 
 class Options(Struct, frozen=True, kw_only=True):
-    """What the user asked for; ``participants``, ``jobs`` and ``out`` have defaults that depend on the rest."""
+    """What the user asked for, empty where the default depends on the rest."""
 
-    agents: tuple[str, ...]
+    agents: tuple[str, ...] = ()
+    robots: str = ""
+    robot: str = ""
     human: str = "proxy"
-    suite: str = "smoke"
-    robot: str = "scout"
+    suite: str = ""
+    kind: str = ""
     assets: str = ""
     detector: str = detectors.OWN
     seed: int = 0
@@ -52,63 +57,100 @@ class Done(Struct, frozen=True, kw_only=True):
 
 
 def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iterator[Done]:
-    """Run every agent's evaluation; each that is whole is given at once.
+    """Run every crew's evaluation; each that is whole is given at once.
 
     Everything that the user can have got wrong is looked at before the first trial is played.
 
     Args:
-        watcher: makes who follows the run of the agent with this name.
+        watcher: makes who follows the run of this name.
     """
-    suite = tasks.suite(options.suite)
+    if not options.agents and not options.robots:
+        raise HthorError(
+            "name an agent with --agent, or robots and their agents with --robots tall:oracle,small:oracle."
+        )
     if options.human not in plugins.names("human model"):
         raise UnknownName("human model", options.human, plugins.names("human model"), "Choose one with --humans.")
-    body, pack = cast.embody(options.robot), cast.furnish(options.assets)
     detector = detectors.tidy(options.detector)
-    characters = [cast.introduce(agent) for agent in options.agents]
-    names = [character.ref.name for character in characters]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise HthorError(f"two agents are called '{twice[0]}'. Rename one of the files, or evaluate them one by one.")
+    pack = cast.furnish(options.assets)
+    shown = setup.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
+    chosen = programme.choose(options.suite, options.kind)
+    found = _crews(options, chosen, detector)
     plans = [
         setup.settle(
-            suite,
-            character,
-            robot=body.name,
+            chosen.suite,
+            crew,
             human=options.human,
             seed=options.seed,
             participants=options.participants,
-            detector=detector,
-            robot_sha256=body.sha256,
-            assets=setup.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None,
+            kind=chosen.kind,
+            assets=shown,
         )
-        for character in characters
+        for crew in found
     ]
-    folders = [_folder(options, plan) for plan in plans]
+    names = [plan.name for plan in plans]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise HthorError(f"two agents are called '{twice[0]}'. Rename one of the files, or evaluate them one by one.")
+    folders = [_folder(options, plan, len(plans)) for plan in plans]
     for folder, plan in zip(folders, plans, strict=True):
         setup.examine(folder, plan)
-    jobs = options.jobs or len(os.sched_getaffinity(0))
-    for character, plan, folder in zip(characters, plans, folders, strict=True):
-        dealt = sessions(
-            suite,
-            agent=character,
-            robot=body.name,
-            human=options.human,
-            seed=options.seed,
-            participants=plan.participants,
-            detector=detector,
-            robot_sha256=body.sha256,
-            assets_sha256=pack.sha256 if pack else "",
-        )
-        watch = watcher(plan.agent.name)
+    for crew, plan, folder in zip(found, plans, folders, strict=True):
+        watch = watcher(plan.name)
         try:
-            make = functools.partial(cast.player, character.path, body.path, options.assets)
-            result = run.evaluate(plan, dealt, make, folder=folder, jobs=jobs, watch=watch)
+            result = _perform(options, chosen, crew, plan, folder, watch)
         finally:
             watch.close()
         yield Done(plan=plan, folder=folder, result=result)
 
 
-def _folder(options: Options, plan: Setup) -> Path:
+def _perform(
+    options: Options, chosen: Programme, crew: Crew, plan: Setup, folder: Path, watch: ClosableWatcher
+) -> Result:
+    dealt = sessions(
+        chosen.suite,
+        agent=crew,
+        human=options.human,
+        seed=options.seed,
+        participants=plan.participants,
+        kind_sha256=plan.kind.sha256 if plan.kind else "",
+        assets_sha256=plan.assets.sha256 if options.assets else "",
+    )
+    for note in chosen.notes:
+        watch.note(note)
+    own = library.own_houses(options.suite) if options.suite and Path(options.suite).exists() else {}
+    extra = {f"houses/{name}": data for name, data in own.items()}  # so that the run can be drawn by itself
+    if chosen.drawn:
+        extra["suite.json"] = library.encode(chosen.suite)
+    sources = cast.Sources(
+        minds=crew.minds,
+        bodies=crew.bodies,
+        kind=chosen.path,
+        assets=options.assets,
+        houses=str((folder / "houses").resolve()) if own else "",
+    )
+    make = functools.partial(cast.player, sources)
+    jobs = options.jobs or len(os.sched_getaffinity(0))
+    return run.evaluate(plan, dealt, make, folder=folder, jobs=jobs, watch=watch, extra=extra)
+
+
+def _crews(options: Options, chosen: Programme, detector: str) -> list[Crew]:
+    """Who is evaluated, one run each."""
+    if options.robots:
+        if options.robot:
+            raise HthorError("--robots names all the bodies; leave out --robot.")
+        return crews.read(options.robots, options.agents, detector)
+    bodies = (options.robot,) if options.robot else chosen.crew
+    if not bodies:
+        raise HthorError(
+            f"the kinds of task in the suite '{chosen.suite.name}' want different robots; name them with --robots, "
+            "or choose one kind with --kind."
+        )
+    shapes = [crews.embody(body) for body in bodies]
+    minds = [crews.introduce(agent) for agent in options.agents]
+    return [crews.form(shapes, [mind] * len(shapes), detector) for mind in minds]
+
+
+def _folder(options: Options, plan: Setup, count: int) -> Path:
     if options.out is None:
         return RUNS / plan.folder_name
-    return options.out if len(options.agents) == 1 else options.out / plan.agent.name
+    return options.out if count == 1 else options.out / plan.name

@@ -59,7 +59,9 @@ def first_fault(folder: Path) -> Record:
 
 
 def fault_words(record: Record) -> str:
-    """A trial's first fault in words: when, what, and the last line of its detail."""
+    """A trial's first fault in words: whose, of several robots, when, what, and the last line of its detail."""
     fault = record.faults[0]
     last = fault.detail.strip().splitlines()[-1] if fault.detail.strip() else ""
-    return f"after {fault.tick * rules.TICK_S:.1f} s: {fault.kind}" + (f": {last}" if last else "")
+    names = {robot.seat: robot.agent.name for robot in record.spec.robots}
+    whose = f"{fault.seat} ({names[fault.seat]}), " if len(names) > 1 else ""
+    return f"{whose}after {fault.tick * rules.TICK_S:.1f} s: {fault.kind}" + (f": {last}" if last else "")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -18,29 +19,38 @@ from hthor.types import Event, HouseSpec, TrialSpec, Vec2
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_CORNERS, _CROWDED_M = ((1, 1), (-1, -1), (-1, 1), (1, -1)), 1.5
+"""Where the names of targets stand that are so near each other."""
+_LINES, _LINE_MAX, _HEAD_MAX = 10, 110, 70
+"""Messages whose words are shown, and characters of a line of words and of the headline."""
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.4, foreground="white")]
 
 
 def figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
-    """Draw a trial, about 8 inches wide: plan above, timeline below.
+    """Draw a trial, about 8 inches wide: the plan, the timeline below, and the messages' words.
 
     Args:
         spec: the trial. log: what it left behind. house: the house of its task.
     """
-    sheet = Figure(figsize=_size(house), dpi=200, layout="constrained")
-    above, below = sheet.subplots(2, 1, height_ratios=(_size(house)[1] - 1.5, 1.5))
-    destinations = [thing.id for thing in house.things if thing.kind == spec.task.goal.destination]
-    plan.draw_house(above, house, marked=destinations)
-    _name_destination(above, spec, house)
+    words = _words(log)
+    wide, high = _size(house)
+    clock, told = 1.0 + 0.22 * (len(log.paths) + (log.progress is not None)), 0.2 * len(words)
+    sheet = Figure(figsize=(wide, high + clock - 1.5 + told), dpi=200, layout="constrained")
+    rows = (high - 1.5, clock, told)[: 3 if words else 2]
+    above, below, *rest = sheet.subplots(len(rows), 1, height_ratios=rows)
+    plan.draw_house(above, house, marked=trace.destinations(spec, house))
+    _name_destinations(above, spec, house)
     for seat in log.paths:
         draw_path(above, log, seat)
-    _draw_target(above, spec)
+    _draw_targets(above, spec, house)
     for number, event in enumerate(trace.messages(log), 1):
         _draw_message(above, log, number, event)
     _draw_acts(above, log)
     above.set_title(_headline(spec, log), fontsize=10, loc="left", color=trace.INK)
-    _legend(sheet, spec, log)
+    _legend(sheet, spec, log, house)
     timeline.draw_timeline(below, spec, log)
+    for ax in rest:
+        _write_words(ax, words)
     return sheet
 
 
@@ -59,26 +69,40 @@ def draw_path(ax: Axes, log: EpisodeLog, seat: str) -> None:
     ax.scatter(way[-1, 0], way[-1, 1], s=46, facecolor=shade, edgecolor="white", linewidths=1.0, zorder=10)
 
 
-def _draw_target(ax: Axes, spec: TrialSpec) -> None:
-    start = next(placed for placed in spec.task.objects if placed.id == spec.task.goal.target)
-    x, y, _ = start.position
-    ax.scatter(x, y, s=120, marker="*", color=trace.TARGET, edgecolor="white", linewidths=0.8, zorder=12)
+def _draw_targets(ax: Axes, spec: TrialSpec, house: HouseSpec) -> None:
+    """A star where each object starts; a hollow one, joined to it, where exactly it belongs."""
+    done: list[Vec2] = []
+    for job, start in trace.targets(spec, house):
+        x, y, _ = start.position
+        if job.place is not None:
+            ax.plot((x, job.place[0]), (y, job.place[1]), color=trace.TARGET, lw=0.8, ls=":", zorder=7)
+            ax.scatter(*job.place[:2], s=70, marker="*", facecolor="white", edgecolor=trace.TARGET, lw=1.0, zorder=12)
+        ax.scatter(x, y, s=120, marker="*", color=trace.TARGET, edgecolor="white", linewidths=0.8, zorder=12)
+        beside = sum(math.dist((x, y), other) < _CROWDED_M for other in done)
+        done.append((x, y))
+        _label(ax, plan.title(start.kind), (x, y), _CORNERS[beside % len(_CORNERS)])
+
+
+def _label(ax: Axes, words: str, place: Vec2, corner: tuple[int, int]) -> None:
     name = ax.annotate(
-        plan.title(start.kind),
-        (x, y),
-        (6, 6),
+        words,
+        place,
+        (6 * corner[0], 6 * corner[1]),
         textcoords="offset points",
         fontsize=8,
         color=trace.TARGET,
         weight="bold",
+        ha="left" if corner[0] > 0 else "right",
+        va="bottom" if corner[1] > 0 else "top",
         zorder=13,
     )
     name.set_path_effects(_STROKE)
 
 
-def _name_destination(ax: Axes, spec: TrialSpec, house: HouseSpec) -> None:
+def _name_destinations(ax: Axes, spec: TrialSpec, house: HouseSpec) -> None:
+    marked = trace.destinations(spec, house)
     for thing in house.things:
-        if thing.kind == spec.task.goal.destination:
+        if thing.id in marked:
             text = ax.annotate(
                 plan.title(thing.kind),
                 thing.centre[:2],
@@ -89,6 +113,27 @@ def _name_destination(ax: Axes, spec: TrialSpec, house: HouseSpec) -> None:
                 zorder=7,
             )
             text.set_path_effects(_STROKE)
+
+
+def _words(log: EpisodeLog) -> list[tuple[str, str]]:
+    """A line for each message, with its colour; of many the first and the last few."""
+    lines = []
+    for number, event in enumerate(trace.messages(log), 1):
+        text = textwrap.shorten(event.data["text"], _LINE_MAX, placeholder=" …")
+        fate = trace.fate(log, event.data["message"])
+        end = "unanswered" if fate in ("sent", "shown") else fate
+        lines.append(
+            (f"{number}  {event.tick * rules.TICK_S:.1f} s  {event.seat}: “{text}” ({end})", trace.tint(log, event))
+        )
+    half = _LINES // 2
+    return lines if len(lines) <= _LINES else [*lines[:half], ("…", trace.INK), *lines[-half:]]
+
+
+def _write_words(ax: Axes, words: Sequence[tuple[str, str]]) -> None:
+    ax.axis("off")
+    for row, (line, shade) in enumerate(words):
+        height = 1.0 - (row + 0.5) / len(words)
+        ax.text(0.0, height, line, transform=ax.transAxes, fontsize=7.5, color=shade, va="center")
 
 
 def _draw_message(ax: Axes, log: EpisodeLog, number: int, event: Event) -> None:
@@ -122,23 +167,27 @@ def _draw_acts(ax: Axes, log: EpisodeLog) -> None:
 
 
 def _headline(spec: TrialSpec, log: EpisodeLog) -> str:
-    agents = ", ".join(robot.agent.name for robot in spec.robots) or "no robot"
+    agents = " and ".join(dict.fromkeys(robot.agent.name for robot in spec.robots)) or "no robot"
     seconds = log.ticks * rules.TICK_S
     end = f"done in {seconds:.1f} s" if log.met else f"not done in {seconds:.0f} s"
-    return f"“{spec.task.instruction}”\n{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"
+    if not log.met and log.progress is not None:
+        end += f", {100.0 * log.progress:.0f} % of it done"
+    told = "\n".join(textwrap.wrap(f"“{spec.task.instruction}”", _HEAD_MAX))
+    return f"{told}\n{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"
 
 
-def _legend(sheet: Figure, spec: TrialSpec, log: EpisodeLog) -> None:
+def _legend(sheet: Figure, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> None:
     handles = [_line(trace.PERSON, "person")]
-    for robot in spec.robots:
-        handles.append(_line(trace.colour(robot.seat), f"{robot.seat} ({robot.agent.name})"))
+    handles += [_line(trace.colour(robot.seat), trace.who(robot)) for robot in spec.robots]
     handles += [
         _mark("o", "white", "start", edge="#555555"),
         _mark("o", "#555555", "end"),
         _mark("*", trace.TARGET, "target at the start", size=9),
     ]
-    if spec.task.goal.destination:
-        handles.append(_mark("s", "#bfe3d4", "destination", edge="#00795a"))
+    if any(job.place is not None for job in spec.task.goal.todo):
+        handles.append(_mark("*", "white", "where it belongs", edge=trace.TARGET, size=8))
+    if trace.destinations(spec, house):
+        handles.append(_mark("s", plan.MARKED, "destination", edge=plan.MARKED_EDGE))
     if trace.messages(log):
         handles += [
             _mark("o", shade, f"message, {word}", size=7)

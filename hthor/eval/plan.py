@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 FLOORS = {"kitchen": "#f6ecd9", "living_room": "#eef1e3", "bedroom": "#e9edf4", "bathroom": "#e3f0f0"}
+MARKED, MARKED_EDGE, MARKED_FLOOR = "#bfe3d4", "#00795a", "#dcf0e6"
 WALL_PT = 3.2
 _FURNITURE, _EDGE = "#d9d4cb", "#a8a196"
 
@@ -28,10 +29,11 @@ def draw_house(ax: Axes, house: HouseSpec, *, marked: Collection[str] = ()) -> N
 
     Args:
         ax: axes in metres of the house frame; limits and aspect are set here.
-        marked: ids of things to draw in the accent colour, with their name: a task's destination.
+        marked: ids of things and rooms to draw in the accent colour: a task's destinations.
     """
     for room in house.rooms:
-        ax.add_patch(Polygon(room.polygon, closed=True, facecolor=FLOORS.get(room.kind, "#eeeeee"), edgecolor="none"))
+        shade = MARKED_FLOOR if room.id in marked else FLOORS.get(room.kind, "#eeeeee")
+        ax.add_patch(Polygon(room.polygon, closed=True, facecolor=shade, edgecolor="none"))
     for thing in sorted(house.things, key=lambda thing: thing.centre[2]):
         if not thing.parent:
             _draw_thing(ax, thing, thing.id in marked)
@@ -51,7 +53,7 @@ def _draw_thing(ax: Axes, thing: Thing, marked: bool) -> None:
     if thing.centre[2] - thing.size[2] / 2 > 1.2:
         return  # pictures and lamps overhead would hide what stands below
     outline = geometry.rectangle((thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw)
-    face, edge = ("#bfe3d4", "#00795a") if marked else (_FURNITURE, _EDGE)
+    face, edge = (MARKED, MARKED_EDGE) if marked else (_FURNITURE, _EDGE)
     ax.add_patch(
         Polygon(
             outline, closed=True, facecolor=face, edgecolor=edge, lw=1.4 if marked else 0.7, zorder=2, joinstyle="round"

@@ -12,8 +12,8 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1]
 _ABOVE = ("cli", "__main__.py", "eval")
-_HASHED_BY_CONTENT = ("houses/data", "tasks/suites")  # each trial names the hash of its own house and suite
-_COUNTED = ("eval/cast.py", "eval/metrics.py")  # the two files of eval that decide what a trial is worth
+_HASHED_BY_CONTENT = ("houses/data", "houses/unseen", "tasks/suites")  # each trial names its own house's and suite's
+_COUNTED = tuple(f"eval/{name}.py" for name in ("cast", "deeds", "hindrance", "metrics"))  # these decide trials' worth
 _SUFFIXES = (".py", ".json", ".txt", ".xml", ".csv")
 
 

@@ -31,13 +31,13 @@ class Record(Struct, frozen=True, kw_only=True):
     faults: tuple[Fault, ...]
     events: tuple[Event, ...]
     paths: dict[str, list[tuple[int, int, int]]]
+    progress: float | None = None
+    idle: dict[str, int] = {}
 
     @property
     def log(self) -> EpisodeLog:
         """What the umpire left behind, for drawing and for scoring again."""
-        return EpisodeLog(
-            events=self.events, paths=self.paths, ticks=self.ticks, met=self.met, trust=self.trust, faults=self.faults
-        )
+        return EpisodeLog(**{name: getattr(self, name) for name in EpisodeLog.__struct_fields__})
 
 
 _decoder = msgspec.json.Decoder(Record)
@@ -59,17 +59,9 @@ def key(spec: TrialSpec) -> str:
 def of(spec: TrialSpec, log: EpisodeLog) -> Record:
     """The record of a trial that was played."""
     events = tuple(msgspec.structs.replace(event, data=_rounded(event.data)) for event in log.events)
-    return Record(
-        key=key(spec),
-        spec=spec,
-        metrics=measure(spec, log),
-        ticks=log.ticks,
-        met=log.met,
-        trust=log.trust,
-        faults=log.faults,
-        events=events,
-        paths=log.paths,
-    )
+    kept = msgspec.structs.replace(log, events=events)  # what is measured is what is written
+    fields = {name: getattr(kept, name) for name in EpisodeLog.__struct_fields__}
+    return Record(key=key(spec), spec=spec, metrics=measure(spec, kept), **fields)
 
 
 def encode(record: Record) -> bytes:

@@ -2,32 +2,63 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from hthor.eval.score import Result
+from hthor.eval.score import Result, Scores
 from hthor.eval.stats import Estimate
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-_ROWS = (
+Row = tuple[str, str, Estimate]
+"""Title, unit and value."""
+
+_MAIN = (
     ("sr", "success rate", "%"),
     ("twsr", "time-weighted success", "%"),
+    ("progress", "progress", "%"),
     ("adoption", "adoption", "%"),
     ("time_s", "time spent", "s"),
     ("trust", "trust (1 to 7)", ""),
 )
+_MORE = (
+    ("idle_s", "person idle", "s"),
+    ("in_way", "bodies in the way, a trial", ""),
+    ("hindered_s", "person hindered", "s"),
+    ("sent", "messages sent, a trial", ""),
+    ("accepted", "  accepted", ""),
+    ("declined", "  declined", ""),
+    ("covered", "  covered by a newer one", ""),
+    ("unanswered", "  unanswered", ""),
+    ("false_claims", "messages that were false", ""),
+)
+_ONLY_WHERE_KNOWN = ("progress",)
 
 
-def result_table(result: Result) -> Table:
-    """One run: a row a metric."""
-    table = _table(f"{result.agent.name}: {result.suite.name}, {result.counts.trials} trials, {result.human} people")
+def result_table(result: Result, *, everything: bool = False) -> Table:
+    """One run: a row a metric.
+
+    Args:
+        everything: with all that is counted, not only the main metrics.
+    """
+    table = _table(f"{result.name}: {result.suite.name}, {result.counts.trials} trials, {result.human} people")
     for heading in ("mean", "95 % interval", "trials"):
         table.add_column(heading, justify="right")
-    for name, title, unit in _ROWS:
-        estimate: Estimate = getattr(result.metrics, name)
+    for title, unit, estimate in _rows(result.metrics, everything):
         table.add_row(title, number(estimate, unit), interval(estimate, unit), str(estimate.n))
+    return table
+
+
+def kinds_table(result: Result) -> Table:
+    """One run of several kinds of task: a column a kind, the main metrics with their intervals below."""
+    table = _table(f"{result.name}: by kind of task (95 % interval)")
+    for kind in result.by_kind:
+        table.add_column(kind.replace("_", " "), justify="right")
+    for name, title, unit in _MAIN:
+        estimates = [getattr(scores, name) for scores in result.by_kind.values()]
+        if any(estimate.n for estimate in estimates) or name not in _ONLY_WHERE_KNOWN:
+            table.add_row(title, *(_cell(estimate, unit) for estimate in estimates))
     return table
 
 
@@ -36,12 +67,24 @@ def comparison_table(results: Sequence[Result]) -> Table:
     first = results[0]
     table = _table(f"{first.suite.name}, {first.counts.trials} trials, {first.human} people (95 % interval)")
     for result in results:
-        table.add_column(result.agent.name, justify="right")
-    for name, title, unit in _ROWS:
-        table.add_row(title, *(_cell(getattr(result.metrics, name), unit) for result in results))
+        table.add_column(result.name, justify="right")
+    for name, title, unit in _MAIN:
+        estimates = [getattr(result.metrics, name) for result in results]
+        if any(estimate.n for estimate in estimates) or name not in _ONLY_WHERE_KNOWN:
+            table.add_row(title, *(_cell(estimate, unit) for estimate in estimates))
     if any(result.counts.faults for result in results):
         table.add_row("trials with a fault", *(str(result.counts.faults) for result in results))
     return table
+
+
+def _rows(scores: Scores, everything: bool) -> Iterator[Row]:
+    for name, title, unit in _MAIN + (_MORE if everything else ()):
+        estimate: Estimate = getattr(scores, name)
+        if estimate.n or name not in _ONLY_WHERE_KNOWN:
+            yield title, unit, estimate
+    if everything:
+        yield from ((f"share of the work: {seat}", "%", estimate) for seat, estimate in scores.work.items())
+        yield from ((f"hindered: {pair}", "s", estimate) for pair, estimate in scores.hindered_by.items())
 
 
 def number(estimate: Estimate, unit: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 from types import FrameType
@@ -45,7 +45,14 @@ class Interrupted(HthorError):
 
 
 def evaluate(
-    plan: Setup, sessions: Sequence[Session], make: Make, *, folder: Path, jobs: int, watch: Watcher
+    plan: Setup,
+    sessions: Sequence[Session],
+    make: Make,
+    *,
+    folder: Path,
+    jobs: int,
+    watch: Watcher,
+    extra: Mapping[str, bytes] | None = None,
 ) -> Result:
     """Play what a run still lacks, and score it.
 
@@ -54,6 +61,7 @@ def evaluate(
         make: picklable; called in each worker, gives what plays a session.
         folder: the run's folder; made when absent, finished when it holds a part of this run.
         jobs: number of worker processes.
+        extra: other files to leave in the folder, by name, such as a suite that was made for this run.
 
     Raises:
         RunLocked: when another process writes this run.
@@ -64,6 +72,8 @@ def evaluate(
     setup.examine(folder, plan)
     with Log(folder) as book:
         setup.write(folder, plan)
+        for name, data in (extra or {}).items():
+            jsonio.write(folder / name, data)
         wanted = {record.key(trial): session for session in sessions for trial in session.trials}
         left = [session for session in sessions if any(record.key(t) not in book.lines for t in session.trials)]
         watch.begin(len(wanted), len(wanted) - sum(key not in book.lines for key in wanted))

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from operator import attrgetter
 from pathlib import Path
 
 import msgspec
@@ -12,38 +14,58 @@ from msgspec import Struct
 from hthor import jsonio
 from hthor.errors import RunError
 from hthor.eval import log, metrics, setup, stats
+from hthor.eval.metrics import TrialMetrics
 from hthor.eval.record import Record
-from hthor.eval.setup import AssetsRef, Setup, SuiteRef
+from hthor.eval.setup import AssetsRef, KindRef, Setup, SuiteRef
 from hthor.eval.stats import Estimate
-from hthor.types import AgentRef
+from hthor.types import RobotSeat
 
-SCHEMA = "hthor.result/1"
+SCHEMA = "hthor.result/2"
 
 
 class Scores(Struct, frozen=True, kw_only=True):
-    """The run's metrics as fractions, seconds and trust points; see `hthor.eval.metrics` for each trial's."""
+    """The run's metrics as fractions, seconds, trust points and counts a trial; see `hthor.eval.metrics`.
+
+    ``work`` has a share for each seat, ``hindered_by`` seconds for each pair, such as "human by robot".
+    """
 
     sr: Estimate
     twsr: Estimate
     adoption: Estimate
     time_s: Estimate
     trust: Estimate
+    progress: Estimate
+    idle_s: Estimate
+    in_way: Estimate
+    hindered_s: Estimate
+    sent: Estimate
+    accepted: Estimate
+    declined: Estimate
+    covered: Estimate
+    unanswered: Estimate
+    false_claims: Estimate
+    work: dict[str, Estimate]
+    hindered_by: dict[str, Estimate]
 
 
 class Counts(Struct, frozen=True, kw_only=True):
-    """How much there is: trials, distinct tasks, successes, messages sent by robots, and trials with a fault."""
+    """How much there is: trials, distinct tasks, successes, messages sent by robots, and trials with a fault.
+
+    ``faults_by_seat`` counts the trials in which the robot of each seat failed.
+    """
 
     trials: int
     tasks: int
     successes: int
     messages: int
     faults: int
+    faults_by_seat: dict[str, int]
 
 
 class Hashes(Struct, frozen=True, kw_only=True):
     """Hashes of what decides the records, and of the records themselves, whatever their order in the log.
 
-    ``robot`` is that of a user's own robot file, empty for a robot that ships with hthor: ``code`` covers those.
+    ``code`` covers everything that ships with hthor; the hashes of a user's own files are with the robots and the kind.
     """
 
     run: str
@@ -51,7 +73,6 @@ class Hashes(Struct, frozen=True, kw_only=True):
     rules: str
     code: str
     trials: str
-    robot: str = ""
 
 
 class Effort(Struct, frozen=True, kw_only=True):
@@ -66,11 +87,11 @@ class Result(Struct, frozen=True, kw_only=True):
     """The run's `result.json`."""
 
     schema: str = SCHEMA
-    agent: AgentRef
-    robot: str
-    detector: str
+    name: str
+    robots: tuple[RobotSeat, ...]
     human: str
     suite: SuiteRef
+    kind: KindRef | None = None
     seed: int
     participants: int
     metrics: Scores
@@ -106,9 +127,8 @@ def _check_origin(folder: Path, record: Record, plan: Setup) -> None:
         "suite_sha256": (spec.suite_sha256, plan.suite.sha256),
         "rules_sha256": (spec.rules_sha256, plan.rules_sha256),
         "code_sha256": (spec.code_sha256, plan.code_sha256),
-        "robots": ([seat.agent for seat in spec.robots], [plan.agent] if plan.robot else []),
-        "bodies": ([seat.robot_sha256 for seat in spec.robots], [plan.robot_sha256] if plan.robot else []),
-        "detectors": ([seat.detector for seat in spec.robots], [plan.detector] if plan.robot else []),
+        "robots": (spec.robots, plan.seats),
+        "kind_sha256": (spec.kind_sha256, plan.kind.sha256 if plan.kind else ""),
     }
     for field, (here, there) in pairs.items():
         if here != there:
@@ -121,22 +141,31 @@ def _check_origin(folder: Path, record: Record, plan: Setup) -> None:
 def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], effort: Effort | None = None) -> Result:
     """The result of the records of a run, whole or not."""
     kinds = sorted({record.spec.task.kind for record in records})
+    whole = scores(records)
+    by_kind = {
+        kind: whole if len(kinds) == 1 else scores([record for record in records if record.spec.task.kind == kind])
+        for kind in kinds
+    }
     return Result(
-        agent=plan.agent,
-        robot=plan.robot,
-        detector=plan.detector,
+        name=plan.name,
+        robots=plan.robots,
         human=plan.human,
         suite=plan.suite,
+        kind=plan.kind,
         seed=plan.seed,
         participants=plan.participants,
-        metrics=scores(records),
-        by_kind={kind: scores([record for record in records if record.spec.task.kind == kind]) for kind in kinds},
+        metrics=whole,
+        by_kind=by_kind,
         counts=Counts(
             trials=len(records),
             tasks=len({record.spec.task.id for record in records}),
             successes=sum(record.met for record in records),
             messages=sum(event.kind == "sent" for record in records for event in record.events),
             faults=sum(bool(record.faults) for record in records),
+            faults_by_seat={
+                robot.seat: sum(any(fault.seat == robot.seat for fault in record.faults) for record in records)
+                for robot in plan.seats
+            },
         ),
         versions=plan.versions,
         hashes=Hashes(
@@ -145,7 +174,6 @@ def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], ef
             rules=plan.rules_sha256,
             code=plan.code_sha256,
             trials=hashlib.sha256(b"".join(lines)).hexdigest(),
-            robot=plan.robot_sha256,
         ),
         assets=plan.assets,
         effort=effort,
@@ -154,14 +182,26 @@ def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], ef
 
 def scores(records: Sequence[Record]) -> Scores:
     """Means and intervals of every metric; trials for which a metric has no value do not count for it."""
-    return Scores(**{name: _score(records, name) for name in metrics.NAMES})
+    single = {name: _score(records, name, attrgetter(name)) for name in metrics.NAMES}
+    return Scores(**single, work=_by_name(records, "work"), hindered_by=_by_name(records, "hindered_by"))
 
 
-def _score(records: Sequence[Record], name: str) -> Estimate:
-    measured = [(getattr(record.metrics, name), record.spec) for record in records]
-    held = [(float(value), spec) for value, spec in measured if value is not None]
+def _by_name(records: Sequence[Record], metric: str) -> dict[str, Estimate]:
+    """An estimate for each name that the metric has values for, in the order in which they first come."""
+    names = dict.fromkeys(name for record in records for name in getattr(record.metrics, metric))
+    return {name: _score(records, f"{metric} {name}", partial(_named, metric, name)) for name in names}
+
+
+def _named(metric: str, name: str, one: TrialMetrics) -> float | None:
+    values: dict[str, float] = getattr(one, metric)
+    return values.get(name)
+
+
+def _score(records: Sequence[Record], name: str, value: Callable[[TrialMetrics], float | None]) -> Estimate:
+    measured = [(value(record.metrics), record.spec) for record in records]
+    held = [(float(found), spec) for found, spec in measured if found is not None]
     return stats.estimate(
-        [value for value, _ in held],
+        [found for found, _ in held],
         [spec.task.id for _, spec in held],
         [spec.participant for _, spec in held],
         name=name,

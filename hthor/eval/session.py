@@ -9,7 +9,8 @@ from msgspec import Struct
 
 from hthor import humans, rules, seeds
 from hthor.detectors import OWN
-from hthor.eval import cast, provenance
+from hthor.eval import crews, provenance
+from hthor.eval.crews import Crew
 from hthor.tasks import Suite
 from hthor.types import TaskSpec, TrialSpec
 
@@ -29,29 +30,29 @@ def people_for(tasks: int) -> int:
 def sessions(
     suite: Suite,
     *,
-    agent: str | cast.Character,
+    agent: str | Crew,
     robot: str = "scout",
     human: str = "proxy",
     seed: int = 0,
     participants: int | None = None,
     detector: str = OWN,
-    robot_sha256: str = "",
+    kind_sha256: str = "",
     assets_sha256: str = "",
 ) -> tuple[Session, ...]:
     """The sessions of a run.
 
-    Who does what depends on suite, seed and participant alone, never on the agent, so that agents meet the same people
-    at the same tasks.
+    Who does what depends on suite, seed and participant alone, never on the robots, so that they all meet the same
+    people at the same tasks.
 
     Args:
-        agent: a built-in agent's name, an agent file, or what `cast.introduce` made of either.
+        agent: a built-in agent's name or an agent file, in the body ``robot`` with the detector ``detector`` as
+            `hthor.detectors.tidy` spells it; or a whole crew, which has all of that.
         participants: how many people; by default as many as let every task be done exactly once.
-        detector: how the robot's detector errs, as `hthor.detectors.tidy` spells it.
-        robot_sha256: hash of the robot's file, for a robot that is not one of ours.
+        kind_sha256: hash of the file of the tasks' kind, for a kind that is not one of ours.
         assets_sha256: hash of the furniture pack that pictures show, if any.
     """
-    character = cast.introduce(agent) if isinstance(agent, str) else agent
-    seats, fingerprint = character.seats(robot, detector, robot_sha256), humans.fingerprint(human)
+    crew = crews.form([robot], [agent], detector) if isinstance(agent, str) else agent
+    seats, fingerprint = crew.seats, humans.fingerprint(human)
     rules_hash, code_hash = rules.sha256(), provenance.code_sha256()
 
     def trial(task: TaskSpec, participant: int, index: int) -> TrialSpec:
@@ -67,6 +68,7 @@ def sessions(
             rules_sha256=rules_hash,
             code_sha256=code_hash,
             assets_sha256=assets_sha256,
+            kind_sha256=kind_sha256,
         )
 
     count = people_for(len(suite.tasks)) if participants is None else participants

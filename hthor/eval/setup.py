@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,14 +11,15 @@ import msgspec
 from msgspec import Struct
 
 from hthor import humans, jsonio, rules
-from hthor.detectors import OWN
 from hthor.errors import RunError
-from hthor.eval import cast, provenance
+from hthor.eval import provenance
+from hthor.eval.crews import Crew
 from hthor.eval.session import people_for
 from hthor.tasks import Suite
-from hthor.types import AgentRef
+from hthor.types import RobotSeat
 
-SCHEMA = "hthor.run/1"
+SCHEMA = "hthor.run/2"
+_NAME_MAX = 100
 _MADE_FIRST = (".lock", "trials.jsonl", ".run.json.*")  # a command that was killed early leaves these alone
 
 
@@ -40,20 +42,26 @@ class AssetsRef(Struct, frozen=True, kw_only=True):
     sha256: str
 
 
-class Setup(Struct, frozen=True, kw_only=True):
-    """A run's configuration. ``robot`` and ``detector`` are empty without a robot.
+class KindRef(Struct, frozen=True, kw_only=True):
+    """The one kind of task that a run was narrowed to, and the hash of its file when it is a user's own."""
 
-    ``trials`` is how many there are in a whole run. ``robot_sha256`` is the hash of a user's own robot file, empty for
-    a robot that ships with hthor.
+    name: str
+    sha256: str = ""
+
+
+class Setup(Struct, frozen=True, kw_only=True):
+    """A run's configuration.
+
+    ``robots`` lists every robot with its body, mind and detector; a mind that wants no robot stands there without a
+    seat. ``kind`` is None when every task of the suite is played. ``trials`` is how many there are in a whole run.
     """
 
     schema: str = SCHEMA
-    agent: AgentRef
-    robot: str
-    detector: str
+    robots: tuple[RobotSeat, ...]
     human: str
     human_sha256: str
     suite: SuiteRef
+    kind: KindRef | None = None
     seed: int
     participants: int
     trials: int
@@ -61,7 +69,6 @@ class Setup(Struct, frozen=True, kw_only=True):
     code_sha256: str
     versions: dict[str, str]
     assets: AssetsRef
-    robot_sha256: str = ""
 
     @property
     def sha256(self) -> str:
@@ -69,21 +76,40 @@ class Setup(Struct, frozen=True, kw_only=True):
         return jsonio.sha256(self)
 
     @property
+    def seats(self) -> tuple[RobotSeat, ...]:
+        """The robots that there are in a trial."""
+        return tuple(robot for robot in self.robots if robot.seat)
+
+    @property
+    def name(self) -> str:
+        """What to call the run among others."""
+        return crew_name(self.robots)
+
+    @property
     def folder_name(self) -> str:
         """The run's folder when none is given: equal configurations share one, so that the same command resumes."""
-        return f"{self.agent.name}-{Path(self.suite.name).name}-{self.sha256[:10]}"
+        played = Path(self.suite.name).name
+        if self.kind is not None and self.kind.name != played:
+            played = f"{played}-{self.kind.name}"
+        return f"{self.name}-{played}-{self.sha256[:10]}"
+
+
+def crew_name(robots: Sequence[RobotSeat]) -> str:
+    """The agent's name, of a single robot; "tender-oracle+puck-frontier" of several."""
+    if len(robots) == 1:
+        return robots[0].agent.name
+    names = [f"{robot.robot}-{robot.agent.name}" if robot.robot else robot.agent.name for robot in robots]
+    return "+".join(names)[:_NAME_MAX]
 
 
 def settle(
     suite: Suite,
-    character: cast.Character,
+    crew: Crew,
     *,
-    robot: str,
     human: str,
     seed: int,
     participants: int | None,
-    detector: str = OWN,
-    robot_sha256: str = "",
+    kind: KindRef | None = None,
     assets: AssetsRef | None = None,
 ) -> Setup:
     """The configuration of a run, every default resolved."""
@@ -92,12 +118,11 @@ def settle(
     whole, rest = divmod(people, hands)
     size = len(suite.tasks)
     return Setup(
-        agent=character.ref,
-        robot="" if character.absent else robot,
-        detector="" if character.absent else detector,
+        robots=crew.listed,
         human=human,
         human_sha256=humans.fingerprint(human),
         suite=SuiteRef(name=suite.name, version=str(suite.version), sha256=suite.sha256),
+        kind=kind,
         seed=seed,
         participants=people,
         trials=whole * size + rest * size // hands,
@@ -105,7 +130,6 @@ def settle(
         code_sha256=provenance.code_sha256(),
         versions=provenance.versions(),
         assets=assets or AssetsRef(sha256=provenance.code_sha256()),
-        robot_sha256="" if character.absent else robot_sha256,
     )
 
 
@@ -118,13 +142,18 @@ def load(folder: Path) -> Setup:
     path = folder / "run.json"
     if not path.is_file():
         raise RunError(f"{folder} is not a run's folder: it has no run.json. 'hthor eval' makes one.")
+    data = path.read_bytes()
     try:
-        setup = msgspec.json.decode(path.read_bytes(), type=Setup)
+        schema = msgspec.json.decode(data, type=_Versioned).schema
+        if schema != SCHEMA:
+            raise RunError(f"{path}: schema is '{schema}', this version reads '{SCHEMA}'. Evaluate it anew.")
+        return msgspec.json.decode(data, type=Setup)
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise RunError(f"{path}: {error}. The file was changed after it was written.") from None
-    if setup.schema != SCHEMA:
-        raise RunError(f"{path}: schema is '{setup.schema}', this version reads '{SCHEMA}'.")
-    return setup
+
+
+class _Versioned(Struct):
+    schema: str
 
 
 def examine(folder: Path, plan: Setup) -> None:
@@ -176,6 +205,8 @@ def _differences(there: Setup, here: Setup) -> list[str]:
 def _flat(document: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     flat: dict[str, Any] = {}
     for name, value in document.items():
+        if isinstance(value, (list, tuple)) and any(isinstance(part, dict) for part in value):
+            value = {str(number): part for number, part in enumerate(value)}
         flat |= _flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value}
     return flat
 

@@ -40,6 +40,9 @@ def estimate(values: Sequence[float], tasks: Sequence[str], people: Sequence[int
     """
     if not values:
         return NOTHING
+    if min(values) == max(values):  # every sample of it has the same mean
+        level = round(values[0], _DIGITS)
+        return Estimate(mean=level, ci95=(level, level), n=len(values))
     drawn = bootstrap(np.asarray(values, dtype=np.float64), _codes(tasks), _codes(people), name=name)
     mean = sum(values) / len(values)
     tail = (1.0 - LEVEL) / 2.0

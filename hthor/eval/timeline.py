@@ -3,37 +3,41 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hthor import rules
 from hthor.episode import EpisodeLog
 from hthor.eval import trace
-from hthor.types import HUMAN, TrialSpec
+from hthor.types import HUMAN, Event, TrialSpec
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-_WORD_S = 8.0
+_WORD = 0.09
 """How much of the time axis a word takes up."""
 _LIFTS = (6, -14, 15)
 """Where a word may stand, in points above its mark, best first."""
 
 
 def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
-    """Who did what when: one row a seat, a row for the messages."""
+    """Who did what when: one row a seat, and one for the progress of a goal that has parts."""
     seats = list(log.paths)
+    steps = [event for event in log.events if event.kind == "progress"]
+    rows = len(seats) + (log.progress is not None)
     end, limit = log.ticks * rules.TICK_S, spec.task.time_limit
     for row, seat in enumerate(seats):
         ax.plot((0, end), (-row, -row), color=trace.colour(seat), lw=2.2, alpha=0.35, solid_capstyle="butt")
-        _timeline_marks(ax, log, seat, -row)
+        _timeline_marks(ax, log, seat, -row, _WORD * limit)
+    if rows > len(seats):
+        _draw_progress(ax, steps, end, -len(seats), _WORD * limit)
     _moment(ax, spec.task.t_star, "T*", "#777777", ":")
     _moment(ax, end, "done" if log.met else "time is up", trace.TARGET if log.met else trace.FAILED, "-")
     ax.set_xlim(-1, limit + 1)
-    ax.set_ylim(-len(seats) + 0.4, 0.75)
-    ax.set_yticks(
-        [-row for row in range(len(seats))], ["person" if seat == HUMAN else seat for seat in seats], fontsize=8
-    )
+    ax.set_ylim(-rows + 0.4, 0.75)
+    names = ["person" if seat == HUMAN else seat for seat in seats]
+    ax.set_yticks([-row for row in range(rows)], [*names, "progress"][:rows], fontsize=8)
     ax.set_xlabel("time [s]", fontsize=8)
     ax.tick_params(axis="x", labelsize=7.5)
     ax.tick_params(axis="y", length=0)
@@ -41,12 +45,24 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
         ax.spines[side].set_visible(False)
 
 
+def _draw_progress(ax: Axes, steps: Sequence[Event], end: float, row: float, word_s: float) -> None:
+    """A bar that darkens as more of the goal is met, with the shares in words."""
+    marks = [(0.0, 0.0), *((event.tick * rules.TICK_S, float(event.data["value"])) for event in steps)]
+    for (begin, value), (until, _) in zip(marks, [*marks[1:], (end, 0.0)], strict=True):
+        ax.barh(row, until - begin, left=begin, height=0.42, color=trace.TARGET, alpha=0.08 + 0.6 * value, lw=0)
+    following = math.inf
+    for begin, value in reversed(marks[1:]):
+        if following - begin > word_s / 2:
+            ax.text(begin + 0.4, row, f"{100.0 * value:.0f} %", fontsize=7, va="center", color=trace.INK)
+            following = begin
+
+
 def _moment(ax: Axes, seconds: float, name: str, shade: str, style: str) -> None:
     ax.axvline(seconds, color=shade, lw=1.0, ls=style, zorder=1)
     ax.text(seconds, 1.02, name, transform=ax.get_xaxis_transform(), fontsize=7.5, color=shade, ha="center")
 
 
-def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float) -> None:
+def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float, word_s: float) -> None:
     for number, event in enumerate(trace.messages(log), 1):
         if event.seat == seat:
             trace.badge(ax, (event.tick * rules.TICK_S, row), str(number), trace.tint(log, event))
@@ -58,7 +74,7 @@ def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float) -> None:
         x = event.tick * rules.TICK_S
         marker = trace.ACTS.get(event.kind, ("o", ""))[0]
         ax.scatter(x, row, s=26, marker=marker, color=trace.colour(seat), edgecolor="white", linewidths=0.6, zorder=3)
-        lift = next((lift for lift in _LIFTS if x - last[lift] > _WORD_S), _LIFTS[-1])
+        lift = next((lift for lift in _LIFTS if x - last[lift] > word_s), _LIFTS[-1])
         last[lift] = x
         ax.annotate(
             words[event.kind], (x, row), (0, lift), textcoords="offset points", fontsize=7, ha="center", color=trace.INK

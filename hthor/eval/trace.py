@@ -2,24 +2,67 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hthor import rules
 from hthor.episode import EpisodeLog
-from hthor.types import HUMAN, Event, Vec2
+from hthor.types import HUMAN, Event, HouseSpec, Job, Placement, RobotSeat, TrialSpec, Vec2
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # Okabe and Ito's palette, which colour-blind readers can tell apart.
-PERSON, ROBOTS, TARGET, MESSAGE, FAILED = "#0072B2", ("#D55E00", "#CC79A7", "#E69F00"), "#009E73", "#7a3b8f", "#b00020"
+PERSON, ROBOTS = "#0072B2", ("#D55E00", "#CC79A7", "#E69F00", "#56B4E9", "#8a6d00")
+TARGET, MESSAGE, FAILED = "#009E73", "#7a3b8f", "#b00020"
 IDLE_MESSAGE = "#ae98b8"
 INK = "#2b2f36"
 
-ACTS = {"picked": ("^", "picks"), "placed": ("v", "places"), "opened": ("D", "opens")}
+ACTS = {
+    "picked": ("^", "picks"),
+    "placed": ("v", "places"),
+    "dropped": ("v", "drops"),
+    "held": (">", "takes hold"),
+    "lifted": ("^", "lift"),
+    "lowered": ("v", "put down"),
+    "opened": ("D", "opens"),
+    "closed": ("s", "closes"),
+}
 """Marker and verb of each deed that is drawn."""
+_THERE_M = 0.3
+_MARKED = 8
+"""Places that will do are marked up to so many; more would mark half the house."""
+
+
+def targets(spec: TrialSpec, house: HouseSpec) -> list[tuple[Job, Placement]]:
+    """Every job that is not done from the start, and where its object lies then."""
+    starts, kinds = (
+        {placed.id: placed for placed in spec.task.objects},
+        {thing.id: thing.kind for thing in house.things},
+    )
+
+    def is_there(job: Job, start: Placement) -> bool:
+        if job.place is not None:
+            return math.dist(job.place[:2], start.position[:2]) < _THERE_M
+        return bool({start.support, kinds.get(start.support, "")} & set(job.destinations))
+
+    pairs = [(job, starts[job.target]) for job in spec.task.goal.todo if job.target in starts]
+    return [(job, start) for job, start in pairs if not is_there(job, start)]
+
+
+def destinations(spec: TrialSpec, house: HouseSpec) -> list[str]:
+    """Ids of the things and rooms to which objects are to go, none where almost anything will do."""
+    wanted = {name for job in spec.task.goal.todo if job.place is None for name in job.destinations}
+    found = [thing.id for thing in house.things if {thing.id, thing.kind} & wanted]
+    found += [room.id for room in house.rooms if room.id in wanted]
+    return found if len(found) <= _MARKED else []
+
+
+def who(robot: RobotSeat) -> str:
+    """A robot's seat, body and mind in words."""
+    return f"{robot.seat}: {robot.robot} ({robot.agent.name})"
 
 
 def colour(seat: str) -> str:

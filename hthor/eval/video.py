@@ -22,6 +22,7 @@ SPEED = 4
 """Seconds of the trial in a second of film."""
 HOLD_S = 2
 """Seconds that the last picture stays."""
+_TAKEN = ("picked", "lifted")
 _SHIFT = 4  # cv2 draws at 1/16 pixel
 
 
@@ -53,26 +54,31 @@ class _Stage:
         sheet = Figure(figsize=(9.6, 7.2), dpi=100, layout="constrained")
         canvas = FigureCanvasAgg(sheet)
         ax = sheet.subplots()
-        marked = [thing.id for thing in house.things if thing.kind == spec.task.goal.destination]
-        plan.draw_house(ax, house, marked=marked)
+        plan.draw_house(ax, house, marked=trace.destinations(spec, house))
         ax.set_title(f"“{spec.task.instruction}”", fontsize=13, color=trace.INK)
         canvas.draw()
         self.empty: Any = cv2.cvtColor(np.asarray(canvas.buffer_rgba()), cv2.COLOR_RGBA2BGR)
         self._to_pixels = ax.transData
-        start = next(placed for placed in spec.task.objects if placed.id == spec.task.goal.target)
-        self.target = start.position[:2]
+        self.targets = {job.target: start.position[:2] for job, start in trace.targets(spec, house)}
+        self.robots = spec.robots
 
     def draw(self, log: EpisodeLog, index: int) -> Any:
         """The frame of logged pose number ``index``."""
         frame = self.empty.copy()
         tick = index * rules.LOG_EVERY_TICKS
-        held = any(event.kind == "picked" and event.tick <= tick for event in log.events)
-        if not held:
-            cv2.drawMarker(frame, self._pixel(self.target), _bgr(trace.TARGET), cv2.MARKER_STAR, 18, 2, cv2.LINE_AA)
+        taken = {event.data["object"] for event in log.events if event.kind in _TAKEN and event.tick <= tick}
+        for object_, place in self.targets.items():
+            if object_ not in taken:
+                cv2.drawMarker(frame, self._pixel(place), _bgr(trace.TARGET), cv2.MARKER_STAR, 18, 2, cv2.LINE_AA)
         for seat, way in log.paths.items():
             self._draw_seat(frame, trace.points(log, seat)[: index + 1], way[min(index, len(way) - 1)][2], seat)
         self._draw_message(frame, log, tick)
         self._write(frame, f"{tick * rules.TICK_S:5.1f} s", (18, 34), trace.INK)
+        if log.progress is not None:
+            steps = [event.data["value"] for event in log.events if event.kind == "progress" and event.tick <= tick]
+            self._write(frame, f"{100.0 * (steps or [0.0])[-1]:.0f} %", (18, 62), trace.TARGET)
+        for row, robot in enumerate(self.robots if len(self.robots) > 1 else ()):
+            self._write(frame, trace.who(robot), (18, 92 + 24 * row), trace.colour(robot.seat))
         return frame
 
     def _draw_seat(self, frame: Any, way: np.ndarray, yaw_mrad: int, seat: str) -> None:

@@ -57,7 +57,7 @@ def work(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Recor
         make: called once, here: gives what plays a session. Must be picklable.
         parent: id of the process that started this one; this one ends with it.
     """
-    _end_with(parent)
+    end_with(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides what it means
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     try:
@@ -89,7 +89,7 @@ def _failure(error: Exception) -> Failed:
     return Failed(exit_code=1, message=summary, detail="".join(traceback.format_exception(error)))
 
 
-def _end_with(parent: int) -> None:
+def end_with(parent: int) -> None:
     """Ask the kernel to kill this process when its parent ends, so that no run leaves orphans."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(1, int(signal.SIGKILL), 0, 0, 0)  # 1 is PR_SET_PDEATHSIG

@@ -6,12 +6,12 @@ import sys
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from hthor.houses.loader import load, names
+from hthor.houses.loader import load, names, shelve, shelves
 
 if TYPE_CHECKING:
     from hthor.houses.check import check
 
-__all__ = ["check", "load", "names"]
+__all__ = ["check", "load", "names", "shelve", "shelves"]
 
 
 class _Houses(ModuleType):

@@ -9,7 +9,7 @@ import math
 from collections import Counter
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from hthor import jsonio
 from hthor.errors import HouseError, UnknownName
@@ -20,19 +20,39 @@ from hthor.houses.schema import Agent, HouseFile, OpeningRow, RoomRow, WallRow
 from hthor.houses.validate import EXTERIOR, ROOM_KINDS
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec3, Wall
 
-_DATA = Path(str(resources.files("hthor.houses").joinpath("data")))
+_OWN = {
+    name: Path(str(resources.files("hthor.houses").joinpath(folder)))
+    for name, folder in (("scenes", "data"), ("unseen", "unseen"))
+}
+_shelves: dict[Path, None] = {}
 
 
-def names() -> tuple[str, ...]:
-    """The houses that come with hthor."""
-    return tuple(sorted(path.stem for path in _DATA.glob("*.json")))
+def names(group: Literal["scenes", "unseen"] = "scenes") -> tuple[str, ...]:
+    """The houses that come with hthor: the benchmark's ten scenes, or the ``unseen`` ones that stand beside them."""
+    return tuple(sorted(path.stem for path in _OWN[group].glob("*.json")))
+
+
+def shelve(folder: Path) -> None:
+    """Let `load` find the houses of a folder by name, in this process, after those that come with hthor.
+
+    A suite that brings its own houses is read so. Of two folders with a house of one name the one shelved last counts;
+    a task holds its house's hash, so that a house that is not the one it was made for is refused.
+    """
+    _shelves.pop(folder.resolve(), None)
+    _shelves[folder.resolve()] = None
+
+
+def shelves() -> tuple[Path, ...]:
+    """The folders given to `shelve`, in order: what another process has to be told."""
+    return tuple(_shelves)
 
 
 def load(name_or_path: str | Path, assets: Path | None = None) -> HouseSpec:
     """A house by name, or from a ProcTHOR house file, JSON schema 1.0.0.
 
     Args:
-        name_or_path: one of `names`, or the path of a file.
+        name_or_path: one of `names`, of either group; the name of a house in a folder given to `shelve`; or the path of
+            a file.
         assets: a ProcTHOR asset database, or the folder it lies in, for files with foreign assets. Without it the
             database is looked for where the environment variable HTHOR_ASSETS says, then beside the file and in the
             folders above, in ``shared/houses/databases`` of any folder above the current one, and in an installed
@@ -60,12 +80,19 @@ def build(document: Any, name: str) -> HouseSpec:
 
 
 def _locate(given: str) -> tuple[Path, str]:
-    if given in names():
-        return _DATA / f"{given}.json", f"{given}.json"
+    for folder in (*_OWN.values(), *reversed(_shelves)):
+        if _plain(given) and (folder / f"{given}.json").is_file():
+            return folder / f"{given}.json", f"{given}.json"
     path = Path(given)
     if path.suffix == ".json" or path.is_file():
         return path, given
-    raise UnknownName("house", given, names(), "Or give the path of a ProcTHOR house file (.json).")
+    known = (*names(), *names("unseen"), *(path.stem for shelf in _shelves for path in sorted(shelf.glob("*.json"))))
+    raise UnknownName("house", given, known, "Or give the path of a ProcTHOR house file (.json).")
+
+
+def _plain(name: str) -> bool:
+    """Whether a name is no path in disguise."""
+    return name == Path(name).name and bool(name)
 
 
 def _build(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) -> HouseSpec:

@@ -46,7 +46,7 @@ class Sight:
             return False
         reach = float(np.linalg.norm(eyes - points[0], axis=1).max())
         near = np.nonzero(np.linalg.norm(self._pos - points[0], axis=1) - self._radius <= reach)[0]
-        own = self._span[thing.id]
+        own = self._span.get(thing.id, (0, 0))  # what is no part of the house hides nothing
         return bool(_seen(eyes, points, self._half, self._pos, self._mat, self._radius, near, own[0], own[1]))
 
 

@@ -82,7 +82,7 @@ class Approach:
         new = [spot for spot in spots if all(math.dist(spot, old) > _TRIED_M for old in self._tried)]
         if not new:
             new, self._tried = spots, []
-        seen_from = self.eyes.seen_from if self._tried else None
+        seen_from = self.eyes.subject.spot if self._tried else None
         distances = self.walker.planner.distances(self.me.here, new) if new else ()
         ranked = [
             (far + _aslant(spot, point, seen_from), spot)

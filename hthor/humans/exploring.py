@@ -20,6 +20,7 @@ _INSIDE_M = 0.5
 _SWEEP_RAD = 1.0
 _NEXT = 0.6
 _PAUSE_S = 0.3
+_BESIDE_M, _ROAM_S = 1.0, 40.0
 
 
 class Exploring:
@@ -47,6 +48,45 @@ class Exploring:
             if self.me.now.tick == since:
                 yield Wait(seconds=_PAUSE_S)
         return True
+
+    def make_for(self, point: Vec3, known: Callable[[], bool], search: Search) -> Deed:
+        """Go near a point [m] until what is there is ``known`` by sight.
+
+        When it is not, it is in another room: by a doorway not gone through yet, or one entered elsewhere, whichever
+        comes closer to it; and so on for a while.
+        """
+        until = self.me.now.tick + round(_ROAM_S / self.me.tick_s)
+        tried: list[str] = []
+
+        def enough() -> bool:
+            return known() or self.me.now.tick >= until
+
+        while not enough():
+            since = self.me.now.tick
+            tried.append(self.me.now.room)
+            yield from self.walker.go((point[0], point[1]), within=_BESIDE_M, stop=enough)
+            self.fresh, option = None, self._elsewhere(point, tried)
+            if option is not None and not enough():
+                tried.append(option.name)
+                yield from self._pass(option, enough)
+                yield from self._take_in(enough)
+            if option is None or self.me.now.tick == since:
+                yield from self.look_for(search, enough)
+        return known()
+
+    def _take_in(self, enough: Callable[[], bool]) -> Deed:
+        """Look round in a room that was entered just now."""
+        if self.fresh is not None and not enough():
+            yield from self.look_round(self.me.traits.scan)
+        return True
+
+    def _elsewhere(self, point: Vec3, tried: list[str]) -> Option | None:
+        """The entrance to another room that is nearest to a point as the crow flies."""
+        doors = [door for door in self.memory.doorways.values() if door.sides and not door.passed]
+        ways = [Option(name=door.id, value=0.0, spot=door.beyond, doorway=door) for door in doors]
+        ways += [Option(name=room, value=0.0, spot=spot) for room, spot in self.memory.entered.items()]
+        left = [option for option in ways if option.name not in tried]
+        return min(left, key=lambda option: (math.dist(option.spot, point[:2]), option.name), default=None)
 
     def _pass(self, option: Option, enough: Callable[[], bool]) -> Deed:
         """Go through a doorway."""

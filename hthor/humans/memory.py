@@ -72,13 +72,16 @@ class Doorway(Struct, kw_only=True):
 
 
 class Memory:
-    """The house as far as it was seen in this trial. ``tau`` [ticks] is the time constant of forgetting searches."""
+    """The house as far as it was seen in this trial. ``tau`` [ticks] is the time constant of forgetting searches.
+
+    ``entered`` is where each room was entered for the first time [m].
+    """
 
     def __init__(self, tau: float) -> None:
         self.tau = tau
         self.places: dict[str, Place] = {}
         self.doorways: dict[str, Doorway] = {}
-        self.rooms: list[str] = []
+        self.entered: dict[str, Vec2] = {}
         self._here: Vec2 | None = None
         self._at: dict[tuple[Vec3, float], tuple[int, Place | None]] = {}
 
@@ -89,9 +92,9 @@ class Memory:
                 if not doorway.passed and doorway.crossed(self._here, here):
                     doorway.passed = True
         self._here = here
-        if room in self.rooms:
+        if room in self.entered:
             return False
-        self.rooms.append(room)
+        self.entered[room] = here
         return True
 
     def keep_place(self, seen: Detection) -> Place:

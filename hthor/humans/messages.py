@@ -14,14 +14,14 @@ _SAME_M = 0.5
 class Reader:
     """Notices, reads and answers messages, one after the other.
 
-    ``accepted`` is the last message that was confirmed, ``offered`` says whether any was read.
+    ``message`` is the one that is shown, ``accepted`` the last that was confirmed; ``offered`` says whether any came.
     """
 
     def __init__(self, traits: Parameters, root: int, tick_s: float) -> None:
         self.traits, self.root, self.tick_s = traits, root, tick_s
         self.accepted: Message | None = None
         self.offered = False
-        self._message: Message | None = None
+        self.message: Message | None = None
         self._count = 0
         self._until = 0.0
         self._settled = -1
@@ -29,23 +29,23 @@ class Reader:
     @property
     def reading(self) -> bool:
         """Whether a message has come and is not dealt with."""
-        return self._message is not None and self._message.id != self._settled
+        return self.message is not None and self.message.id != self._settled
 
     def receive(self, tick: int, inbox: tuple[Message, ...]) -> None:
         """Look at the inbox; a message with the same content as the one being read is read on."""
         message = inbox[-1] if inbox else None
-        if message is not None and (self._message is None or message.id != self._message.id):
-            if not (self.reading and _same(message, self._message)):
+        if message is not None and (self.message is None or message.id != self.message.id):
+            if not (self.reading and _same(message, self.message)):
                 self._until = tick + self._duration() / self.tick_s
                 self._count += 1
             self.offered = True
-            self._message = message
+            self.message = message
         elif message is None:
-            self._message = None
+            self.message = None
 
     def ready(self, tick: int) -> Message | None:
         """The message that was read and now wants an answer."""
-        return self._message if self.reading and tick >= self._until else None
+        return self.message if self.reading and tick >= self._until else None
 
     def answer(self, message: Message, trust: float, useful: bool) -> Reply | None:
         """Confirm, decline, or None to leave it.

@@ -44,6 +44,13 @@ class Parameters(Struct, frozen=True, kw_only=True):
     scan_first: float = 4.4  # rad, and at the start: 0.7 turns [own]
     t_on: float = 2.0  # s, from the start of a trial to the first movement [fit]
 
+    # several things to do
+    tour_sd: float = 0.06  # m, along each axis, how far off people remember where on a piece of furniture a thing was
+    # when they had toured the house just before [own]
+    tour_forget: float = 0.08  # chance of remembering only the piece of furniture, not where on it [own]
+    partner: float = 12.0  # s, how long people hold on to what they cannot lift alone before they let go [own]
+    lead: float = 3.0  # s, how long people who help to carry leave it to the others to go first [own]
+
     # handling
     t_manip: float = 2.5  # s *, one attempt to pick, place or open [fit]
     manip_sd: float = 0.35  # sd of the logarithm of one attempt's duration [own]

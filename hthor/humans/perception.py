@@ -14,77 +14,82 @@ from hthor.geometry import wrap
 from hthor.humans.beliefs import holders
 from hthor.humans.memory import Memory, Place
 from hthor.humans.parameters import Parameters
-from hthor.types import HUMAN, Detection, Observation, Vec2, Vec3
+from hthor.humans.things import Known, Things
+from hthor.types import Detection, Observation, Vec3
 
 GLIMPSE_TICKS = 3
 """People fixate about three times a second."""
 _LONGEST_S = 0.6
+_LARGE_M = 0.5
 
 
 class Eyes:
     """Turns detections into what the person knows.
 
-    ``target`` is where the target was noticed last, at tick ``seen_at`` and from ``seen_from``; None while it is not
-    known. ``attention`` is what is being searched: a place, a spot, or nothing in particular.
+    ``things`` are the objects that matter, ``subject`` the one that the person is about. ``attention`` is what is being
+    searched: a place, a spot, or nothing in particular.
     """
 
-    def __init__(self, traits: Parameters, root: int, target: str, memory: Memory, tick_s: float) -> None:
-        self.traits, self.root, self.wanted, self.memory, self.tick_s = traits, root, target, memory, tick_s
-        self.target: Detection | None = None
+    def __init__(self, traits: Parameters, root: int, things: Things, memory: Memory, tick_s: float) -> None:
+        self.traits, self.root, self.things, self.memory, self.tick_s = traits, root, things, memory, tick_s
+        self.subject: Known = next(iter(things.known.values()))
         self.attention: Place | Vec3 | None = None
         self.at = -1
-        self.seen_at = -1
-        self.seen_from: Vec2 = (0.0, 0.0)
         self._holders = frozenset(holders())
         self._gathered: dict[str, float] = {}
         self._threshold: dict[str, float] = {}
-        self._lost = 0
-
-    def due(self, tick: int) -> bool:
-        """Whether it is time for another glimpse."""
-        return self.at < 0 or tick - self.at >= GLIMPSE_TICKS
 
     def look(self, now: Observation) -> None:
         """Take in one glimpse."""
-        seconds = min(_LONGEST_S, (now.tick - self.at) * self.tick_s) if self.at >= 0 else self.tick_s
-        self.at = now.tick
+        tick, pose, wanted, kinds = now.tick, now.pose, self.things.known, self._holders
+        seconds = min(_LONGEST_S, (tick - self.at) * self.tick_s) if self.at >= 0 else self.tick_s
+        self.at = tick
         for seen in now.detections:
-            if seen.family == "furniture":
-                if seen.kind in self._holders:
+            family = seen.family
+            if family == "furniture":
+                if seen.kind in kinds:
                     self._furniture(seen, now, seconds)
-            elif seen.family == "doorway":
-                self.memory.keep_doorway(seen, (now.pose.x, now.pose.y), now.room)
-            elif seen.id == self.wanted and seen.held_by in ("", HUMAN):
-                self._target(seen, now, seconds)
+            elif family == "doorway":
+                self.memory.keep_doorway(seen, (pose.x, pose.y), now.room)
+            elif seen.id in wanted:
+                self._object(wanted[seen.id], seen, now, seconds)
 
-    def lose(self) -> None:
-        """The target is not where it was; it must be noticed anew."""
-        self._lost += 1
-        self.target = None
-        self._gathered.pop(self.wanted, None)
-        self._threshold.pop(self.wanted, None)
+    def lose(self, known: Known) -> None:
+        """An object is not where it was; it must be noticed anew."""
+        self.things.lose(known)
+        self._gathered.pop(known.id, None)
+        self._threshold.pop(known.id, None)
 
-    def _target(self, seen: Detection, now: Observation, seconds: float) -> None:
-        if self.target is None:
-            rate = self._rate(seen, now) * (self.traits.focus if self._attended(seen) else 1.0)
-            if not self._notice(self.wanted, rate * seconds, self._lost):
+    def _object(self, known: Known, seen: Detection, now: Observation, seconds: float) -> None:
+        if known.seen is None:
+            if max(seen.size) > _LARGE_M:
+                rate = self._rate_of_large(seen)
+            else:
+                rate = self._rate(seen, now) * (self.traits.focus if self._attended(seen) else 1.0)
+            if not self._notice(known.id, rate * seconds, known.lost):
                 return
-        self.target, self.seen_at, self.seen_from = seen, now.tick, (now.pose.x, now.pose.y)
+        self.things.see(known, seen, now.tick, (now.pose.x, now.pose.y))
 
     def _furniture(self, seen: Detection, now: Observation, seconds: float) -> None:
-        traits, known = self.traits, seen.id in self.memory.places
-        if not known:
-            rate = traits.lam_furniture / (1.0 + (seen.distance / traits.d_furniture) ** 2)
-            if not self._notice(seen.id, rate * seconds, 0):
+        memory = self.memory
+        place = memory.places.get(seen.id)
+        if place is None:
+            if not self._notice(seen.id, self._rate_of_large(seen) * seconds, 0):
                 return
-        place = self.memory.keep_place(seen)
+            place = memory.keep_place(seen)
+        elif seen.state:
+            memory.keep_place(seen)
         if place.state != "closed":
-            self.memory.expose(place, self._rate(seen, now) * seconds, now.tick)
+            memory.expose(place, self._rate(seen, now) * seconds, now.tick)
+
+    def _rate_of_large(self, seen: Detection) -> float:
+        """Rate [1/s] of recognising furniture and what is as large."""
+        return self.traits.lam_furniture / (1.0 + (seen.distance / self.traits.d_furniture) ** 2)
 
     def _rate(self, seen: Detection, now: Observation) -> float:
         """Rate [1/s] of noticing the target were it there."""
-        traits, pose = self.traits, now.pose
-        ecc = wrap(math.atan2(seen.position[1] - pose.y, seen.position[0] - pose.x) - pose.yaw)
+        traits, pose, (x, y, _) = self.traits, now.pose, seen.position
+        ecc = wrap(math.atan2(y - pose.y, x - pose.x) - pose.yaw)
         near = 1.0 + (seen.distance / traits.d50) ** 2
         return traits.lam0 / near * math.exp(-0.5 * (ecc / traits.ecc_sd) ** 2)
 

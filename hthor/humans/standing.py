@@ -15,7 +15,6 @@ GAP_M = 0.42
 _SPACING_M = 0.6
 _RING_M = (0.6, 0.75, 0.9, 1.0, 1.14)
 _DIRECTIONS = 20
-_MARGIN_M = 0.12
 
 
 def at(place: Place, walker: Walker, front: bool = False) -> list[Vec2]:
@@ -68,7 +67,7 @@ def _clear(spot: Vec2, place: Place, walker: Walker) -> bool:
     x, y, _ = to_local((spot[0], spot[1], 0.0), place.centre, place.yaw)
     w, d = place.size[0] / 2.0, place.size[1] / 2.0
     edge = to_house((max(-w, min(w, x)), max(-d, min(d, y)), 0.0), place.centre, place.yaw)
-    return not walker.grid.meets(spot, edge[:2], _MARGIN_M)
+    return not walker.grid.meets(spot, edge[:2], walker.margin)
 
 
 def _speck(point: Vec3) -> Place:

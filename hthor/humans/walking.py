@@ -48,12 +48,13 @@ def never() -> bool:
 class Walker:
     """Legs and the map in the head.
 
-    ``haste`` scales the pace: below 1 while reading or following a map. A person's stick gives the pace directly, one
+    ``haste`` scales the pace: below 1 while reading or following a map. Nearer than ``margin`` [m] to a piece of
+    furniture, what is on the map is taken for a part of it. A person's stick gives the pace directly, one
     short move a tick, so the mean speed on a straight way is exactly the pace.
     """
 
-    def __init__(self, me: Subject, memory: Memory, x: float, y: float) -> None:
-        self.me, self.memory, self.haste, self._bumps = me, memory, 1.0, 0
+    def __init__(self, me: Subject, memory: Memory, x: float, y: float, margin: float = 0.12) -> None:
+        self.me, self.memory, self.haste, self.margin, self._bumps = me, memory, 1.0, margin, 0
         self._robot: tuple[float, float, float] | None = None
         self._robot_until = -1
         self._drawn = me.now.tick
@@ -135,36 +136,44 @@ class Walker:
         doors = [door for door in self.memory.doorways.values() if door.sides and not door.spent]
         if not doors:
             return None
-        before = self.planner.distances(self.me.here, [door.beyond for door in doors], most)
-        metres = [far + math.dist(door.beyond, goal) for far, door in zip(before, doors, strict=True)]
+        after = [math.dist(door.beyond, goal) for door in doors]
+        before = self.planner.distances(self.me.here, [door.beyond for door in doors], most - min(after))
+        metres = [far + rest for far, rest in zip(before, after, strict=True)]
         best = min(range(len(doors)), key=lambda k: (metres[k], doors[k].id))
         path = self.planner.path(self.me.here, doors[best].beyond) if metres[best] <= most else None
         return None if path is None else Way(path=path, metres=metres[best], doorway=doors[best])
 
     def _follow(self, path: tuple[Vec2, ...], stop: Callable[[], bool]) -> Deed:
         """Walk the path; False when it turns out to be blocked."""
-        ahead, checked, left, moves = list(path), self.me.now.tick, math.inf, 0
+        me, ahead, left, moves = self.me, list(path), math.inf, 0
+        now, checked = me.now, me.now.tick
         while not stop():
-            while ahead and math.dist(ahead[0], self.me.here) <= _ARRIVED_M:
+            pose = now.pose
+            here = pose.x, pose.y
+            while ahead and math.dist(ahead[0], here) <= _ARRIVED_M:
                 ahead.pop(0)
             if not ahead:
                 return True
-            if self.me.now.tick - checked >= _CHECK_TICKS:
-                checked = self.me.now.tick
+            if now.tick - checked >= _CHECK_TICKS:
+                checked = now.tick
                 if not self._open(ahead):
                     return False
-                was, left = left, length((self.me.here, *ahead))
-                if moves >= _CHECK_TICKS and left > was - _CREEP * moves * self._pace() * self.me.tick_s:
+                was, left = left, length((here, *ahead))
+                if moves >= _CHECK_TICKS and left > was - _CREEP * moves * self._pace() * me.tick_s:
                     yield from self._give_way(ahead[0])
                     return False
                 moves = 0
-            motion = toward(self.me.now.pose, ahead[0], self._pace() * self.me.tick_s, _TURN_RAD)
-            yield self._measured(motion)
+            motion = toward(pose, ahead[0], self._pace() * me.tick_s, _TURN_RAD)
             if isinstance(motion, Move):
-                moves += 1
-                if self._bumped():
+                yield motion
+                now, moves = me.now, moves + 1
+                outcome = now.outcome
+                if outcome is not None and not outcome.ok and outcome.motion == "move":
                     yield from self._give_way(ahead[0])
                     return False
+            else:
+                yield self._measured(motion)
+                now = me.now
         return True
 
     def _pace(self) -> float:

@@ -23,6 +23,7 @@ from hthor.looks import (
     small,
     tableware,
     toys,
+    trunks,
     walls,
 )
 from hthor.looks.draft import Draft
@@ -68,6 +69,7 @@ _BUILDERS: Mapping[str, Builder] = {
     "bed": beds.bed,
     "pillow": beds.pillow,
     "dog_bed": beds.dog_bed,
+    "trunk": trunks.trunk,
     "toilet": bathroom.toilet,
     "bathtub": bathroom.bathtub,
     "shower": bathroom.shower,

@@ -122,7 +122,7 @@ def integrate(
             continue
         other = ranges[m] / cell
         shorter = min(reach, other) - 1.0
-        between = math.ceil(shorter * gap) - 1
+        between = max(0, math.ceil(shorter * gap) - 1)
         cos, sin = math.cos(gap / (between + 1)), math.sin(gap / (between + 1))
         vx, vy, t = ux, uy, 1.0 / gap
         for _ in range(between):

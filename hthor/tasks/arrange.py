@@ -2,96 +2,118 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
+
+import msgspec
 
 from hthor import catalog, seeds
-from hthor.catalog import priors
+from hthor.catalog.priors import Triplet
 from hthor.errors import HthorError
-from hthor.tasks.ground import Ground
-from hthor.tasks.placing import Rest, Shelves, gap_to, placed
-from hthor.types import HouseSpec, Placement, Thing, Vec2
+from hthor.tasks import graph, makeshift
+from hthor.tasks.placing import NEAR_M
+from hthor.tasks.relation import TRIES, Wish, find
+from hthor.types import HouseSpec, Placement
 
-NEAR_M = 1.0
-"""Two things are near each other within this distance on the plan."""
-_TRIES = 60
+_MOST_TRIES = 2000
+"""Poses that are tried for a relation that a task is about."""
+_GRAPHS = 40
+"""Scene graphs that are tried before a relation counts as impossible."""
+
+__all__ = ["NEAR_M", "arrange"]
 
 
-def arrange(house: HouseSpec, root: int, bans: dict[str, str] | None = None) -> tuple[Placement, ...]:
-    """A placement for each target, in the catalogue's order.
+def arrange(
+    house: HouseSpec,
+    root: int,
+    bans: Mapping[str, str] | None = None,
+    *,
+    fixed: Triplet | None = None,
+    serial: bool = False,
+) -> tuple[Placement, ...]:
+    """A placement for each target, in the catalogue's order, and for what a task brings along.
 
-    Each target's triplet is drawn by weight among those whose reference the house has, then a pose that rests exactly
-    on a surface, touches nothing, and can be reached and seen by the person's avatar, the fridge's door being open.
-    Triplets that no pose was found for are dropped.
+    A scene graph is drawn by the priors' weights among the triplets whose reference the house or the task has; then for
+    each relation a pose that rests exactly on a surface, touches nothing, and can be reached and seen by the person's
+    avatar, the fridge's door being open. What is near something is in the same room. Where a relation has no such pose,
+    that target's is drawn again, unless it is ``fixed``: then the whole graph is, but where no graph helps because of
+    what is banned, see `hthor.tasks.makeshift`.
 
     Args:
         house: the floor plan.
         root: of all draws.
         bans: for a target, the kind of thing that it must not rest on or in.
+        fixed: a triplet that must hold.
+        serial: draw one target after the other, with what is placed by then as the targets to be near to, which makes
+            that rarer than the priors say, through walls too, and record nothing of it: the manner of ``smoke``.
 
     Raises:
-        HthorError: when a target fits nowhere.
+        HthorError: when a target fits nowhere, or ``fixed`` cannot be.
     """
-    done: list[Placement] = []
+    bans = bans or {}
+    if serial:
+        return _in_order(_serial(house, root, bans))
+    for attempt in range(_GRAPHS):
+        done = _spread(house, seeds.derive(root, "graph", attempt), bans, fixed)
+        if done is not None:
+            return _in_order(done)
+    what = "some target" if fixed is None else f"'{graph.words(fixed)}'"
+    raise HthorError(f"house '{house.id}' has no place for {what}: it needs a free surface within reach")
+
+
+def _in_order(done: Sequence[Placement]) -> tuple[Placement, ...]:
+    names = [*catalog.TARGETS, *(placement.id for placement in done)]
+    return tuple(sorted(done, key=lambda placement: names.index(placement.id)))
+
+
+def _serial(house: HouseSpec, root: int, bans: Mapping[str, str]) -> list[Placement]:
+    kinds, done = {thing.kind for thing in house.things}, list[Placement]()
     for number in seeds.shuffled(len(catalog.TARGETS), root, "order"):
         target = catalog.TARGETS[number]
-        done.append(_place(house, target, seeds.derive(root, target), (bans or {}).get(target, ""), done))
-    return tuple(sorted(done, key=lambda placement: catalog.TARGETS.index(placement.id)))
+        own, there = seeds.derive(root, target), kinds | {placement.kind for placement in done}
+        wishes = (Wish(row=row, ban=bans.get(target, ""), careful=False) for row in graph.draws(target, there, own))
+        spots = (find(house, own, wish, done) for wish in wishes)
+        spot = next((spot for spot in spots if spot is not None), None)
+        if spot is None:
+            raise HthorError(f"house '{house.id}' has no place for the {target}: it needs a free surface within reach")
+        done.append(msgspec.structs.replace(spot, near=""))
+    return done
 
 
-def _place(house: HouseSpec, target: str, root: int, ban: str, done: Sequence[Placement]) -> Placement:
-    weights = {triplet: weight for triplet, weight in priors.weights(target).items() if weight > 0.0}
-    while weights:
-        triplets = list(weights)
-        triplet = triplets[seeds.choice(list(weights.values()), root, "triplet", len(weights))]
-        for rest, reference, attempt in _rests(house, root, *triplet, ban, done):
-            u, v, turn = (2 * seeds.draw(root, *triplet, axis, attempt) - 1 for axis in ("u", "v", "yaw"))
-            placement = placed(target, rest, u, v, math.pi * turn)
-            if _suits(house, placement, rest, reference, done):
-                return placement
-        del weights[triplet]
-    raise HthorError(f"house '{house.id}' has no place for the {target}: it needs a free surface within reach")
+def _spread(house: HouseSpec, root: int, bans: Mapping[str, str], fixed: Triplet | None) -> list[Placement] | None:
+    """All targets by one scene graph, None where a target has no place."""
+    kinds = graph.present(house)
+    if not all(graph.applicable(target, kinds) for target in catalog.TARGETS):
+        return None
+    wanted = graph.sample(kinds, root, fixed)
+    done: list[Placement] = []
+    for target in graph.order(wanted, root):
+        own, ban = seeds.derive(root, target), bans.get(target, "")
+        waiting = tuple(one.id for one in done if one.id in wanted and _waits(wanted[one.id], one, target))
+        rows = [fixed] if fixed is not None and target == fixed.target else list(graph.draws(target, kinds, own))
+        for row in rows:
+            wish = Wish(row=row, ban=ban, waiting=waiting, tries=_MOST_TRIES if row is fixed else TRIES)
+            spot = find(house, own, wish, done, first=row is wanted[target])
+            spots = (spot,) if spot is not None else _makeshift(house, own, wish, done) if row is fixed else ()
+            if spots:
+                break
+        else:
+            return None
+        wanted[target] = row
+        done = [msgspec.structs.replace(one, near=target) if one.id in waiting else one for one in done]
+        done += spots
+    return done
 
 
-def _rests(
-    house: HouseSpec, root: int, relation: str, reference: str, ban: str, done: Sequence[Placement]
-) -> Iterator[tuple[Rest, Thing | Placement | None, int]]:
-    """Surfaces to try, large ones more often, each with what the object must be near to, and the attempt's number."""
-    rests = [rest for rest in Shelves.of(house).rests if rest.thing.kind != ban]
-    if relation == "near":
-        marks: list[Thing | Placement] = [thing for thing in house.things if thing.kind == reference]
-        marks += [placement for placement in done if placement.kind == reference]
-        pairs: list[tuple[Rest, Thing | Placement | None]] = [
-            (rest, mark) for mark in marks for rest in rests if rest.thing.id != mark.id and _may_be_near(rest, mark)
-        ]
-        pairs = [(rest, mark) for rest, mark in pairs if not rest.surface.inside]
-    else:
-        pairs = [(rest, None) for rest in rests if rest.thing.kind == reference]
-    areas = [rest.surface.half[0] * rest.surface.half[1] for rest, _ in pairs]
-    for attempt in range(_TRIES if pairs else 0):
-        yield (*pairs[seeds.choice(areas, root, relation, reference, "rest", attempt)], attempt)
+def _makeshift(house: HouseSpec, root: int, wish: Wish, done: Sequence[Placement]) -> tuple[Placement, ...]:
+    """What helps where the house's own surfaces do not because some are banned; () where nothing does."""
+    if not wish.ban or wish.row.reference in catalog.TARGETS:
+        return ()
+    both = makeshift.on_brought(house, root, wish, done)
+    if both is not None:
+        return both
+    spot = makeshift.on_floor(house, root, wish, done)
+    return () if spot is None else (spot,)
 
 
-def _suits(
-    house: HouseSpec, placement: Placement, rest: Rest, mark: Thing | Placement | None, done: Sequence[Placement]
-) -> bool:
-    place = (placement.position[0], placement.position[1])
-    if mark is not None and _distance(place, mark) > NEAR_M:
-        return False
-    if not Shelves.of(house).fits(rest, placement, done):
-        return False
-    ground = Ground.of(house)
-    opened = frozenset({rest.thing.id}) if rest.surface.inside else frozenset[str]()
-    floor = ground.space.component(*ground.space.nearest_free(house.start.x, house.start.y))
-    return bool((ground.seeing(placement, opened) & ground.touching(placement) & floor).any())
-
-
-def _distance(place: Vec2, mark: Thing | Placement) -> float:
-    if isinstance(mark, Thing):
-        return gap_to(place, mark)
-    return math.hypot(place[0] - mark.position[0], place[1] - mark.position[1])
-
-
-def _may_be_near(rest: Rest, mark: Thing | Placement) -> bool:
-    x, y, _ = rest.centre
-    return _distance((x, y), mark) <= NEAR_M + math.hypot(*rest.surface.half)
+def _waits(row: Triplet, placement: Placement, target: str) -> bool:
+    return row.relation == "near" and row.reference == target and not placement.near

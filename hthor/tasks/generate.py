@@ -1,4 +1,4 @@
-"""Making suites: goals, arrangements and starts, drawn by name from one root; knows nothing of how suites are read.
+"""Making tasks and suites of them: goals, arrangements and starts, drawn by name; knows nothing of how they are read.
 
 ``python -m hthor.tasks.generate smoke`` writes ``suites/smoke.json`` anew, byte for byte the same as long as the
 houses, the catalogue, the rules and this code are. A second argument names another file to write.
@@ -6,172 +6,157 @@ houses, the catalogue, the rules and this code are. A second argument names anot
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Literal
 
-import numpy as np
-from msgspec import Struct
-from numpy.typing import NDArray
+import msgspec
 
-from hthor import houses, jsonio, plugins, rules, seeds
+from hthor import houses, jsonio, plugins, seeds
+from hthor.catalog.priors import Triplet
 from hthor.errors import HthorError, UnknownName
-from hthor.houses.freespace import FreeSpace
-from hthor.tasks import library
+from hthor.tasks import difficulty, library
 from hthor.tasks.arrange import arrange
-from hthor.tasks.avatar import HEIGHT_M, START_MARGIN_M
-from hthor.tasks.ground import Ground
+from hthor.tasks.difficulty import Level
 from hthor.tasks.kind import TaskKind
-from hthor.types import Goal, HouseSpec, Placement, Pose, TaskSpec
+from hthor.tasks.plans import PLANS, ROBOTS, Order, Plan
+from hthor.tasks.starts import Begin, begin
+from hthor.types import Goal, HouseSpec, Placement, TaskSpec
 
-Floats = NDArray[np.float64]
-
-AWAY_M = 3.0
-"""Least way of a start from the target: to a place from which it is in reach, and on to it as the crow flies."""
-APART_M = 1.2
-"""Least distance between two starts."""
 EASY_S, HARD_S = 4.0, 20.5
 """T* that the easiest and the hardest task of a house are aimed at; a small house falls short of the hardest."""
 _CLOSE_S = 0.5
-_STARTS = 400
-_LOOKS = 6
 _TRIES = 20
 
 
-class Plan(Struct, frozen=True, kw_only=True):
-    """What a suite is made of: so many tasks of each kind in each house, from one root of all draws."""
-
-    name: str
-    version: int
-    root: int
-    houses: tuple[str, ...]
-    counts: tuple[tuple[str, int], ...]
-
-
-PLANS = {
-    "smoke": Plan(
-        name="smoke",
-        version=3,
-        root=20240608,
-        houses=("alder", "birch", "cedar", "elder", "hazel", "juniper", "linden", "maple", "rowan", "willow"),
-        counts=(("object_goal_navigation", 2), ("mobile_manipulation", 4)),
-    )
-}
-
-
 def build(plan: Plan) -> library.Suite:
-    """The suite that a plan describes.
+    """The suite that a plan describes: its houses' tasks in turn, the first of each, then the second of each.
 
     Raises:
-        HthorError: when a house cannot take as many tasks.
+        HthorError: when a house cannot take one of its tasks.
     """
     columns = [in_house(plan, houses.load(name)) for name in plan.houses]
-    tasks = [task for row in zip(*columns, strict=True) for task in row]
+    longest = max(len(column) for column in columns)
+    tasks = [column[number] for number in range(longest) for column in columns if number < len(column)]
     return library.frozen(plan.name, plan.version, tuple(tasks))
 
 
 def in_house(plan: Plan, house: HouseSpec) -> tuple[TaskSpec, ...]:
-    """One house's tasks of a plan, the kinds spread evenly over the list."""
-    shelves: list[tuple[float, int, TaskSpec]] = []
-    shift = (seeds.draw(plan.root, house.id, "shift") - 0.5) / max(count for _, count in plan.counts)
-    for rank, (name, count) in enumerate(plan.counts):
-        kind: TaskKind = plugins.load("task kind", name)
-        goals = _goals(kind, house, count, seeds.derive(plan.root, house.id, name))
-        levels = seeds.shuffled(count, plan.root, house.id, name, "levels")
-        for number, goal in enumerate(goals):
-            share = (levels[number] + 0.5) / count
-            task = _task(plan, house, kind, goal, number + 1, share)
-            shelves.append(((number + 0.5) / count + rank * shift, rank, task))
-    return tuple(task for _, _, task in sorted(shelves, key=lambda shelf: shelf[:2]))
+    """One house's tasks of a plan."""
+    return tuple(ordered(plan, house, order) for order in plan.orders(plan, house))
 
 
-def _goals(kind: TaskKind, house: HouseSpec, count: int, root: int) -> list[Goal]:
-    """As many goals as wanted, each of the benchmark's once before any comes again, no target twice running."""
-    known = kind.goals(house)
-    if not known:
-        raise HthorError(f"house '{house.id}' has nothing for a task of kind '{kind.name}'")
-    order: list[Goal] = []
-    for lap in range(math.ceil(count / len(known))):
-        order += [known[index] for index in seeds.shuffled(len(known), root, "goals", lap)]
-    return order[:count]
+def ordered(plan: Plan, house: HouseSpec, order: Order) -> TaskSpec:
+    """One task of a plan, whatever the others are."""
+    lap = dict(plan.redrawn).get(order.name, 0)
+    return task(
+        house,
+        plugins.load("task kind", order.kind),
+        order.goal,
+        seeds.derive(plan.root, "again", lap) if lap else plan.root,
+        name=order.name,
+        fixed=order.fixed,
+        share=order.share,
+        robots=plan.robots,
+        looks=plan.looks,
+        level=order.level,
+        serial=plan.serial,
+        told=plan.told,
+    )
 
 
-def _task(plan: Plan, house: HouseSpec, kind: TaskKind, goal: Goal, number: int, share: float) -> TaskSpec:
-    """Of several arrangements and starts the one with T* nearest to what is aimed at."""
-    name = f"{plan.name}/{house.id}/{kind.short}-{number:02d}"
-    wanted = EASY_S + share * (HARD_S - EASY_S)
-    best: tuple[float, tuple[Placement, ...], tuple[Pose, ...]] | None = None
-    for attempt in range(_TRIES):
-        root = seeds.derive(plan.root, name, attempt)
-        objects = arrange(house, root, {goal.target: goal.destination})
-        found = _begin(house, kind, goal, objects, wanted, root)
-        if found is not None and (best is None or abs(found[0] - wanted) < abs(best[0] - wanted)):
-            best = (found[0], objects, found[1])
-        if best is not None and (abs(best[0] - wanted) <= _CLOSE_S or attempt + 1 >= _LOOKS):
+def task(
+    house: HouseSpec,
+    kind: TaskKind,
+    goal: Goal | None,
+    root: int,
+    *,
+    name: str,
+    fixed: Triplet | None = None,
+    share: float | None = None,
+    robots: int = ROBOTS,
+    looks: int = 2,
+    level: Level | Literal[""] = "",
+    split: Literal["", "seen", "new"] = "",
+    serial: bool = False,
+    told: bool = True,
+) -> TaskSpec:
+    """A task of any kind, fixed by ``root`` and ``name``.
+
+    Args:
+        goal: what to do; None lets the kind draw it, with an arrangement of its own (`TaskKind.draw`).
+        name: the task's id, such as ``navigation/alder/apple-in-fridge``.
+        fixed: a triplet that must hold for the goal's target.
+        share: how hard, in [0, 1]: T* is aimed at that share of the way from `EASY_S` to `HARD_S`; drawn when None.
+        robots: for how many robots there are starts.
+        looks: of how many arrangements the one with T* nearest to what is aimed at is taken, unless one is near enough.
+        level: the stratum of difficulty that it must be of, if any.
+        split: whether the house is one of the ten scenes; empty when the suite does not tell.
+        serial: as `hthor.tasks.arrange.arrange` has it.
+        told: whether the task tells how difficult it is.
+
+    Raises:
+        HthorError: when the house has no room for it: no arrangement, or no place to start from.
+    """
+    hardness = seeds.draw(root, name, "share") if share is None else share
+    wanted = EASY_S + hardness * (HARD_S - EASY_S)
+    best: tuple[Begin, Goal, tuple[Placement, ...]] | None = None
+    reason = ""
+    for attempt in range(2 * _TRIES):
+        own = seeds.derive(root, name, attempt)
+        try:
+            aim, objects = _scene(house, kind, goal, own, fixed, serial)
+        except HthorError as error:
+            reason = f": {error}"
+            continue
+        found = begin(house, kind, aim, objects, wanted, own, robots=robots, strict=attempt < _TRIES)
+        if found is None:
+            continue
+        made = _spec(house, kind, name, found, aim, objects)
+        problem = kind.misfit(made, house)
+        if problem or (level and difficulty.of(made, house) != level):
+            reason = f": {problem or f'none was {level}'}"
+            continue
+        if best is None or abs(found.t_star - wanted) < abs(best[0].t_star - wanted):
+            best = (found, aim, objects)
+        if best is not None and (abs(best[0].t_star - wanted) <= _CLOSE_S or attempt + 1 >= looks):
             break
     if best is None:
-        raise HthorError(f"no arrangement was found for task '{name}' in {_TRIES} tries; the house may be too small")
-    t_star, objects, poses = best
+        raise HthorError(f"no arrangement was found for task '{name}' in {2 * _TRIES} tries{reason}")
+    made = msgspec.structs.replace(_spec(house, kind, name, *best), split=split)
+    return msgspec.structs.replace(made, difficulty=difficulty.of(made, house)) if told else made
+
+
+def _scene(
+    house: HouseSpec, kind: TaskKind, goal: Goal | None, root: int, fixed: Triplet | None, serial: bool
+) -> tuple[Goal, tuple[Placement, ...]]:
+    if goal is None:
+        return kind.draw(house, root)
+    return goal, arrange(house, root, {goal.target: goal.destination}, fixed=fixed, serial=serial)
+
+
+def _spec(
+    house: HouseSpec,
+    kind: TaskKind,
+    name: str,
+    start: Begin,
+    goal: Goal,
+    objects: tuple[Placement, ...],
+) -> TaskSpec:
     return TaskSpec(
         id=name,
         kind=kind.name,
         house=house.id,
         house_sha256=house.sha256,
-        human_start=poses[0],
-        robot_starts=poses[1:],
+        human_start=start.poses[0],
+        robot_starts=start.poses[1:],
         objects=objects,
         goal=goal,
         instruction=kind.instruction(goal, objects),
-        time_limit=rules.TIME_LIMIT_S,
-        t_star=t_star,
+        time_limit=kind.time_limit,
+        t_star=start.t_star,
     )
-
-
-def _begin(
-    house: HouseSpec, kind: TaskKind, goal: Goal, objects: tuple[Placement, ...], wanted: float, root: int
-) -> tuple[float, tuple[Pose, ...]] | None:
-    """T* and the starts of the person and two robots, T* as near to ``wanted`` [s] as the floor allows."""
-    ground = Ground.of(house)
-    target = next(placement for placement in objects if placement.id == goal.target)
-    reach = ground.space.centres(ground.touching(target))
-    rest = np.hypot(reach[:, 0] - target.position[0], reach[:, 1] - target.position[1])
-    places = _places(house, root)
-    places = places[ground.paths.field(reach, rest).at(places) >= AWAY_M]
-    seeing = ground.seeing(target)
-    places = places[np.array([not seeing[ground.space.cell_of(x, y)] for x, y in places], dtype=bool)]
-    times = kind.least_times(house, objects, goal)(places)
-    places, times = places[np.isfinite(times)], times[np.isfinite(times)]
-    if kind.solved(goal, objects, house) or not len(places):
-        return None
-    first = int(np.argmin(np.abs(times - wanted)))
-    chosen = [places[first]]
-    for place in places:
-        if len(chosen) < 3 and all(math.dist(place, other) >= APART_M for other in chosen):
-            chosen.append(place)
-    if len(chosen) < 3:
-        return None
-    poses = tuple(_pose(place, root, number) for number, place in enumerate(chosen))
-    return round(float(times[first]), 3), poses
-
-
-def _places(house: HouseSpec, root: int) -> Floats:
-    """(N, 2) [m] places to start from, in random order: ample free floor that the house's start is joined to."""
-    ground, ample = Ground.of(house), FreeSpace.of(house, START_MARGIN_M, HEIGHT_M)
-    joined = ground.space.component(*ground.space.nearest_free(house.start.x, house.start.y))
-    cells = ample.centres(ample.free & joined & (ample.components == _largest(ample)))
-    picks = [int(seeds.draw(root, "start", number) * len(cells)) for number in range(_STARTS)]
-    return np.round(cells[list(dict.fromkeys(picks))], 4)
-
-
-def _largest(space: FreeSpace) -> int:
-    """The number of the component with the most cells."""
-    return int(np.bincount(space.components[space.free]).argmax()) if space.free.any() else 0
-
-
-def _pose(place: Sequence[float] | Floats, root: int, number: int) -> Pose:
-    yaw = math.pi * (2 * seeds.draw(root, "yaw", number) - 1)
-    return Pose(x=float(place[0]), y=float(place[1]), yaw=round(yaw, 4))
 
 
 def main(arguments: Sequence[str]) -> int:

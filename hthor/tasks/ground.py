@@ -41,16 +41,23 @@ class Ground:
         """The same as the constructor, worked out once a process."""
         return Ground(house)
 
-    def seeing(self, placement: Placement, opened: frozenset[str] = frozenset()) -> Bools:
-        """Where the object is within `rules.FIND_RANGE_M` of the eyes (in space, not on the plan) and in sight.
+    @functools.cached_property
+    def joined(self) -> Bools:
+        """The floor that the house's start is joined to."""
+        return self.space.component(*self.space.nearest_free(self.house.start.x, self.house.start.y))
+
+    def seeing(
+        self, placement: Placement, opened: frozenset[str] = frozenset(), reach_m: float = rules.FIND_RANGE_M
+    ) -> Bools:
+        """Where the object is within ``reach_m`` [m] of the eyes (in space, not on the plan) and in sight.
 
         The range is to its centre. In sight means that no wall or furniture lies between the eyes and its centre or a
         point near its top.
         """
-        mask = self._disc((placement.position[0], placement.position[1]), rules.FIND_RANGE_M + SLACK_M)
+        mask = self._disc((placement.position[0], placement.position[1]), reach_m + SLACK_M)
         places = self.space.centres(mask)
         eyes = np.column_stack((places, np.full(len(places), EYE_M)))
-        lit = np.linalg.norm(eyes - placement.position, axis=1) <= rules.FIND_RANGE_M + SLACK_M
+        lit = np.linalg.norm(eyes - placement.position, axis=1) <= reach_m + SLACK_M
         lit[lit] = Sight.of(self.house, opened).seen(eyes[lit], _samples(placement))
         mask[mask] = lit
         return mask
@@ -106,8 +113,8 @@ class Walk:
         self._space, self._stops = ground.space, tuple(stops)
         self._fields: dict[int, Field] = {}
         for number in reversed(range(len(self._stops))):
-            rim = ground.space.centres(_rim(self._stops[number], ground.space.free))
-            self._fields[number] = ground.paths.field(rim, self._left(rim, number + 1))
+            edge = ground.space.centres(rim(self._stops[number], ground.space.free))
+            self._fields[number] = ground.paths.field(edge, self._left(edge, number + 1))
 
     def lengths(self, starts: ArrayLike) -> Floats:
         """(N,) [m] for ``starts`` (N, 2), less the grid's slack; inf where there is no such walk."""
@@ -136,7 +143,7 @@ def _samples(placement: Placement) -> tuple[Vec3, Vec3]:
     return (x, y, z), (x, y, z + 0.4 * catalog.kind(placement.kind).size[2])
 
 
-def _rim(mask: Bools, free: Bools) -> Bools:
+def rim(mask: Bools, free: Bools) -> Bools:
     """The cells of a mask through which one enters it."""
     out = np.zeros_like(mask)
     outside = free & ~mask

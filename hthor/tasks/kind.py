@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from hthor import seeds
+from hthor import rules, seeds
 from hthor.errors import HthorError
 from hthor.types import Goal, HouseSpec, Placement, Snapshot, TaskSpec
 
@@ -23,12 +23,13 @@ class TaskKind(ABC):
     """A kind of task. One file in ``hthor/tasks/kinds`` defines one as ``KIND``; its name is the file's.
 
     ``short`` is the word that stands for it in the ids of tasks, and names its own suite where it has one. ``crew``
-    names the robots' bodies that a trial has unless its caller says otherwise.
+    names the robots' bodies that a trial has unless its caller says otherwise; ``time_limit`` [s] is its tasks'.
     """
 
     name: str
     short: str
     crew: tuple[str, ...] = ("scout",)
+    time_limit: float = rules.TIME_LIMIT_S
 
     @abstractmethod
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
@@ -67,6 +68,10 @@ class TaskKind(ABC):
             raise HthorError(f"house '{house.id}' has nothing for a task of kind '{self.name}'")
         goal = known[seeds.choice([1.0] * len(known), root, "goal")]
         return goal, arrange(house, root, {goal.target: goal.destination})
+
+    def misfit(self, task: TaskSpec, house: HouseSpec) -> str:  # noqa: ARG002 - most kinds take any
+        """Why a task that can be run is not worth giving, in words, or nothing; a suite's maker then draws again."""
+        return ""
 
     def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> float:
         """The share of the goal that is met at the snapshot's tick, from 0 to 1."""

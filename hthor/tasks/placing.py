@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from msgspec import Struct
 
 from hthor import catalog
-from hthor.geometry import distance_to_rectangle, to_house, to_local
+from hthor.geometry import distance_to_rectangle, inside, rectangle, to_house, to_local
 from hthor.houses.solids import Slab, overlap
 from hthor.types import HouseSpec, Placement, Surface, Thing, Vec2, Vec3
 
@@ -19,6 +19,9 @@ GAP_M = 0.01
 """Least free space around an object."""
 LOW_M, HIGH_M = 0.25, 1.45
 """Heights of surfaces that objects are put on: what anybody reaches and sees."""
+_LIFT_M, _ALOFT_M = 1e-4, 1e-3
+NEAR_M = 1.0
+"""Two things are near each other within this distance on the plan."""
 
 
 class Rest(Struct, frozen=True, kw_only=True):
@@ -47,11 +50,7 @@ class Shelves:
     """
 
     def __init__(self, house: HouseSpec) -> None:
-        self.all = tuple(
-            Rest(thing=thing, surface=surface)
-            for thing in house.things
-            for surface in catalog.kind(thing.kind).rests(thing.size)
-        )
+        self.all = tuple(rest for thing in house.things for rest in rests_of(thing))
         self.rests = tuple(rest for rest in self.all if LOW_M <= rest.centre[2] <= HIGH_M)
         self._solids = tuple(slab for thing in house.things for slab in _slabs(thing))
 
@@ -65,11 +64,37 @@ class Shelves:
         """Whether the object rests on the surface, under its clearance, and touches nothing else."""
         return stands(placement, rest) and self._clear(placement, others)
 
+    def lies(self, house: HouseSpec, placement: Placement, others: Iterable[Placement]) -> bool:
+        """Whether the object lies on the floor of a room of the house, whole, and touches nothing."""
+        body = footprint(placement)
+        corners = rectangle(body.centre, body.size, body.yaw)
+        in_room = any(all(inside(corner, room.polygon) for corner in corners) for room in house.rooms)
+        return in_room and abs(body.low - _LIFT_M) <= _ALOFT_M and self._clear(placement, others)
+
     def _clear(self, placement: Placement, others: Iterable[Placement]) -> bool:
         body = footprint(placement, GAP_M)
         reach = math.hypot(*body.size) / 2
         rivals = [slab for slab in self._solids if _near(slab, body.centre, reach)]
         return not any(overlap(body, rival) > 0.0 for rival in [*rivals, *(footprint(other) for other in others)])
+
+
+def rests_of(thing: Thing) -> tuple[Rest, ...]:
+    """The surfaces of one thing, lowest first."""
+    return tuple(Rest(thing=thing, surface=surface) for surface in catalog.kind(thing.kind).rests(thing.size))
+
+
+def as_thing(placement: Placement) -> Thing:
+    """An object of a task as if it were a thing of its house, for what rests on it."""
+    size = catalog.kind(placement.kind).size
+    return Thing(
+        id=placement.id,
+        kind=placement.kind,
+        asset="",
+        centre=placement.position,
+        size=size,
+        yaw=placement.yaw,
+        parent=placement.support,
+    )
 
 
 def stands(placement: Placement, rest: Rest, slip: float = 1e-6) -> bool:
@@ -101,11 +126,18 @@ def placed(kind: str, rest: Rest, u: float, v: float, yaw: float) -> Placement:
     )
 
 
+def laid(kind: str, place: Vec2, yaw: float) -> Placement:
+    """An object of a kind on the floor, rounded to 0.1 mm on the plan."""
+    x, y = place
+    position = (round(x, 4), round(y, 4), round(catalog.kind(kind).size[2] / 2, 9))
+    return Placement(id=kind, kind=kind, position=position, yaw=round(yaw, 4))
+
+
 def footprint(placement: Placement, gap: float = 0.0) -> Slab:
     """The object as an upright box, wider by ``gap`` [m] all round and lifted off what it rests on."""
     w, d, h = catalog.kind(placement.kind).size
     x, y, z = placement.position
-    return Slab((x, y), (w + 2 * gap, d + 2 * gap), placement.yaw, z - h / 2 + 1e-4, z + h / 2 + gap)
+    return Slab((x, y), (w + 2 * gap, d + 2 * gap), placement.yaw, z - h / 2 + _LIFT_M, z + h / 2 + gap)
 
 
 def gap_to(point: Vec2, thing: Thing) -> float:

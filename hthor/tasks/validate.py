@@ -12,7 +12,7 @@ from hthor.houses.solids import overlap
 from hthor.tasks.avatar import HEIGHT_M, RADIUS_M
 from hthor.tasks.kind import TaskKind
 from hthor.tasks.library import Suite
-from hthor.tasks.placing import Shelves, footprint, stands
+from hthor.tasks.placing import Shelves, as_thing, footprint, rests_of, stands
 from hthor.types import HouseSpec, Placement, TaskSpec
 
 _ALOFT_M = 0.01
@@ -75,18 +75,25 @@ def _objects(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
             continue
         if not kind.pickable:
             yield f"{where}.kind", f"'{placement.kind}' cannot be picked up, so it cannot be an object of a task"
-        yield from _support(where, placement, shelves, ids)
+        yield from _support(where, placement, shelves, task, house)
         for other in task.objects[:number]:
             if other.kind in catalog.names() and _crowded(placement, other):
                 yield f"{where}.position", f"'{placement.id}' and '{other.id}' are in one another"
 
 
-def _support(where: str, placement: Placement, shelves: Shelves, ids: set[str]) -> Iterator[tuple[str, str]]:
-    if placement.support not in ids:
-        yield f"{where}.support", f"the house has no thing '{placement.support}'; valid: {', '.join(sorted(ids))}"
-        return
-    rests = [rest for rest in shelves.all if rest.thing.id == placement.support]
-    if not any(stands(placement, rest, _ALOFT_M) for rest in rests):
+def _support(
+    where: str, placement: Placement, shelves: Shelves, task: TaskSpec, house: HouseSpec
+) -> Iterator[tuple[str, str]]:
+    things = {thing.id: thing for thing in house.things}
+    things |= {other.id: as_thing(other) for other in task.objects if other.kind in catalog.names()}
+    if placement.near and placement.near not in things.keys() - {placement.id}:
+        yield f"{where}.near", f"there is no thing or object '{placement.near}'; valid: {', '.join(sorted(things))}"
+    if not placement.support:
+        if not shelves.lies(house, placement, ()):
+            yield f"{where}.position", f"'{placement.id}' names no support, nor does it lie on free floor"
+    elif placement.support not in things.keys() - {placement.id}:
+        yield f"{where}.support", f"there is no thing '{placement.support}'; valid: {', '.join(sorted(things))}"
+    elif not any(stands(placement, rest, _ALOFT_M) for rest in rests_of(things[placement.support])):
         yield f"{where}.position", f"'{placement.id}' rests on no surface of '{placement.support}'"
 
 

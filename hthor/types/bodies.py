@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+import msgspec
 from msgspec import Struct
 
 from hthor.types.places import Pose, Vec2, Vec3
@@ -58,6 +59,17 @@ class Placement(Struct, frozen=True, kw_only=True, omit_defaults=True):
     support: str = ""
     relation: Literal["on", "in"] = "on"
     near: str = ""
+
+    def __post_init__(self) -> None:
+        # Defaults are omitted by identity, which neither floats nor words keep on their way to another process.
+        for name, default in _DEFAULTS:
+            if getattr(self, name) == default:
+                msgspec.structs.force_setattr(self, name, default)
+
+
+_DEFAULTS = tuple(
+    (field.name, field.default) for field in msgspec.structs.fields(Placement) if field.name in ("yaw", "relation")
+)
 
 
 class Job(Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -141,7 +153,8 @@ class RobotSeat(Struct, frozen=True, kw_only=True):
 class TrialSpec(Struct, frozen=True, kw_only=True):
     """Everything that decides a trial's course; its content hash is the trial's key.
 
-    ``assets_sha256`` is the hash of the furniture pack that the robots' pictures show, empty for our own furniture.
+    ``assets_sha256`` is the hash of the furniture pack that the robots' pictures show, empty for our own furniture;
+    ``kind_sha256`` that of a user's own file of the task's kind, empty for a kind that ships with hthor.
     """
 
     task: TaskSpec
@@ -155,3 +168,4 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
     rules_sha256: str
     code_sha256: str
     assets_sha256: str = ""
+    kind_sha256: str = ""

@@ -43,7 +43,8 @@ class Detection(Struct, frozen=True, kw_only=True):
     """One thing in view: an object, a piece of furniture, a doorway, a person or a robot.
 
     ``position`` [m] house frame is its centre, ``distance`` [m] from the eye. ``state`` is "open" or "closed" for what
-    opens. ``support`` is the id of what an object rests on or in, where the sensor can tell.
+    opens. ``support`` is the id of what an object rests on or in, where the sensor can tell. ``held_by`` is the seat
+    that has it in hand, ``bearers`` are all that hold it by a handle.
     """
 
     id: str
@@ -56,6 +57,7 @@ class Detection(Struct, frozen=True, kw_only=True):
     state: str = ""
     support: str = ""
     held_by: str = ""
+    bearers: tuple[str, ...] = ()
 
 
 class Scan(Struct, frozen=True, kw_only=True):
@@ -136,7 +138,10 @@ class Outcome(Struct, frozen=True, kw_only=True):
 
 
 class ThingState(Struct, frozen=True, kw_only=True):
-    """True state of an object or of an openable thing. ``support`` is what it rests on or in, ``held_by`` a seat."""
+    """True state of an object or of an openable thing. ``support`` is what it rests on or in, ``held_by`` a seat.
+
+    ``bearers`` are all seats that hold it by a handle; as long as they cannot lift it, ``held_by`` is empty.
+    """
 
     id: str
     kind: str
@@ -144,6 +149,7 @@ class ThingState(Struct, frozen=True, kw_only=True):
     support: str = ""
     held_by: str = ""
     open: bool = False
+    bearers: tuple[str, ...] = ()
 
 
 class Observation(Struct, frozen=True, kw_only=True):

@@ -62,8 +62,9 @@ class Arranging:
         item = self._objects.known(id)
         if item is None:
             raise UnknownName("object", id, [one.id for one in self._objects])
-        if item.held_by:
-            raise HthorError(f"{id} is in the hand of {item.held_by}; let it be placed or dropped first")
+        if item.held_by or item.bearers:
+            who = " and ".join(item.bearers) or item.held_by
+            raise HthorError(f"{id} is in the hand of {who}; let it be placed or dropped first")
         return item
 
     def _on(self, item: Item, on: str, near: Vec3 | None, yaw: float) -> QPose:

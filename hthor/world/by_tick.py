@@ -39,6 +39,7 @@ from hthor.world.scene import Scene
 from hthor.world.seats import Seat, Seats
 from hthor.world.starting import Starting
 from hthor.world.task import HouseTask
+from hthor.world.together import Together
 from hthor.world.touch import Touch
 from hthor.world.truth import Truth
 from hthor.world.whereabouts import Whereabouts
@@ -99,7 +100,10 @@ class TickedWorld:
         self._whereabouts = Whereabouts(self.house, self.seats)
         self._passages = Passages(seats, self.space)
         self._hinges = Hinges(self._scene, self._objects, self._doors, places, self._passages, seats)
-        self._hands = Hands(self.house, self._scene, self._objects, self._doors, places, self._hinges, touch)
+        self._together = Together(self.house, self._objects, self._doors, touch, seats)
+        self._hands = Hands(
+            self.house, self._scene, self._objects, self._doors, places, self._hinges, touch, self._together
+        )
         self._arranging = Arranging(self.house, self._task, env, self._scene, self._objects, places, touch)
         self._gaze = Gaze(self._scene, self._objects, self._doors, statics, self.house.openings, seats)
         self._starting = Starting(self.house, self._hands, self._doors, seats)
@@ -153,6 +157,7 @@ class TickedWorld:
         self._task.starts = {id: begin[id][:2] for id in placements}
         self._env.reset()
         self._objects.reset(begin)
+        self._together.reset()
         self._doors.reset()
         self._passages.update({})
         self.tick = 0
@@ -188,7 +193,7 @@ class TickedWorld:
 
         Returns:
             what happened: picked, placed, dropped, opened, closed, refused, blocked (by the house), in_way (of another
-            body).
+            body); held, lifted, lowered, released, see `hthor.world.together`.
 
         Raises:
             RuntimeError: when the engine reports a state it cannot go on from.
@@ -230,6 +235,7 @@ class TickedWorld:
             raise HthorError(f"({pose.x:.2f}, {pose.y:.2f}) is not free for {seat}; try space['{seat}'].nearest_free")
         body.pose, body.activity = pose, None
         self._hinges.let_go(seat)
+        self._together.let_go(body)
         if body.holding:
             self._objects.follow(body.holding)
 

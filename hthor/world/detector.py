@@ -76,12 +76,12 @@ class Detector:
         return tuple(sorted(kept, key=lambda detection: detection.id))
 
     def _missed(self, detection: Detection, root: int) -> bool:
-        loose = detection.family == "object" and detection.held_by != self._seat.name
+        loose = detection.family == "object" and detection.id != self._seat.holding
         return loose and seeds.draw(root, "miss", detection.id) < self._spec.miss
 
     def _seen(self, detection: Detection, root: int) -> Detection:
         sigma = self._spec.position_sigma
-        if detection.family != "object" or detection.held_by == self._seat.name or not sigma:
+        if detection.family != "object" or detection.id == self._seat.holding or not sigma:
             return detection
         x, y, z = (
             value + sigma * seeds.normal(root, "position", detection.id, axis)
@@ -92,7 +92,7 @@ class Detector:
     def _phantom(self, found: Sequence[Detection], items: Iterable[Item], root: int) -> list[Detection]:
         """At most one object where it is not."""
         seen = {detection.id for detection in found}
-        absent = [item for item in items if _wanted(item) and item.id not in seen and item.held_by != self._seat.name]
+        absent = [item for item in items if _wanted(item) and item.id not in seen and item.id != self._seat.holding]
         if not absent:
             return []
         item = min(absent, key=lambda item: seeds.draw(root, "which", item.id))

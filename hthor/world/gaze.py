@@ -103,7 +103,7 @@ class Gaze:
         seen = self._seen_near(eye)
         if not seen and not seat.holding:
             return ()
-        return tuple(item.id for item in self._items if item.number in seen or item.held_by == seat.name)
+        return tuple(item.id for item in self._items if item.number in seen or item.id == seat.holding)
 
     def _refresh(self) -> None:
         """Take over what has moved: ``_world`` counts changes of objects and doors, ``_moves`` those of poses."""
@@ -239,6 +239,7 @@ def _of_item(item: Item, eye: Vec3) -> Detection:
         distance=math.dist(eye, item.position),
         support=item.support,
         held_by=item.held_by,
+        bearers=item.bearers,
     )
 
 

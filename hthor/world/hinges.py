@@ -146,7 +146,8 @@ class Hinges:
                     return f"{tall[0]} is too tall for the drawer of {leaf.thing.id}"
         ways = tuple(_ways(leaf, opening))
         for item in self._objects:
-            if item.present and not item.held_by and item.id not in riders and _meets(item, ways):
+            carried = item.held_by and not item.bearers  # what several carry by its handles is in the way all the same
+            if item.present and not carried and item.id not in riders and _meets(item, ways):
                 return f"{item.id} is in the way"
         return ""
 

@@ -22,7 +22,8 @@ from hthor.world.places import Places
 from hthor.world.reach import in_hand, out_of_reach, too_heavy, unseen
 from hthor.world.scene import Scene
 from hthor.world.seats import Seat
-from hthor.world.touch import Touch
+from hthor.world.together import News, Together
+from hthor.world.touch import FLOOR, Touch
 
 Handling = Pick | Place | Drop | Open | Close
 
@@ -49,13 +50,16 @@ class Handing:
         name, verb = self._seat.name, verb_of(self._motion)
         held = self._seat.holding
         reason = self._hands.finish(self._seat, self._motion)
+        news = self._hands.news()
         if reason:
             data = {"motion": verb, "reason": reason}
             return Outcome(motion=verb, ok=False, reason=reason), (
                 Event(tick=tick, seat=name, kind="refused", data=data),
             )
-        event = Event(tick=tick, seat=name, kind=_PAST[verb], data=_data(self._motion, held))
-        return Outcome(motion=verb, ok=True), (event,)
+        told = news or ((_PAST[verb], _data(self._motion, held)),)
+        return Outcome(motion=verb, ok=True), tuple(
+            Event(tick=tick, seat=name, kind=kind, data=data) for kind, data in told
+        )
 
 
 class Hands:
@@ -70,10 +74,17 @@ class Hands:
         surfaces: Places,
         hinges: Hinges,
         touch: Touch,
+        together: Together,
     ) -> None:
         self._things = {thing.id: thing for thing in house.things}
         self._scene, self._objects, self._doors, self._places = scene, objects, doors, surfaces
-        self._hinges, self._touch = hinges, touch
+        self._hinges, self._touch, self.together = hinges, touch, together
+        self._news: News = ()
+
+    def news(self) -> News:
+        """What became of the last motion that ended, where that has words of its own; tells it once."""
+        news, self._news = self._news, ()
+        return news
 
     def refusal(self, seat: Seat, motion: Handling) -> str:
         """Why ``seat`` cannot do it now, empty when it can."""
@@ -81,6 +92,8 @@ class Hands:
             return self._hinges.refusal(seat, motion)
         if isinstance(motion, Pick):
             return self._pick(seat, motion)
+        if self.together.of(seat) is not None:
+            return self._refused(seat, motion)
         return self._drop(seat) if isinstance(motion, Drop) else self._place(seat, motion)[0]
 
     def begin(self, seat: Seat, motion: Handling) -> None:
@@ -99,6 +112,8 @@ class Hands:
             return self._hinges.finish(motion)
         if isinstance(motion, Pick):
             return self._pick(seat, motion) or self._take(seat, motion.object)
+        if self.together.of(seat) is not None:
+            return self._refused(seat, motion) or self._let_go(seat)
         if isinstance(motion, Drop):
             return self._drop(seat) or self._put(seat, in_hand(seat, self._held(seat).size), "")
         reason, spot = self._place(seat, motion)
@@ -114,11 +129,17 @@ class Hands:
         item = self._objects.get(motion.object) if isinstance(motion.object, str) else None
         if item is None:
             return f"there is no object '{motion.object!s:.40}' to pick up"
-        if item.held_by:
+        if item.held_by and not item.bearers:
             return f"{item.id} is held by {item.held_by}"
+        if self.together.takes(seat, item):
+            return self.together.refusal(seat, item) or unseen(seat, item, self._scene)
         return out_of_reach(seat, item.id, item.position) or unseen(seat, item, self._scene) or too_heavy(seat, item)
 
     def _take(self, seat: Seat, id: str) -> str:
+        item = self._objects.get(id)
+        if item is not None and self.together.takes(seat, item):
+            self._news = self.together.hold(seat, item)
+            return ""
         seat.holding = id
         size = self._held(seat).size
         self._objects.take(id, seat.name, lambda: in_hand(seat, size))
@@ -128,6 +149,19 @@ class Hands:
         item = self._objects.get(seat.holding)
         assert item is not None, "what is held is in the world"
         return item
+
+    # --------------------------------------------------------------------------------------------- what several hold
+
+    @staticmethod
+    def _refused(seat: Seat, motion: Place | Drop) -> str:
+        """What is held by its handles goes to the floor below it and nowhere else."""
+        if isinstance(motion, Drop) or motion.on == FLOOR:
+            return ""
+        return f"{seat.holding} is held by its handles; drop it, or place it on '{FLOOR}': it is put down where it is"
+
+    def _let_go(self, seat: Seat) -> str:
+        self._news = self.together.let_go(seat)
+        return ""
 
     # ------------------------------------------------------------------------------------------------------- drop
 

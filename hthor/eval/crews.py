@@ -1,0 +1,218 @@
+"""Which robots take part: bodies and minds found by what the user typed; knows nothing of worlds or trials."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from msgspec import Struct
+
+from hthor import plugins
+from hthor.detectors import OWN
+from hthor.errors import HthorError, UnknownName
+from hthor.types import AgentRef, RobotSeat
+
+ALIASES = {"tall": "tender", "small": "puck"}
+"""Other words for robots: what the paper's figure calls them."""
+_EXAMPLE = "--robots tall:oracle,small:frontier"
+
+
+class Character(Struct, frozen=True, kw_only=True):
+    """A robot's mind before the curtain: who it is, and the file it comes from when it is not one of ours.
+
+    ``path`` is ``file.py`` or ``file.py:Class``, empty for a built-in agent. It stays out of ``ref``, which is part of
+    every trial's key, so that a run reads the same wherever the file lies. ``bodies`` names the robots that it is made
+    for (empty: any); ``absent`` means that there is no robot in the world at all.
+    """
+
+    ref: AgentRef
+    path: str = ""
+    bodies: tuple[str, ...] = ()
+    absent: bool = False
+
+
+class Shape(Struct, frozen=True, kw_only=True):
+    """A robot's body: its name, and for a user's own the hash and the path of its file."""
+
+    name: str
+    sha256: str = ""
+    path: str = ""
+
+
+class Crew(Struct, frozen=True, kw_only=True):
+    """The robots of a trial: bodies and their minds, in the order of their seats; ``detector`` as all of them have it.
+
+    A mind that wants no robot is listed too, but has no seat.
+    """
+
+    robots: tuple[tuple[Shape, Character], ...]
+    detector: str = OWN
+
+    @property
+    def listed(self) -> tuple[RobotSeat, ...]:
+        """Everyone who was asked for; with empty ``seat``, ``robot`` and ``detector`` where there is no robot."""
+        found: list[RobotSeat] = []
+        present = 0
+        for shape, character in self.robots:
+            if character.absent:
+                found.append(RobotSeat(seat="", robot="", agent=character.ref, detector=""))
+                continue
+            present += 1
+            found.append(
+                RobotSeat(
+                    seat="robot" if present == 1 else f"robot{present}",
+                    robot=shape.name,
+                    agent=character.ref,
+                    detector=self.detector,
+                    robot_sha256=shape.sha256,
+                )
+            )
+        return tuple(found)
+
+    @property
+    def seats(self) -> tuple[RobotSeat, ...]:
+        """The robots that there are."""
+        return tuple(robot for robot in self.listed if robot.seat)
+
+    @property
+    def minds(self) -> dict[str, str]:
+        """The files of minds that are not ours, by seat."""
+        return {seat: character.path for seat, (_, character) in self._by_seat if character.path}
+
+    @property
+    def bodies(self) -> dict[str, str]:
+        """The files of bodies that are not ours, by seat."""
+        return {seat: shape.path for seat, (shape, _) in self._by_seat if shape.path}
+
+    @property
+    def _by_seat(self) -> list[tuple[str, tuple[Shape, Character]]]:
+        pairs = zip(self.listed, self.robots, strict=True)
+        return [(robot.seat, pair) for robot, pair in pairs if robot.seat]
+
+
+def form(bodies: Sequence[str | Shape], minds: Sequence[str | Character], detector: str = OWN) -> Crew:
+    """A crew of these bodies and minds, which belong together one by one.
+
+    Raises:
+        UnknownName: when one of them is unknown, or a mind is not made for its body.
+    """
+    robots = []
+    for body, mind in zip(bodies, minds, strict=True):
+        character = introduce(mind) if isinstance(mind, str) else mind
+        shape = embody(body) if isinstance(body, str) else body
+        if character.bodies and shape.name not in character.bodies and not character.absent:
+            hint = "Choose one with --robot or --robots."
+            raise UnknownName(f"robot for the agent {character.ref.name}", shape.name, character.bodies, hint)
+        robots.append((shape, character))
+    if all(character.absent for _, character in robots):
+        robots = robots[:1]
+    return Crew(robots=tuple(robots), detector=detector)
+
+
+def read(robots: str, agents: Sequence[str], detector: str = OWN) -> list[Crew]:
+    """The crews that ``--robots`` stands for: one, or, where bodies have no mind of their own, one for each agent.
+
+    Args:
+        robots: BODY:AGENT or BODY, separated by commas: "tall:oracle,small:my_agent.py:Careful".
+        agents: who sits in the bodies that come without a mind.
+
+    Raises:
+        HthorError: when it cannot be read, or a name in it is unknown.
+    """
+    pairs = [_pair(word.strip(), robots) for word in robots.split(",")]
+    bare = [body for body, mind in pairs if not mind]
+    if bare and not agents:
+        raise HthorError(f"--robots: '{bare[0]}' has no mind. Write {bare[0]}:AGENT, or name one with --agent.")
+    if agents and not bare:
+        raise HthorError("--robots names a mind for every robot, so --agent has nobody to be; leave one of them out.")
+    shapes = [embody(body) for body, _ in pairs]
+    known = {mind: introduce(mind) for mind in dict.fromkeys([*(mind for _, mind in pairs if mind), *agents])}
+    casts = [[known[mind or agent] for _, mind in pairs] for agent in agents or [""]]
+    return [form(shapes, minds, detector) for minds in casts]
+
+
+def _pair(word: str, given: str) -> tuple[str, str]:
+    body, colon, mind = word.partition(":")
+    if not body or bool(colon) != bool(mind):
+        raise HthorError(f"--robots '{given}': '{word}' is not BODY:AGENT; expected something like {_EXAMPLE}.")
+    return body, mind
+
+
+def embody(robot: str) -> Shape:
+    """Find out what a robot's body is.
+
+    Args:
+        robot: the name of a robot that ships with hthor, one of `ALIASES`, or the path of a Python file,
+            ``my_robot.py``.
+
+    Raises:
+        UnknownName: when it is neither.
+        HthorError: when the file does not load or does not define a robot.
+    """
+    known = plugins.names("robot")
+    name = ALIASES.get(robot, robot)
+    if name in known:
+        return Shape(name=name)
+    if not robot.endswith(".py"):
+        hint = "Choose one with --robot, or give the path of a Python file, such as my_robot.py."
+        raise UnknownName("robot", robot, (*known, *ALIASES), hint)
+    from hthor.world import bodies
+
+    return Shape(name=bodies.robot(robot).name, sha256=plugins.sha256(robot), path=str(Path(robot).resolve()))
+
+
+def introduce(agent: str) -> Character:
+    """Find out who an agent is.
+
+    Args:
+        agent: a built-in agent's name, or the path of a Python file, ``my_agent.py`` or ``my_agent.py:MyClass``.
+
+    Raises:
+        UnknownName: when it is neither.
+        AgentError: when the file does not load.
+    """
+    known = plugins.names("agent")
+    if agent in known:
+        return _own(agent)
+    if agent.endswith(".py") or ".py:" in agent:
+        return _guest(agent)
+    raise UnknownName("agent", agent, known, "Or give the path of a Python file, such as my_agent.py.")
+
+
+def _own(name: str) -> Character:
+    made: Any = plugins.load("agent", name)
+    file = Path(plugins.__file__).with_name("agents") / f"{name}.py"
+    ref = AgentRef(
+        name=name,
+        source=f"hthor.agents.{name}",
+        sha256=hashlib.sha256(file.read_bytes()).hexdigest(),
+        privileges=tuple(getattr(made, "privileges", ())),
+    )
+    return Character(ref=ref, bodies=tuple(getattr(made, "robots", ())), absent=bool(getattr(made, "absent", False)))
+
+
+def _guest(path: str) -> Character:
+    from hthor.guest import load_info
+
+    info = load_info(path)
+    file, colon, class_name = path.rpartition(":") if ".py:" in path else (path, "", "")
+    ref = AgentRef(
+        name=_tidy(info.name),
+        source=Path(file).name + colon + class_name,
+        sha256=info.sha256,
+        privileges=tuple(info.privileges),
+    )
+    return Character(
+        ref=ref,
+        path=str(Path(file).resolve()) + colon + class_name,
+        bodies=tuple(info.robots),
+        absent=info.absent,
+    )
+
+
+def _tidy(name: str) -> str:
+    """A name that can be part of a file's name."""
+    return re.sub(r"[^A-Za-z0-9_+-]+", "-", name).strip("-")[:60] or "agent"

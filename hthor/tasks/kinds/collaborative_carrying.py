@@ -1,0 +1,80 @@
+"""Carry a trunk that is too heavy for one to another room, together; knows nothing of how several carry one thing.
+
+The goal's only job, for which it takes two bodies with hands (see `hthor.world.together` for the rules)::
+
+    Job(target="trunk", relation="at", destinations=("room|5",), place=(2.4, 6.1, 0.2), hands=2)
+
+The trunk stands on the floor of another room. It has arrived when it stands in the room of
+that id, in nobody's hands, within `hthor.tasks.jobs.TOGETHER_M` of the place, which is beside a piece of furniture that
+the instruction names. Progress is the share of the way, as the crow flies, that the trunk has come.
+"""
+
+from __future__ import annotations
+
+import math
+
+from hthor import catalog, geometry, seeds
+from hthor.errors import HthorError
+from hthor.tasks.jobs import JobKind, carrying_way
+from hthor.tasks.spots import floor_spot, unique
+from hthor.types import Goal, HouseSpec, Job, Placement, Snapshot, TaskSpec
+
+TRUNK = "trunk"
+BESIDE = ("sofa", "bed", "dining_table", "desk", "tv_stand", "coffee_table", "armchair", "dresser", "wardrobe")
+"""Kinds of things that the trunk is brought to, where the house has one of the kind."""
+CLEAR_M = 0.6
+"""Free floor all round the trunk's middle, so that it can be got hold of at both ends."""
+LEAST_M, MOST_M = 4.0, 14.0
+"""How long the way is from the trunk to where it goes, for who takes hold of it."""
+TIME_LIMIT_S = 180.0
+"""Twice the usual limit: two have to meet first, and then go slowly, with a load and round corners."""
+_TRIES = 80
+
+
+class CollaborativeCarrying(JobKind):
+    """ "Carry the trunk to the bedroom, beside the bed. It takes two." """
+
+    name = "collaborative_carrying"
+    short = "carry"
+    crew = ("porter",)
+    time_limit = TIME_LIMIT_S
+
+    def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
+        trunk = catalog.kind(next(placement.kind for placement in objects if placement.id == goal.target))
+        return f"Carry {trunk.definite} to {catalog.kind(goal.destination).definite} and put it down. It takes two."
+
+    def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]:
+        marks, rooms = unique(house, BESIDE), {room.id: room for room in house.rooms}
+        for attempt in range(_TRIES if marks else 0):
+            own = seeds.derive(root, "try", attempt)
+            mark = marks[seeds.choice([1.0] * len(marks), own, "mark")]
+            areas = [abs(geometry.signed_area(room.polygon)) for room in house.rooms]
+            room = house.rooms[seeds.choice(areas, own, "room")]
+            if room.id == mark.room or mark.room not in rooms:
+                continue
+            start = floor_spot(house, TRUNK, TRUNK, room, CLEAR_M, seeds.derive(own, "start"))
+            end = floor_spot(house, TRUNK, TRUNK, rooms[mark.room], CLEAR_M, seeds.derive(own, "end"), near=mark)
+            goal = _goal(mark.kind, mark.room, end) if start and end else None
+            if start and goal and LEAST_M <= carrying_way(house, start, goal.jobs[0]) <= MOST_M:
+                return goal, (start,)
+        raise HthorError(
+            f"house '{house.id}' has no two rooms with floor enough to carry a trunk from one to the other"
+        )
+
+    def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> float:
+        if self.met(task, snapshot, house):
+            return 1.0
+        (job,), trunk = task.goal.jobs, snapshot.things.get(task.goal.target)
+        start = next(placement.position for placement in task.objects if placement.id == job.target)
+        if trunk is None or job.place is None:
+            return 0.0
+        way = math.dist(start[:2], job.place[:2])
+        return min(max(1.0 - math.dist(trunk.position[:2], job.place[:2]) / way, 0.0), 0.99) if way else 0.0
+
+
+def _goal(kind: str, room: str, end: Placement) -> Goal:
+    job = Job(target=TRUNK, relation="at", destinations=(room,), place=end.position, hands=2)
+    return Goal(target=TRUNK, relation="at", destination=kind, jobs=(job,))
+
+
+KIND = CollaborativeCarrying()

@@ -1,0 +1,152 @@
+"""Gather three apples, wherever they are, in one place: more than one person can carry in time; knows no robots.
+
+The goal's jobs, one for each of the objects ``apple``, ``apple_2`` and ``apple_3``, all the same but for that::
+
+    Job(target="apple_2", relation="on", destinations=("dining_table",))
+
+where the destination is the id of a thing of whose kind the house has just one. Progress is the share of the apples
+that rest there; the goal is met when all three do.
+
+In half of the tasks one apple is in the closed fridge: whoever cannot open it has to ask somebody who can. The apples
+lie in different rooms, and so far apart that an all-knowing person who walks at `PACE_M_S` cannot bring all three in
+time (`alone`), while a person and a robot with hands who share them well can with time to spare (`team`).
+"""
+
+# ruff: noqa: ARG002 - the sentence does not tell where the apples are; the signatures are those of every kind
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable
+
+from hthor import catalog, rules, seeds
+from hthor.catalog import priors
+from hthor.errors import HthorError
+from hthor.tasks.ground import Ground
+from hthor.tasks.jobs import JobKind, carrying_way
+from hthor.tasks.spots import room_of, spot, unique
+from hthor.types import Goal, HouseSpec, Job, Placement, Pose, TaskSpec, Thing
+
+PLACES = ("dining_table", "counter_top", "coffee_table", "desk", "tv_stand")
+"""Kinds of things that apples are gathered on, where the house has one of the kind."""
+APPLES = ("apple", "apple_2", "apple_3")
+FRIDGE_SHARE = 0.5
+"""In so many of the tasks an apple is in the fridge."""
+PACE_M_S = 0.4
+"""How fast people in a headset are under way, stops included (docs/humans.md)."""
+GUIDED_M_S, ROBOT_M_S = 0.25, 0.52
+"""How fast a person is who has to be told the way, and a robot with hands, with its turns."""
+TOLD_S, GRASP_S = 20.0, 2.5
+"""Until a person has heard where an apple is; and how long a person or a robot takes to pick or place one."""
+ALONE_S, TEAM_S = 92.0, 64.0
+"""Least time of a person alone, and most of a person with a robot."""
+LEAST_M, MOST_M = 17.0, 23.0
+"""From how far in all the apples come: less is too easy for a person alone, more is too hard for two."""
+_SOME = 0.02
+_TRIES = 200
+
+
+class MultiRobotCollection(JobKind):
+    """ "Put the three apples on the dining table." """
+
+    name = "multi_robot_collection"
+    short = "collect"
+    crew = ("tender", "puck")
+
+    def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
+        return tuple(_goal(place) for place in unique(house, PLACES))
+
+    def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
+        return f"Put the three apples on {catalog.kind(goal.destination).definite}."
+
+    def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]:
+        goals = self.goals(house)
+        for attempt in range(_TRIES if goals else 0):
+            own = seeds.derive(root, "try", attempt)
+            goal = goals[seeds.choice([1.0] * len(goals), own, "goal")]
+            place = next(thing for thing in house.things if thing.id in goal.jobs[0].destinations)
+            objects = _apples(house, place, own, seeds.draw(root, "fridge") < FRIDGE_SHARE)
+            if objects and LEAST_M <= sum(ways(house, objects, goal)) <= MOST_M:
+                return goal, objects
+        raise HthorError(f"house '{house.id}' is too small to keep a person busy with three apples")
+
+    def misfit(self, task: TaskSpec, house: HouseSpec) -> str:
+        if (seconds := alone(task, house)) < ALONE_S:
+            return f"a person alone needs {seconds:.0f} s, so nobody has to help"
+        if (seconds := team(task, house)) > TEAM_S:
+            return f"a person and a robot need {seconds:.0f} s, so they would hardly make it"
+        return ""
+
+
+def _goal(place: Thing) -> Goal:
+    relation = catalog.kind(place.kind).relation
+    jobs = tuple(Job(target=apple, relation=relation, destinations=(place.id,)) for apple in APPLES)
+    return Goal(target=APPLES[0], relation=relation, destination=place.kind, jobs=jobs)
+
+
+def _apples(house: HouseSpec, place: Thing, root: int, cold: bool) -> tuple[Placement, ...]:
+    """Three apples in different rooms, none of them where the place is; none at all where that was not found."""
+    expected = {place: weight for (how, place), weight in priors.weights("apple").items() if how != "near"}
+    taken, done = {place.room}, list[Placement]()
+    for number in seeds.shuffled(len(APPLES), root, "order"):
+        fridge = cold and not done
+
+        def weigh(thing: Thing, fridge: bool = fridge) -> float:
+            if (thing.kind == "fridge") != fridge or (thing.room in taken and not fridge) or thing.id == place.id:
+                return 0.0
+            far = math.dist(thing.centre, place.centre)  # what is near would be thrown away for being too easy
+            return max(expected.get(thing.kind, 0.0), _SOME) * far
+
+        found = spot(house, APPLES[number], "apple", weigh, seeds.derive(root, "apple", number), done)
+        if found is None:
+            return ()
+        done.append(found)
+        taken.add(room_of(house, found.support))
+    return tuple(sorted(done, key=lambda placement: placement.id))
+
+
+def ways(house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> list[float]:
+    """How far [m] each job's apple is to be carried."""
+    there = {placement.id: placement for placement in objects}
+    return [carrying_way(house, there[job.target], job) for job in goal.jobs]
+
+
+def alone(task: TaskSpec, house: HouseSpec) -> float:
+    """The least time [s] of an all-knowing person at `PACE_M_S` who brings one apple after the other, without a robot.
+
+    Each pick, each place and the fridge's opening take `rules.HANDLING_S`.
+    """
+    carried, opened = ways(house, task.objects, task.goal), any(one.relation == "in" for one in task.objects)
+    walked = _round(_first_ways(task, house, task.human_start), carried, range(len(carried)))
+    return walked / PACE_M_S + (2 * len(carried) + opened) * rules.HANDLING_S
+
+
+def team(task: TaskSpec, house: HouseSpec) -> float:
+    """The time [s] of a person who is told, and of the first robot, when each fetches what it had better fetch."""
+    carried, every = ways(house, task.objects, task.goal), range(len(task.objects))
+    person = _first_ways(task, house, task.human_start)
+    robot = _first_ways(task, house, task.robot_starts[0])
+    best = math.inf
+    for count in every:
+        for own in itertools.combinations(every, count):
+            others = [number for number in every if number not in own]
+            told = TOLD_S + _round(person, carried, own) / GUIDED_M_S + 2 * GRASP_S * len(own) if own else 0.0
+            rest = _round(robot, carried, others) / ROBOT_M_S + 2 * GRASP_S * len(others)
+            best = min(best, max(told, rest))
+    return best
+
+
+def _round(first: list[float], carried: list[float], own: Iterable[int]) -> float:
+    """The least way [m] of who fetches ``own`` apples one after the other, ``first`` being the ways to each."""
+    own = list(own)
+    return min((first[k] - carried[k] for k in own), default=0.0) + 2 * sum(carried[k] for k in own)
+
+
+def _first_ways(task: TaskSpec, house: HouseSpec, start: Pose) -> list[float]:
+    ground, there = Ground.of(house), {placement.id: placement for placement in task.objects}
+    walks = [ground.walk([ground.touching(there[job.target])]) for job in task.goal.jobs]
+    return [float(walk.lengths([(start.x, start.y)])[0]) for walk in walks]
+
+
+KIND = MultiRobotCollection()

@@ -1,0 +1,95 @@
+"""Put a shuffled house back as a tour of the tidy one has recorded it; knows nothing of how the tour is remembered.
+
+The goal's jobs are that record: one for every target that the tour has met, those included that were not moved since,
+and which those are nobody is told, but that the first of them was::
+
+    Job(target="mug", relation="on", destinations=("desk",), place=(5.2348, 8.1624, 0.79))
+
+Whatever was moved, and the place that it came from, is within an arm's reach. A target is back when it rests on or in
+the same thing within `hthor.tasks.jobs.PLACE_M` of its recorded place. As in AI2-THOR's rearrangement challenge there
+are two scores. The share fixed, `progress`, counts the targets that were moved, less those that somebody displaced
+since. Strict success, `met`, is that everything is in its place.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import msgspec
+
+from hthor import catalog, seeds
+from hthor.errors import HthorError
+from hthor.tasks.jobs import JobKind
+from hthor.tasks.spots import at_hand, spot
+from hthor.types import Goal, HouseSpec, Job, Placement, Thing
+
+FEWEST, MOST = 2, 4
+"""So many of the six targets are shuffled."""
+MOVED_M = 1.5
+"""As far at least is a shuffled target from its place."""
+TIME_LIMIT_S = 180.0
+"""Twice the usual limit: two to four objects are to be found and carried, not one."""
+DEEP = frozenset({"sink"})
+"""From these nothing is moved: one sees into them from few places, so hands hardly find the same spot again."""
+_TRIES = 20
+
+
+class RoomRearrangement(JobKind):
+    """ "Some things were moved. Put everything back where it was." """
+
+    name = "room_rearrangement"
+    short = "rearrange"
+    crew = ("tender",)
+    time_limit = TIME_LIMIT_S
+
+    def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
+        first = catalog.kind(next(placement.kind for placement in objects if placement.id == goal.target))
+        return f"Some things were moved, {first.definite} among them. Put everything back where it was."
+
+    def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]:
+        from hthor.tasks.arrange import arrange
+
+        count = FEWEST + int(seeds.draw(root, "count") * (MOST - FEWEST + 1))
+        for attempt in range(_TRIES):
+            own = seeds.derive(root, "try", attempt)
+            tidy = arrange(house, own)
+            order = [tidy[number] for number in seeds.shuffled(len(tidy), own, "moved")]
+            kinds = {thing.id: thing.kind for thing in house.things}
+            moved = [one.id for one in order if kinds[one.support] not in DEEP and at_hand(house, one)][:count]
+            objects = _shuffled(house, tidy, moved, own) if len(moved) == count else ()
+            if objects:
+                return record(house, tidy, moved[0], own), objects
+        raise HthorError(f"house '{house.id}' has no room to shuffle {count} objects")
+
+
+def record(house: HouseSpec, tidy: Sequence[Placement], first: str, root: int) -> Goal:
+    """What a tour of the tidy house notes down: for each object what it is on or in, and where; ``first`` leads."""
+    order = sorted(seeds.shuffled(len(tidy), root, "record"), key=lambda number: tidy[number].id != first)
+    jobs = tuple(
+        Job(target=one.id, relation=one.relation, destinations=(one.support,), place=one.position)
+        for one in (tidy[number] for number in order)
+    )
+    kind = next(thing.kind for thing in house.things if thing.id == jobs[0].destinations[0])
+    return Goal(target=jobs[0].target, relation=jobs[0].relation, destination=kind, jobs=jobs)
+
+
+def _shuffled(house: HouseSpec, tidy: Sequence[Placement], moved: Sequence[str], root: int) -> tuple[Placement, ...]:
+    """The same with some of the targets elsewhere, off the recorded places of all; empty where they find no room."""
+    there = {one.id: one for one in tidy}
+    for id in moved:
+        home = there[id]
+
+        def weigh(thing: Thing, home: Placement = home) -> float:
+            return float(thing.id != home.support)
+
+        others = [*tidy, *(there[other] for other in moved if there[other] not in tidy)]
+        found = spot(house, id, home.kind, weigh, seeds.derive(root, "moved", id), others)
+        if found is None or math.dist(found.position[:2], home.position[:2]) < MOVED_M:
+            return ()
+        there[id] = found
+    # what was near what by the priors is no longer so
+    return tuple(msgspec.structs.replace(there[one.id], near="") for one in tidy)
+
+
+KIND = RoomRearrangement()

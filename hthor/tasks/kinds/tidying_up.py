@@ -1,0 +1,87 @@
+"""Put what is out of place where common sense expects it; knows nothing of where it was before.
+
+There is no reference: any place that the judgement (`hthor.tasks.judgement`, as data) allows will do. The goal's jobs
+say so of every target, those included that lie well already, and which those are nobody is told, but that the first of
+them does not::
+
+    Job(target="remote_control", relation="on", destinations=("coffee_table", "side_table", "sofa", ...))
+
+with the kinds of things where the target may lie as far as the house has them, the likeliest first; the relation is
+that of the likeliest. Progress counts the targets that were out of place, less those that somebody misplaced since; the
+goal is met when common sense finds nothing to object to.
+"""
+
+from __future__ import annotations
+
+from hthor import catalog, seeds
+from hthor.errors import HthorError
+from hthor.tasks import judgement
+from hthor.tasks.jobs import JobKind
+from hthor.tasks.spots import spot
+from hthor.types import Goal, HouseSpec, Job, Placement, Thing
+
+FEWEST, MOST = 2, 4
+"""So many of the six targets are out of place."""
+TIME_LIMIT_S = 180.0
+"""Twice the usual limit: two to four objects are to be found and carried, not one."""
+_TRIES = 20
+
+
+class TidyingUp(JobKind):
+    """ "Tidy up: put what is out of place where it belongs." """
+
+    name = "tidying_up"
+    short = "tidy"
+    crew = ("tender",)
+    time_limit = TIME_LIMIT_S
+
+    def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
+        present = {thing.kind for thing in house.things}
+        if not all(present.intersection(judgement.homes(target)) for target in catalog.TARGETS):
+            return ()
+        return tuple(_goal(house, target, 0) for target in catalog.TARGETS)
+
+    def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
+        first = next(placement for placement in objects if placement.id == goal.target)
+        noun = catalog.kind(first.kind).definite
+        return f"Tidy up: {noun} and maybe more is out of place. Put everything where one would look for it."
+
+    def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]:
+        count = FEWEST + int(seeds.draw(root, "count") * (MOST - FEWEST + 1))
+        for attempt in range(_TRIES):
+            own = seeds.derive(root, "try", attempt)
+            order = [catalog.TARGETS[number] for number in seeds.shuffled(len(catalog.TARGETS), own, "order")]
+            objects = _strewn(house, order, count, own)
+            if objects:
+                return _goal(house, order[0], own), objects
+        raise HthorError(f"house '{house.id}' has no place where {count} targets would be out of place")
+
+
+def _goal(house: HouseSpec, first: str, root: int) -> Goal:
+    present = {thing.kind for thing in house.things}
+    order = sorted(seeds.shuffled(len(catalog.TARGETS), root, "jobs"), key=lambda n: catalog.TARGETS[n] != first)
+    jobs = []
+    for target in (catalog.TARGETS[number] for number in order):
+        kinds = tuple(kind for kind in judgement.homes(target) if kind in present)
+        jobs.append(Job(target=target, relation=catalog.kind(kinds[0]).relation, destinations=kinds))
+    return Goal(target=first, relation=jobs[0].relation, destination=jobs[0].destinations[0], jobs=tuple(jobs))
+
+
+def _strewn(house: HouseSpec, order: list[str], count: int, root: int) -> tuple[Placement, ...]:
+    """The first ``count`` targets out of place and the others where they belong; empty where one finds no room."""
+    done: list[Placement] = []
+    for rank, target in enumerate(order):
+
+        def weigh(thing: Thing, target: str = target, out: bool = rank < count) -> float:
+            if out:
+                return float(judgement.is_out(target, thing.kind))
+            return judgement.of(target)[thing.kind].share if thing.kind in judgement.homes(target) else 0.0
+
+        found = spot(house, target, target, weigh, seeds.derive(root, "spot", target), done)
+        if found is None:
+            return ()
+        done.append(found)
+    return tuple(sorted(done, key=lambda placement: catalog.TARGETS.index(placement.id)))
+
+
+KIND = TidyingUp()

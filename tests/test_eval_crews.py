@@ -1,0 +1,216 @@
+"""Several robots in one trial: reading who they are, playing them together, and going on when one of them fails."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import eval_fakes as fakes
+import msgspec
+import pytest
+
+from hthor import tasks
+from hthor.errors import HthorError, RunError, UnknownName
+from hthor.eval import board, campaign, cast, crews, find, picture, progress, record, run, score, session
+from hthor.eval.record import Record
+from hthor.eval.setup import crew_name
+from hthor.tasks import library
+from hthor.types import HUMAN
+
+HOUSE = "elder"
+GUEST = """
+import os
+from hthor.types import Action, Move, Rotate, Send, Wait
+
+class Agent:
+    def begin(self, briefing):
+        self.seat, self.crew = briefing.seat, sorted(briefing.crew)
+        self.step = 0
+    def act(self, observation):
+        self.step += 1
+        {act}
+        return Action(motion=Rotate(yaw=0.3))
+"""
+TALKS = "if self.step % 9 == 1: return Action(say=Send(text=f'{{self.seat}} of {{self.crew}} in {{os.getpid()}}'))"
+FAILS = "assert observation.tick < 40, 'tired'"
+
+
+def pairs(crew: crews.Crew) -> list[tuple[str, str, str]]:
+    return [(robot.seat, robot.robot, robot.agent.name) for robot in crew.listed]
+
+
+# ------------------------------------------------------------------------------------------------------------- reading
+
+
+def test_bodies_and_minds_are_read_in_order():
+    (crew,) = crews.read("tall:oracle, small:frontier,puck:oracle", ())
+    assert pairs(crew) == [
+        ("robot", "tender", "oracle"),
+        ("robot2", "puck", "frontier"),
+        ("robot3", "puck", "oracle"),
+    ]
+    assert crew_name(crew.listed) == "tender-oracle+puck-frontier+puck-oracle"
+
+
+def test_bodies_without_a_mind_take_the_agents_in_turn():
+    first, second = crews.read("tall,small:frontier", ("oracle", "silent"))
+    assert pairs(first) == [("robot", "tender", "oracle"), ("robot2", "puck", "frontier")]
+    assert pairs(second) == [("", "", "silent"), ("robot", "puck", "frontier")], "who wants no robot has no seat"
+    assert crew_name(second.listed) == "silent+puck-frontier"
+    assert [robot.seat for robot in second.seats] == ["robot"]
+
+
+def test_a_crew_of_nobody_is_one_silent_agent():
+    (crew,) = crews.read("tall,small", ("silent",))
+    assert pairs(crew) == [("", "", "silent")]
+    assert crew_name(crew.listed) == "silent"
+
+
+@pytest.mark.parametrize(
+    ("robots", "agents", "told"),
+    [
+        ("tall:oracle,", (), "'' is not BODY:AGENT; expected something like --robots tall:oracle"),
+        ("tall:,small:oracle", (), "'tall:' is not BODY:AGENT"),
+        ("tall,small:oracle", (), "'tall' has no mind. Write tall:AGENT"),
+        ("tall:oracle", ("oracle",), "--agent has nobody to be"),
+        ("tal:oracle", (), "unknown robot 'tal'. Did you mean 'tall'?"),
+        ("tall:orcale", (), "unknown agent 'orcale'. Did you mean 'oracle'?"),
+    ],
+)
+def test_wrong_crews_are_told_what_is_right(robots: str, agents: tuple[str, ...], told: str):
+    with pytest.raises(HthorError) as caught:
+        crews.read(robots, agents)
+    assert told in str(caught.value)
+
+
+def test_a_mind_made_for_other_bodies_is_refused():
+    picky = crews.Character(ref=fakes.character().ref, bodies=("porter",))
+    with pytest.raises(UnknownName, match="unknown robot for the agent helper 'puck'"):
+        crews.form(["puck"], [picky])
+
+
+# ------------------------------------------------------------------------------------------------------------- playing
+
+
+@pytest.fixture(scope="module")
+def guests(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """Files of two minds: one talks, one fails after four seconds."""
+    folder = tmp_path_factory.mktemp("guests")
+    files = {"talker": TALKS, "tired": FAILS}
+    for name, act in files.items():
+        (folder / f"{name}.py").write_text(GUEST.format(act=act.replace("{{", "{").replace("}}", "}")))
+    return {name: str(folder / f"{name}.py") for name in files}
+
+
+def played(robots: str, count: int = 1) -> list[Record]:
+    """The first trials of one person in a small house."""
+    (crew,) = crews.read(robots, ())
+    few = library.frozen("few", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == HOUSE))
+    whole = session.sessions(few, agent=crew, participants=1)[0]
+    perform = cast.player(cast.Sources(minds=crew.minds, bodies=crew.bodies))
+    return list(perform(msgspec.structs.replace(whole, trials=whole.trials[:count])))
+
+
+def said(record_: Record, seat: str) -> list[str]:
+    return [event.data["text"] for event in record_.events if event.kind == "sent" and event.seat == seat]
+
+
+def test_two_guests_and_a_built_in_agent_share_a_trial(guests: dict[str, str]):
+    (one,) = played(f"tall:{guests['talker']},small:frontier,scout:{guests['talker']}")
+    assert list(one.paths) == [HUMAN, "robot", "robot2", "robot3"]
+    assert len(set(one.paths["robot2"])) > 10, "the built-in one explores"
+    first, third = said(one, "robot")[0], said(one, "robot3")[0]
+    assert first.startswith("robot of ['human', 'robot', 'robot2', 'robot3'] in ")
+    assert third.startswith("robot3 of ")
+    assert first.split()[-1] != third.split()[-1], "each in a process of its own"
+    assert not one.faults
+    assert one.metrics.sent >= 2
+    assert {pair for pair in one.metrics.hindered_by if pair.startswith("human")} == {
+        "human by robot",
+        "human by robot2",
+        "human by robot3",
+    }
+
+
+def test_when_one_robot_fails_the_others_go_on(guests: dict[str, str]):
+    first, second = played(f"tall:{guests['tired']},small:{guests['talker']}", count=2)
+    for one in (first, second):
+        assert [(fault.seat, fault.kind) for fault in one.faults] == [("robot", "raised")]
+        assert 40 <= one.faults[0].tick < 50
+        later = [event for event in one.events if event.kind == "sent" and event.tick > one.faults[0].tick]
+        assert later
+        assert all(event.seat == "robot2" for event in later)
+        assert len(one.paths["robot"]) == len(one.paths["robot2"])
+    assert find.fault_words(first).startswith("robot (tired), after 4.")
+
+
+def test_a_trial_of_several_robots_can_be_looked_at(guests: dict[str, str], tmp_path: Path):
+    from hthor import houses
+
+    (one,) = played(f"tall:oracle,small:{guests['talker']}")
+    sheet = picture.figure(one.spec, one.log, houses.load(HOUSE))
+    words = [text.get_text() for legend in sheet.legends for text in legend.get_texts()]
+    assert "robot: tender (oracle)" in words
+    assert "robot2: puck (talker)" in words
+    told = [text.get_text() for ax in sheet.axes for text in ax.texts]
+    assert any("robot2: “robot2 of" in text for text in told), "its messages can be read"
+    sheet.savefig(tmp_path / "x.svg")
+
+
+# ---------------------------------------------------------------------------------------------------------------- runs
+
+
+def _lines(folder: Path) -> list[bytes]:
+    return sorted((folder / "trials.jsonl").read_bytes().splitlines(keepends=True))
+
+
+def test_a_run_of_several_robots_is_resumed_and_told_from_others(tmp_path: Path):
+    plan, dealt = fakes.run_of(20, name="helper+other")
+    assert plan.name == "scout-helper+scout-other"
+    assert plan.folder_name.startswith("scout-helper+scout-other-fake-")
+    whole = run.evaluate(plan, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
+    before = _lines(tmp_path)
+    (tmp_path / "trials.jsonl").write_bytes(b"".join(before[::2]))
+    again = run.evaluate(plan, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
+    assert _lines(tmp_path) == before
+    assert again.metrics == whole.metrics
+    assert whole.counts.faults_by_seat == {"robot": 0, "robot2": 0}
+    other, _ = fakes.run_of(20, name="other+helper")
+    with pytest.raises(RunError, match=r"robots\.0\.agent\.name is helper there and other here"):
+        run.evaluate(other, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
+    (tmp_path / "run.json").unlink()
+    run.setup.write(tmp_path, other)
+    with pytest.raises(RunError, match=r"spec\.robots is not the one in run\.json"):
+        score.rescore(tmp_path)
+
+
+def test_the_command_that_finishes_a_run_names_every_robot(tmp_path: Path):
+    plan, _ = fakes.run_of(20, name="helper+other")
+    told = board.command(tmp_path, plan)
+    assert " --robots scout:helper.py,scout:other.py --humans proxy --suite fake --seed 0 " in told
+
+
+def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):
+    chosen = [task for task in tasks.suite("smoke").tasks if task.house == HOUSE][:2]
+    suite = tmp_path / "brief.json"
+    suite.write_bytes(library.encode(library.frozen("brief", 1, tuple(chosen))))
+    results = []
+    for jobs in (1, 2):
+        options = campaign.Options(
+            robots="tall:oracle,small:frontier",
+            suite=str(suite),
+            participants=2,
+            jobs=jobs,
+            out=tmp_path / str(jobs),
+        )
+        (done,) = campaign.conduct(options, lambda _: progress.Silent())
+        results.append(done.result)
+    assert _lines(tmp_path / "1") == _lines(tmp_path / "2")
+    assert len(_lines(tmp_path / "1")) == 4
+    assert results[0].hashes == results[1].hashes
+    one = record.decode(_lines(tmp_path / "1")[0])
+    assert [(robot.robot, robot.agent.name) for robot in one.spec.robots] == [
+        ("tender", "oracle"),
+        ("puck", "frontier"),
+    ]
+    assert json.loads((tmp_path / "1" / "run.json").read_bytes())["schema"] == "hthor.run/2"

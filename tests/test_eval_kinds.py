@@ -1,0 +1,175 @@
+"""Choosing what is played: a suite, a kind of ours, or a user's own kind in one file."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from hthor import houses, tasks
+from hthor.errors import HthorError, UnknownName
+from hthor.eval import campaign, picture, programme, progress, record, score
+from hthor.eval.session import sessions
+
+HOUSES = ("elder", "rowan")
+
+
+@pytest.fixture
+def few(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two houses are enough here."""
+    monkeypatch.setattr(houses, "names", lambda: HOUSES)
+
+
+@pytest.fixture(autouse=True)
+def _forget():
+    """Kinds that tests load are forgotten, so that each may call its own what it likes."""
+    before = set(sys.modules)
+    yield
+    for name in set(sys.modules) - before:
+        if name.startswith("hthor.tasks.kinds."):
+            del sys.modules[name]
+
+
+def conducted(**asked) -> campaign.Done:
+    (done,) = campaign.conduct(campaign.Options(**asked), lambda _: progress.Silent())
+    return done
+
+
+def test_a_suite_is_narrowed_to_a_kind():
+    whole = programme.choose("smoke", "")
+    assert (whole.kind, whole.crew, len(whole.suite.tasks)) == (None, ("scout",), 60)
+    for name in ("manipulation", "mobile_manipulation"):
+        part = programme.choose("smoke", name)
+        assert part.kind.name == "mobile_manipulation"
+        assert (len(part.suite.tasks), part.suite.name) == (40, "smoke")
+        assert part.suite.sha256 != whole.suite.sha256
+    assert programme.choose("", "") == whole
+
+
+@pytest.mark.parametrize(
+    ("suite", "kind", "told"),
+    [
+        ("smoke", "manipulaton", "unknown kind of task 'manipulaton'. Did you mean 'manipulation'?"),
+        ("smoke", "collect", "the suite 'smoke' has no task of the kind 'multi_robot_collection'; it has: mobile_man"),
+        ("", "nowhere/kind.py", "A path must lead to a Python file"),
+    ],
+)
+def test_what_does_not_fit_is_told(suite: str, kind: str, told: str):
+    with pytest.raises(HthorError) as caught:
+        programme.choose(suite, kind)
+    assert told in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["navigation", "manipulation", "collect", "rearrange", "tidy", "carry"])
+def test_a_kind_with_a_suite_of_its_own_needs_no_other(name: str):
+    if name not in tasks.suites():
+        pytest.skip(f"no suite '{name}' yet")
+    chosen = programme.choose("", name)
+    assert chosen.kind is None, "it is all of that suite"
+    assert {task.kind for task in chosen.suite.tasks} == {programme.find(name).name}
+    assert chosen.crew == tuple(programme.find(name).crew)
+
+
+# --------------------------------------------------------------------------------------------------- a user's own kind
+
+
+def test_the_example_kind_runs_as_it_is(root: Path, few: None, tmp_path: Path):
+    file = root / "examples" / "put_away.py"
+    assert len(file.read_text().splitlines()) < 100
+    assert file.read_text().strip() in (root / "docs" / "kinds.md").read_text(), "the docs show it as it is"
+    done = conducted(kind=str(file), agents=("oracle",), out=tmp_path / "run", participants=1, jobs=1)
+    assert done.plan.kind.name == "put_away"
+    assert [robot.robot for robot in done.plan.robots] == ["tender"], "the kind's own crew"
+    assert (done.result.counts.trials, done.result.counts.faults) == (2, 0)
+    assert done.result.metrics.progress.n == 2
+    suite = tasks.suite(str(tmp_path / "run" / "suite.json"))
+    assert [task.house for task in suite.tasks] == list(HOUSES)
+    assert suite.tasks[0].instruction == "Put the tomato and the lettuce in the fridge."
+    assert suite.sha256 == done.plan.suite.sha256
+    lines = (tmp_path / "run" / "trials.jsonl").read_bytes().splitlines(keepends=True)
+    records = [record.decode(line) for line in lines]
+    assert {one.spec.kind_sha256 for one in records} == {done.plan.kind.sha256}
+    sheet = picture.figure(records[0].spec, records[0].log, houses.load(records[0].spec.task.house))
+    assert [tick.get_text() for tick in sheet.axes[1].get_yticklabels()] == ["person", "robot", "progress"]
+    names = {text.get_text() for text in sheet.axes[0].texts}
+    assert {"tomato", "lettuce", "fridge"} <= names, "both targets and where they are to go"
+    _, again, stored = score.rescore(tmp_path / "run")
+    assert again == stored == done.result
+
+
+def test_the_same_file_gives_the_same_tasks(root: Path, few: None):
+    one, two = (programme.choose("", str(root / "examples" / "put_away.py")) for _ in range(2))
+    assert one == two
+    assert one.drawn
+    assert one.crew == ("tender",)
+
+
+KIND = """
+from hthor.tasks.kinds.object_goal_navigation import ObjectGoalNavigation
+
+class Mine(ObjectGoalNavigation):
+    name = "{name}"
+    short = "mine"
+    def met(self, task, snapshot, house=None):
+        {met}
+        return super().met(task, snapshot, house)
+    def goals(self, house):
+        {goals}
+        return super().goals(house)
+
+KIND = Mine()
+"""
+
+
+def written(folder: Path, stem: str, *, name: str = "", met: str = "pass", goals: str = "pass") -> Path:
+    file = folder / f"{stem}.py"
+    file.write_text(KIND.format(name=name or stem, met=met, goals=goals))
+    return file
+
+
+def test_a_mistake_in_a_kind_is_told_with_its_line(few: None, tmp_path: Path):
+    file = written(tmp_path, "hasty", met="if snapshot.tick > 3: raise KeyError('who knows')")
+    with pytest.raises(HthorError, match=r"hasty\.py:8, in met: KeyError: 'who knows'") as caught:
+        conducted(kind=str(file), agents=("silent",), out=tmp_path / "run", jobs=1, participants=1)
+    assert caught.value.exit_code == 2
+
+
+def test_houses_that_have_nothing_for_a_kind_are_left_out(few: None, tmp_path: Path):
+    some = programme.choose("", str(written(tmp_path, "choosy", goals="if house.id == 'elder': return ()")))
+    assert [task.house for task in some.suite.tasks] == ["rowan"]
+    assert "there is no task in elder" in some.notes[0]
+    with pytest.raises(HthorError, match="there is no task in elder"):
+        programme.choose("", str(written(tmp_path, "useless", goals="return ()")))
+
+
+def test_a_file_that_is_no_kind(tmp_path: Path):
+    with pytest.raises(HthorError, match="its name must be the file's, 'misnamed'"):
+        programme.choose("", str(written(tmp_path, "misnamed", name="other")))
+    (tmp_path / "number.py").write_text("KIND = 5\n")
+    with pytest.raises(HthorError, match="must be an instance of a subclass of hthor"):
+        programme.choose("", str(tmp_path / "number.py"))
+    (tmp_path / "empty.py").write_text("")
+    with pytest.raises(HthorError, match="must define 'KIND'"):
+        programme.choose("", str(tmp_path / "empty.py"))
+
+
+def test_a_kind_that_changes_during_its_run_ends_it(few: None, tmp_path: Path):
+    from hthor.eval import cast
+
+    file = written(tmp_path, "fickle")
+    chosen = programme.choose("", str(file))
+    (dealt,) = sessions(chosen.suite, agent="silent", participants=1, kind_sha256=chosen.kind.sha256)
+    perform = cast.player(cast.Sources(kind=chosen.path))
+    written(tmp_path, "fickle", met="return False")
+    with pytest.raises(HthorError, match=r"fickle\.py was changed while its run was going on"):
+        next(perform(dealt))
+
+
+def test_who_is_evaluated_must_be_said():
+    with pytest.raises(HthorError, match="name an agent with --agent, or robots and their agents"):
+        conducted()
+    with pytest.raises(HthorError, match="leave out --robot"):
+        conducted(robots="tall:oracle", robot="scout")
+    with pytest.raises(UnknownName, match="unknown suite"):
+        conducted(agents=("silent",), suite="smok")

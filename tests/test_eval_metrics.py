@@ -1,0 +1,268 @@
+"""What a trial was worth beside success: logs made by hand whose values are worked out by hand, and laws."""
+
+from __future__ import annotations
+
+import eval_fakes as fakes
+import msgspec
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hthor.comms import claims
+from hthor.episode import EpisodeLog
+from hthor.eval import deeds, hindrance, metrics, score
+from hthor.eval.record import of
+from hthor.types import HUMAN, Event, Goal, HouseSpec, Job, Placement, Pose, Room, Send, Snapshot, Thing, ThingState
+
+TRIAL = fakes.run_of(10, name="tall+small")[1][0].trials[0]
+ALONE = fakes.run_of(10, absent=True)[1][0].trials[0]
+APPLES = tuple(f"apple_{number}" for number in range(3))
+
+
+def gathering():
+    """A trial in which three apples, one of them in the fridge, are to be put on the table."""
+    objects = tuple(
+        Placement(id=name, kind="apple", position=(1.0, 2.0, 0.9), support="fridge" if name == "apple_2" else "shelf")
+        for name in APPLES
+    )
+    jobs = tuple(Job(target=name, relation="on", destinations=("table",)) for name in APPLES)
+    goal = Goal(target=APPLES[0], relation="on", destination="table", jobs=jobs)
+    return msgspec.structs.replace(TRIAL, task=msgspec.structs.replace(TRIAL.task, objects=objects, goal=goal))
+
+
+def log(*events: tuple, ticks: int = 900, met: bool = False, progress: float | None = None, **more) -> EpisodeLog:
+    """A log of (tick, seat, kind, data) in which nobody moves unless ``paths`` says so."""
+    still = [(0, 0, 0)] * (ticks // 2 + 1)
+    known = {"paths": dict.fromkeys((HUMAN, "robot", "robot2"), still), "trust": 4, "faults": (), **more}
+    made = tuple(Event(tick=tick, seat=seat, kind=kind, data=data) for tick, seat, kind, data in events)
+    return EpisodeLog(events=made, ticks=ticks, met=met, progress=progress, **known)
+
+
+def picked(tick: int, seat: str, apple: int) -> tuple:
+    return (tick, seat, "picked", {"object": APPLES[apple]})
+
+
+def placed(tick: int, seat: str, apple: int, on: str = "table") -> tuple:
+    return (tick, seat, "placed", {"object": APPLES[apple], "on": on})
+
+
+def share(tick: int, value: float) -> tuple:
+    return (tick, HUMAN, "progress", {"value": value})
+
+
+# ------------------------------------------------------------------------------------------------------ share of work
+
+
+def test_who_picks_and_places_has_done_it():
+    third = 1.0 / 3.0
+    made = log(
+        picked(10, "robot", 0),
+        picked(15, HUMAN, 1),
+        placed(20, "robot", 0),
+        share(20, third),
+        placed(30, HUMAN, 1),
+        share(30, 2 * third),
+        progress=2 * third,
+    )
+    assert deeds.shares(gathering(), made) == {HUMAN: 0.5, "robot": 0.5, "robot2": 0.0}
+
+
+def test_opening_the_fridge_and_handing_over_are_work_too():
+    made = log(
+        (5, HUMAN, "opened", {"thing": "fridge"}),
+        picked(10, HUMAN, 2),
+        placed(20, HUMAN, 2, on="shelf"),
+        picked(30, "robot", 2),
+        placed(40, "robot", 2),
+        share(40, 1.0),
+        met=True,
+        progress=1.0,
+    )
+    assert deeds.shares(gathering(), made) == {HUMAN: 0.0, "robot": 1.0, "robot2": 0.0}, "it came from the shelf"
+    straight = msgspec.structs.replace(made, events=(made.events[0], *made.events[3:]))
+    assert deeds.shares(gathering(), straight) == pytest.approx({HUMAN: 1 / 3, "robot": 2 / 3, "robot2": 0.0})
+
+
+def test_what_is_undone_counts_for_nobody():
+    made = log(
+        picked(10, "robot", 0),
+        placed(20, "robot", 0),
+        share(20, 0.4),
+        picked(30, HUMAN, 0),
+        share(30, 0.1),
+        placed(50, HUMAN, 0),
+        share(50, 0.4),
+        progress=0.4,
+    )
+    found = deeds.shares(gathering(), made)
+    assert found == pytest.approx({HUMAN: 0.75, "robot": 0.25, "robot2": 0.0})
+
+
+def test_what_several_carry_is_shared_and_what_was_so_from_the_start_is_not():
+    bearers = {"object": APPLES[0], "bearers": [HUMAN, "robot2"]}
+    made = log(
+        share(0, 0.5),
+        (30, HUMAN, "lifted", bearers),
+        (40, "robot", "opened", {"thing": "door"}),
+        share(41, 0.75),
+        (60, HUMAN, "lowered", bearers),
+        share(61, 1.0),
+        progress=1.0,
+    )
+    assert deeds.shares(gathering(), made) == {HUMAN: 0.5, "robot": 0.0, "robot2": 0.5}
+
+
+def test_what_is_found_is_found_by_the_person_and_by_who_opened_it():
+    assert deeds.shares(TRIAL, log(met=True, ticks=50)) == {HUMAN: 1.0, "robot": 0.0, "robot2": 0.0}
+    opened = log((9, "robot", "opened", {"thing": "table"}), (10, "robot2", "opened", {"thing": "door"}), met=True)
+    assert TRIAL.task.objects[0].support == "table"
+    assert deeds.shares(TRIAL, opened) == {HUMAN: 0.5, "robot": 0.5, "robot2": 0.0}
+    assert deeds.shares(TRIAL, log()) is None, "nothing was achieved"
+
+
+@given(st.data())
+def test_shares_are_shares(data):
+    seats = st.sampled_from((HUMAN, "robot", "robot2"))
+    rows, value = [], 0.0
+    for tick in range(1, data.draw(st.integers(1, 12))):
+        seat, apple = data.draw(seats), data.draw(st.integers(0, 2))
+        rows.append(data.draw(st.sampled_from((picked, placed)))(tick, seat, apple))
+        if data.draw(st.booleans()):
+            value = data.draw(st.sampled_from((0.0, 0.25, 0.5, 1.0)))
+            rows.append(share(tick, value))
+    found = deeds.shares(gathering(), log(*rows, progress=value))
+    assert (found is None) == (value == 0.0)
+    if found:
+        assert sum(found.values()) == pytest.approx(1.0)
+        assert min(found.values()) >= 0.0
+
+
+# -------------------------------------------------------------------------------------------------- bodies in the way
+
+
+def walk(stops: int, ticks: int = 200) -> list[tuple[int, int, int]]:
+    """Stands until tick ``stops``, then goes 0.1 m a logged pose."""
+    return [(max(0, number - stops // 2) * 100, 0, 0) for number in range(ticks // 2 + 1)]
+
+
+def test_a_hindrance_lasts_until_one_is_away_from_there():
+    paths = {HUMAN: walk(30), "robot": walk(0), "robot2": walk(500)}
+    made = log((20, HUMAN, "in_way", {"by": "robot"}), ticks=200, paths=paths)
+    assert hindrance.of_person(made) == pytest.approx(1.8), "0.4 m away at tick 38"
+    assert hindrance.by_pair(made)["human by robot"] == pytest.approx(1.8)
+    assert hindrance.by_pair(made)["robot by human"] == 0.0
+    assert hindrance.count(made) == 1
+    endless = log((20, "robot2", "in_way", {"by": HUMAN}), ticks=200, paths=paths)
+    assert hindrance.by_pair(endless)["robot2 by human"] == hindrance.LONGEST_S
+    late = log((190, "robot2", "in_way", {"by": HUMAN}), ticks=200, paths=paths)
+    assert hindrance.by_pair(late)["robot2 by human"] == pytest.approx(1.0), "not longer than the trial"
+
+
+def test_two_hindrances_at_once_cost_no_more_time():
+    paths = {HUMAN: walk(30), "robot": walk(0), "robot2": walk(0)}
+    rows = ((20, HUMAN, "in_way", {"by": "robot"}), (24, HUMAN, "in_way", {"by": "robot2"}))
+    made = log(*rows, ticks=200, paths=paths)
+    assert hindrance.of_person(made) == pytest.approx(1.8)
+    assert hindrance.by_pair(made)["human by robot2"] == pytest.approx(1.4)
+
+
+@given(st.lists(st.integers(0, 199), max_size=8), st.integers(0, 200))
+def test_nobody_loses_more_than_the_trial(ticks: list[int], stops: int):
+    rows = [(tick, HUMAN, "in_way", {"by": "robot"}) for tick in sorted(ticks)]
+    made = log(*rows, ticks=200, paths={HUMAN: walk(stops), "robot": walk(0)})
+    assert 0.0 <= hindrance.of_person(made) <= 20.0
+    assert (hindrance.of_person(made) > 0.0) == bool(ticks)
+
+
+# ------------------------------------------------------------------------------------------------------------ messages
+
+
+def sent(tick: int, seat: str, number: int, **claim) -> tuple:
+    return (tick, seat, "sent", {"message": number, "text": "here", **claim})
+
+
+def test_every_message_has_one_end():
+    made = log(
+        sent(1, "robot", 0, off=0.2),
+        (2, HUMAN, "shown", {"message": 0}),
+        (3, HUMAN, "confirmed", {"message": 0}),
+        sent(4, "robot2", 1, off=1.01),
+        (5, "robot", "covered", {"message": 1, "by": 2}),
+        sent(5, "robot", 2, off=None),
+        (6, HUMAN, "declined", {"message": 2}),
+        sent(7, "robot", 3),
+        (8, HUMAN, "shown", {"message": 3}),
+    )
+    found = metrics.measure(TRIAL, made)
+    assert (found.sent, found.accepted, found.declined, found.covered, found.unanswered) == (4, 1, 1, 1, 1)
+    assert found.false_claims == 2, "one is too far off, one is about nothing that there is"
+    assert found.adoption == 1
+
+
+@given(st.lists(st.sampled_from(("confirmed", "declined", "covered", "shown", "")), max_size=20))
+def test_ends_of_messages_add_up(ends: list[str]):
+    rows = [sent(number, "robot", number) for number in range(len(ends))]
+    rows += [(99, HUMAN, end, {"message": number}) for number, end in enumerate(ends) if end]
+    found = metrics.messages(log(*rows))
+    assert found.sent == len(ends)
+    assert found.sent == found.accepted + found.declined + found.covered + found.unanswered
+    assert found.false_claims == 0
+
+
+APPLE = ThingState(id="apple_2", kind="apple", position=(1.0, 1.0, 0.9), support="table")
+TABLE = Thing(id="table", kind="dining_table", asset="t", centre=(3.0, 1.0, 0.4), size=(2.0, 1.0, 0.8), yaw=0.0)
+HOME = HouseSpec(
+    id="home",
+    sha256="",
+    rooms=(Room(id="r1", kind="kitchen", name="kitchen", polygon=((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0))),),
+    walls=(),
+    openings=(),
+    things=(TABLE,),
+    height=2.5,
+    start=Pose(x=1.0, y=1.0),
+)
+NOW = Snapshot(tick=5, poses={HUMAN: Pose(x=2.0, y=2.0)}, things={"apple_2": APPLE}, in_view={}, holding={HUMAN: ""})
+
+
+@pytest.mark.parametrize(
+    ("name", "position", "off"),
+    [
+        ("apple_2", (1.0, 1.0, 0.4), {"off": 0.5}),
+        ("apple", (1.0, 4.0, 0.9), {"off": 3.0}),
+        ("table", (2.1, 1.0, 0.8), {"off": 0.0}),
+        ("dining_table", (0.0, 1.0, 0.8), {"off": 2.0}),
+        ("r1", (1.0, 1.0, 0.0), {"off": 0.0}),
+        ("kitchen", (6.0, 1.0, 0.0), {"off": 2.0}),
+        (HUMAN, (2.0, 3.0, 1.5), {"off": 1.0}),
+        ("unicorn", (0.0, 0.0, 0.0), {"off": None}),
+        ("unicorn", None, {"off": None}),
+        ("apple_2", None, {}),
+        ("", (1.0, 1.0, 1.0), {}),
+        (5, (1.0, 1.0, 1.0), {}),
+    ],
+)
+def test_how_far_a_claim_is_off(name, position, off):
+    found = claims.off(Send(text="", object=name, position=position), position, NOW, HOME)
+    assert found == off
+    assert claims.is_false(found) == (off.get("off", 0.0) is None or off.get("off", 0.0) > 1.0)
+
+
+# ----------------------------------------------------------------------------------------------------------- all of it
+
+
+def test_without_a_robot_only_what_concerns_the_person_has_a_value():
+    made = log(progress=0.5, idle={HUMAN: 123}, paths={HUMAN: [(0, 0, 0)]})
+    found = metrics.measure(ALONE, made)
+    assert (found.progress, found.idle_s) == (0.5, 12.3)
+    assert (found.sent, found.in_way, found.hindered_s, found.work, found.hindered_by) == (None, None, None, {}, {})
+    assert metrics.measure(ALONE, log(paths={HUMAN: []})).progress is None
+
+
+def test_scores_have_every_seat_and_every_pair():
+    trials = fakes.run_of(10, name="tall+small")[1][0].trials
+    found = score.scores([of(trial, fakes.episode(trial)) for trial in trials])
+    assert set(found.work) == {HUMAN, "robot", "robot2"}
+    assert len(found.hindered_by) == 6
+    assert found.work[HUMAN].n == sum(fakes.episode(trial).met for trial in trials)
+    assert found.progress.n == 0
+    assert found.idle_s.mean > 0.0
