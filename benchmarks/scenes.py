@@ -17,6 +17,8 @@ from hthor.world import World
 TICKS = round(90.0 / rules.TICK_S)
 """Of one whole trial."""
 ROBOT = "robot"
+SUITE = "smoke"
+"""What is measured unless somebody says otherwise: tasks in all ten scenes."""
 
 
 class Scene(Struct, frozen=True):
@@ -35,11 +37,6 @@ def scenes(suite: str) -> tuple[Scene, ...]:
             if trial.task.house not in found:
                 found[trial.task.house] = Scene(trial.task.house, trial.task, stage.world(trial))
     return tuple(found[name] for name in sorted(found))
-
-
-def largest() -> str:
-    """The suite with the most houses."""
-    return max(tasks.suites(), key=lambda name: (len({task.house for task in tasks.suite(name).tasks}), name))
 
 
 def hands(suite: str, agent: str) -> tuple[Session, ...]:

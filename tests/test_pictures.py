@@ -59,7 +59,7 @@ def test_a_picture_names_rooms_target_times_and_messages(spec: TrialSpec, log: E
     for words in ("1", "2", "T*", "done", "confirms", "declines", "picks", "places", "1 m"):
         assert words in texts, words
     told = "\n".join(texts)
-    for words in (TASK.instruction, "helper", "14.1 s", "person", "robot (helper)", "destination"):
+    for words in (TASK.instruction, "helper", "14.1 s", "person", "scout (helper)", "destination"):
         assert words in told, words
 
 

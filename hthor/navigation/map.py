@@ -64,8 +64,8 @@ class GridMap:
         self._cover(origin.x - margin, origin.y - margin, origin.x + margin, origin.y + margin)
         self._reserve(16 * len(scan.ranges) + 64)
         first = self._count
-        ranges = np.ascontiguousarray(scan.ranges, dtype=np.float64)
-        tops = np.zeros(len(ranges)) if scan.tops is None else np.ascontiguousarray(scan.tops, dtype=np.float64)
+        ranges = np.array(scan.ranges, dtype=np.float64)  # a copy: what came over a wire is read-only
+        tops = np.zeros(len(ranges)) if scan.tops is None else np.array(scan.tops, dtype=np.float64)
         self._count = marching.integrate(
             self.cells,
             self.near,
