@@ -8,6 +8,7 @@ from msgspec import Struct
 
 from hthor import rules, tasks
 from hthor.eval import cast
+from hthor.eval.crews import Crew
 from hthor.eval.session import Session, sessions
 from hthor.houses.geodesic import geodesics
 from hthor.navigation.follow import Follower
@@ -39,8 +40,8 @@ def scenes(suite: str) -> tuple[Scene, ...]:
     return tuple(found[name] for name in sorted(found))
 
 
-def hands(suite: str, agent: str) -> tuple[Session, ...]:
-    """The sessions of the suite with one robot's mind."""
+def hands(suite: str, agent: str | Crew) -> tuple[Session, ...]:
+    """The sessions of the suite with one robot's mind, or with a crew."""
     return sessions(tasks.suite(suite), agent=agent)
 
 
