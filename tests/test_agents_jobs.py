@@ -11,9 +11,11 @@ import msgspec
 import pytest
 
 from hthor import catalog, geometry, houses, plugins
+from hthor.agents import _stands
 from hthor.agents._crew import Crew
 from hthor.agents._jobs import Knowledge, resting
 from hthor.agents._offers import lend_a_hand, please_look
+from hthor.agents._routes import Routes
 from hthor.episode import EpisodeLog, play
 from hthor.types import (
     HUMAN,
@@ -347,6 +349,28 @@ def test_points_to_put_things_on_lie_on_the_thing() -> None:
         assert abs(u) <= table.size[0] / 2 - 0.1 + 1e-9
         assert abs(v) <= table.size[1] / 2 - 0.1 + 1e-9
         assert z == pytest.approx(table.centre[2] + table.size[2] / 2, abs=0.05)
+
+
+def test_the_closest_thing_is_the_one_with_the_shortest_way() -> None:
+    house = houses.load(HOUSE)
+    routes = Routes(house, body("tall"))
+    tables = [thing for thing in house.things if resting(thing, 0.0)]
+    starts = [(room.polygon[0][0] + 1.0, room.polygon[0][1] + 1.0) for room in house.rooms]
+    chosen = set()
+    for here in [*starts, tables[0].centre[:2]]:  # the last one is no place to stand: no way begins there
+        ways = [_stands.route(routes, here, resting(thing, 0.0), 0.8, thing) for thing in tables]
+        far = [(_stands.length(way) if way else math.inf, thing.id) for way, thing in zip(ways, tables, strict=True)]
+        closest = _stands.closest(routes, here, tables, lambda thing: resting(thing, 0.0), 0.8)
+        assert closest.id == min(far)[1]
+        chosen.add(closest.id)
+    assert len(chosen) > 2
+
+
+def test_the_closest_of_things_without_a_way_is_the_first_by_id() -> None:
+    routes = Routes(houses.load(HOUSE), body("tall"))
+    outside = [msgspec.structs.replace(thing("dining_table"), id=id, centre=(-50.0, 0.0, 0.4)) for id in ("b", "a")]
+    closest = _stands.closest(routes, routes.space.nearest_free(2.0, 2.0), outside, lambda one: resting(one, 0.0), 0.8)
+    assert closest.id == "a"
 
 
 def test_seats_are_sorted_as_they_are_numbered() -> None:

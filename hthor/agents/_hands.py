@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
+import functools
 import math
-from collections.abc import Sequence
 
 from msgspec import Struct
 
@@ -118,14 +117,11 @@ class Worker:
         if len(things) < 2:
             return things[0] if things else None
         here = (observation.pose.x, observation.pose.y)
-        ways = [_stands.route(self.ways, here, self._in_reach(thing, 0.0), self.body.reach, thing) for thing in things]
-        far = [_length(way) if way else math.inf for way in ways]
-        return things[min(range(len(things)), key=lambda k: (far[k], things[k].id))]
+        return _stands.closest(self.ways, here, things, lambda thing: self._in_reach(thing, 0.0), self.body.reach)
 
     def _in_reach(self, thing: Thing, inset_m: float) -> tuple[Vec3, ...]:
         """Points of the thing's surfaces at heights that the arm gets to."""
-        low, high = self.body.reach_low, self.body.reach_high - 0.1
-        return tuple(point for point in resting(thing, inset_m) if low <= point[2] <= high)
+        return _between(thing, inset_m, self.body.reach_low, self.body.reach_high - 0.1)
 
     def _room_for(self, job: Job, thing: Thing, knowledge: Knowledge) -> tuple[Vec3, ...]:
         """Where on the thing the object fits beside what is known to lie there; anywhere when that is nowhere."""
@@ -227,5 +223,7 @@ def _at(job: Job, thing: Thing) -> str:
     return f"{job.target} {thing.id}"
 
 
-def _length(way: Sequence[Vec2]) -> float:
-    return math.fsum(math.dist(a, b) for a, b in itertools.pairwise(way))
+@functools.lru_cache(maxsize=1024)
+def _between(thing: Thing, inset_m: float, low: float, high: float) -> tuple[Vec3, ...]:
+    """Points of the thing's surfaces between two heights [m]."""
+    return tuple(point for point in resting(thing, inset_m) if low <= point[2] <= high)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from hthor import geometry
+from hthor.houses.cells import stand_all
 from hthor.houses.freespace import FreeSpace
 from hthor.houses.geodesic import geodesics
 from hthor.houses.sight import Sight
@@ -43,6 +45,7 @@ class Routes:
         self.space = FreeSpace.of(house, body.radius, body.height)
         self.ways = geodesics(house, body.radius, body.height)
         self._beside = functools.lru_cache(maxsize=256)(self.space.nearest_free)
+        self._near = functools.lru_cache(maxsize=256)(self._walk)
 
     def fits(self, a: Vec2, b: Vec2) -> bool:
         """Whether the body can go straight from ``a`` to ``b``."""
@@ -51,6 +54,12 @@ class Routes:
     def stands(self, spot: Vec2) -> bool:
         """Whether the body may be here."""
         return self.space.is_free(*spot)
+
+    def standing(self, spots: Sequence[Vec2]) -> list[Vec2]:
+        """Those of the spots where the body may be."""
+        (ox, oy), cell = self.space.origin, self.space.cell
+        places = (np.array(spots, dtype=float).reshape(-1, 2) - (ox, oy)) / cell
+        return list(itertools.compress(spots, stand_all(self.space.free, places).tolist()))
 
     def lengths(self, here: Vec2, spots: Sequence[Vec2]) -> list[float]:
         """Lengths [m] of the shortest ways to free spots; inf where there is none."""
@@ -90,7 +99,10 @@ class Routes:
 
     def near(self, a: Vec2, place: Vec3) -> float:
         """Walking distance [m] between the free places nearest to ``a`` and to ``place``."""
-        return self.ways.distance(self.space.nearest_free(*a), self.space.nearest_free(place[0], place[1]))
+        return self._near(a[0], a[1], place[0], place[1])
+
+    def _walk(self, x: float, y: float, px: float, py: float) -> float:
+        return self.ways.distance(self.space.nearest_free(x, y), self._beside(px, py))
 
     def same_room(self, a: Vec2, place: Vec3) -> bool:
         """Whether both lie in one room; so nothing but furniture can be between them."""

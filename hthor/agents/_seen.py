@@ -63,6 +63,10 @@ class Found:
         """Whether the body may be here, as far as the map tells."""
         return self.explorer.planner.fits(*spot)
 
+    def standing(self, spots: Sequence[Vec2]) -> list[Vec2]:
+        """Those of the spots where the body may be, as far as the map tells."""
+        return [spot for spot in spots if self.explorer.planner.fits(*spot)]
+
     def fits(self, a: Vec2, b: Vec2) -> bool:
         """Whether the body can go straight from ``a`` to ``b``."""
         return self.explorer.fits(a, b)

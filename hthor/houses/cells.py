@@ -82,6 +82,32 @@ def stand(free: Any, x: float, y: float) -> bool:
 
 
 @numba.njit(cache=True)
+def stand_all(free: Any, places: Floats) -> Any:
+    """(N,) bool: `stand` for each of the places (N, 2)."""
+    out = np.empty(len(places), dtype=np.bool_)
+    for k in range(len(places)):
+        out[k] = stand(free, places[k, 0], places[k, 1])
+    return out
+
+
+@numba.njit(cache=True)
+def nearest(free: Any, ox: float, oy: float, cell: float, x: float, y: float) -> Any:
+    """Row and column of the free cell whose middle is nearest to a point [m], the first of equals; -1 for none."""
+    row, column, least = -1, -1, math.inf
+    for j in range(free.shape[0]):
+        dy = oy + (j + 0.5) * cell - y
+        if dy * dy > least:
+            continue
+        for i in range(free.shape[1]):
+            if free[j, i]:
+                dx = ox + (i + 0.5) * cell - x
+                apart = dx * dx + dy * dy
+                if apart < least:
+                    row, column, least = j, i, apart
+    return row, column
+
+
+@numba.njit(cache=True)
 def label_at(free: Any, labels: Any, x: float, y: float) -> int:
     """The label of the free cell that the point lies in or on the edge of; 0 when there is none."""
     if stand(free, x, y):

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hthor import rules
 from hthor.errors import HthorError
 from hthor.houses import solids
-from hthor.houses.cells import clear, inside, label_at, stand, walk
+from hthor.houses.cells import clear, inside, label_at, nearest, stand, walk
 from hthor.types import HouseSpec, Room, Vec2
 
 STEP_M = 0.05
@@ -111,13 +111,10 @@ class FreeSpace:
         cells = self.free if within is None else self.free & within
         if stand(cells, (x - self.origin[0]) / self.cell, (y - self.origin[1]) / self.cell):
             return (x, y)
-        rows, columns = np.nonzero(cells)
-        if not len(rows):
+        row, column = nearest(cells, *self.origin, self.cell, float(x), float(y))
+        if row < 0:
             raise HthorError(f"house '{self.house.id}' has no free floor for a body of radius {self.radius} m")
-        dx = self.origin[0] + (columns + 0.5) * self.cell - x
-        dy = self.origin[1] + (rows + 0.5) * self.cell - y
-        nearest = int(np.argmin(dx * dx + dy * dy))
-        return self.centre_of(int(rows[nearest]), int(columns[nearest]))
+        return self.centre_of(row, column)
 
     def component(self, x: float, y: float) -> Bools:
         """(ny, nx) mask of the cells that can be reached from the place; all false where it is not free."""

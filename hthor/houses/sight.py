@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numba
@@ -44,16 +45,28 @@ class Sight:
         points = np.array([at, (at[0], at[1], at[2] + _NEAR_TOP * thing.size[2])])
         if not len(eyes):
             return False
-        reach = float(np.linalg.norm(eyes - points[0], axis=1).max())
-        near = np.nonzero(np.linalg.norm(self._pos - points[0], axis=1) - self._radius <= reach)[0]
         own = self._span.get(thing.id, (0, 0))  # what is no part of the house hides nothing
-        return bool(_seen(eyes, points, self._half, self._pos, self._mat, self._radius, near, own[0], own[1]))
+        return bool(_seen(eyes, points, self._half, self._pos, self._mat, self._radius, own[0], own[1]))
 
 
 @numba.njit(cache=True)
-def _seen(eyes: Any, points: Any, half: Any, pos: Any, mat: Any, radius: Any, ids: Any, skip0: int, skip1: int) -> bool:
+def _seen(eyes: Any, points: Any, half: Any, pos: Any, mat: Any, radius: Any, skip0: int, skip1: int) -> bool:
+    reach = 0.0
+    for k in range(len(eyes)):
+        reach = max(reach, _apart(eyes[k], points[0]))
+    ids, near = np.empty(len(pos), dtype=np.int64), 0
+    for g in range(len(pos)):
+        if _apart(pos[g], points[0]) - radius[g] <= reach:
+            ids[near] = g
+            near += 1
     for k in range(len(eyes)):
         for p in range(len(points)):
-            if not rays.blocked(eyes[k], points[p], half, pos, mat, radius, ids, skip0, skip1):
+            if not rays.blocked(eyes[k], points[p], half, pos, mat, radius, ids[:near], skip0, skip1):
                 return True
     return False
+
+
+@numba.njit(cache=True)
+def _apart(a: Any, b: Any) -> float:
+    x, y, z = a[0] - b[0], a[1] - b[1], a[2] - b[2]
+    return math.sqrt(x * x + y * y + z * z)
