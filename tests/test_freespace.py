@@ -173,7 +173,8 @@ def test_cells_places_and_segments_agree(spec, p, q):
     assert space.segment_free(a, b) == space.segment_free(b, a)
     share = space.advance(a, b)
     assert (share == 1.0) == space.segment_free(a, b)
-    walked = [(a[0] + s * share * (b[0] - a[0]), a[1] + s * share * (b[1] - a[1])) for s in np.linspace(0.0, 1.0, 200)]
+    almost = share * (1.0 - 1e-9)  # the very end may lie on a border, where rounding decides
+    walked = [(a[0] + s * almost * (b[0] - a[0]), a[1] + s * almost * (b[1] - a[1])) for s in np.linspace(0, 1, 200)]
     assert all(space.is_free(*place) for place in walked)
 
 
