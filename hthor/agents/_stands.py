@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hthor import geometry
+from hthor.houses.cells import close
 from hthor.types import Thing, Vec2, Vec3
 
 Floats = NDArray[np.float64]
@@ -138,13 +139,11 @@ def _least(here: Vec2, spots: Sequence[Vec2]) -> float:
 @functools.lru_cache(maxsize=256)
 def _lattice(points: tuple[Vec3, ...], reach: float, grid_m: float) -> tuple[Vec2, ...]:
     """Spots of a square lattice within reach of any of the points [m] on the plan, row by row."""
-    plan = np.array([point[:2] for point in points])
+    plan = np.array(points)[:, :2].copy()
     low, high = np.ceil((plan.min(0) - reach) / grid_m), np.floor((plan.max(0) + reach) / grid_m)
     xs, ys = (np.arange(low[axis], high[axis] + 1) * grid_m for axis in (0, 1))
-    x, y = (axis.ravel() for axis in np.meshgrid(xs, ys))
-    apart = np.hypot(x[:, None] - plan[:, 0], y[:, None] - plan[:, 1]).min(1)
-    near = apart <= reach
-    return tuple(zip(x[near].tolist(), y[near].tolist(), strict=True))
+    rows, columns = np.nonzero(close(xs, ys, plan, reach))
+    return tuple(zip(xs[columns].tolist(), ys[rows].tolist(), strict=True))
 
 
 def _in_front(thing: Thing, spot: Vec2, reach: float) -> bool:

@@ -108,6 +108,22 @@ def nearest(free: Any, ox: float, oy: float, cell: float, x: float, y: float) ->
 
 
 @numba.njit(cache=True)
+def close(xs: Floats, ys: Floats, points: Floats, reach: float) -> Any:
+    """(ny, nx) bool: which places of a lattice are within ``reach`` of any of the points (N, 2)."""
+    out = np.zeros((len(ys), len(xs)), dtype=np.bool_)
+    surely, hardly = reach * reach * (1.0 - 1e-12), reach * reach * (1.0 + 1e-12)
+    for j in range(len(ys)):
+        for i in range(len(xs)):
+            for k in range(len(points)):
+                dx, dy = xs[i] - points[k, 0], ys[j] - points[k, 1]
+                apart = dx * dx + dy * dy
+                if apart <= surely or (apart <= hardly and math.hypot(dx, dy) <= reach):
+                    out[j, i] = True
+                    break
+    return out
+
+
+@numba.njit(cache=True)
 def label_at(free: Any, labels: Any, x: float, y: float) -> int:
     """The label of the free cell that the point lies in or on the edge of; 0 when there is none."""
     if stand(free, x, y):
