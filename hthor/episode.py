@@ -81,7 +81,8 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
     millimetres and milliradians. ``ticks`` is the trial's length; ``trust`` the person's rating, None without a robot.
     ``progress`` is the share of the goal that is met in the end, from 0 to 1, None where the kind of task counts no
     parts; whenever it changes there is an event "progress" with its ``value``. ``idle`` says for how many ticks each
-    seat's body carried out no motion, or only waited.
+    seat's body carried out no motion, or only waited. ``journal`` is what the person's own recorder holds besides:
+    attempts, glimpses, choices, as `hthor.humans.journal` lists them; empty where the human model keeps none.
     """
 
     events: tuple[Event, ...]
@@ -92,6 +93,7 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
     faults: tuple[Fault, ...]
     progress: float | None = None
     idle: dict[str, int] = {}
+    journal: tuple[Event, ...] = ()
 
 
 def play(trial: TrialSpec, world: Stage, human: HumanModel, robots: Mapping[str, Mind]) -> EpisodeLog:
@@ -153,6 +155,7 @@ class _Episode:
             faults=tuple(self.faults),
             progress=self.advances.value,
             idle=self.idle,
+            journal=tuple(getattr(self.human, "journal", ())),
         )
 
     def _tick(self) -> None:

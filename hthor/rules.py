@@ -9,6 +9,8 @@ import math
 
 from hthor import jsonio
 
+SIMULATION = 1
+"""Version of the world: raised when the same bodies, doing the same, would fare otherwise than before."""
 TICK_S = 0.1
 """Seconds a tick. Time is counted in ticks and only ever multiplied out for people to read."""
 TIME_LIMIT_S = 90.0

@@ -131,10 +131,9 @@ class Company:
     """One session's person and minds. Use as a context manager: guests are processes and must be let go."""
 
     def __init__(self, first: TrialSpec, make: Callable[[RobotSeat], Mind]) -> None:
-        from hthor.humans.person import Person
+        from hthor.humans import people
 
-        model: Any = plugins.load("human model", first.human)
-        self.human = model(Person(seed=first.seed, participant=first.participant))
+        self.human: Any = people.find(first.human).make(first.seed, first.participant)
         self._seats = first.robots
         self._make = make
         self._minds: dict[str, Mind] = {}

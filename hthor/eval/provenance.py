@@ -11,7 +11,7 @@ from importlib import metadata
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1]
-_ABOVE = ("cli", "__main__.py", "eval")
+_ABOVE = ("cli", "__main__.py", "eval", "calibration")
 _HASHED_BY_CONTENT = ("houses/data", "houses/unseen", "tasks/suites")  # each trial names its own house's and suite's
 _COUNTED = tuple(f"eval/{name}.py" for name in ("cast", "deeds", "hindrance", "metrics"))  # these decide trials' worth
 _SUFFIXES = (".py", ".json", ".txt", ".xml", ".csv")

@@ -33,6 +33,7 @@ class Record(Struct, frozen=True, kw_only=True):
     paths: dict[str, list[tuple[int, int, int]]]
     progress: float | None = None
     idle: dict[str, int] = {}
+    journal: tuple[Event, ...] = ()
 
     @property
     def log(self) -> EpisodeLog:
@@ -58,8 +59,8 @@ def key(spec: TrialSpec) -> str:
 
 def of(spec: TrialSpec, log: EpisodeLog) -> Record:
     """The record of a trial that was played."""
-    events = tuple(msgspec.structs.replace(event, data=_rounded(event.data)) for event in log.events)
-    kept = msgspec.structs.replace(log, events=events)  # what is measured is what is written
+    events, journal = (_all_rounded(some) for some in (log.events, log.journal))
+    kept = msgspec.structs.replace(log, events=events, journal=journal)  # what is measured is what is written
     fields = {name: getattr(kept, name) for name in EpisodeLog.__struct_fields__}
     return Record(key=key(spec), spec=spec, metrics=measure(spec, kept), **fields)
 
@@ -87,6 +88,10 @@ def decode(line: bytes) -> Record:
     if record.key != key(record.spec):
         raise Damaged("key", f"'{record.key}' is not the key of the trial in 'spec', '{key(record.spec)}'")
     return record
+
+
+def _all_rounded(events: tuple[Event, ...]) -> tuple[Event, ...]:
+    return tuple(msgspec.structs.replace(event, data=_rounded(event.data)) for event in events)
 
 
 def _rounded(value: Any) -> Any:

@@ -5,19 +5,16 @@ Knows nothing of worlds, robots' minds or scoring.
 
 from __future__ import annotations
 
-from typing import Any
-
-from hthor import jsonio, plugins
-
 
 def fingerprint(name: str) -> str:
-    """Hash of a human model: its name and every parameter of its population.
+    """Hash of everything that people of this name are made of: their model, and every number of their population.
 
     Args:
-        name: the model's file name. Its class may have a ``parameters`` record; a model without one has only a name.
+        name: as `hthor.humans.people.find` reads it.
 
     Raises:
-        UnknownName: when there is no such model.
+        UnknownName: when there are no such people.
     """
-    model: Any = plugins.load("human model", name)
-    return jsonio.sha256({"model": name, "parameters": getattr(model, "parameters", None)})
+    from hthor.humans import people
+
+    return people.find(name).sha256

@@ -90,7 +90,7 @@ class Eyes:
         """Rate [1/s] of noticing the target were it there."""
         traits, pose, (x, y, _) = self.traits, now.pose, seen.position
         ecc = wrap(math.atan2(y - pose.y, x - pose.x) - pose.yaw)
-        near = 1.0 + (seen.distance / traits.d50) ** 2
+        near = 1.0 + (traits.a50 * seen.distance / 0.1) ** 2
         return traits.lam0 / near * math.exp(-0.5 * (ecc / traits.ecc_sd) ** 2)
 
     def _attended(self, seen: Detection) -> bool:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from typing import Any
 
 from hthor import seeds
 from hthor.geometry import wrap
 from hthor.humans.parameters import Parameters
+from hthor.humans.policy import Policy
 from hthor.navigation.follow import face
-from hthor.types import Briefing, Motion, Observation, Rotate, Vec2, Vec3, Wait
+from hthor.types import HUMAN, Briefing, Event, Motion, Observation, Rotate, Vec2, Vec3, Wait
 
 Deed = Generator[Motion, None, bool]
 """Something done motion by motion, that tells in the end whether it worked out."""
@@ -21,13 +22,24 @@ _AIM_RAD = 0.05
 
 
 class Subject:
-    """What every part of a person shares. ``now`` is replaced before each decision."""
+    """What every part of a person shares. ``now`` is replaced before each decision.
+
+    ``policy`` decides in the person's place, None for their own way of deciding. ``journal`` is what a headset's
+    recorder would hold of this trial. ``think`` is told of beliefs and choices, None when nobody looks into the mind.
+    """
 
     now: Observation
 
-    def __init__(self, traits: Parameters, root: int, briefing: Briefing) -> None:
+    def __init__(self, traits: Parameters, root: int, briefing: Briefing, policy: Policy | None = None) -> None:
         self.traits, self.root, self.task, self.body = traits, root, briefing, briefing.body
         self.tick_s = briefing.tick_s
+        self.policy = policy
+        self.journal: list[Event] = []
+        self.think: Callable[[Event], None] | None = None
+
+    def note(self, kind: str, **data: Any) -> None:
+        """Write something down in the journal, under the tick of now."""
+        self.journal.append(Event(tick=self.now.tick, seat=HUMAN, kind=kind, data=data))
 
     @property
     def here(self) -> Vec2:

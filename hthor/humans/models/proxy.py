@@ -10,18 +10,19 @@ from typing import Any
 
 from hthor.humans.agenda import BEGIN, REST, SEARCH, Agenda, Aim
 from hthor.humans.claims import Claims
+from hthor.humans.effects import practised
 from hthor.humans.errands import Errands
 from hthor.humans.jobs import Duties, todo
 from hthor.humans.memory import Memory
 from hthor.humans.messages import Reader
-from hthor.humans.parameters import Parameters
 from hthor.humans.perception import GLIMPSE_TICKS, Eyes
-from hthor.humans.person import Person, practised
+from hthor.humans.person import Person
+from hthor.humans.policy import Policy
 from hthor.humans.subject import Deed, Subject
 from hthor.humans.things import Things
 from hthor.humans.trust import Experience, Trust, initial
 from hthor.humans.walking import Walker
-from hthor.types import Action, Briefing, Motion, Observation, Reply, Vec2, Wait
+from hthor.types import Action, Briefing, Event, Motion, Observation, Reply, Vec2, Wait
 
 _RESTARTS = 2
 _PAUSE_S = 0.5
@@ -37,17 +38,18 @@ class Model:
         state: what `state` gave after an earlier trial, to go on from there.
     """
 
-    parameters = Parameters()
+    policy: Policy | None = None
+    """What decides in the person's place, if anything; for models that are this one with another head."""
 
     def __init__(self, person: Person, state: Mapping[str, Any] | None = None) -> None:
         self.person = person
-        self.traits = person.traits(self.parameters)
+        self.traits = person.traits
         self.trials = int(state["trials"]) if state else 0
         self.trust = Trust(alpha=state["alpha"], beta=state["beta"]) if state else initial(self.traits)
 
     def begin(self, briefing: Briefing) -> None:
         traits = practised(self.traits, self.trials)
-        self._me = Subject(traits, self.person.trial(self.trials), briefing)
+        self._me = Subject(traits, self.person.trial(self.trials), briefing, self.policy)
         self._experience = Experience()
         self._reader = Reader(traits, self._me.root, briefing.tick_s)
         self._memory = Memory(tau=traits.tau_mem / briefing.tick_s)
@@ -82,6 +84,11 @@ class Model:
             return None
         self.trust = self.trust.after(self._experience.signal(met, traits), traits)
         return self.trust.report(me.normal("report"), traits)
+
+    @property
+    def journal(self) -> Sequence[Event]:
+        """What the person's recorder holds of the trial so far."""
+        return self._me.journal
 
     def state(self) -> dict[str, Any]:
         return {"trials": self.trials, "alpha": self.trust.alpha, "beta": self.trust.beta}

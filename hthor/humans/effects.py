@@ -1,0 +1,37 @@
+"""How people differ from their population's mean, and how practice changes them; knows nothing of what follows."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+
+from hthor import seeds
+from hthor.humans.parameters import Parameters
+from hthor.humans.registry import PARAMETERS
+
+
+def individual(population: Parameters, root: int) -> Parameters:
+    """The population's parameters with the random effects of the person whose chances have this ``root``."""
+    own: dict[str, float] = {}
+    for parameter in PARAMETERS:
+        if parameter.effect:
+            off = population.sigma * parameter.effect * seeds.normal(root, "effect", parameter.name)
+            own[parameter.name] = _moved(getattr(population, parameter.name), off, parameter.scale)
+    return msgspec.structs.replace(population, **own)
+
+
+def practised(traits: Parameters, index: int) -> Parameters:
+    """The same person in their trial number ``index``, from 0: brisker with practice."""
+    lift = 1.0 + traits.learn * (1.0 - math.exp(-index / traits.n_learn))
+    return msgspec.structs.replace(
+        traits, v_pace=traits.v_pace * lift, t_dwell=traits.t_dwell / lift, t_manip=traits.t_manip / lift
+    )
+
+
+def _moved(value: float, off: float, scale: str) -> float:
+    if scale == "log":
+        return value * math.exp(off)
+    if scale == "logit":
+        return 1.0 / (1.0 + math.exp(-math.log(value / (1.0 - value)) - off))
+    return value + off

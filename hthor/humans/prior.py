@@ -1,0 +1,97 @@
+"""What is believed of a number before any data: distributions as data; knows nothing of what the numbers mean."""
+
+from __future__ import annotations
+
+import math
+from statistics import NormalDist
+from typing import Any
+
+from msgspec import Struct
+
+_NORMAL = NormalDist()
+
+
+class Uniform(Struct, tag="uniform", frozen=True):
+    """Between ``low`` and ``high``."""
+
+    low: float
+    high: float
+
+    def quantile(self, u: float) -> float:
+        return self.low + u * (self.high - self.low)
+
+    def cdf(self, x: float) -> float:
+        return min(1.0, max(0.0, (x - self.low) / (self.high - self.low)))
+
+
+class LogUniform(Struct, tag="log-uniform", frozen=True):
+    """Between ``low`` and ``high``, its logarithm uniform."""
+
+    low: float
+    high: float
+
+    def quantile(self, u: float) -> float:
+        return self.low * math.exp(u * math.log(self.high / self.low))
+
+    def cdf(self, x: float) -> float:
+        return min(1.0, max(0.0, math.log(x / self.low) / math.log(self.high / self.low)))
+
+
+class Normal(Struct, tag="normal", frozen=True):
+    """Normal around ``mean`` with standard deviation ``sd``."""
+
+    mean: float
+    sd: float
+
+    def quantile(self, u: float) -> float:
+        return self.mean + self.sd * _NORMAL.inv_cdf(u)
+
+    def cdf(self, x: float) -> float:
+        return _NORMAL.cdf((x - self.mean) / self.sd)
+
+
+class HalfNormal(Struct, tag="half-normal", frozen=True):
+    """The absolute value of a normal number around 0 with standard deviation ``sd``."""
+
+    sd: float
+
+    def quantile(self, u: float) -> float:
+        return self.sd * _NORMAL.inv_cdf(0.5 + 0.5 * u)
+
+    def cdf(self, x: float) -> float:
+        return 2.0 * _NORMAL.cdf(max(0.0, x) / self.sd) - 1.0
+
+
+class LogNormal(Struct, tag="log-normal", frozen=True):
+    """Its logarithm normal around that of ``median`` with standard deviation ``sd``."""
+
+    median: float
+    sd: float
+
+    def quantile(self, u: float) -> float:
+        return self.median * math.exp(self.sd * _NORMAL.inv_cdf(u))
+
+    def cdf(self, x: float) -> float:
+        return _NORMAL.cdf(math.log(x / self.median) / self.sd)
+
+
+class Beta(Struct, tag="beta", frozen=True):
+    """Beta with counts ``a`` and ``b``, between 0 and 1."""
+
+    a: float
+    b: float
+
+    def quantile(self, u: float) -> float:
+        return float(_beta().ppf(u, self.a, self.b))
+
+    def cdf(self, x: float) -> float:
+        return float(_beta().cdf(x, self.a, self.b))
+
+
+Prior = Uniform | LogUniform | Normal | HalfNormal | LogNormal | Beta
+
+
+def _beta() -> Any:
+    from scipy.stats import beta
+
+    return beta
