@@ -40,9 +40,13 @@ HANDLE_PACE = 0.7
 """Those who carry something together go at this share of the pace of the slowest."""
 
 PACE_M_S = 1.0
-"""T*: walking pace of the shortest path, a person's full stick speed, so that nobody can be faster."""
+"""A person's full stick speed. The least time of a task is worked out at it, so that nobody can be faster."""
 HANDLING_S = 0.5
-"""T*: least time of one pick, place or open."""
+"""Least time of one pick, place or open."""
+T_STAR_BASE_S = 14.0
+"""T* of the paper's kinds of task is this and `T_STAR_SLOWNESS` times the least time: see docs/metrics.md for why."""
+T_STAR_SLOWNESS = 2.5
+"""How much slower than at full stick somebody goes whose time is called good: 0.40 m/s."""
 
 
 def as_dict() -> dict[str, float | int]:

@@ -86,13 +86,14 @@ def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
         screen.put_json({"suite": shelf.name, "task": spec, "before": round(hard.before, 3), "score_s": hard.score})
         return
     sys.stdout.write(f"{spec.id}: {spec.instruction}\n\n")
-    share = f"{hard.level}: T* {spec.t_star:.1f} s, {100 * hard.before:.0f} % of where it is expected is nearer"
+    share = f"{hard.level}: takes at least {hard.least:.1f} s, {100 * hard.before:.0f} % of where it is expected is nearer"
     facts = [
         ("suite", f"{shelf.name} {shelf.version}"),
         ("kind", spec.kind),
         ("house", spec.house + (f" ({spec.split})" if spec.split else "")),
         ("difficulty", share),
         ("time limit", f"{spec.time_limit:.0f} s"),
+        ("T*", f"{spec.t_star:.1f} s"),
         ("person", _pose(spec.human_start)),
         *((f"robot {number}", _pose(pose)) for number, pose in enumerate(spec.robot_starts, 1)),
     ]
@@ -218,14 +219,14 @@ def _is(row: dict[str, Any], name: str, value: str) -> bool:
 
 def _verdict_row(suite: Suite, verdicts: Sequence[Verdict]) -> dict[str, Any]:
     played = sorted(verdict.seconds for verdict in verdicts if verdict.seconds)
-    shares = [verdict.t_star / verdict.seconds for verdict in verdicts if verdict.seconds]
+    shares = [verdict.least / verdict.seconds for verdict in verdicts if verdict.seconds]
     return {
         "suite": suite.name,
         "tasks": len(verdicts),
         "unsound": sum(1 for verdict in verdicts if verdict.faults),
         "median_s": played[len(played) // 2] if played else 0.0,
         "slowest_s": played[-1] if played else 0.0,
-        "t_star_share": round(max(shares, default=0.0), 3),
+        "least_share": round(max(shares, default=0.0), 3),
         "drift_mm": round(1000 * max((verdict.drift for verdict in verdicts), default=0.0), 1),
     }
 

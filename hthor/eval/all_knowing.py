@@ -1,8 +1,8 @@
 """A person who knows where everything is and does a task alone, in the real world; knows nothing of minds or scores.
 
-The walk is the shortest there is, at the pace of the proxies (`hthor.humans.parameters`, `v_pace`); turning and
-handling take what the avatar's body takes, and nothing else takes any time. So no person is quicker but by walking
-faster, and T* is never more than this.
+The walk is the shortest there is, at `PACE_M_S`, which is slow; turning and handling take what the avatar's body
+takes, and nothing else takes any time. So no person is quicker but by walking faster, and the least time is never
+more than this.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from hthor import catalog, geometry, plugins, rules
-from hthor.humans.parameters import Parameters
 from hthor.tasks.ground import Ground
 from hthor.tasks.sight import Sight
 from hthor.types import HUMAN, Drop, Job, Motion, Move, Open, Outcome, Pick, Place, Rotate, TaskSpec, Thing, Vec2, Vec3
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-PACE_M_S = Parameters().v_pace
+PACE_M_S = 0.4
 """How fast they walk."""
 _SURE = 0.98
 """Share of a range within which they trust that it will do."""

@@ -89,12 +89,12 @@ def time_spent(spec: TrialSpec, log: EpisodeLog) -> float:
 
 
 def time_weighted_success(spec: TrialSpec, log: EpisodeLog) -> float:
-    """Success weighted by time: 1 when the task was done in the least time T* or faster, 0 when it failed."""
+    """Success weighted by time: 1 when the task was done in the time T* or faster, 0 when it failed."""
     if not log.met:
         return 0.0
-    least = spec.task.t_star
-    longest = max(least, time_spent(spec, log))
-    return _rounded(least / longest) if longest > 0.0 else 1.0
+    good = spec.task.t_star
+    longest = max(good, time_spent(spec, log))
+    return _rounded(good / longest) if longest > 0.0 else 1.0
 
 
 def adoption(spec: TrialSpec, log: EpisodeLog) -> int | None:

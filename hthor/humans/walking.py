@@ -30,6 +30,7 @@ _FAMILIAR, _FAMILIAR_M = 1.5, 2.0
 _DOORWAY_M = 1.0
 _GIVE_UP, _REPLANS = 12, 100
 _POLITE_S, _AVOID_S, _TRUSTED_S = 0.5, 6.0, 10.0
+_ASIDE_RAD = math.radians(60.0)
 
 
 class Way(Struct, frozen=True, kw_only=True):
@@ -49,8 +50,8 @@ class Walker:
     """Legs and the map in the head.
 
     ``haste`` scales the pace: below 1 while reading or following a map. Nearer than ``margin`` [m] to a piece of
-    furniture, what is on the map is taken for a part of it. A person's stick gives the pace directly, one
-    short move a tick, so the mean speed on a straight way is exactly the pace.
+    furniture, what is on the map is taken for a part of it. A person's stick gives the pace directly, one short move a
+    tick; larger turns are made standing, and now and then people stop to look aside.
     """
 
     def __init__(self, me: Subject, memory: Memory, x: float, y: float, margin: float = 0.12) -> None:
@@ -58,6 +59,8 @@ class Walker:
         self._robot: tuple[float, float, float] | None = None
         self._robot_until = -1
         self._drawn = me.now.tick
+        self._stops = 0
+        self._until_stop = self._stretch()
         self._draw_map(x, y)
 
     def _draw_map(self, x: float, y: float) -> None:
@@ -171,6 +174,10 @@ class Walker:
                 if outcome is not None and not outcome.ok and outcome.motion == "move":
                     yield from self._give_way(ahead[0])
                     return False
+                self._until_stop -= me.tick_s
+                if self._until_stop <= 0.0:
+                    yield from self._look_aside()
+                    now = me.now
             else:
                 yield self._measured(motion)
                 now = me.now
@@ -178,6 +185,19 @@ class Walker:
 
     def _pace(self) -> float:
         return min(self.me.traits.v_pace * self.haste, self.me.body.speed)
+
+    def _stretch(self) -> float:
+        """Seconds under way until the next stop to look."""
+        return -self.me.traits.stop_every * math.log(self.me.draw("stop", self._stops))
+
+    def _look_aside(self) -> Deed:
+        """Stop, look to the side that chance names, and stand a moment."""
+        me, number = self.me, self._stops
+        self._stops += 1
+        self._until_stop = self._stretch()
+        yield from me.look_round(_ASIDE_RAD * me.draw("aside", number), "stop", number)
+        yield from me.rest(me.traits.stop_s)
+        return True
 
     def _measured(self, motion: Motion) -> Motion:
         if isinstance(motion, Rotate):

@@ -13,7 +13,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from hthor import catalog
+from hthor import catalog, plugins
 from hthor.catalog import priors
 from hthor.tasks.ground import Ground
 from hthor.types import HouseSpec, Placement, TaskSpec, Thing
@@ -21,7 +21,7 @@ from hthor.types import HouseSpec, Placement, TaskSpec, Thing
 Level = Literal["easy", "medium", "hard"]
 
 SEARCH_S = 20.0
-"""What it is worth [s of T*] to look at all places where people expect the target before its own: about as much as the
+"""What it is worth [s of the least time] to look at all places where people expect the target before its own: about as much as the
 success of people without a robot says."""
 MEDIUM_S, HARD_S = 22.0, 29.0
 """Where medium and hard begin: about a third of all tasks of `navigation` and `manipulation` lie in each stratum."""
@@ -30,15 +30,15 @@ _PACE_M_S, _LOOK_S = 0.4, 5.0
 
 
 class Difficulty(Struct, frozen=True, kw_only=True):
-    """``t_star`` [s], and the share [0, 1] of the priors' mass that a searcher meets before the target."""
+    """The ``least`` time [s], and the share [0, 1] of the priors' mass that a searcher meets before the target."""
 
-    t_star: float
+    least: float
     before: float
 
     @property
     def score(self) -> float:
         """Both in one number [s]."""
-        return self.t_star + SEARCH_S * self.before
+        return self.least + SEARCH_S * self.before
 
     @property
     def level(self) -> Level:
@@ -56,7 +56,8 @@ def measured(task: TaskSpec, house: HouseSpec) -> Difficulty:
     wanted = {job.target for job in task.goal.todo}
     targets = [placement for placement in task.objects if placement.id in wanted]
     shares = [_before(task, placement, house) for placement in targets]
-    return Difficulty(t_star=task.t_star, before=sum(shares) / len(shares) if shares else 0.0)
+    least = plugins.load("task kind", task.kind).least(task)
+    return Difficulty(least=least, before=sum(shares) / len(shares) if shares else 0.0)
 
 
 def _before(task: TaskSpec, target: Placement, house: HouseSpec) -> float:

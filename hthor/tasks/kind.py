@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LeastTimes = Callable[[Any], "NDArray[np.float64]"]
-"""Maps starts (N, 2) [m] to T* (N,) [s]; inf where the goal cannot be met from."""
+"""Maps starts (N, 2) [m] to least times (N,) [s]; inf where the goal cannot be met from."""
 
 
 class TaskKind(ABC):
@@ -24,12 +24,15 @@ class TaskKind(ABC):
 
     ``short`` is the word that stands for it in the ids of tasks, and names its own suite where it has one. ``crew``
     names the robots' bodies that a trial has unless its caller says otherwise; ``time_limit`` [s] is its tasks'.
+    T* is ``t_star_base`` [s] and ``t_star_slowness`` times the least time; unless a kind says otherwise, just that.
     """
 
     name: str
     short: str
     crew: tuple[str, ...] = ("scout",)
     time_limit: float = rules.TIME_LIMIT_S
+    t_star_base: float = 0.0
+    t_star_slowness: float = 1.0
 
     @abstractmethod
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
@@ -53,7 +56,7 @@ class TaskKind(ABC):
 
     @abstractmethod
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
-        """T* as a function of where the person starts."""
+        """The least time as a function of where the person starts: nobody can be faster."""
 
     def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]:
         """A goal and an arrangement that does not meet it, drawn from ``root``.
@@ -80,4 +83,12 @@ class TaskKind(ABC):
     def t_star(self, task: TaskSpec, house: HouseSpec) -> float:
         """T* [s] of a task, rounded to a millisecond; inf when it cannot be done."""
         times = self.least_times(house, task.objects, task.goal)([(task.human_start.x, task.human_start.y)])
-        return round(float(times[0]), 3) if math.isfinite(times[0]) else math.inf
+        return self.judged(float(times[0]))
+
+    def judged(self, least: float) -> float:
+        """T* [s] of a task that takes at least ``least`` [s], rounded to a millisecond."""
+        return round(self.t_star_base + self.t_star_slowness * round(least, 3), 3) if math.isfinite(least) else math.inf
+
+    def least(self, task: TaskSpec) -> float:
+        """The least time [s] that a task's T* stands for."""
+        return round((task.t_star - self.t_star_base) / self.t_star_slowness, 3)

@@ -161,7 +161,7 @@ PLANS = {
     for plan in (
         Plan(
             name="smoke",
-            version=3,
+            version=4,
             root=20240608,
             houses=SCENES,
             orders=counted((FIND, 2), (MOVE, 4)),
@@ -172,7 +172,7 @@ PLANS = {
         ),
         Plan(
             name="paper",
-            version=1,
+            version=2,
             root=20240611,
             houses=SCENES,
             orders=levelled(MOVE, (*_EASY, ("medium", 0.25)), (*_EASY, ("hard", 0.6))),
@@ -180,7 +180,7 @@ PLANS = {
         ),
         Plan(
             name="navigation",
-            version=1,
+            version=2,
             root=20240609,
             houses=SCENES,
             orders=each_triplet,
@@ -192,7 +192,7 @@ PLANS = {
         ),
         Plan(
             name="manipulation",
-            version=1,
+            version=2,
             root=20240610,
             houses=SCENES,
             orders=each_template,

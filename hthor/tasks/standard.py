@@ -38,7 +38,7 @@ REDRAWN = {
 
 PLAN = Plan(
     name="standard",
-    version=1,
+    version=2,
     root=20240620,
     houses=(*SCENES, *UNSEEN),
     orders=counted(("object_goal_navigation", 26), ("mobile_manipulation", 74)),

@@ -1,4 +1,4 @@
-"""Where a task begins: places for the person and the robots, T* as wished; knows nothing of how goals are drawn."""
+"""Where a task begins: places for the person and the robots, the least time as wished; knows nothing of how goals are drawn."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ _STARTS = 400
 
 
 class Begin(Struct, frozen=True, kw_only=True):
-    """Where everybody starts, the person first, and T* [s] from there."""
+    """Where everybody starts, the person first, and the least time [s] from there."""
 
-    t_star: float
+    least: float
     poses: tuple[Pose, ...]
 
 
@@ -42,7 +42,7 @@ def begin(
     robots: int,
     strict: bool = True,
 ) -> Begin | None:
-    """The starts of the person and of ``robots`` robots, T* as near to ``wanted`` [s] as the floor allows.
+    """The starts of the person and of ``robots`` robots, the least time as near to ``wanted`` [s] as the floor allows.
 
     The person starts on ample floor, `AWAY_M` from the target, and does not have it in view and close by.
 
@@ -71,13 +71,13 @@ def begin(
     if len(chosen) <= robots:
         return None
     poses = tuple(_pose(place, root, number) for number, place in enumerate(chosen))
-    return Begin(t_star=round(float(times[first]), 3), poses=poses)
+    return Begin(least=round(float(times[first]), 3), poses=poses)
 
 
 def _possible(
     kind: TaskKind, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal, places: Floats
 ) -> tuple[Floats, Floats]:
-    """Those of the places from which the goal can be met, and T* [s] from each."""
+    """Those of the places from which the goal can be met, and the least time [s] from each."""
     if not len(places):
         return places, np.zeros(0)
     times = kind.least_times(house, objects, goal)(places)

@@ -107,7 +107,7 @@ class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class TaskSpec(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """One task, as frozen data; ``t_star`` [s] is the least time by the shortest path.
+    """One task, as frozen data; ``t_star`` [s] is a good time by the shortest path, see `hthor.tasks.kind`.
 
     ``difficulty`` is easy, medium or hard, by the task alone; ``split`` says whether its house is one of the ten scenes
     (seen) or not (new). Both are empty in suites that do not tell.

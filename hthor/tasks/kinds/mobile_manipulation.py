@@ -1,6 +1,6 @@
 """Pick an object and place it in or on a thing of a kind: done when it rests there; knows nothing of hands.
 
-T*, the least time, is that of a person who knows where everything is:
+The least time is that of a person who knows where everything is:
 
 - a walk at `rules.PACE_M_S` along the shortest path of a body of the avatar's radius, from the start by way of a cell
   within the avatar's reach of the target (horizontally, to its centre) to a cell within reach of the nearest point of
@@ -37,6 +37,8 @@ class MobileManipulation(TaskKind):
 
     name = "mobile_manipulation"
     short = "manipulation"
+    t_star_base = rules.T_STAR_BASE_S
+    t_star_slowness = rules.T_STAR_SLOWNESS
 
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
         present = {thing.kind for thing in house.things}

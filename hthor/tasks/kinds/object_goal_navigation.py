@@ -1,6 +1,6 @@
 """Find an object: done when the person has it in view from close by; knows nothing of how people search.
 
-T*, the least time, is that of a person who knows where everything is:
+The least time is that of a person who knows where everything is:
 
 - a walk at `rules.PACE_M_S` along the shortest path of a body of the avatar's radius, from the start to the first
   standing cell from which the target is seen: its centre is at most `rules.FIND_RANGE_M` from the eyes, measured in
@@ -26,6 +26,8 @@ class ObjectGoalNavigation(TaskKind):
 
     name = "object_goal_navigation"
     short = "navigation"
+    t_star_base = rules.T_STAR_BASE_S
+    t_star_slowness = rules.T_STAR_SLOWNESS
 
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
         return tuple(Goal(target=target, relation="find") for target in catalog.TARGETS)
