@@ -22,6 +22,7 @@ from hthor.types import (
     Pose,
     Rotate,
     Scan,
+    Sighting,
     Wait,
 )
 
@@ -220,6 +221,10 @@ class Flat:
             for d in seen
             if self._sees(d.position) or d.family in ("robot", "person")
         )
+
+    def sighting(self, id):
+        seen = any(one.id == id for one in self.detections())
+        return Sighting(share=1.0 if seen else 0.0)
 
     def scan(self):
         bearings = np.linspace(-0.85, 0.85, BODY.scan_beams)

@@ -446,7 +446,7 @@ def test_hope_is_shared_among_all_that_is_missing():
         Job(target="book", relation="in", destinations=()),
     )
     mind = Mind(jobs)
-    eyes = perception.Eyes(TRAITS, 0, mind.things, mind.memory, 0.1)
+    eyes = perception.Eyes(mind.me, mind.things, mind.memory)
     errands = Errands(mind.me, eyes, mind.memory, Walker(mind.me, mind.memory, 0.0, 0.0), mind.duties)
     search = errands._for_targets
 

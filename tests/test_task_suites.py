@@ -176,11 +176,11 @@ def test_a_kind_without_a_target_gets_starts_all_the_same():
 def test_difficulty_grows_with_the_way_and_with_what_lies_before():
     task = MANIPULATION.tasks[0]
     house = houses.load(task.house)
-    far = msgspec.structs.replace(task, t_star=60.0)
+    far = msgspec.structs.replace(task, t_star=160.0)
     assert difficulty.of(far, house) == "hard"
     assert difficulty.measured(far, house).before == difficulty.measured(task, house).before
     assert 0.0 <= difficulty.measured(task, house).before <= 1.0
-    levels = [difficulty.Difficulty(t_star=t, before=0.0).level for t in (1.0, difficulty.MEDIUM_S, difficulty.HARD_S)]
+    levels = [difficulty.Difficulty(least=t, before=0.0).level for t in (1.0, difficulty.MEDIUM_S, difficulty.HARD_S)]
     assert levels == ["easy", "medium", "hard"]
 
 
@@ -247,12 +247,12 @@ def test_draw_writes_a_picture(hthor, tmp_path):
 
 def test_check_names_task_field_and_reason(hthor, tmp_path):
     task = next(task for task in PAPER.tasks if task.house == "willow")
-    late = msgspec.structs.replace(task, id="late", t_star=89.5)
+    late = msgspec.structs.replace(task, id="late", t_star=300.0)
     path = tmp_path / "own.json"
     path.write_bytes(library.encode(library.frozen("own", 1, (task, late))))
     code, out, err = hthor("tasks", "check", str(path), "--jobs", "1")
     assert code == 1
-    assert "late: t_star: is 89.5 s" in out
+    assert "late: t_star: means at least 114.4 s" in out
     assert "2/2 tasks, 1 unsound" in err
     code, out, err = hthor("tasks", "check", str(path), "--jobs", "1", "--json", "--quiet")
     assert (code, err) == (1, "")
