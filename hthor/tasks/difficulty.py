@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from hthor import catalog, plugins
 from hthor.catalog import priors
 from hthor.tasks.ground import Ground
+from hthor.tasks.kind import TaskKind
 from hthor.types import HouseSpec, Placement, TaskSpec, Thing
 
 Level = Literal["easy", "medium", "hard"]
@@ -46,18 +47,18 @@ class Difficulty(Struct, frozen=True, kw_only=True):
         return "easy" if self.score < MEDIUM_S else "medium" if self.score < HARD_S else "hard"
 
 
-def of(task: TaskSpec, house: HouseSpec) -> Level:
-    """The stratum of a task in its house."""
-    return measured(task, house).level
+def of(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Level:
+    """The stratum of a task in its house; ``kind`` is the task's, found by its name when absent."""
+    return measured(task, house, kind).level
 
 
-def measured(task: TaskSpec, house: HouseSpec) -> Difficulty:
+def measured(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Difficulty:
     """What the stratum follows from; of several targets the mean."""
+    own: TaskKind = kind or plugins.load("task kind", task.kind)
     wanted = {job.target for job in task.goal.todo}
     targets = [placement for placement in task.objects if placement.id in wanted]
     shares = [_before(task, placement, house) for placement in targets]
-    least = plugins.load("task kind", task.kind).least(task)
-    return Difficulty(least=least, before=sum(shares) / len(shares) if shares else 0.0)
+    return Difficulty(least=own.least(task), before=sum(shares) / len(shares) if shares else 0.0)
 
 
 def _before(task: TaskSpec, target: Placement, house: HouseSpec) -> float:

@@ -115,7 +115,7 @@ def task(
             continue
         made = _spec(house, kind, name, found, aim, objects)
         problem = kind.misfit(made, house)
-        if problem or (level and difficulty.of(made, house) != level):
+        if problem or (level and difficulty.of(made, house, kind) != level):
             reason = f": {problem or f'none was {level}'}"
             continue
         if best is None or abs(found.least - wanted) < abs(best[0].least - wanted):
@@ -125,7 +125,7 @@ def task(
     if best is None:
         raise HthorError(f"no arrangement was found for task '{name}' in {2 * _TRIES} tries{reason}")
     made = msgspec.structs.replace(_spec(house, kind, name, *best), split=split)
-    return msgspec.structs.replace(made, difficulty=difficulty.of(made, house)) if told else made
+    return msgspec.structs.replace(made, difficulty=difficulty.of(made, house, kind)) if told else made
 
 
 def _scene(
