@@ -22,8 +22,8 @@ from hthor.types import HouseSpec, Placement, TaskSpec, Thing
 Level = Literal["easy", "medium", "hard"]
 
 SEARCH_S = 20.0
-"""What it is worth [s of the least time] to look at all places where people expect the target before its own: about as much as the
-success of people without a robot says."""
+"""What it is worth [s of the least time] to look at all places where people expect the target before its own: about as
+much as the success of people without a robot says."""
 MEDIUM_S, HARD_S = 22.0, 29.0
 """Where medium and hard begin: about a third of all tasks of `navigation` and `manipulation` lie in each stratum."""
 _PACE_M_S, _LOOK_S = 0.4, 5.0

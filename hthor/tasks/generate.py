@@ -25,7 +25,7 @@ from hthor.tasks.starts import Begin, begin
 from hthor.types import Goal, HouseSpec, Placement, TaskSpec
 
 EASY_S, HARD_S = 4.0, 20.5
-"""Least time that the easiest and the hardest task of a house are aimed at; a small house falls short of the hardest."""
+"""Least times that the easiest and the hardest task of a house are aimed at; a small house falls short of these."""
 _CLOSE_S = 0.5
 _TRIES = 20
 
@@ -88,9 +88,10 @@ def task(
         goal: what to do; None lets the kind draw it, with an arrangement of its own (`TaskKind.draw`).
         name: the task's id, such as ``navigation/alder/apple-in-fridge``.
         fixed: a triplet that must hold for the goal's target.
-        share: how hard, in [0, 1]: the least time is aimed at that share of the way from `EASY_S` to `HARD_S`; drawn when None.
+        share: how hard, in [0, 1]: the least time is aimed at that share of the way from `EASY_S` to `HARD_S`; drawn
+            when None.
         robots: for how many robots there are starts.
-        looks: of how many arrangements the one with the time nearest to what is aimed at is taken, unless one is near enough.
+        looks: of how many arrangements the one whose time is nearest to that is taken, unless one is near enough.
         level: the stratum of difficulty that it must be of, if any.
         split: whether the house is one of the ten scenes; empty when the suite does not tell.
         serial: as `hthor.tasks.arrange.arrange` has it.

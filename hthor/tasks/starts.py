@@ -1,4 +1,4 @@
-"""Where a task begins: places for the person and the robots, the least time as wished; knows nothing of how goals are drawn."""
+"""Where a task begins: places for all, the least time as wished; knows nothing of how goals are drawn."""
 
 from __future__ import annotations
 
