@@ -13,6 +13,7 @@ from msgspec import Struct
 from hthor import plugins, rules, seeds
 from hthor.comms import claims
 from hthor.comms.mailbox import Mailbox
+from hthor.humans.journal import Recorder
 from hthor.humans.model import HumanModel
 from hthor.tasks.kind import TaskKind
 from hthor.types import (
@@ -82,7 +83,7 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
     ``progress`` is the share of the goal that is met in the end, from 0 to 1, None where the kind of task counts no
     parts; whenever it changes there is an event "progress" with its ``value``. ``idle`` says for how many ticks each
     seat's body carried out no motion, or only waited. ``journal`` is what the person's own recorder holds besides:
-    attempts, glimpses, choices, as `hthor.humans.journal` lists them; empty where the human model keeps none.
+    stick, pitch, attempts, glimpses, choices, as `hthor.humans.journal` lists them.
     """
 
     events: tuple[Event, ...]
@@ -122,6 +123,7 @@ class _Episode:
         self.faults: list[Fault] = []
         self.paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in self.minds}
         self.idle = dict.fromkeys(self.minds, 0)
+        self.recorder = Recorder(world.bodies[HUMAN], rules.TICK_S)
         self.resting: dict[str, int | None] = dict.fromkeys(self.minds, 0)
 
     def run(self) -> EpisodeLog:
@@ -155,7 +157,7 @@ class _Episode:
             faults=tuple(self.faults),
             progress=self.advances.value,
             idle=self.idle,
-            journal=tuple(getattr(self.human, "journal", ())),
+            journal=self.recorder.journal(getattr(self.human, "journal", ()), self.events),
         )
 
     def _tick(self) -> None:
@@ -171,6 +173,8 @@ class _Episode:
             if action.say is not None:
                 self._say(seat, action)
             if world.idle(seat):
+                if seat == HUMAN:
+                    self.recorder.motion(world.tick, action.motion)
                 world.start(seat, action.motion)
                 self._rest(seat, isinstance(action.motion, Wait) or world.idle(seat))
         self.events.extend(world.advance())
@@ -264,6 +268,8 @@ class _Episode:
         for seat, path in self.paths.items():
             pose = self.world.pose(seat)
             path.append((round(pose.x * 1000), round(pose.y * 1000), round(pose.yaw * 1000)))
+            if seat == HUMAN:
+                self.recorder.head(self.world.tick, pose.pitch)
 
 
 class _Progress:

@@ -26,7 +26,7 @@ class UnknownName(HthorError):
     """
 
     def __init__(self, what: str, given: str, valid: Iterable[str], hint: str = "") -> None:
-        self.what, self.given, self.valid = what, given, tuple(valid)
+        self.what, self.given, self.valid, self.hint = what, given, tuple(valid), hint
         near = difflib.get_close_matches(str(given), self.valid, n=1, cutoff=0.5)
         guess = f" Did you mean '{near[0]}'?" if near else ""
         listed = ", ".join(self.valid[:_LISTED]) or "none"
@@ -51,6 +51,14 @@ class HouseError(HthorError):
 
 class TaskError(HthorError):
     """A suite or task file that cannot be used: names the file and the field."""
+
+    def __init__(self, file: str, field: str, problem: str) -> None:
+        self.file, self.field, self.problem = file, field, problem
+        super().__init__(f"{file}: {field}: {problem}")
+
+
+class PeopleError(HthorError):
+    """A file of people, a population or a kind, that cannot be used: names the file and the field."""
 
     def __init__(self, file: str, field: str, problem: str) -> None:
         self.file, self.field, self.problem = file, field, problem

@@ -5,6 +5,7 @@ A plug-in may also be a file of the user's, named by its path. Once loaded it go
 
 from __future__ import annotations
 
+import ast
 import functools
 import hashlib
 import importlib
@@ -67,6 +68,19 @@ def loaded(sort: str, name: str) -> ModuleType | None:
     """The plug-in's module if it was loaded before, from wherever it lies."""
     package, _ = _PACKAGES[sort]
     return sys.modules.get(f"{package}.{name}")
+
+
+def purpose(sort: str, name: str) -> str:
+    """The first sentence of a plug-in's file, up to a semicolon; read without importing it.
+
+    Args:
+        name: its name, or the path of a user's file.
+    """
+    package, _ = _PACKAGES[sort]
+    own = Path(__file__).parent.joinpath(*package.split(".")[1:]) / f"{name}{_SUFFIX}"
+    file = Path(name) if name.endswith(_SUFFIX) else own
+    text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+    return " ".join(text.split("\n\n")[0].split()).split("; ")[0].rstrip(".")
 
 
 def sha256(path: str) -> str:

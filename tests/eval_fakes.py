@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from unittest import mock
 
-from hthor import humans, seeds
+from hthor import seeds
 from hthor.episode import EpisodeLog, Fault
 from hthor.eval import cast, crews, provenance, record, session, setup
 from hthor.eval.record import Record
@@ -56,10 +56,7 @@ def run_of(
     count: int = 30, *, name: str = "helper", absent: bool = False, seed: int = 0
 ) -> tuple[Setup, tuple[Session, ...]]:
     tasks, who = suite(count), crew(*name.split("+"), absent=absent)
-    with (
-        mock.patch.object(humans, "fingerprint", return_value="12" * 32),  # the real one imports the whole proxy
-        mock.patch.object(provenance, "code_sha256", return_value="34" * 32),
-    ):
+    with mock.patch.object(provenance, "code_sha256", return_value="34" * 32):
         plan = setup.settle(tasks, who, human="proxy", seed=seed, participants=None)
         return plan, session.sessions(tasks, agent=who, seed=seed)
 

@@ -85,7 +85,7 @@ def test_version(hthor):
         (("eval", "--agent", "silent", "--suite", "smokey"), ("unknown suite 'smokey'",)),
         (
             ("eval", "--agent", "silent", "--suite", "fake", "--humans", "prox"),
-            ("unknown human model 'prox'", "'proxy'"),
+            ("unknown people 'prox'", "'proxy'", "my_human.py"),
         ),
         (("eval", "--agent", "silent", "--suite", "fake", "--robot", "scuot"), ("unknown robot 'scuot'", "'scout'")),
         (

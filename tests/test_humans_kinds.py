@@ -153,7 +153,7 @@ def test_looks_into_the_fridge_when_asked(world):
             break
     opened = [event.data["thing"] for event in events(log, "opened")]
     assert fridge.id in opened
-    assert not model._experience.misled
+    assert not model._talk.experience.misled
 
 
 def test_helps_to_carry(world):

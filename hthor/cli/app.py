@@ -9,13 +9,13 @@ from typing import Annotated
 import typer
 
 from hthor import __version__
-from hthor.cli import assets, boards, homes, lists, priors, runs, suite, tasks
+from hthor.cli import assets, boards, calibrate, homes, lists, people, priors, runs, suite, tasks
 from hthor.errors import HthorError
 
 EPILOG = (
-    "Exit codes: 0 done; 1 a check failed (a house, a task, a suite, a table), or an error of our own; 2 wrong usage "
-    "or input; 3 done, but the agent failed in some trials; 4 the agent's file does not load; 75 the run is being "
-    "written by another process; 130 interrupted, the same command resumes."
+    "Exit codes: 0 done; 1 a check failed (a house, a task, a suite, a table, a gate of a calibration), or an error of "
+    "our own; 2 wrong usage or input; 3 done, but the agent failed in some trials; 4 the agent's file does not load; "
+    "75 the run is being written by another process; 130 interrupted, the same command resumes."
 )
 
 app = typer.Typer(
@@ -29,12 +29,14 @@ app = typer.Typer(
 app.command("eval")(runs.evaluate)
 app.command("score")(runs.score)
 app.command("replay")(runs.replay)
+app.command("calibrate")(calibrate.calibrate)
 app.add_typer(boards.app, name="leaderboard")
 app.add_typer(assets.app, name="assets")
 app.add_typer(homes.app, name="houses")
 app.add_typer(tasks.app, name="tasks")
 app.add_typer(suite.app, name="suite")
 app.add_typer(priors.app, name="priors")
+app.add_typer(people.app, name="humans")
 for _name, _group in lists.GROUPS.items():
     app.add_typer(_group, name=_name)
 

@@ -1,8 +1,7 @@
-"""`hthor agents`, `agent`, `humans` and `robots`: what there is; evaluates nothing."""
+"""`hthor agents`, `agent` and `robots`: what there is; evaluates nothing."""
 
 from __future__ import annotations
 
-import ast
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,10 +14,9 @@ from hthor.cli.runs import Json
 
 agents = typer.Typer(no_args_is_help=True, help="Robots' minds that ship with hthor.")
 agent = typer.Typer(no_args_is_help=True, help="Your own robot's mind.")
-humans = typer.Typer(no_args_is_help=True, help="Human models.")
 robots = typer.Typer(no_args_is_help=True, help="Robots' bodies.")
 
-GROUPS = {"agents": agents, "agent": agent, "humans": humans, "robots": robots}
+GROUPS = {"agents": agents, "agent": agent, "robots": robots}
 
 for _group in GROUPS.values():
     _group.callback()(lambda: None)  # a group of one command would otherwise swallow the command's name
@@ -27,9 +25,11 @@ for _group in GROUPS.values():
 @agents.command("list")
 def list_agents(json: Json = False) -> None:
     """The robots' minds that ship with hthor, and the privileges that they declare."""
+    from hthor import plugins
+
     rows = []
-    for name, purpose in _purposes("agent"):
-        row: dict[str, Any] = {"name": name, "privileges": [], "purpose": purpose}
+    for name in plugins.names("agent"):
+        row: dict[str, Any] = {"name": name, "privileges": [], "purpose": plugins.purpose("agent", name)}
         made = _loaded("agent", name)
         row["privileges"] = list(getattr(made, "privileges", ()))
         rows.append(row)
@@ -47,17 +47,6 @@ def new_agent(
     minds.write_template(file, force)
     sys.stdout.write(f"{file}\n")
     sys.stderr.write(f"next:  hthor eval --agent {file} --humans proxy\n")
-
-
-@humans.command("list")
-def list_humans(json: Json = False) -> None:
-    """The human models."""
-    from hthor.humans import fingerprint
-
-    rows = [
-        {"name": name, "purpose": purpose, "sha256": fingerprint(name)} for name, purpose in _purposes("human model")
-    ]
-    _put(rows, json, short=("sha256",))
 
 
 @robots.command("list")
@@ -82,19 +71,6 @@ def list_robots(json: Json = False) -> None:
             }
         )
     _put(rows, json)
-
-
-def _purposes(sort: str) -> list[tuple[str, str]]:
-    """Every plug-in of a sort and the first sentence of its file, without importing any."""
-    from hthor import plugins
-
-    folder = Path(plugins.__file__).parent / {"agent": "agents", "human model": "humans/models"}[sort]
-    return [(name, _first_sentence(folder / f"{name}.py")) for name in plugins.names(sort)]
-
-
-def _first_sentence(file: Path) -> str:
-    text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
-    return " ".join(text.split("\n\n")[0].split()).split("; ")[0].rstrip(".")
 
 
 def _loaded(sort: str, name: str) -> Any:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from hthor.eval.campaign import ClosableWatcher, Done
+    from hthor.eval.matrix import Matrix
 
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder, such as runs/demo/frontier.")]
 Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output; words go to standard error.")]
@@ -30,7 +31,16 @@ def evaluate(
             show_default=False,
         ),
     ] = None,
-    humans: Annotated[str, typer.Option(help="The human model that the people are ('hthor humans list').")] = "proxy",
+    humans: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Who the people are ('hthor humans list'): a population, a kind of people or a human model, or a file "
+            "of one: pop.npz, my_kind.json, my_human.py; cautious@pop.npz is that kind out of that population. Repeat "
+            "it for several, or say 'kinds' (the population and every kind of people) or 'bracket' (the population "
+            "between those who take every offer and those who take none).",
+            show_default="proxy, the calibrated population",
+        ),
+    ] = None,
     suite: Annotated[
         str,
         typer.Option(help="The tasks ('hthor tasks list').", show_default="smoke, or the kind's own"),
@@ -95,7 +105,7 @@ def evaluate(
     The same command resumes an interrupted run, and only scores a finished one. The same seed gives the same records,
     byte for byte, with any number of jobs.
     """
-    from hthor.eval import campaign, progress, report
+    from hthor.eval import campaign, matrix, peoples, progress, report
 
     talk = screen.console(talk=True)
 
@@ -107,7 +117,7 @@ def evaluate(
     options = campaign.Options(
         agents=tuple(agent or ()),
         robots=robots,
-        human=humans,
+        humans=tuple(humans or ("proxy",)),
         suite=suite,
         kind=kind,
         robot=robot,
@@ -120,18 +130,24 @@ def evaluate(
     )
     paper = talk if json else screen.console()
     done: list[Done] = []
-    single = len(agent or ()) <= 1
+    words = options.humans
+    single = len(agent or ()) <= 1 and len(words) == 1 and words[0].partition("@")[0] not in peoples.WORDS
     for one in campaign.conduct(options, watcher):
         done.append(one)
         if single or not quiet:
             _show(paper if single else talk, one)
+    results = [one.result for one in done]
+    whole = matrix.of(results) if len({result.humans.name for result in results}) > 1 else None
+    if whole is not None:
+        _compare_peoples(paper, whole)
+    elif len(done) > 1:
+        paper.print(report.comparison_table(results))
     if len(done) > 1:
-        paper.print(report.comparison_table([one.result for one in done]))
         for one in done:
-            paper.print(f"{one.plan.name}: {one.folder}/", markup=False, highlight=False, soft_wrap=True)
+            whose = f", {one.plan.humans.name} people" if whole is not None else ""
+            _say(paper, f"{one.plan.name}{whose}: {one.folder}/")
     if json:
-        results = [one.result for one in done]
-        screen.put_json(results[0] if len(results) == 1 else results)
+        screen.put_json(whole or (results[0] if len(results) == 1 else results))
     if any(one.result.counts.faults for one in done):
         raise typer.Exit(_FAULTS_EXIT)
 
@@ -208,6 +224,17 @@ def _show(console: Console, one: Done) -> None:
     more = ", suite.json" if (folder / "suite.json").exists() else ""
     _say(console, f"files: {folder}/run.json, trials.jsonl, result.json{more}")
     _say(console, f"next:  hthor replay {folder} 0    hthor score {folder} --all    hthor leaderboard add {folder}")
+
+
+def _compare_peoples(console: Console, whole: Matrix) -> None:
+    """All scores, with whom each agent fares worst, and what does not hold for everybody."""
+    from hthor.eval import report
+
+    console.print(report.peoples_table(whole))
+    for line in report.worst_lines(whole):
+        _say(console, line)
+    for flip in whole.flips:
+        _say(console, flip.sentence)
 
 
 def _say(console: Console, text: str) -> None:

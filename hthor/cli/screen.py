@@ -38,6 +38,11 @@ def put_json(document: Any) -> None:
     sys.stdout.flush()
 
 
+def put_line(text: str) -> None:
+    """Write a paragraph to standard output, broken where somebody sees how wide the screen is."""
+    console().print(text, markup=False, highlight=False, soft_wrap=not sys.stdout.isatty())
+
+
 def put_table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """Write a table to standard output."""
     from rich import box

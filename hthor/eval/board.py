@@ -12,12 +12,13 @@ from hthor import jsonio
 from hthor.detectors import OWN
 from hthor.errors import RunError
 from hthor.eval import score
+from hthor.eval.peoples import HumansRef
 from hthor.eval.score import Counts, Hashes, Scores
 from hthor.eval.setup import PROCEDURAL, AssetsRef, KindRef, Setup, SuiteRef
 from hthor.types import RobotSeat
 
-ENTRY_SCHEMA = "hthor.entry/2"
-SCHEMA = "hthor.leaderboard/2"
+ENTRY_SCHEMA = "hthor.entry/3"
+SCHEMA = "hthor.leaderboard/3"
 
 
 class Entry(Struct, frozen=True, kw_only=True):
@@ -27,7 +28,7 @@ class Entry(Struct, frozen=True, kw_only=True):
     id: str
     name: str
     robots: tuple[RobotSeat, ...]
-    human: str
+    humans: HumansRef
     suite: SuiteRef
     kind: KindRef | None = None
     seed: int
@@ -63,7 +64,7 @@ def add(folder: Path, board: Path) -> tuple[Entry, Path]:
         id=plan.folder_name,
         name=result.name,
         robots=result.robots,
-        human=result.human,
+        humans=result.humans,
         suite=result.suite,
         kind=result.kind,
         seed=result.seed,
@@ -101,7 +102,7 @@ def _read(path: Path) -> Entry:
 
 def command(folder: Path, plan: Setup) -> str:
     """The command that finishes a run."""
-    parts = [f"hthor eval{_who(plan.robots)} --humans {plan.human}"]
+    parts = [f"hthor eval{_who(plan.robots)} --humans {plan.humans.source}"]
     if plan.kind is not None and plan.kind.sha256:
         parts.append(f"--kind {plan.kind.name}.py")
         parts += [] if (folder / "suite.json").exists() else [f"--suite {plan.suite.name}"]

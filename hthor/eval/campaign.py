@@ -1,24 +1,25 @@
-"""`hthor eval` as one function: several crews, one after the other, each in its own run; parses and prints nothing."""
+"""`hthor eval` as one function: several crews and peoples, each pair in its own run; parses and prints nothing."""
 
 from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
 
 from msgspec import Struct
 
-from hthor import detectors, plugins
-from hthor.errors import HthorError, UnknownName
-from hthor.eval import cast, crews, programme, run, setup
+from hthor import detectors
+from hthor.errors import HthorError
+from hthor.eval import cast, crews, peoples, programme, run, setup
 from hthor.eval.crews import Crew
 from hthor.eval.programme import Programme
 from hthor.eval.run import Watcher
 from hthor.eval.score import Result
 from hthor.eval.session import sessions
 from hthor.eval.setup import Setup
+from hthor.humans.people import PROXY, People
 from hthor.tasks import library
 
 RUNS = Path("runs")
@@ -30,7 +31,7 @@ class Options(Struct, frozen=True, kw_only=True):
     agents: tuple[str, ...] = ()
     robots: str = ""
     robot: str = ""
-    human: str = "proxy"
+    humans: tuple[str, ...] = (PROXY,)
     suite: str = ""
     kind: str = ""
     assets: str = ""
@@ -48,6 +49,16 @@ class ClosableWatcher(Watcher, Protocol):
         """The run is over."""
 
 
+class Part(Struct, frozen=True, kw_only=True):
+    """One run of several: who is evaluated with whom, and where that is written."""
+
+    crew: Crew
+    people: People
+    plan: Setup
+    folder: Path
+    title: str
+
+
 class Done(Struct, frozen=True, kw_only=True):
     """A run that is whole."""
 
@@ -57,7 +68,7 @@ class Done(Struct, frozen=True, kw_only=True):
 
 
 def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iterator[Done]:
-    """Run every crew's evaluation; each that is whole is given at once.
+    """Run every crew's evaluation with every people; each that is whole is given at once, peoples in turn.
 
     Everything that the user can have got wrong is looked at before the first trial is played.
 
@@ -68,55 +79,70 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
         raise HthorError(
             "name an agent with --agent, or robots and their agents with --robots tall:oracle,small:oracle."
         )
-    if options.human not in plugins.names("human model"):
-        raise UnknownName("human model", options.human, plugins.names("human model"), "Choose one with --humans.")
+    whom = peoples.expand(options.humans)
     detector = detectors.tidy(options.detector)
     pack = cast.furnish(options.assets)
     shown = setup.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
     chosen = programme.choose(options.suite, options.kind)
-    found = _crews(options, chosen, detector)
-    plans = [
-        setup.settle(
-            chosen.suite,
-            crew,
-            human=options.human,
-            seed=options.seed,
-            participants=options.participants,
-            kind=chosen.kind,
-            assets=shown,
-        )
-        for crew in found
-    ]
-    names = [plan.name for plan in plans]
+    parts = _parts(options, chosen, _crews(options, chosen, detector), whom, shown)
+    for part in parts:
+        setup.examine(part.folder, part.plan)
+    told: set[str] = set()
+    for part in parts:
+        watch = watcher(part.title)
+        try:
+            result = _perform(options, chosen, part, watch, told)
+        finally:
+            watch.close()
+        yield Done(plan=part.plan, folder=part.folder, result=result)
+
+
+def _parts(
+    options: Options,
+    chosen: Programme,
+    found: Sequence[Crew],
+    whom: Sequence[People],
+    shown: setup.AssetsRef | None,
+) -> list[Part]:
+    """Every run, each with a folder of its own."""
+    parts: list[Part] = []
+    for people in whom:
+        for crew in found:
+            plan = setup.settle(
+                chosen.suite,
+                crew,
+                human=people,
+                seed=options.seed,
+                participants=options.participants,
+                kind=chosen.kind,
+                assets=shown,
+            )
+            title = plan.name if len(whom) == 1 else f"{plan.name}, {people.name} people"
+            folder = _folder(options, plan, len(found), len(whom))
+            parts.append(Part(crew=crew, people=people, plan=plan, folder=folder, title=title))
+    names = [part.plan.name for part in parts[: len(found)]]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise HthorError(f"two agents are called '{twice[0]}'. Rename one of the files, or evaluate them one by one.")
-    folders = [_folder(options, plan, len(plans)) for plan in plans]
-    for folder, plan in zip(folders, plans, strict=True):
-        setup.examine(folder, plan)
-    for crew, plan, folder in zip(found, plans, folders, strict=True):
-        watch = watcher(plan.name)
-        try:
-            result = _perform(options, chosen, crew, plan, folder, watch)
-        finally:
-            watch.close()
-        yield Done(plan=plan, folder=folder, result=result)
+    return parts
 
 
-def _perform(
-    options: Options, chosen: Programme, crew: Crew, plan: Setup, folder: Path, watch: ClosableWatcher
-) -> Result:
+def _perform(options: Options, chosen: Programme, part: Part, watch: ClosableWatcher, told: set[str]) -> Result:
+    """One run. What was ``told`` of an earlier one is not told again."""
+    crew, plan, folder = part.crew, part.plan, part.folder
     dealt = sessions(
         chosen.suite,
         agent=crew,
-        human=options.human,
+        human=part.people,
         seed=options.seed,
         participants=plan.participants,
         kind_sha256=plan.kind.sha256 if plan.kind else "",
         assets_sha256=plan.assets.sha256 if options.assets else "",
     )
-    for note in chosen.notes:
-        watch.note(note)
+    for note in (*chosen.notes, *(f"{note}." for note in plan.humans.notes)):
+        if note not in told:
+            told.add(note)
+            watch.note(note)
     own = library.own_houses(options.suite) if options.suite and Path(options.suite).exists() else {}
     extra = {f"houses/{name}": data for name, data in own.items()}  # so that the run can be drawn by itself
     if chosen.drawn:
@@ -127,6 +153,7 @@ def _perform(
         kind=chosen.path,
         assets=options.assets,
         houses=str((folder / "houses").resolve()) if own else "",
+        people=part.people.word,
     )
     make = functools.partial(cast.player, sources)
     jobs = options.jobs or len(os.sched_getaffinity(0))
@@ -150,7 +177,9 @@ def _crews(options: Options, chosen: Programme, detector: str) -> list[Crew]:
     return [crews.form(shapes, [mind] * len(shapes), detector) for mind in minds]
 
 
-def _folder(options: Options, plan: Setup, count: int) -> Path:
+def _folder(options: Options, plan: Setup, crews: int, whom: int) -> Path:
+    """Where a run is written: peoples have folders of their own, and agents have theirs in these."""
     if options.out is None:
         return RUNS / plan.folder_name
-    return options.out if count == 1 else options.out / plan.name
+    folder = options.out if whom == 1 else options.out / plan.humans.name
+    return folder if crews == 1 else folder / plan.name

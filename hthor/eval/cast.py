@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,13 +17,16 @@ if TYPE_CHECKING:
     from hthor.episode import EpisodeLog
     from hthor.eval.record import Record
     from hthor.eval.session import Session
+    from hthor.humans.model import HumanModel
+    from hthor.humans.people import People
     from hthor.looks.pack import Pack
     from hthor.world import World
 
 
 class Sources(Struct, frozen=True, kw_only=True):
     """Where that lies which is not ours: files of minds and of bodies by their seats, the file of a kind of task,
-    the name of the furniture pack that pictures show, and the folder of the suite's own houses.
+    the name of the furniture pack that pictures show, the folder of the suite's own houses, and the word that finds the
+    people again (empty: the name in the trial does).
     """
 
     minds: dict[str, str] = {}
@@ -31,6 +34,7 @@ class Sources(Struct, frozen=True, kw_only=True):
     kind: str = ""
     assets: str = ""
     houses: str = ""
+    people: str = ""
 
 
 def furnish(assets: str) -> Pack | None:
@@ -56,6 +60,7 @@ class Stage:
     def __init__(self, sources: Sources | None = None) -> None:
         self._sources = sources or Sources()
         self._worlds: dict[object, World] = {}
+        self._people: People | None = None
         if self._sources.houses:
             from hthor import houses
 
@@ -65,7 +70,8 @@ class Stage:
 
     def enter(self, session: Session) -> Company:
         """The person and the robots of a session, new to one another."""
-        return Company(session.trials[0], self._mind)
+        first = session.trials[0]
+        return Company(self._persons(first).make(first.seed, first.participant), first.robots, self._mind)
 
     def world(self, trial: TrialSpec) -> World:
         """The world of a trial; the one of an earlier trial where house, robots, detectors and objects are the same."""
@@ -94,6 +100,18 @@ class Stage:
                 assets=pack or "",
             )
         return self._worlds[key]
+
+    def _persons(self, trial: TrialSpec) -> People:
+        """Whom the person of a trial is drawn from; kept, as all trials of a run have the same."""
+        from hthor.humans import people
+
+        if not self._sources.people:
+            return people.find(trial.human)
+        if self._people is None:
+            self._people = people.find(self._sources.people)
+        if self._people.sha256 != trial.human_sha256:
+            raise HthorError(_changed(self._sources.people))
+        return self._people
 
     def _body(self, seat: RobotSeat) -> Any:
         path = self._sources.bodies.get(seat.seat, "") if seat.robot_sha256 else ""
@@ -130,11 +148,9 @@ def _changed(path: str) -> str:
 class Company:
     """One session's person and minds. Use as a context manager: guests are processes and must be let go."""
 
-    def __init__(self, first: TrialSpec, make: Callable[[RobotSeat], Mind]) -> None:
-        from hthor.humans import people
-
-        self.human: Any = people.find(first.human).make(first.seed, first.participant)
-        self._seats = first.robots
+    def __init__(self, human: HumanModel, seats: Sequence[RobotSeat], make: Callable[[RobotSeat], Mind]) -> None:
+        self.human: Any = human
+        self._seats = tuple(seats)
         self._make = make
         self._minds: dict[str, Mind] = {}
 

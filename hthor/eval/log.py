@@ -53,10 +53,10 @@ class Log:
     def __init__(self, folder: Path) -> None:
         self.path = folder / "trials.jsonl"
         folder.mkdir(parents=True, exist_ok=True)
-        self._lock = _lock(folder)
+        self._lock = lock(folder)
         try:
             self.lines = {found.key: line for line, found in read(self.path)}
-            self.torn = _cut_torn_line(self.path)
+            self.torn = cut_torn_line(self.path)
         except BaseException:
             os.close(self._lock)
             raise
@@ -101,7 +101,7 @@ class Log:
         os.close(self._lock)
 
 
-def _lock(folder: Path) -> int:
+def lock(folder: Path) -> int:
     """Hold the folder's lock until the descriptor is closed, which the end of the process does as well."""
     handle = os.open(folder / ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
     try:
@@ -117,7 +117,7 @@ def _lock(folder: Path) -> int:
     return handle
 
 
-def _cut_torn_line(path: Path) -> int:
+def cut_torn_line(path: Path) -> int:
     """Cut what a killed writer left after the last whole line; the number of bytes that were cut."""
     if not path.exists():
         return 0

@@ -12,7 +12,9 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1]
 _ABOVE = ("cli", "__main__.py", "eval", "calibration")
-_HASHED_BY_CONTENT = ("houses/data", "houses/unseen", "tasks/suites")  # each trial names its own house's and suite's
+_HASHED_BY_CONTENT = (  # each trial names those of its own house, suite and people
+    *("houses/data", "houses/unseen", "tasks/suites", "humans/populations"),
+)
 _COUNTED = tuple(f"eval/{name}.py" for name in ("cast", "deeds", "hindrance", "metrics"))  # these decide trials' worth
 _SUFFIXES = (".py", ".json", ".txt", ".xml", ".csv")
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from hthor.eval.score import Result, Scores
 from hthor.eval.stats import Estimate
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
     from rich.table import Table
+
+    from hthor.eval.matrix import Matrix
+    from hthor.eval.peoples import HumansRef
 
 Row = tuple[str, str, Estimate]
 """Title, unit and value."""
@@ -36,18 +40,19 @@ _MORE = (
 _ONLY_WHERE_KNOWN = ("progress",)
 
 
-def result_table(result: Result, *, everything: bool = False) -> Table:
+def result_table(result: Result, *, everything: bool = False) -> RenderableType:
     """One run: a row a metric.
 
     Args:
         everything: with all that is counted, not only the main metrics.
     """
-    table = _table(f"{result.name}: {result.suite.name}, {result.counts.trials} trials, {result.human} people")
+    title = f"{result.name}: {result.suite.name}, {result.counts.trials} trials, {result.humans.name} people"
+    table = _table(title)
     for heading in ("mean", "95 % interval", "trials"):
         table.add_column(heading, justify="right")
     for title, unit, estimate in _rows(result.metrics, everything):
         table.add_row(title, number(estimate, unit), interval(estimate, unit), str(estimate.n))
-    return table
+    return _doubted(table, [result.humans])
 
 
 def kinds_table(result: Result) -> Table:
@@ -62,10 +67,11 @@ def kinds_table(result: Result) -> Table:
     return table
 
 
-def comparison_table(results: Sequence[Result]) -> Table:
+def comparison_table(results: Sequence[Result]) -> RenderableType:
     """Several runs: a column a run, the mean with its interval below."""
     first = results[0]
-    table = _table(f"{first.suite.name}, {first.counts.trials} trials, {first.human} people (95 % interval)")
+    title = f"{first.suite.name}, {first.counts.trials} trials, {first.humans.name} people (95 % interval)"
+    table = _table(title)
     for result in results:
         table.add_column(result.name, justify="right")
     for name, title, unit in _MAIN:
@@ -74,7 +80,38 @@ def comparison_table(results: Sequence[Result]) -> Table:
             table.add_row(title, *(_cell(estimate, unit) for estimate in estimates))
     if any(result.counts.faults for result in results):
         table.add_row("trials with a fault", *(str(result.counts.faults) for result in results))
-    return table
+    return _doubted(table, [result.humans for result in results])
+
+
+def peoples_table(matrix: Matrix) -> RenderableType:
+    """Agents with several peoples: a row a people, three columns an agent, the worst of each agent marked."""
+    title = f"{matrix.suite.name}, {matrix.trials} trials with each people (means; * least success)"
+    table = _table(title)
+    for agent in matrix.agents:
+        for heading in (f"{agent}\nsuccess %", "\nTWSR %", "\nadoption %"):
+            table.add_column(heading, justify="right")
+    for people in matrix.peoples:
+        cells: list[str] = []
+        for agent, cell in matrix.cells[people.name].items():
+            worst = matrix.worst.get(agent)
+            mark = "*" if worst is not None and worst.people == people.name else ""
+            cells += [mark + _bare(cell.sr), _bare(cell.twsr), _bare(cell.adoption)]
+        table.add_row(people.name, *cells)
+    return _doubted(table, matrix.peoples)
+
+
+def worst_lines(matrix: Matrix) -> Iterator[str]:
+    """With whom each agent fares worst, a line an agent."""
+    for agent, worst in matrix.worst.items():
+        rate, behind = f"{worst.sr * 100.0:.1f} %", f"{worst.behind * 100.0:.1f} points"
+        if worst.people == worst.base:
+            yield f"{agent}: no people are worse off than {worst.people}, success {rate}"
+        else:
+            yield f"{agent}: worst with {worst.people}, success {rate}, {behind} below {worst.base}"
+
+
+def _bare(estimate: Estimate) -> str:
+    return "–" if estimate.mean is None else _scaled(estimate.mean, "%")
 
 
 def _rows(scores: Scores, everything: bool) -> Iterator[Row]:
@@ -106,6 +143,15 @@ def _cell(estimate: Estimate, unit: str) -> str:
 
 def _scaled(value: float, unit: str) -> str:
     return f"{value * 100.0:.1f}" if unit == "%" else f"{value:.1f}"
+
+
+def _doubted(table: Table, whom: Iterable[HumansRef]) -> RenderableType:
+    """The table, and in one line below it where these people are not known to fit."""
+    from rich.console import Group
+    from rich.text import Text
+
+    notes = dict.fromkeys(note for people in whom for note in people.notes)
+    return Group(table, Text(f"not calibrated for this: {'; '.join(notes)}")) if notes else table
 
 
 def _table(title: str) -> Table:

@@ -93,7 +93,7 @@ def evaluate(
 def _play(book: Log, sessions: Sequence[Session], make: Make, jobs: int, watch: Watcher) -> tuple[float, int]:
     """Play sessions and write down what is new; CPU time [s] and the number of new trials."""
     cpu_s, new, other = 0.0, 0, 0
-    with _stoppable() as stop, closing(runner.perform(sessions, make, jobs=jobs)) as stream:
+    with stoppable() as stop, closing(runner.perform(sessions, make, jobs=jobs)) as stream:
         try:
             for news in stream:
                 if isinstance(news, Played):
@@ -134,7 +134,7 @@ def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
 
 
 @contextmanager
-def _stoppable() -> Iterator[threading.Event]:
+def stoppable() -> Iterator[threading.Event]:
     """Turn the first Ctrl-C or SIGTERM into a flag; a second one ends at once."""
     flag = threading.Event()
     if threading.current_thread() is not threading.main_thread():

@@ -15,12 +15,13 @@ from hthor import jsonio
 from hthor.errors import RunError
 from hthor.eval import log, metrics, setup, stats
 from hthor.eval.metrics import TrialMetrics
+from hthor.eval.peoples import HumansRef
 from hthor.eval.record import Record
 from hthor.eval.setup import AssetsRef, KindRef, Setup, SuiteRef
 from hthor.eval.stats import Estimate
 from hthor.types import RobotSeat
 
-SCHEMA = "hthor.result/2"
+SCHEMA = "hthor.result/3"
 
 
 class Scores(Struct, frozen=True, kw_only=True):
@@ -89,7 +90,7 @@ class Result(Struct, frozen=True, kw_only=True):
     schema: str = SCHEMA
     name: str
     robots: tuple[RobotSeat, ...]
-    human: str
+    humans: HumansRef
     suite: SuiteRef
     kind: KindRef | None = None
     seed: int
@@ -123,7 +124,7 @@ def _check_origin(folder: Path, record: Record, plan: Setup) -> None:
     spec = record.spec
     pairs = {
         "seed": (spec.seed, plan.seed),
-        "human_sha256": (spec.human_sha256, plan.human_sha256),
+        "human_sha256": (spec.human_sha256, plan.humans.sha256),
         "suite_sha256": (spec.suite_sha256, plan.suite.sha256),
         "rules_sha256": (spec.rules_sha256, plan.rules_sha256),
         "code_sha256": (spec.code_sha256, plan.code_sha256),
@@ -149,7 +150,7 @@ def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], ef
     return Result(
         name=plan.name,
         robots=plan.robots,
-        human=plan.human,
+        humans=plan.humans,
         suite=plan.suite,
         kind=plan.kind,
         seed=plan.seed,
@@ -170,7 +171,7 @@ def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], ef
         versions=plan.versions,
         hashes=Hashes(
             run=plan.sha256,
-            human=plan.human_sha256,
+            human=plan.humans.sha256,
             rules=plan.rules_sha256,
             code=plan.code_sha256,
             trials=hashlib.sha256(b"".join(lines)).hexdigest(),

@@ -7,10 +7,12 @@ from collections.abc import Sequence
 
 from msgspec import Struct
 
-from hthor import humans, rules, seeds
+from hthor import rules, seeds
 from hthor.detectors import OWN
 from hthor.eval import crews, provenance
 from hthor.eval.crews import Crew
+from hthor.humans import people
+from hthor.humans.people import PROXY, People
 from hthor.tasks import Suite
 from hthor.types import TaskSpec, TrialSpec
 
@@ -32,7 +34,7 @@ def sessions(
     *,
     agent: str | Crew,
     robot: str = "scout",
-    human: str = "proxy",
+    human: str | People = PROXY,
     seed: int = 0,
     participants: int | None = None,
     detector: str = OWN,
@@ -47,20 +49,21 @@ def sessions(
     Args:
         agent: a built-in agent's name or an agent file, in the body ``robot`` with the detector ``detector`` as
             `hthor.detectors.tidy` spells it; or a whole crew, which has all of that.
+        human: who the people are, as `hthor.humans.people` reads it.
         participants: how many people; by default as many as let every task be done exactly once.
         kind_sha256: hash of the file of the tasks' kind, for a kind that is not one of ours.
         assets_sha256: hash of the furniture pack that pictures show, if any.
     """
     crew = crews.form([robot], [agent], detector) if isinstance(agent, str) else agent
-    seats, fingerprint = crew.seats, humans.fingerprint(human)
+    who = people.find(human) if isinstance(human, str) else human
     rules_hash, code_hash = rules.sha256(), provenance.code_sha256()
 
     def trial(task: TaskSpec, participant: int, index: int) -> TrialSpec:
         return TrialSpec(
             task=task,
-            robots=seats,
-            human=human,
-            human_sha256=fingerprint,
+            robots=crew.seats,
+            human=who.name,
+            human_sha256=who.sha256,
             participant=participant,
             index=index,
             seed=seed,

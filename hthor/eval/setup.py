@@ -10,15 +10,18 @@ from typing import Any
 import msgspec
 from msgspec import Struct
 
-from hthor import humans, jsonio, rules
+from hthor import jsonio, rules
 from hthor.errors import RunError
-from hthor.eval import provenance
+from hthor.eval import peoples, provenance
 from hthor.eval.crews import Crew
+from hthor.eval.peoples import HumansRef
 from hthor.eval.session import people_for
+from hthor.humans import people
+from hthor.humans.people import PROXY, People
 from hthor.tasks import Suite
 from hthor.types import RobotSeat
 
-SCHEMA = "hthor.run/2"
+SCHEMA = "hthor.run/3"
 _NAME_MAX = 100
 _MADE_FIRST = (".lock", "trials.jsonl", ".run.json.*")  # a command that was killed early leaves these alone
 
@@ -58,8 +61,7 @@ class Setup(Struct, frozen=True, kw_only=True):
 
     schema: str = SCHEMA
     robots: tuple[RobotSeat, ...]
-    human: str
-    human_sha256: str
+    humans: HumansRef
     suite: SuiteRef
     kind: KindRef | None = None
     seed: int
@@ -91,7 +93,8 @@ class Setup(Struct, frozen=True, kw_only=True):
         played = Path(self.suite.name).name
         if self.kind is not None and self.kind.name != played:
             played = f"{played}-{self.kind.name}"
-        return f"{self.name}-{played}-{self.sha256[:10]}"
+        whose = "" if self.humans.name == PROXY else f"-{self.humans.name}"
+        return f"{self.name}-{played}{whose}-{self.sha256[:10]}"
 
 
 def crew_name(robots: Sequence[RobotSeat]) -> str:
@@ -106,25 +109,24 @@ def settle(
     suite: Suite,
     crew: Crew,
     *,
-    human: str,
+    human: str | People,
     seed: int,
     participants: int | None,
     kind: KindRef | None = None,
     assets: AssetsRef | None = None,
 ) -> Setup:
-    """The configuration of a run, every default resolved."""
+    """The configuration of a run, every default resolved; ``human`` as `hthor.humans.people` reads it."""
     hands = people_for(len(suite.tasks))
-    people = hands if participants is None else participants
-    whole, rest = divmod(people, hands)
+    count = hands if participants is None else participants
+    whole, rest = divmod(count, hands)
     size = len(suite.tasks)
     return Setup(
         robots=crew.listed,
-        human=human,
-        human_sha256=humans.fingerprint(human),
+        humans=peoples.refer(people.find(human) if isinstance(human, str) else human, suite, crew),
         suite=SuiteRef(name=suite.name, version=str(suite.version), sha256=suite.sha256),
         kind=kind,
         seed=seed,
-        participants=people,
+        participants=count,
         trials=whole * size + rest * size // hands,
         rules_sha256=rules.sha256(),
         code_sha256=provenance.code_sha256(),

@@ -34,6 +34,13 @@ class Aim(Struct, frozen=True, kw_only=True):
         assert seen is not None, "only what leads somewhere is weighed"
         return seen.position
 
+    @property
+    def words(self) -> str:
+        """Such as "fetch apple", or "search"."""
+        if self.duty is not None:
+            return f"{self.verb} {self.duty.known.id}"
+        return self.verb if self.claim is None else f"{self.verb} message {self.claim.number}"
+
 
 BEGIN, SEARCH, REST = Aim(verb="begin"), Aim(verb="search"), Aim(verb="rest")
 

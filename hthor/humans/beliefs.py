@@ -1,4 +1,10 @@
-"""Where a person expects the target: common knowledge mixed with not knowing; knows nothing of any one house."""
+"""Where a person expects the target: common knowledge mixed with not knowing; knows nothing of any one house.
+
+Common knowledge are the scene priors of `hthor.catalog.priors`; not knowing is the same belief in every kind of
+furniture. Searchers weigh the two against each other, and what they found out since against both ("Why are the
+batteries in the microwave?", Cognitive Research 2021): what was searched in vain loses belief by its exposure, see
+`hthor.humans.search`.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +16,8 @@ from hthor.catalog import priors
 
 @cache
 def holders() -> tuple[str, ...]:
-    """Kinds of furniture that things are put on or in, in the catalogue's order: what people search."""
-    return tuple(name for name in catalog.names() if catalog.kind(name).rests())
+    """Kinds of furniture that things are put on or in, in the catalogue's order: what people search, no crockery."""
+    return tuple(name for name in catalog.names() if catalog.kind(name).rests() and not catalog.kind(name).pickable)
 
 
 @cache

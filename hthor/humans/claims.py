@@ -57,10 +57,25 @@ class Claims:
             return Claim(number=message.id, position=message.position, duty=duty)
         return self._look(message) if self.duties.many else None
 
+    def concerns(self, message: Message) -> bool:
+        """Whether a message is about anything that there is to do, even if the person knows it already.
+
+        What is said of the thing in hand, and where it was, is out of date.
+        """
+        about, held = message.object, self.me.now.holding
+        if not about:
+            return not held
+        named = (duty for duty in self.duties.all.values() if duty.target != held)
+        if any(about in (duty.target, duty.kind) for duty in named):
+            return True
+        if any(self._names_home(duty, about) for duty in self.duties.all.values()):
+            return True
+        return self.duties.many and kind_of(about) in holders()
+
     @property
     def lead(self) -> Vec3 | None:
-        """Where a robot says that what is held may be put [m], when there are several jobs."""
-        leads = [claim.position for claim in self.kept.values() if claim.errand == "bring" and self.duties.many]
+        """Where a robot says that what is held may be put [m]."""
+        leads = [claim.position for claim in self.kept.values() if claim.errand == "bring"]
         return leads[-1] if leads else None
 
     def believe(self, claim: Claim) -> None:

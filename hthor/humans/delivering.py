@@ -35,7 +35,7 @@ class Delivering:
     ) -> None:
         self.me, self.memory, self.walker, self.approach = me, memory, walker, approach
         self.exploring, self.hands, self.duties = exploring, hands, duties
-        self._search = Search(me, memory, walker, {}, "destination")
+        self.search = Search(me, memory, walker, {}, "destination")
 
     def deliver(self, duty: Duty, lead: Vec3 | None = None) -> Deed:
         """Bring what is held where it belongs; look for that first when it is not known.
@@ -49,11 +49,14 @@ class Delivering:
             duty.spot = None  # anywhere on it will do
         knows = partial(self.duties.knows, duty)
         if lead is not None:
-            yield from self.exploring.make_for(lead, knows, self._search)
-        yield from self.exploring.look_for(self._search, knows)
+            yield from self.exploring.make_for(lead, knows, self.search)
+        if self.duties.forgot(duty) and not knows():
+            yield from self.exploring.retrace(knows)
+        yield from self.exploring.look_for(self.search, knows)
         place = self._destination(duty)
         if place is None:
             return False
+        self.memory.heading = place.id
         if not (yield from self.approach.to_place(place)):
             return False
         if place.state == "closed" and (yield from self.exploring.open(place)):
@@ -67,7 +70,7 @@ class Delivering:
         """Put it back just there: on or in what it was on or in, which has to be recognised first."""
         support = duty.job.destinations[0] if duty.job.destinations else ""
         known = partial(self._recognises, support)
-        yield from self.exploring.make_for(spot, known, self._search)
+        yield from self.exploring.make_for(spot, known, self.search)
         if not (yield from self.approach.to_object(spot, support, self.me.body.reach * REACH)):
             return False
         place = self.memory.places.get(support) or self.memory.at(spot)

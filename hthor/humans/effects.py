@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from typing import Protocol
 
 import msgspec
 
@@ -10,11 +12,25 @@ from hthor import seeds
 from hthor.humans.parameters import Parameters
 from hthor.humans.registry import PARAMETERS
 
+_LEAST_SHARE = 1e-3
+"""A share is kept so far from 0 and 1, where its logit has no value."""
 
-def individual(population: Parameters, root: int) -> Parameters:
+
+class Effect(Protocol):
+    """How far people are from their population's mean in one parameter: see `hthor.humans.registry.Parameter`."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def effect(self) -> float: ...
+    @property
+    def scale(self) -> str: ...
+
+
+def individual(population: Parameters, root: int, effects: Iterable[Effect] = PARAMETERS) -> Parameters:
     """The population's parameters with the random effects of the person whose chances have this ``root``."""
     own: dict[str, float] = {}
-    for parameter in PARAMETERS:
+    for parameter in effects:
         if parameter.effect:
             off = population.sigma * parameter.effect * seeds.normal(root, "effect", parameter.name)
             own[parameter.name] = _moved(getattr(population, parameter.name), off, parameter.scale)
@@ -33,5 +49,6 @@ def _moved(value: float, off: float, scale: str) -> float:
     if scale == "log":
         return value * math.exp(off)
     if scale == "logit":
-        return 1.0 / (1.0 + math.exp(-math.log(value / (1.0 - value)) - off))
+        share = min(max(value, _LEAST_SHARE), 1.0 - _LEAST_SHARE)
+        return 1.0 / (1.0 + math.exp(-math.log(share / (1.0 - share)) - off))
     return value + off

@@ -14,10 +14,11 @@ from hthor.humans.approach import PATIENCE, REACH, Approach
 from hthor.humans.beliefs import expectation
 from hthor.humans.delivering import Delivering
 from hthor.humans.exploring import Exploring
+from hthor.humans.following import Following
 from hthor.humans.hands import Hands
 from hthor.humans.hauling import Hauling
 from hthor.humans.jobs import Duties, Duty
-from hthor.humans.memory import Memory, Place
+from hthor.humans.memory import Memory
 from hthor.humans.perception import Eyes
 from hthor.humans.search import Search
 from hthor.humans.subject import Deed, Subject
@@ -27,7 +28,6 @@ from hthor.types import Detection, Pick, Vec3
 _FOUND_M = 1.3
 _SLACK_M = 0.04
 _BLINK_S = 0.4
-_VIEWS = 3
 _TRIES = 3
 _REST_S = 4.0
 
@@ -40,6 +40,7 @@ class Errands:
         self.hands = Hands(me)
         self.exploring = Exploring(me, eyes, memory, walker, self.hands)
         self.approach = Approach(me, eyes, memory, walker)
+        self.following = Following(me, eyes, memory, walker, self.exploring)
         self.delivering = Delivering(me, memory, walker, self.approach, self.exploring, self.hands, duties)
         self.hauling = Hauling(me, memory, walker, self.approach, self.exploring, self.hands, duties)
         self._patience = _TRIES if duties.many else PATIENCE
@@ -55,14 +56,22 @@ class Errands:
 
     def expect(self, missing: Sequence[Duty]) -> None:
         """These are the objects to search for: hope lies where any of them may be, but hardly where it shall go."""
+        search, w_prior = self._for_targets, self.me.traits.w_prior
+        search.hope, search.knowledge, search.uniform = (self._hope(missing, share) for share in (w_prior, 1.0, 0.0))
+
+    def _hope(self, missing: Sequence[Duty], w_prior: float) -> dict[str, float]:
         hope: dict[str, float] = {}
         for duty in missing:
-            wanted = expectation(duty.kind, self.me.traits.w_prior)
+            wanted = expectation(duty.kind, w_prior)
             for home in duty.job.destinations:
                 if home in wanted:
                     wanted = {**wanted, home: wanted[home] * self.me.traits.dest_factor}
             hope = {kind: hope.get(kind, 0.0) + share / len(missing) for kind, share in wanted.items()}
-        self._for_targets.hope = hope
+        return hope
+
+    def searching(self, errand: str) -> Search:
+        """The search that a robot's word would spare the person: for where to "bring" what is in hand, or for it."""
+        return self.delivering.search if errand == "bring" else self._for_targets
 
     def begin(self) -> Deed:
         """Take a moment, then look round."""
@@ -104,25 +113,7 @@ class Errands:
 
     def follow(self, position: Vec3) -> Deed:
         """Go where a robot says something is, and look there; True when all was done, whatever was found."""
-        self.eyes.attention = position
-        for _ in range(PATIENCE):
-            place = self.memory.at(position)
-            arrived = yield from self.approach.to_object(
-                position, place.id if place else "", 1.0, partial(self._learnt, position, place)
-            )
-            if arrived and self.memory.at(position) is place:
-                break
-        place = self.memory.at(position)
-        if place is not None and place.state == "closed":
-            yield from self.exploring.open(place)
-        for view in range(_VIEWS):  # a claim is worth another look, from where a door or a shelf hides less
-            if view and place is not None:
-                yield from self.approach.to_place(place)
-            yield from self.me.look_at(position)
-            yield from self.me.rest(self.me.traits.t_look)
-        if place is not None:
-            self.memory.expose(place, self.me.traits.e_done, self.me.now.tick)
-        return True
+        return (yield from self.following.follow(position))
 
     def look_into(self, position: Vec3) -> Deed:
         """Go to the furniture that a robot wants looked into, open it and look; search for it when it is next door."""
@@ -152,7 +143,3 @@ class Errands:
     def _sight_m(self, point: Vec3) -> float:
         """How far off [m] on the floor a point is near enough to the eye to count as found."""
         return math.sqrt(max(0.25, rules.FIND_RANGE_M**2 - (self.me.body.eye - point[2]) ** 2)) - _SLACK_M
-
-    def _learnt(self, position: Vec3, before: Place | None) -> bool:
-        """Whether the furniture at a position came into view on the way."""
-        return before is None and self.memory.at(position) is not None

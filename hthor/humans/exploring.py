@@ -40,7 +40,7 @@ class Exploring:
                 continue
             option, since = search.choose(), self.me.now.tick
             if option is None:
-                yield from self._wander(search)
+                yield from self._wander(search, enough)
             elif option.place is not None:
                 yield from self._inspect(option.place, option.spot, partial(search.done, option.place))
             else:
@@ -76,9 +76,7 @@ class Exploring:
 
     def _take_in(self, enough: Callable[[], bool]) -> Deed:
         """Look round in a room that was entered just now."""
-        if self.fresh is not None and not enough():
-            yield from self.look_round(self.me.traits.scan)
-        return True
+        return (yield from self._sweep(enough)) if self.fresh is not None else True
 
     def _elsewhere(self, point: Vec3, tried: list[str]) -> Option | None:
         """The entrance to another room that is nearest to a point as the crow flies."""
@@ -127,8 +125,26 @@ class Exploring:
             place.state = "open"
         return reason
 
-    def _wander(self, search: Search) -> Deed:
-        """Nothing comes to mind: go where the known floor ends, search something again, or look round."""
+    def retrace(self, enough: Callable[[], bool]) -> Deed:
+        """Look round here and in one room after the other that was entered before, the nearest first."""
+        left = dict(self.memory.entered)
+        yield from self.look_round(self.me.traits.scan)
+        while not enough():
+            left.pop(self.me.now.room, None)
+            if not left:
+                return False
+            far = self.walker.planner.distances(self.me.here, list(left.values()))
+            yield from self.walker.go(left.pop(min(zip(far, left, strict=True))[1]), stop=enough)
+            yield from self._sweep(enough)
+        return True
+
+    def _sweep(self, enough: Callable[[], bool]) -> Deed:
+        if not enough():
+            yield from self.look_round(self.me.traits.scan)
+        return True
+
+    def _wander(self, search: Search, enough: Callable[[], bool]) -> Deed:
+        """Nothing comes to mind: go where the known floor ends, search something again, or go back and look round."""
         since = self.me.now.tick
         edges = frontiers(self.walker.grid, self.walker.planner, self.me.now.pose)
         if edges:
@@ -140,8 +156,7 @@ class Exploring:
         spots = search.spots(place) if place is not None else []
         if place is not None and spots:
             return (yield from self._inspect(place, spots[0]))
-        yield from self.look_round(self.me.traits.scan)
-        return True
+        return (yield from self.retrace(enough))
 
     def look_round(self, angle: float) -> Deed:
         """Look round the room."""

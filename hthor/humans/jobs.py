@@ -95,12 +95,16 @@ class Duties:
         return place.kind in duty.job.destinations or place.id in duty.job.destinations
 
     def places(self, duty: Duty) -> list[Place]:
-        """The places known where the object belongs."""
-        return [place for place in self.memory.places.values() if self.serves(duty, place)]
+        """The places known where the object belongs, and not forgotten since."""
+        return [place for place in self.memory.places.values() if place.recalled and self.serves(duty, place)]
 
     def knows(self, duty: Duty) -> bool:
         """Whether the person knows where to bring the object."""
-        return duty.spot is not None or any(self.serves(duty, place) for place in self.memory.places.values())
+        return duty.spot is not None or bool(self.places(duty))
+
+    def forgot(self, duty: Duty) -> bool:
+        """Whether the person came across a place where the object belongs, and could not tell any more where."""
+        return any(not place.recalled and self.serves(duty, place) for place in self.memory.places.values())
 
     def _duty(self, job: Job, known: Known) -> Duty:
         return Duty(job=job, kind=kind_of(job.target), known=known, spot=self._remembered(job))

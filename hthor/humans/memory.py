@@ -17,7 +17,9 @@ _BEYOND_M = 0.6
 class Place(Struct, kw_only=True):
     """A piece of furniture as last seen, and how well it was searched.
 
-    ``exposure`` is the rate of noticing gathered there, as it stood at tick ``since``; it fades.
+    ``exposure`` is the rate of noticing gathered there, as it stood at tick ``since``; it fades. ``at`` is the tick at
+    which it was in view last, after coming into view for the time number ``views``. ``recalled`` says whether the
+    person could still tell where it is, ``lost`` how often they could not.
     """
 
     id: str
@@ -28,6 +30,10 @@ class Place(Struct, kw_only=True):
     state: str = ""
     exposure: float = 0.0
     since: int = 0
+    at: int = -1
+    views: int = 0
+    recalled: bool = True
+    lost: int = 0
 
     def covers(self, point: Vec3, margin: float = 0.1) -> bool:
         """Whether a point lies on or in it, seen from above."""
@@ -74,7 +80,8 @@ class Doorway(Struct, kw_only=True):
 class Memory:
     """The house as far as it was seen in this trial. ``tau`` [ticks] is the time constant of forgetting searches.
 
-    ``entered`` is where each room was entered for the first time [m].
+    ``entered`` is where each room was entered for the first time [m], ``heading`` the id of the furniture that the
+    person is bringing something to, empty at first.
     """
 
     def __init__(self, tau: float) -> None:
@@ -82,6 +89,7 @@ class Memory:
         self.places: dict[str, Place] = {}
         self.doorways: dict[str, Doorway] = {}
         self.entered: dict[str, Vec2] = {}
+        self.heading = ""
         self._here: Vec2 | None = None
         self._at: dict[tuple[Vec3, float], tuple[int, Place | None]] = {}
 
@@ -103,8 +111,13 @@ class Memory:
         if place is None:
             place = Place(id=seen.id, kind=seen.kind, centre=seen.position, size=seen.size, yaw=seen.yaw)
             self.places[seen.id] = place
+        place.recalled = True
         place.state = seen.state if seen.state and _hides(seen.kind) else ""  # a drawer is not worth opening
         return place
+
+    def lose(self, place: Place) -> None:
+        """The person could not tell any more where this place is. Coming across it they would search it as before."""
+        place.recalled, place.lost = False, place.lost + 1
 
     def keep_doorway(self, seen: Detection, here: Vec2, room: str) -> None:
         """Remember a doorway, and from which room it was seen directly."""

@@ -3,6 +3,11 @@
 A human model is one file in ``hthor/humans/models`` that defines ``class Model``. It is made once a session from a
 `Person` and what is left of earlier trials, and goes through the trials of the session in order: ``begin``, ``act``
 until the trial ends, ``rate``.
+
+The file may also have a function ``ingredients(source: str) -> dict``: plain JSON values that tell what the model is
+made from besides the file and the person, such as the hash of its weights; they become part of the people's hash. A
+model named with a source (``replay:runs/demo``) is made with it: ``Model(person, source="/path/runs/demo")``. A class
+that says ``alike = True`` knows no differences between people, and is given the population's mean.
 """
 
 from __future__ import annotations

@@ -82,16 +82,16 @@ class Beta(Struct, tag="beta", frozen=True):
     b: float
 
     def quantile(self, u: float) -> float:
-        return float(_beta().ppf(u, self.a, self.b))
+        return float(_special().betaincinv(self.a, self.b, u))
 
     def cdf(self, x: float) -> float:
-        return float(_beta().cdf(x, self.a, self.b))
+        return float(_special().betainc(self.a, self.b, min(1.0, max(0.0, x))))
 
 
 Prior = Uniform | LogUniform | Normal | HalfNormal | LogNormal | Beta
 
 
-def _beta() -> Any:
-    from scipy.stats import beta
+def _special() -> Any:
+    from scipy import special  # comes with the core: scikit-image needs it
 
-    return beta
+    return special

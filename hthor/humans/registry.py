@@ -5,14 +5,21 @@ Knows nothing of how parameters are used or fitted.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
-from typing import Literal
+from typing import Any, Literal
 
+import numpy as np
 from msgspec import Struct
 
 from hthor.errors import UnknownName
 from hthor.humans.parameters import Parameters
 from hthor.humans.prior import Beta, HalfNormal, LogNormal, LogUniform, Normal, Prior, Uniform
+
+MIND = 1
+"""Version of the proxy's mind: raised when a person with the same numbers would behave otherwise than before.
+
+Populations fitted to another version are no longer known to fit."""
 
 Grade = Literal["A", "A-", "B", "B-", "C", "own"]
 """A: identified by the published numbers (A-: weakly); B: by logs of sessions (B-: weakly); C: by the literature only;
@@ -209,3 +216,20 @@ def from_unit(point: tuple[float, ...] | list[float]) -> Parameters:
 def to_unit(population: Parameters) -> tuple[float, ...]:
     """The quantile of each free parameter in its prior."""
     return tuple(p.prior.cdf(getattr(population, p.name)) for p in PARAMETERS if p.prior is not None)
+
+
+def physical(points: Any) -> Any:
+    """Populations at points of the unit cube, in physical units: (N, P) to (N, P), see `from_unit`."""
+    return _by_column(points, [p.prior.quantile for p in PARAMETERS if p.prior is not None])
+
+
+def unit(values: Any) -> Any:
+    """Quantiles of populations in their priors: the inverse of `physical`."""
+    return _by_column(values, [p.prior.cdf for p in PARAMETERS if p.prior is not None])
+
+
+def _by_column(table: Any, functions: list[Callable[[float], float]]) -> Any:
+    held = np.asarray(table, dtype=np.float64)
+    if held.ndim != 2 or held.shape[1] != len(functions):
+        raise ValueError(f"a table with {len(functions)} columns is expected, got the shape {held.shape}")
+    return np.array([[f(x) for f, x in zip(functions, row, strict=True)] for row in held.tolist()]).reshape(held.shape)

@@ -6,54 +6,82 @@ Knows nothing of how they get there.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from msgspec import Struct
 
-from hthor.humans import standing
+from hthor.humans import situations, standing
 from hthor.humans.memory import Doorway, Memory, Place
 from hthor.humans.subject import Subject
 from hthor.humans.walking import Walker
 from hthor.types import Vec2
 
 _STALE_TICKS = 100
-_DOOR_S = 2.0
-_SETTLE_S = 1.0
+DOOR_S = 2.0
+SETTLE_S = 1.0
 
 
 class Option(Struct, frozen=True, kw_only=True):
-    """Search ``place``, or go through ``doorway``; ``value`` is what it promises for its time, ``spot`` where to go."""
+    """Search ``place``, or go through ``doorway``: ``value`` is what it promises for its time, ``spot`` where to go.
+
+    ``metres`` is the way there, ``seconds`` what it takes, ``exposure`` how well the place was searched already.
+    """
 
     name: str
     value: float
     spot: Vec2
     place: Place | None = None
     doorway: Doorway | None = None
+    metres: float = 0.0
+    seconds: float = 0.0
+    exposure: float = 0.0
 
 
 class Search:
     """Weighs and chooses.
 
+    ``knowledge`` and ``uniform`` are the two parts that ``hope`` is mixed of: common knowledge, and not knowing. Where
+    they are set, choices are written into the person's journal.
+
     Args:
         hope: belief in each kind of receptacle, adding up to 1; empty when the thing wanted would have been seen.
+        name: what is looked for: "target", "destination" or "room".
     """
 
     def __init__(self, me: Subject, memory: Memory, walker: Walker, hope: Mapping[str, float], name: str) -> None:
         self.me, self.memory, self.walker, self.hope, self.name = me, memory, walker, hope, name
+        self.knowledge: Mapping[str, float] = {}
+        self.uniform: Mapping[str, float] = {}
         self._spots: dict[str, tuple[int, list[Vec2]]] = {}
         self._choices = 0
 
     def choose(self) -> Option | None:
-        """The next thing to do: chance follows value^beta (Luce), with its own luck for each option."""
-        options, number = self.options(), self._choices
+        """The next thing to do: by the person's own law, or as the policy says that decides in their place."""
+        options, number, me = self.options(), self._choices, self.me
         self._choices += 1
+        if not options:
+            return None
+        if me.policy is None:
+            chosen = self._own(options, number)
+        else:
+            told = situations.describe(self, options, number)
+            chosen = options[situations.valid(me.policy.choose(told), told)]
+        if self.knowledge:
+            me.note("choice", **situations.features(self, options, chosen, number))
+        if me.think is not None:
+            situations.tell(self, options, chosen)
+        return chosen
+
+    def _own(self, options: Sequence[Option], number: int) -> Option:
+        """Chance follows value^beta (Luce), with its own luck for each option."""
         beta = self.me.traits.beta
 
         def utility(option: Option) -> float:
             luck = -math.log(-math.log(self.me.draw("choose", self.name, number, option.name)))
             return beta * math.log(max(option.value, 1e-12)) + luck
 
-        return max(options, key=utility, default=None)
+        return max(options, key=utility)
 
     def options(self) -> list[Option]:
         """Everything that can be thought of from here."""
@@ -66,26 +94,34 @@ class Search:
         for place, some in zip(places, spots, strict=True):
             option = self._searching(place, beliefs[place.id], some, [next(distances) for _ in some])
             found += [option] if option else []
-        ahead = self._ahead(beliefs)
+        ahead = self.ahead(beliefs)
         for door in doorways:
-            seconds = next(distances) / self.me.traits.v_pace + _DOOR_S
+            metres = next(distances)
+            seconds = metres / self.me.traits.v_pace + DOOR_S
             if math.isfinite(seconds):
                 value = ahead / len(doorways) / seconds**self.me.traits.kappa
-                found.append(Option(name=f"door {door.id}", value=value, spot=door.beyond, doorway=door))
+                name = f"door {door.id}"
+                found.append(
+                    Option(name=name, value=value, spot=door.beyond, doorway=door, metres=metres, seconds=seconds)
+                )
         return found
 
-    def beliefs(self, more: bool) -> dict[str, float]:
+    def beliefs(self, more: bool, hope: Mapping[str, float] | None = None) -> dict[str, float]:
         """Belief that the target is at each known place, before it was searched.
 
         Args:
             more: whether there may be further places of each kind behind doorways.
+            hope: belief in each kind of receptacle, the person's own by default.
         """
-        kinds = [place.kind for place in self.memory.places.values()]
+        held = self.hope if hope is None else hope
+        places = self.memory.places.values()
+        kinds = Counter(place.kind for place in places)
         unseen = self.me.traits.unseen if more else 0.0
-        return {
-            place.id: self.hope.get(place.kind, 0.0) / (kinds.count(place.kind) + unseen)
-            for place in self.memory.places.values()
-        }
+        return {place.id: held.get(place.kind, 0.0) / (kinds[place.kind] + unseen) for place in places}
+
+    def ahead(self, beliefs: Mapping[str, float]) -> float:
+        """Belief that the target is behind doorways not yet passed."""
+        return max(self.me.traits.spare, 1.0 - sum(beliefs.values()))
 
     def done(self, place: Place) -> bool:
         """Whether nothing is expected any more of a place that can be seen as it is."""
@@ -107,19 +143,22 @@ class Search:
     def _distances(self, points: Sequence[Vec2]) -> Iterator[float]:
         return iter(self.walker.planner.distances(self.me.here, points) if points else ())
 
-    def _ahead(self, beliefs: Mapping[str, float]) -> float:
-        """Belief that the target is behind doorways not yet passed."""
-        return max(self.me.traits.spare, 1.0 - sum(beliefs.values()))
-
     def _searching(
         self, place: Place, belief: float, spots: Sequence[Vec2], distances: Sequence[float]
     ) -> Option | None:
         least = min(distances, default=math.inf)
         if not math.isfinite(least):
             return None
-        traits = self.me.traits
-        seconds = least / traits.v_pace + traits.t_dwell + _SETTLE_S
+        traits, exposure = self.me.traits, self.memory.exposure(place, self.me.now.tick)
+        seconds = least / traits.v_pace + traits.t_dwell + SETTLE_S
         if place.state == "closed":
             seconds += traits.t_manip
-        value = belief * math.exp(-self.memory.exposure(place, self.me.now.tick)) / seconds**traits.kappa
-        return Option(name=place.id, value=value, spot=spots[list(distances).index(least)], place=place)
+        return Option(
+            name=place.id,
+            value=belief * math.exp(-exposure) / seconds**traits.kappa,
+            spot=spots[list(distances).index(least)],
+            place=place,
+            metres=least,
+            seconds=seconds,
+            exposure=exposure,
+        )

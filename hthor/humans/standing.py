@@ -24,14 +24,18 @@ def at(place: Place, walker: Walker, front: bool = False) -> list[Vec2]:
 
 def near(point: Vec3, support: Place | None, walker: Walker, reach: float) -> list[Vec2]:
     """Spots [m] within ``reach`` metres of an object that lies on ``support``, if anything."""
+    return _usable(around(point, reach), support or _speck(point), walker)
+
+
+def around(point: Vec3, reach: float) -> list[Vec2]:
+    """Spots [m] in rings about an object, within ``reach`` metres, whatever is there."""
     x, y = point[0], point[1]
-    ring = [
+    return [
         (x + r * math.cos(a), y + r * math.sin(a))
         for r in _RING_M
         if r <= reach
         for a in (2.0 * math.pi * k / _DIRECTIONS for k in range(_DIRECTIONS))
     ]
-    return _usable(ring, support or _speck(point), walker)
 
 
 def in_reach(spots: list[Vec2], point: Vec3, reach: float) -> list[Vec2]:
@@ -57,12 +61,12 @@ def _spread(half: float, wide: bool) -> list[float]:
 
 def _usable(spots: list[Vec2], place: Place, walker: Walker) -> list[Vec2]:
     """Spots known to be free; when there is none, those that might be."""
-    open_to = [spot for spot in spots if walker.planner.fits(*spot) and _clear(spot, place, walker)]
+    open_to = [spot for spot in spots if walker.planner.fits(*spot) and faces(spot, place, walker)]
     known = [spot for spot in open_to if walker.grid.at(*spot) == FREE]
     return known or open_to
 
 
-def _clear(spot: Vec2, place: Place, walker: Walker) -> bool:
+def faces(spot: Vec2, place: Place, walker: Walker) -> bool:
     """Whether nothing on the map stands between a spot and the nearest edge of the place: no wall, above all."""
     x, y, _ = to_local((spot[0], spot[1], 0.0), place.centre, place.yaw)
     w, d = place.size[0] / 2.0, place.size[1] / 2.0

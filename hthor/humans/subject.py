@@ -37,9 +37,10 @@ class Subject:
         self.journal: list[Event] = []
         self.think: Callable[[Event], None] | None = None
 
-    def note(self, kind: str, **data: Any) -> None:
-        """Write something down in the journal, under the tick of now."""
+    def note(self, kind: str, **data: Any) -> Event:
+        """Write something down in the journal, under the tick of now; what was written, for what follows from it."""
         self.journal.append(Event(tick=self.now.tick, seat=HUMAN, kind=kind, data=data))
+        return self.journal[-1]
 
     @property
     def here(self) -> Vec2:

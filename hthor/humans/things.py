@@ -15,7 +15,8 @@ _MOVED_M = 0.02
 class Known(Struct, kw_only=True):
     """One object: ``seen`` is how it was noticed last, at tick ``at`` and from ``spot`` [m]; None while not known.
 
-    ``lost`` counts how often it was not where it had been seen.
+    ``views`` counts how often it came into view, ``lost`` how often it was not where it had been seen, or that was
+    forgotten.
     """
 
     id: str
@@ -23,6 +24,7 @@ class Known(Struct, kw_only=True):
     at: int = -1
     spot: Vec2 = (0.0, 0.0)
     lost: int = 0
+    views: int = 0
 
     @property
     def taken(self) -> bool:
@@ -50,7 +52,7 @@ class Things:
         known.seen, known.at, known.spot = seen, tick, spot
 
     def lose(self, known: Known) -> None:
-        """The object is not where it was; it must be noticed anew."""
+        """The object is not where it was, or that is forgotten; it must be noticed anew."""
         known.lost += 1
         known.seen = None
         self.news += 1

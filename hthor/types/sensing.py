@@ -117,10 +117,23 @@ class DetectorSpec(Struct, frozen=True, kw_only=True):
     position_sigma: float = 0.0
 
 
+class Sighting(Struct, frozen=True, kw_only=True):
+    """How well one object is to be seen: the ``share`` of it that is in view, 0 to 1, neither hidden nor out of the
+    field of view, and how many other small objects in view are close ``beside`` it, as the eye sees them.
+    """
+
+    share: float = 0.0
+    beside: int = 0
+
+
 class Senses(Protocol):
-    """What a seat perceives at this tick, worked out only when asked; raises `StaleObservation` at a later tick."""
+    """What a seat perceives at this tick, worked out only when asked; raises `StaleObservation` at a later tick.
+
+    ``sighting`` of an object by its id is for human models: robots that run in a process of their own go without.
+    """
 
     def detections(self) -> tuple[Detection, ...]: ...
+    def sighting(self, id: str) -> Sighting: ...
     def scan(self) -> Scan: ...
     def rgb(self) -> NDArray[np.uint8]: ...
     def depth(self) -> NDArray[np.float32]: ...

@@ -8,7 +8,7 @@ from typing import Any
 from hthor.errors import UnknownName
 from hthor.looks import pack as packs
 from hthor.looks.pack import Pack
-from hthor.types import Camera, Detection, DetectorSpec, HouseSpec, RobotSpec, Scan, Senses, Vec3, View
+from hthor.types import Camera, Detection, DetectorSpec, HouseSpec, RobotSpec, Scan, Senses, Sighting, Vec3, View
 from hthor.world import contents, sight
 from hthor.world.by_tick import TickedWorld
 from hthor.world.pictures import IMAGE_SIZE, Pictures
@@ -48,6 +48,10 @@ class SeenWorld(TickedWorld):
         """What the seat's detector reports now, by id, with the errors that it has."""
         found, noise = self._gaze.detections(self._seats[seat]), self._detectors.get(seat)
         return found if noise is None else noise.report(found, self._objects, self._seed, self.tick)
+
+    def sighting(self, seat: str, id: str) -> Sighting:
+        """How well the seat sees an object now; nothing of it when it is not in view, or when it is no object."""
+        return self._gaze.sighting(self._seats[seat], id)
 
     def hidden(self, id: str, eye: Vec3) -> bool:
         """Whether furniture, walls or other objects hide an object from an eye at (x, y, z) [m].

@@ -10,8 +10,8 @@ import numpy as np
 from msgspec.structs import force_setattr
 
 from hthor import rules
-from hthor.types import HUMAN, Detection, Opening, Pose, Thing, Vec2, Vec3
-from hthor.world import glance, sight
+from hthor.types import HUMAN, Detection, Opening, Pose, Sighting, Thing, Vec2, Vec3
+from hthor.world import closely, glance, sight
 from hthor.world.doors import Doors
 from hthor.world.hiders import Hiders
 from hthor.world.landmarks import Landmark, landmarks, targets
@@ -24,7 +24,10 @@ BODY_RANGE_M = 3.0
 """People and robots are noticed at least this far away."""
 CLUTTER_RANGE_M = 2.0
 """The many small things of a house that no task asks for are noticed within this."""
+SMALL_M = 0.5
+"""What is no longer than this is a small thing, one of many that one may overlook among the others."""
 _ROUNDING_M = 1e-6
+_NOTHING = Sighting()
 
 
 class _Eye:
@@ -68,6 +71,7 @@ class Gaze:
         self._flat = self._points.data.cast("B").cast("d")  # to write single numbers fast
         self._tops = np.array([0.4 * item.size[2] for item in self._items])
         self._clutter = np.array([item.clutter for item in self._items], np.bool_)
+        self._small = np.array([max(item.size) <= SMALL_M for item in self._items], np.bool_)
         for number, seat in enumerate(seats, len(self._items)):
             self._points[number, :, 2] = 0.5 * seat.spec.height, 0.9 * seat.spec.height
         own = [scene.span.get(name, (0, 0)) for name in moving]
@@ -93,6 +97,34 @@ class Gaze:
             eye.version = version
             self._look(eye, pose)
         return eye.found
+
+    def sighting(self, seat: Seat, id: str) -> Sighting:
+        """How well the seat sees an object now; nothing of it for what it does not see, or what is no object."""
+        self.detections(seat)
+        item, eye = self._objects.get(id), self._eyes[seat.name]
+        if item is None or item.number not in eye.seen:
+            return _NOTHING
+        points = closely.samples(item.position, item.size, item.yaw, sight.points(item.position, item.size))
+        self._near[:, 0] = self._objects.present & self._small
+        hiders, pose = self._hiders, seat.pose
+        share, beside = closely.look(
+            pose.x,
+            pose.y,
+            seat.spec.eye,
+            pose.yaw,
+            pose.pitch,
+            *eye.lens,
+            points,
+            item.number,
+            self._points[: self._count, 0],
+            self._near,
+            hiders.groups,
+            hiders.spheres,
+            hiders.boxes,
+            hiders.firm,
+            hiders.count,
+        )
+        return Sighting(share=share, beside=beside)
 
     def in_view(self, seat: Seat) -> tuple[str, ...]:
         """Ids of the objects that the seat has in view within `rules.FIND_RANGE_M` of its eye, or in its hand."""

@@ -14,6 +14,22 @@ import numpy as np
 
 
 @numba.njit(cache=True, error_model="numpy")
+def facing(x: float, y: float, z: float, yaw: float, pitch: float, wide: float, high: float) -> Any:
+    """An eye [m], its forward, left and up axes, and the tangents of half its fields of view: 14 numbers."""
+    cy, sy, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
+    return x, y, z, cp * cy, cp * sy, sp, -sy, cy, 0.0, -sp * cy, -sp * sy, cp, wide, high
+
+
+@numba.njit(cache=True, error_model="numpy")
+def framed(view: Any, dx: float, dy: float, dz: float) -> bool:
+    """Whether a point at (dx, dy, dz) [m] from the eye is in the field of view."""
+    ahead = dx * view[3] + dy * view[4] + dz * view[5]
+    left = dx * view[6] + dy * view[7] + dz * view[8]
+    up = dx * view[9] + dy * view[10] + dz * view[11]
+    return bool((ahead > 0.0) & (abs(left) <= ahead * view[12]) & (abs(up) <= ahead * view[13]))
+
+
+@numba.njit(cache=True, error_model="numpy")
 def _touches(view: Any, reach: float, balls: Any, i: int) -> bool:
     """Whether ball ``i`` of (4, N), middles and radii [m], is, in part, within reach and in the field of view."""
     ex, ey, ez, fx, fy, fz = view[0], view[1], view[2], view[3], view[4], view[5]
@@ -36,7 +52,7 @@ def _touched(view: Any, reach: float, balls: Any, out: Any) -> None:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _aim_still(view: Any, reach: float, balls: Any, points: Any, out: Any, framed: Any) -> float:
+def _aim_still(view: Any, reach: float, balls: Any, points: Any, out: Any, marked: Any) -> float:
     """Of targets that never move, mark those in reach that have points to look at, and these; the farthest, squared.
 
     A point is looked at when it is in the field of view and not sure to be hidden still.
@@ -58,8 +74,8 @@ def _aim_still(view: Any, reach: float, balls: Any, points: Any, out: Any, frame
             up = dx * ux + dy * uy + dz * uz
             wx, wy = points[3, p] - ex, points[4, p] - ey
             inside = (ahead > 0.0) & (abs(left) <= ahead * w) & (abs(up) <= ahead * h)
-            framed[p] = inside & (wx * wx + wy * wy >= points[5, p] * points[5, p])
-            least, most = min(least, d2), max(most, d2 * framed[p])
+            marked[p] = inside & (wx * wx + wy * wy >= points[5, p] * points[5, p])
+            least, most = min(least, d2), max(most, d2 * marked[p])
         if most > 0.0 and least <= reach * reach:
             out[k] = True
             farthest = max(farthest, most)
@@ -67,7 +83,7 @@ def _aim_still(view: Any, reach: float, balls: Any, points: Any, out: Any, frame
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _aim(view: Any, reach: float, small: bool, points: Any, k: int, framed: Any) -> float:
+def _aim(view: Any, reach: float, small: bool, points: Any, k: int, marked: Any) -> float:
     """Mark the points of a target in reach that are in the field of view; the squared distance of the farther, or 0.
 
     A target is in reach by either of its points, a small one only by its first.
@@ -80,11 +96,8 @@ def _aim(view: Any, reach: float, small: bool, points: Any, k: int, framed: Any)
             near |= d2 <= reach * reach
         if small and not near:
             return 0.0
-        ahead = dx * view[3] + dy * view[4] + dz * view[5]
-        left = dx * view[6] + dy * view[7] + dz * view[8]
-        up = dx * view[9] + dy * view[10] + dz * view[11]
-        if (ahead > 0.0) & (abs(left) <= ahead * view[12]) & (abs(up) <= ahead * view[13]):
-            framed[k, p] = True
+        if framed(view, dx, dy, dz):
+            marked[k, p] = True
             most = max(most, d2)
     return most if near else 0.0
 
@@ -141,7 +154,7 @@ def _leeway(box: Any, px: float, py: float, pz: float, ux: float, uy: float, uz:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _close(view: Any, farthest: float, groups: Any, spheres: Any, firm: int, count: int) -> tuple[Any, Any]:
+def close(view: Any, farthest: float, groups: Any, spheres: Any, firm: int, count: int) -> tuple[Any, Any]:
     """The solids that reach into the field of view, no farther away than ``farthest``.
 
     Returns:
@@ -170,7 +183,7 @@ def _close(view: Any, farthest: float, groups: Any, spheres: Any, firm: int, cou
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _hider(ux: float, uy: float, uz: float, first: float, end: float, last: int, ids: Any, rel: Any, boxes: Any) -> int:
+def hider(ux: float, uy: float, uz: float, first: float, end: float, last: int, ids: Any, rel: Any, boxes: Any) -> int:
     """What hides the point at (ux, uy, uz) from the eye, -1 for nothing; the test is that of `hthor.rays`.
 
     Args:
@@ -236,31 +249,30 @@ def see(
     Returns:
         (N,) the targets in view.
     """
-    cy, sy, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
-    view = (x, y, z, cp * cy, cp * sy, sp, -sy, cy, 0.0, -sp * cy, -sp * sy, cp, wide, high)
+    view = facing(x, y, z, yaw, pitch, wide, high)
     moving, still = len(points), balls.shape[1] - 1
     out = np.zeros(moving + still, dtype=np.bool_)
-    framed, marked = np.zeros((moving, 2), dtype=np.bool_), np.empty(spots.shape[1], dtype=np.bool_)
+    aimed, marked = np.zeros((moving, 2), dtype=np.bool_), np.empty(spots.shape[1], dtype=np.bool_)
     seen, named, farthest = np.empty(len(out) + 1, dtype=np.int64), 0, 0.0
     if still and reach > 0.0:
         farthest = _aim_still(view, reach, balls, spots, out[moving:], marked)
     for k in range(moving):
         if wanted[k, 0] > 0.0:
-            most = _aim(view, wanted[k, 0], k < small, points, k, framed)
+            most = _aim(view, wanted[k, 0], k < small, points, k, aimed)
             out[k] = most > 0.0
             farthest = max(farthest, most)
     if farthest == 0.0:
         return seen[:0]
-    ids, rel = _close(view, math.sqrt(farthest), groups, spheres, firm, count)
+    ids, rel = close(view, math.sqrt(farthest), groups, spheres, firm, count)
     last = -1  # what hid one point probably hides the next
     for k in range(moving):
         if not out[k]:
             continue
         out[k] = False
         for p in range(2):
-            if framed[k, p]:
+            if aimed[k, p]:
                 ux, uy, uz = points[k, p, 0] - x, points[k, p, 1] - y, points[k, p, 2] - z
-                by = _hider(ux, uy, uz, wanted[k, 1], wanted[k, 2], last, ids, rel, boxes)
+                by = hider(ux, uy, uz, wanted[k, 1], wanted[k, 2], last, ids, rel, boxes)
                 if by < 0:
                     out[k] = True
                     break
@@ -272,7 +284,7 @@ def see(
         for p in range(int(balls[6, k]), int(balls[6, k + 1])):
             if marked[p]:
                 ux, uy, uz = spots[0, p] - x, spots[1, p] - y, spots[2, p] - z
-                by = _hider(ux, uy, uz, balls[4, k], balls[5, k], last, ids, rel, boxes)
+                by = hider(ux, uy, uz, balls[4, k], balls[5, k], last, ids, rel, boxes)
                 if by < 0:
                     out[moving + k] = True
                     break

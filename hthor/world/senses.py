@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hthor.errors import StaleObservation
-from hthor.types import Camera, Detection, Scan, View
+from hthor.types import Camera, Detection, Scan, Sighting, View
 
 if TYPE_CHECKING:
     from hthor.world.by_sight import SeenWorld
@@ -31,6 +31,11 @@ class Senses:
         if self._detections is None:
             self._detections = self._world.detections(self._seat)
         return self._detections
+
+    def sighting(self, id: str) -> Sighting:
+        """How well an object is to be seen; nothing of it for what is not in view."""
+        self._check()
+        return self._world.sighting(self._seat, id)
 
     def scan(self) -> Scan:
         """Ranges to what would stop this body: walls and furniture, not people, robots or objects."""

@@ -5,7 +5,7 @@ Knows nothing but what a headset's wearer perceives.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from hthor.humans.agenda import BEGIN, REST, SEARCH, Agenda, Aim
@@ -14,20 +14,21 @@ from hthor.humans.effects import practised
 from hthor.humans.errands import Errands
 from hthor.humans.jobs import Duties, todo
 from hthor.humans.memory import Memory
-from hthor.humans.messages import Reader
 from hthor.humans.perception import GLIMPSE_TICKS, Eyes
 from hthor.humans.person import Person
 from hthor.humans.policy import Policy
 from hthor.humans.subject import Deed, Subject
+from hthor.humans.talking import Talk
 from hthor.humans.things import Things
-from hthor.humans.trust import Experience, Trust, initial
+from hthor.humans.trust import Trust, initial
 from hthor.humans.walking import Walker
 from hthor.types import Action, Briefing, Event, Motion, Observation, Reply, Vec2, Wait
 
 _RESTARTS = 2
 _PAUSE_S = 0.5
-_MARGIN_M, _THIN_M = 0.12, 0.06
-"""What is nearer to furniture on the map belongs to it. In the kinds of one object walls behind it do as well."""
+_BUSY = ("fetch", "deliver", "haul")
+_MARGIN_M = 0.06
+"""What is nearer to furniture on the map belongs to it; walls are thicker, so that what is behind one is not."""
 
 
 class Model:
@@ -40,6 +41,10 @@ class Model:
 
     policy: Policy | None = None
     """What decides in the person's place, if anything; for models that are this one with another head."""
+    eyes: type[Eyes] = Eyes
+    """How what is in view is noticed; for models with other eyes."""
+    listener: Callable[[Event], None] | None = None
+    """Who is told what the person believes and chooses, from the next trial on; see `Subject.think`."""
 
     def __init__(self, person: Person, state: Mapping[str, Any] | None = None) -> None:
         self.person = person
@@ -50,13 +55,13 @@ class Model:
     def begin(self, briefing: Briefing) -> None:
         traits = practised(self.traits, self.trials)
         self._me = Subject(traits, self.person.trial(self.trials), briefing, self.policy)
-        self._experience = Experience()
-        self._reader = Reader(traits, self._me.root, briefing.tick_s)
+        self._me.think = self.listener
         self._memory = Memory(tau=traits.tau_mem / briefing.tick_s)
         self._things = Things(job.target for job in todo(briefing))
-        self._eyes = Eyes(traits, self._me.root, self._things, self._memory, briefing.tick_s)
+        self._eyes = self.eyes(self._me, self._things, self._memory)
         self._duties = Duties(self._me, self._memory, self._things.known)
         self._claims = Claims(self._me, self._memory, self._duties)
+        self._talk = Talk(self._me, self._claims)
         self._agenda = Agenda(self._me, self._duties, self._things, self._claims, self._memory, self._distances)
         self._walker: Walker | None = None
         self._deed: Deed | None = None
@@ -65,7 +70,7 @@ class Model:
     def act(self, observation: Observation) -> Action:
         me = self._me
         me.now = observation
-        say = self._mail(observation) if observation.inbox or self._reader.message is not None else None
+        say = self._mail(observation) if observation.inbox or self._talk.reader.now is not None else None
         if not observation.idle:
             return Action(motion=Wait(), say=say)
         walker, here = self._walker or self._awake(observation), me.here
@@ -79,10 +84,11 @@ class Model:
 
     def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the hour of help counts, not of the end
         traits, me = self.traits, self._me
+        self._eyes.end()
         self.trials += 1
         if not me.task.teammates:
             return None
-        self.trust = self.trust.after(self._experience.signal(met, traits), traits)
+        self.trust = self.trust.after(self._talk.experience.signal(met, traits), traits)
         return self.trust.report(me.normal("report"), traits)
 
     @property
@@ -90,14 +96,18 @@ class Model:
         """What the person's recorder holds of the trial so far."""
         return self._me.journal
 
+    @property
+    def about(self) -> str:
+        """What the person is about, in a word or two."""
+        return self._aim.words
+
     def state(self) -> dict[str, Any]:
         return {"trials": self.trials, "alpha": self.trust.alpha, "beta": self.trust.beta}
 
     # ------------------------------------------------------------------------------------------------- what to do next
 
     def _awake(self, observation: Observation) -> Walker:
-        margin = _THIN_M if self._duties.many else _MARGIN_M
-        self._walker = Walker(self._me, self._memory, observation.pose.x, observation.pose.y, margin)
+        self._walker = Walker(self._me, self._memory, observation.pose.x, observation.pose.y, _MARGIN_M)
         self._errands = Errands(self._me, self._eyes, self._memory, self._walker, self._duties)
         self._expected = self._agenda.missing
         self._deed = self._errands.begin()
@@ -152,7 +162,7 @@ class Model:
         if claim is not None:
             self._claims.drop(claim)
             if claim.errand != "look":
-                self._experience.misled, self._experience.helped = True, None
+                self._talk.mislead()
                 self.trust = self.trust.after(0.0, self.traits)
         aim = self._wish()
         if aim is not self._aim and aim.duty is not None:
@@ -162,23 +172,27 @@ class Model:
     # ---------------------------------------------------------------------------------------------------------- robots
 
     def _mail(self, observation: Observation) -> Reply | None:
-        """Read what came, and answer what was read."""
-        reader, tick = self._reader, observation.tick
-        reader.receive(tick, observation.inbox)
-        self._experience.offered = reader.offered
-        message = reader.ready(tick)
-        if message is None:
+        """Read what came, answer what was read, and mean to follow what was confirmed."""
+        busy = bool(observation.holding) or self._aim.verb in _BUSY
+        errands = self._errands if self._walker is not None else None
+        said = self._talk.hear(observation, self.trust.mean, busy, errands)
+        if said is None:
             return None
-        claim = self._claims.meaning(message)
-        reply = reader.answer(message, self.trust.mean, claim is not None)
-        if reply is not None and reply.accept:
-            if self._experience.helped is None and not self._experience.misled:
-                self._experience.helped = tick * self._me.tick_s
-            if claim is not None:
-                self._claims.believe(claim)
-        return reply
+        if said.claim is not None:
+            self._claims.believe(said.claim)
+            if said.claim.errand == "bring":
+                self._deed = None  # set out anew, this time to where one was told
+        return said.reply
 
     def _haste(self) -> float:
-        if self._reader.message is not None and self._reader.reading:
+        """Share of the pace that is left while reading, or while following the map to where one has never been."""
+        if self._talk.reader.reads(self._me.now.tick):
             return 1.0 / self._me.traits.k_read
-        return 1.0 / self._me.traits.k_map if self._aim.verb == "follow" else 1.0
+        aim = self._aim
+        led = aim.verb == "follow" or (
+            aim.verb == "deliver"
+            and aim.duty is not None
+            and self._claims.lead is not None
+            and not self._duties.knows(aim.duty)
+        )
+        return 1.0 / self._me.traits.k_map if led else 1.0

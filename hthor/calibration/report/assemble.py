@@ -1,0 +1,69 @@
+"""Everything that is known, put together as the findings that a page is made of; plays and draws nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import msgspec
+from msgspec import Struct
+
+from hthor.calibration.report import gates, groups, measures, misfits, published, words
+from hthor.calibration.report.document import Findings, Played, Setting, Subject
+from hthor.calibration.report.evidence import Evidence
+from hthor.calibration.report.groups import Array, Groups
+from hthor.calibration.table import Table
+from hthor.calibration.targets import Targets
+
+
+class Materials(Struct, frozen=True, kw_only=True, eq=False):
+    """What was played on the targets' suite: the subject's trials and those of simple human models, by name.
+
+    ``least`` is T* [s] by task, ``hands`` how many people together do every task once.
+    """
+
+    trials: Table
+    least: Array
+    hands: int
+    rivals: Mapping[str, Table] = {}
+
+
+def findings(
+    subject: Subject,
+    setting: Setting,
+    targets: Targets,
+    made: Materials,
+    *,
+    evidence: Evidence | None,
+    evidence_missing: str = "",
+    kinds: Sequence[Played] = (),
+    suites: Sequence[Played] = (),
+) -> Findings:
+    """The whole document, gates and known misfits included."""
+    study = published.of(targets)
+    own = _groups(made.trials, made, targets, setting.seed)
+    rivals = {name: _groups(table, made, targets, setting.seed) for name, table in made.rivals.items()}
+    bare = Findings(
+        subject=subject,
+        setting=setting,
+        published=study,
+        table=measures.table(study, made.trials, made.least, own),
+        spent=measures.spent(made.trials),
+        differences=measures.differences(made.trials, own),
+        reach=measures.reach(made.trials),
+        trust=measures.trust(made.trials, own),
+        own=measures.rival(subject.name, study, made.trials, made.least, own),
+        rivals=tuple(
+            measures.rival(name, study, made.rivals[name], made.least, drawn) for name, drawn in rivals.items()
+        ),
+        kinds=tuple(kinds),
+        suites=tuple(suites),
+        evidence=evidence,
+        evidence_missing=evidence_missing,
+        scope=words.SCOPE,
+    )
+    return msgspec.structs.replace(bare, gates=gates.judge(bare), misfits=misfits.find(bare))
+
+
+def _groups(trials: Table, made: Materials, targets: Targets, seed: int) -> dict[str, Groups]:
+    design = targets.design
+    return groups.together(trials, made.least, hands=made.hands, valid=design.valid, counted=design.counted, seed=seed)

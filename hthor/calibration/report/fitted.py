@@ -1,0 +1,179 @@
+"""The page's sections on a calibration; where there is none, a sentence each says so. Computes no statistics."""
+
+from __future__ import annotations
+
+from hthor.calibration.report import diagnostics, forecasts, html, ink, tables, words
+from hthor.calibration.report.document import Findings
+from hthor.calibration.report.evidence import Evidence
+
+
+def predictive(found: Findings) -> list[str]:
+    """Section 3: prior and posterior predictive."""
+    evidence = found.evidence
+    if evidence is None or not evidence.predictive:
+        return _without(found, "there is no before and after")
+    return [
+        html.paragraph(
+            "What study groups of six show when their population is drawn from the prior, and from the posterior. "
+            "Unlike those of section 2, each of these groups has one population of its own, so that what is not known "
+            "of the population is in the intervals too."
+        ),
+        html.table(tables.PREDICTIVE, tables.predictive(evidence.predictive, found.published.figures)),
+        html.figure(
+            ink.svg(
+                forecasts.before_after(evidence.predictive, found.published.figures),
+                "predictive",
+                "Prior and posterior predictive intervals of the published figures",
+            ),
+            "Grey: prior predictive. Colour: posterior predictive. Diamonds: published.",
+        ),
+    ]
+
+
+def held_out(found: Findings) -> list[str]:
+    """Section 4: each condition left out of the fit."""
+    evidence = found.evidence
+    own = {found.own.played.name: found.own, **{one.played.name: one for one in found.rivals}}
+    if evidence is None or not evidence.held_out:
+        scores = [
+            [name, *(words.signed(one.log_score[where], 2) for where in one.log_score)] for name, one in own.items()
+        ]
+        heads = ("human model", *(words.CONDITION[name] for name in found.own.log_score))
+        return [
+            *_without(found, "no condition can be left out of a fit"),
+            html.table(heads, scores, "Log score of the published counts and ratios [nats], higher is better"),
+        ]
+    rivals = sorted({name for part in evidence.held_out for name in part.rivals})
+    return [
+        html.paragraphs(words.held_out(evidence.held_out)),
+        html.table(tables.HELD_OUT, tables.held_out(evidence.held_out), "All nine numbers [%]", words=(0, 1, 5)),
+        html.figure(
+            ink.svg(forecasts.held_out(evidence.held_out), "heldout", "Held-out conditions and their predictions"),
+            "Each condition as the other two predict it: median and 80 % interval. Diamonds: published.",
+        ),
+        html.table(
+            (*tables.SCORES, *(f"over {name}" for name in rivals)),
+            tables.scores(evidence.held_out, rivals),
+            "Log predictive density of the published counts and ratio [nats]",
+            words=(0, 1),
+        ),
+        html.figure(
+            ink.svg(forecasts.scores(found), "scores", "Log scores of held-out conditions"),
+            "Log scores by condition. A gain of one nat makes the published data 2.7 times as likely.",
+        ),
+    ]
+
+
+def parameters(found: Findings) -> list[str]:
+    """Section 5: contraction and recovery."""
+    evidence = found.evidence
+    if evidence is None or not evidence.parameters:
+        return _without(found, "no parameter was fitted")
+    return [
+        html.paragraphs(words.parameters(evidence.parameters)),
+        html.paragraph(
+            f"A parameter counts as {words.IDENTIFIED} when its posterior contracts by {words.CONTRACTS} or more "
+            "(1 − posterior variance / prior variance, on the prior's own scale) and simulated studies recover it with "
+            f"r of {words.RECOVERS} or more; as {words.WEAKLY} from {words.CONTRACTS_WEAKLY} and "
+            f"{words.RECOVERS_WEAKLY}.",
+            "soft",
+        ),
+        html.figure(
+            ink.svg(diagnostics.contraction(evidence.parameters), "contraction", "Contraction and recovery"),
+            "Bars: contraction. Rings: correlation of true values and posterior means over simulated studies.",
+        ),
+        html.table(tables.PARAMETERS, tables.parameters(evidence.parameters), words=(0, 1, 2)),
+    ]
+
+
+def coverage(found: Findings) -> list[str]:
+    """Section 6: coverage and ranks in simulated studies."""
+    evidence = found.evidence
+    if evidence is None or evidence.coverage is None:
+        return _without(found, "there are no intervals to check")
+    ranked = [one for one in evidence.parameters if one.ranks]
+    drawn = html.figure(
+        ink.svg(diagnostics.ranks(ranked), "ranks", "Ranks of the true values among posterior draws"),
+        "Simulation-based calibration: ranks of the truth among posterior draws. Flat is right; 95 of 100 bars of an "
+        "honest posterior end within the shaded band. A hump means intervals that are too wide, horns too narrow.",
+    )
+    return [html.paragraph(words.coverage(evidence.coverage)), drawn if ranked else ""]
+
+
+def emulator(found: Findings) -> list[str]:
+    """Section 7: emulator and ABC."""
+    evidence = found.evidence
+    if evidence is None or not evidence.emulated:
+        return _without(found, "no emulator was needed")
+    drawn = html.figure(
+        ink.svg(diagnostics.reliability(evidence.emulated), "reliability", "What the emulator said against what came"),
+        "Trials that the emulators were not trained on, by the chance that was said. On the dashed line is right.",
+    )
+    return [
+        html.paragraph(words.emulator(evidence)),
+        html.table(
+            tables.EMULATED,
+            tables.emulated(evidence.emulated),
+            "z sd: of errors on whole studies. Log score: a held-out trial [nats]; baseline: always saying the mean",
+            words=(0, 1),
+        ),
+        drawn if any(one.bins for one in evidence.emulated) else "",
+        html.paragraph(words.cross_check(evidence.abc)) if evidence.abc else "",
+        html.table(
+            ("parameter", "shift of the median [posterior sd]"),
+            [[one.name, words.signed(one.shift, 2)] for one in evidence.abc],
+        )
+        if evidence.abc
+        else "",
+    ]
+
+
+def ranking(found: Findings) -> list[str]:
+    """Section 9: rankings over draws, parameters, suites and kinds of people."""
+    return [*_draws(found, found.evidence), *_suites(found), *_kinds(found)]
+
+
+def _draws(found: Findings, evidence: Evidence | None) -> list[str]:
+    if evidence is None or not evidence.rankings:
+        return _without(found, "there are no draws to rank the robots by")
+    parts = [
+        html.paragraphs(words.ranking(one) for one in evidence.rankings),
+        html.table(tables.RANKINGS, tables.rankings(evidence.rankings)),
+    ]
+    home = evidence.rankings[0]
+    if home.swings:
+        drawing = ink.svg(diagnostics.swings(home.swings), "swings", "What each parameter does to the gaps")
+        parts += [
+            html.paragraphs(words.swings(home, evidence.parameters)),
+            html.figure(
+                drawing,
+                "Mean gap in success between two robots with one parameter at the low and at the high end of its prior "
+                "and the others at posterior draws.",
+            ),
+        ]
+    return parts
+
+
+def _suites(found: Findings) -> list[str]:
+    if not found.suites:
+        return []
+    return [
+        "<h3>By suite</h3>",
+        html.paragraph(words.suites(found)),
+        html.table(("suite", *tables.MODELS[1:]), tables.models(found.suites), "Means [%]"),
+    ]
+
+
+def _kinds(found: Findings) -> list[str]:
+    if not found.kinds:
+        return []
+    return [
+        "<h3>By kind of people</h3>",
+        html.paragraph(words.kinds(found)),
+        html.table(tables.MODELS, tables.models(found.kinds), "Means [%]"),
+    ]
+
+
+def _without(found: Findings, so: str) -> list[str]:
+    why = found.evidence_missing or "The calibration says nothing of this."
+    return [html.paragraph(f"{why} So {so}.", "note")]

@@ -1,0 +1,63 @@
+"""The page's style sheet: light and dark paper, screen and print; knows nothing of what is on the page."""
+
+from __future__ import annotations
+
+from hthor.calibration.report import ink
+
+_RULES = """
+*{box-sizing:border-box}
+html{-webkit-text-size-adjust:100%}
+body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 Charter,"Bitstream Charter",Georgia,serif}
+main{max-width:62rem;margin:0 auto;padding:2.5rem 1.5rem 4rem}
+h1{font-size:1.7rem;line-height:1.25;margin:0 0 .4rem}
+h2{font-size:1.2rem;margin:3rem 0 .6rem;padding-top:.7rem;border-top:1px solid var(--line)}
+h2 span{color:var(--soft);font-weight:normal;margin-right:.35rem}
+h3{font-size:1rem;margin:1.6rem 0 .4rem}
+p,ul{max-width:46rem;margin:.6rem 0}
+.soft,figcaption,caption,footer,dt{color:var(--soft)}
+.lead{font-size:1.06rem}
+.note{border-left:3px solid var(--line);padding-left:.8rem;color:var(--soft)}
+dl{display:grid;grid-template-columns:max-content 1fr;gap:.1rem 1.2rem;margin:1rem 0;font-size:.9rem}
+dd{margin:0;overflow-wrap:anywhere}
+nav{font-size:.9rem;margin:1.2rem 0}
+nav a{color:var(--oracle);text-decoration:none;margin-right:1rem;white-space:nowrap;display:inline-block}
+nav a:hover{text-decoration:underline}
+.wide{overflow-x:auto;margin:1rem 0}
+table{border-collapse:collapse;font:.8rem/1.4 system-ui,Arial,sans-serif;font-variant-numeric:tabular-nums}
+caption{text-align:left;padding:0 0 .4rem;font-size:.85rem}
+th,td{padding:.24rem .8rem .24rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--line)}
+thead th{vertical-align:bottom;font-weight:600;border-bottom:1.5px solid var(--soft)}
+tbody th{font-weight:normal}
+.n{text-align:right;white-space:nowrap}
+thead .n{white-space:normal}
+td b{white-space:nowrap}
+td b.quiet{white-space:normal}
+b{font-weight:600}
+b.good{color:var(--oracle)}
+b.bad{color:var(--published)}
+b.quiet{color:var(--soft);font-weight:normal}
+figure{margin:1.4rem 0}
+figure svg{display:block;width:100%;height:auto;font-family:system-ui,"Helvetica Neue",Arial,sans-serif}
+figcaption{font-size:.86rem;line-height:1.45;max-width:46rem;margin-top:.3rem}
+footer{margin-top:3rem;padding-top:.7rem;border-top:1px solid var(--line);font-size:.85rem}
+code{font-size:.88em}
+@media print{
+ main{max-width:none;padding:0}
+ body{font-size:10pt}
+ nav{display:none}
+ figure,tr{break-inside:avoid}
+ h2,h3{break-after:avoid}
+ .wide{overflow:visible}
+ table{font-size:7.5pt}
+}
+"""
+
+
+def css() -> str:
+    """The whole sheet. Paper is light in print, whatever the screen is."""
+    light = "".join(f"--{name}:{colour};" for colour, name in ink.VARIABLES.items())
+    dark = "".join(f"--{name}:{ink.DARK[colour]};" for colour, name in ink.VARIABLES.items())
+    return (
+        f":root{{color-scheme:light dark;{light}}}\n"
+        f"@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}{_RULES}"
+    )

@@ -1,0 +1,232 @@
+"""Findings as rows of words and numbers, for the page and for the terminal alike; knows nothing of how they look."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hthor.calibration.report import words
+from hthor.calibration.report.document import Count, Curve, Difference, Gate, Played, Predicted, Published, Spent
+from hthor.calibration.report.evidence import FIGURES, Band, Emulated, HeldOut, ParameterFinding, Predictive, Ranking
+from hthor.calibration.report.html import Cell, Mark, mark
+
+Rows = list[list[Cell]]
+GATES = ("bar", "asks", "found", "verdict")
+TABLE = ("figure [%]", "published", "median", "90 % interval", "all trials", "covered", "off by", "allowed", "close")
+COUNTS = ("count", "k / n", "%", "read as")
+PREDICTIVE = (
+    "figure [%]",
+    "published",
+    "prior median",
+    "prior 90 %",
+    "posterior median",
+    "posterior 90 %",
+    "design effect",
+)
+HELD_OUT = ("held out", "figure", "published", "median", "80 % interval", "inside")
+SCORES = ("held out", "fitted on", "log score", "prior", "gain over the prior")
+PARAMETERS = (
+    "parameter",
+    "",
+    "what it is",
+    "prior 5 / 50 / 95 %",
+    "posterior",
+    "contraction",
+    "recovery r",
+    "coverage",
+)
+EMULATED = ("outcome", "condition", "z sd", "log score", "baseline", "gain")
+SPENT = ("condition", "trials", "minimum", "lower quartile", "median", "upper quartile", "maximum")
+DIFFERENCES = ("difference [s]", "all trials", "groups of six, median", "90 % interval")
+CURVES = ("condition", "people", "first trial", "last trial", "slope a trial")
+_MOODS = {words.IDENTIFIED: "good", words.WEAKLY: "quiet", words.NOT: "bad"}
+_VERDICTS = {"passed": "good", "failed": "bad", "not judged": "quiet"}
+
+
+def gates(found: Sequence[Gate]) -> Rows:
+    """Every bar and its verdict."""
+    return [[gate.name, gate.asks, gate.found, Mark(gate.verdict, _VERDICTS[gate.verdict])] for gate in found]
+
+
+def table(rows: Sequence[Predicted]) -> Rows:
+    """The eight published figures against simulated study groups [%]."""
+    return [
+        [
+            words.figure(row.figure),
+            words.percent(row.published),
+            words.percent(row.band.median),
+            words.span(row.band, 100.0),
+            words.percent(row.mean),
+            mark(row.covered),
+            words.signed(100.0 * (row.band.median - row.published)),
+            f"±{100.0 * row.tolerance:.0f}",
+            mark(row.close),
+        ]
+        for row in rows
+    ]
+
+
+def counts(found: Published) -> Rows:
+    """Published counts, and which of them are inferred."""
+    return [
+        [words.figure(one.figure), f"{one.k} / {one.n}", words.percent(one.k / one.n), _read(one)]
+        for one in found.counts
+    ]
+
+
+def _read(one: Count) -> Cell:
+    if one.inferred:
+        return Mark(f"inferred: {one.note}" if one.note else "inferred", "bad")
+    return Mark(one.note or "as published", "quiet")
+
+
+def predictive(rows: Sequence[Predictive], published: dict[str, float]) -> Rows:
+    """The figures before and after the fit [%]."""
+    return [
+        [
+            words.figure(row.figure),
+            words.percent(published.get(row.figure)),
+            words.percent(row.prior.median),
+            words.span(row.prior, 100.0),
+            words.percent(row.posterior.median),
+            words.span(row.posterior, 100.0),
+            "–" if row.design_effect is None else f"{row.design_effect:.2f}",
+        ]
+        for row in rows
+    ]
+
+
+def held_out(parts: Sequence[HeldOut]) -> Rows:
+    """Each figure of each condition that was left out [%]; what does not exist says so."""
+    rows: Rows = []
+    for part in parts:
+        known = {row.figure: row for row in part.figures}
+        for metric in ("sr", "twsr", "adoption"):
+            row = known.get(f"{metric} {part.condition}")
+            head: list[Cell] = [words.CONDITION[part.condition], words.METRIC[metric]]
+            if row is None:
+                rows.append([*head, "–", "–", "–", Mark("does not exist", "quiet")])
+                continue
+            numbers = [words.percent(row.published), words.percent(row.band.median), words.span(row.band, 100.0)]
+            rows.append([*head, *numbers, mark(row.inside)])
+    return rows
+
+
+def scores(parts: Sequence[HeldOut], rivals: Sequence[str]) -> Rows:
+    """Log scores [nats] of each condition that was left out, and the gains."""
+    return [
+        [
+            words.CONDITION[part.condition],
+            words.listed(words.CONDITION[name] for name in part.fitted),
+            words.signed(part.log_score, 2),
+            words.signed(part.log_score_prior, 2),
+            words.signed(part.log_score - part.log_score_prior, 2),
+            *(_gain(part, name) for name in rivals),
+        ]
+        for part in parts
+    ]
+
+
+def _gain(part: HeldOut, rival: str) -> str:
+    return words.signed(part.log_score - part.rivals[rival], 2) if rival in part.rivals else "–"
+
+
+def parameters(parts: Sequence[ParameterFinding]) -> Rows:
+    """What the published numbers say of each parameter."""
+    return [
+        [
+            one.name,
+            Mark(words.identified(one), _MOODS[words.identified(one)]),
+            f"{one.meaning} [{one.unit}]" if one.unit else one.meaning,
+            _three(one.prior),
+            _three(one.posterior) if one.fitted else "as the prior",
+            f"{max(0.0, one.contraction):.2f}",
+            "–" if one.recovery is None else words.signed(one.recovery, 2).lstrip("+"),
+            "–" if one.coverage is None else f"{one.coverage:.2f}",
+        ]
+        for one in parts
+    ]
+
+
+def _three(band: Band) -> str:
+    """Three quantiles with three digits each, never as powers of ten."""
+    return " / ".join(_short(value) for value in (band.low, band.median, band.high))
+
+
+def _short(value: float) -> str:
+    digits = 0 if abs(value) >= 100.0 else 1 if abs(value) >= 10.0 else 2 if abs(value) >= 0.1 else 3
+    return f"{value:.{digits}f}".replace("-", "−")
+
+
+def emulated(parts: Sequence[Emulated]) -> Rows:
+    """How good each emulator is."""
+    return [
+        [
+            one.outcome,
+            words.CONDITION.get(one.condition, one.condition),
+            _number(one.z_sd),
+            _number(one.score, 3),
+            _number(one.baseline, 3),
+            "–" if one.score is None or one.baseline is None else words.signed(one.score - one.baseline, 3),
+        ]
+        for one in parts
+    ]
+
+
+def _number(value: float | None, digits: int = 2) -> str:
+    return "–" if value is None else f"{value:.{digits}f}".replace("-", "−")
+
+
+def spent(parts: Sequence[Spent]) -> Rows:
+    """Time spent [s]."""
+    return [
+        [
+            words.CONDITION[one.condition],
+            str(one.trials),
+            *(f"{value:.1f}" for value in (one.least, one.lower, one.median, one.upper, one.most)),
+        ]
+        for one in parts
+    ]
+
+
+def differences(parts: Sequence[Difference]) -> Rows:
+    """Differences of the time spent [s]."""
+    return [
+        [
+            f"{one.statistic}, {words.CONDITION[one.a]} less {words.CONDITION[one.b]}",
+            words.signed(one.value),
+            words.signed(one.group.median),
+            words.span(one.group),
+        ]
+        for one in parts
+    ]
+
+
+def curves(parts: Sequence[Curve]) -> Rows:
+    """Trust in a session, 1 to 7, with standard errors."""
+    return [
+        [
+            words.CONDITION[one.condition],
+            str(one.people[0]),
+            f"{one.mean[0]:.2f} ± {one.se[0]:.2f}",
+            f"{one.mean[-1]:.2f} ± {one.se[-1]:.2f}",
+            f"{words.signed(one.slope, 3)} ± {one.slope_se:.3f}",
+        ]
+        for one in parts
+    ]
+
+
+def models(parts: Sequence[Played]) -> Rows:
+    """Several human models: the eight figures of each [%]."""
+    return [[one.name, *(words.percent(one.figures.get(name)) for name in FIGURES), str(one.trials)] for one in parts]
+
+
+MODELS = ("people", *(words.figure(name) for name in FIGURES), "trials")
+RANKINGS = ("suite", "draws", "trials a robot", "SR order [%]", "TWSR order [%]", "both [%]")
+
+
+def rankings(parts: Sequence[Ranking]) -> Rows:
+    """How many of the posterior draws rank the robots oracle > frontier > none."""
+    return [
+        [one.suite, str(one.draws), str(one.trials), *(words.percent(value) for value in (one.sr, one.twsr, one.both))]
+        for one in parts
+    ]

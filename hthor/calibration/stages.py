@@ -1,0 +1,250 @@
+"""The stages of a calibration on published numbers, each made once and kept; knows nothing of commands or screens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol, TypeVar
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import jsonio
+from hthor.calibration import identity, points, simulate, studies, table
+from hthor.calibration.shelf import Shelf
+from hthor.calibration.sizes import Sizes
+from hthor.calibration.table import Table
+from hthor.calibration.targets import Targets
+from hthor.eval.run import Watcher
+from hthor.humans import registry
+from hthor.tasks import Suite
+
+if TYPE_CHECKING:
+    from hthor.calibration.abc import Check
+    from hthor.calibration.coverage import Coverage
+    from hthor.calibration.design import Effects, Quality
+    from hthor.calibration.emulator import Emulator
+    from hthor.calibration.heldout import HeldOut
+    from hthor.calibration.observed import Observed
+    from hthor.calibration.posterior import Posterior
+    from hthor.calibration.ranking import Ranking
+
+_T = TypeVar("_T")
+
+
+class Teller(Protocol):
+    """Who is told how a calibration goes."""
+
+    def watch(self, stage: str) -> AbstractContextManager[Watcher]:
+        """Somebody who follows a stage that simulates."""
+
+    def work(self, stage: str) -> AbstractContextManager[None]:
+        """A stage that only computes begins, and ends with the context."""
+
+
+class Brief(Struct, frozen=True, kw_only=True):
+    """What is to be calibrated, on what, with which chances; ``folder`` keeps everything, ``jobs`` are processes."""
+
+    suite: Suite
+    targets: Targets
+    seed: int
+    sizes: Sizes
+    folder: Path
+    jobs: int
+
+
+class Stages:
+    """The stages, in order of need: to ask for one makes those that it needs. Each is kept in the folder."""
+
+    def __init__(self, brief: Brief, teller: Teller) -> None:
+        self.brief, self._teller = brief, teller
+        self.t_star = table.t_star(brief.suite)
+        self.known = identity.of(brief.suite)
+        what = (self.known, brief.targets, brief.seed, brief.sizes, self.t_star.tolist(), identity.of_statistics())
+        self._shelf = Shelf(brief.folder / "products", jsonio.sha256(what))
+
+    # ------------------------------------------------------------------------------------------------------- simulated
+
+    @cached_property
+    def training(self) -> Table:
+        """Sessions all over the prior."""
+        size = self.brief.sizes.sessions
+        where = points.spread(size, len(registry.names()), self.brief.seed, "training")
+        return self._sessions("training", where)
+
+    @cached_property
+    def studies(self) -> Table:
+        """Whole studies all over the prior."""
+        size = self.brief.sizes.studies
+        where = points.spread(size, len(registry.names()), self.brief.seed, "studies")
+        return self._studies("studies", where)
+
+    @cached_property
+    def correction(self) -> Table:
+        """Sessions near the first posterior."""
+        from hthor.calibration import posterior
+
+        where = posterior.propose(self.first_posterior, self.brief.sizes.correction, self.brief.seed)
+        return self._sessions("correction", where)
+
+    @cached_property
+    def predicted(self) -> Table:
+        """Whole studies of people of the posterior."""
+        return self._studies("predicted", self.posterior.points[: self.brief.sizes.posterior_studies])
+
+    def _sessions(self, name: str, where: np.ndarray) -> Table:
+        brief = self.brief
+        with self._teller.watch(name) as watch:
+            return simulate.at(where, brief.suite, brief.seed, brief.folder / name, brief.jobs, watch, name)
+
+    def _studies(self, name: str, where: np.ndarray) -> Table:
+        brief = self.brief
+        with self._teller.watch(name) as watch:
+            folder, design = brief.folder / name, brief.targets.design
+            return studies.at(where, brief.suite, brief.seed, folder, brief.jobs, watch, name, design)
+
+    # ------------------------------------------------------------------------------------------------------------ fits
+
+    @cached_property
+    def first_emulator(self) -> Emulator:
+        """Fitted to the training alone."""
+        return self._emulator("first-emulator", self.training)
+
+    @cached_property
+    def first_posterior(self) -> Posterior:
+        """By the first emulator: shows where to look closer."""
+        effects = self._effects("first-effects", self.first_emulator)
+        return self._posterior("first-posterior", self.first_emulator, effects)
+
+    @cached_property
+    def emulator(self) -> Emulator:
+        """Fitted to the training and the correction, where there is one."""
+        if not self.brief.sizes.correction:
+            return self.first_emulator
+        return self._emulator("emulator", table.join([self.training, self.correction]))
+
+    @cached_property
+    def effects(self) -> Effects:
+        """Design effects: variance of the published figures over that of independent trials."""
+        return self._effects("effects", self.emulator)
+
+    @cached_property
+    def posterior(self) -> Posterior:
+        """Of the published numbers."""
+        return self._posterior("posterior", self.emulator, self.effects)
+
+    def _emulator(self, name: str, trials: Table) -> Emulator:
+        from hthor.calibration import emulator
+
+        sizes, seed = self.brief.sizes, self.brief.seed
+        return self._made(name, lambda: emulator.fit(trials, self.t_star, seed=seed, members=sizes.members))
+
+    def _effects(self, name: str, fitted: Emulator) -> Effects:
+        from hthor.calibration import design
+
+        return self._made(name, lambda: design.effects(fitted.rates(self.studies.points), self.observed))
+
+    def _posterior(self, name: str, fitted: Emulator, effects: Effects) -> Posterior:
+        from hthor.calibration import posterior
+
+        sizes, seed = self.brief.sizes, self.brief.seed
+        return self._made(
+            name,
+            lambda: posterior.sample(
+                fitted, self.published, effects, seed=seed, draws=sizes.draws, proposals=sizes.proposals
+            ),
+        )
+
+    # ---------------------------------------------------------------------------------------------------------- checks
+
+    @cached_property
+    def published(self) -> Observed:
+        """The study that was published."""
+        from hthor.calibration import observed
+
+        return observed.published(self.brief.targets)
+
+    @cached_property
+    def observed(self) -> Observed:
+        """What each simulated study would have published."""
+        return self._published_of(self.studies)
+
+    @cached_property
+    def quality(self) -> Quality:
+        """How far the emulator is off whole studies, in its own standard deviations."""
+        from hthor.calibration import design
+
+        rates = self.emulator.rates(self.studies.points)
+        return self._made("quality", lambda: design.quality(rates, self.observed))
+
+    @cached_property
+    def coverage(self) -> Coverage:
+        """How often simulated studies' 90 % intervals hold the truth."""
+        from hthor.calibration import coverage
+
+        fitted, size = tuple(one.name for one in registry.PARAMETERS if one.fitted), self.brief.sizes.proposals
+        where, seed = self.studies.points, self.brief.seed
+        return self._made(
+            "coverage",
+            lambda: coverage.run(self.emulator, where, self.observed, seed=seed, proposals=size // 2, fitted=fitted),
+        )
+
+    @cached_property
+    def check(self) -> Check:
+        """The same posterior by approximate Bayesian computation, on the simulated studies alone."""
+        from hthor.calibration import abc
+
+        where, seed = self.studies.points, self.brief.seed
+        return self._made("abc", lambda: abc.check(self.posterior, where, self.observed, self.published, seed=seed))
+
+    @cached_property
+    def held_out(self) -> tuple[HeldOut, ...]:
+        """Each condition foretold by the other two."""
+        from hthor.calibration import heldout
+
+        return self._made(
+            "held-out", lambda: heldout.run(self.emulator, self.published, self.effects, seed=self.brief.seed)
+        )
+
+    @cached_property
+    def ranking(self) -> Ranking:
+        """How posterior draws rank the robots."""
+        from hthor.calibration import ranking
+
+        return self._made("ranking", lambda: ranking.robots(self.emulator, self.posterior.points))
+
+    @cached_property
+    def foretold(self) -> dict[str, dict[str, np.ndarray]]:
+        """The eight figures of studies: emulated ones of the prior and the posterior, simulated ones of the latter."""
+        from hthor.calibration import predictive
+
+        seed, sizes = self.brief.seed, self.brief.sizes
+        where = {
+            "prior": points.spread(sizes.draws, len(registry.names()), seed, "prior predictive"),
+            "posterior": self.posterior.points,
+        }
+        emulated = {
+            name: predictive.draw(self.emulator.rates(some), self.published, self.effects, seed).figures()
+            for name, some in where.items()
+        }
+        return {**emulated, "simulated": self._published_of(self.predicted).figures()}
+
+    def _published_of(self, trials: Table) -> Observed:
+        from hthor.calibration import observed
+
+        _, found = observed.studies(trials, self.t_star)
+        return found
+
+    def _made(self, name: str, make: Callable[[], _T]) -> _T:
+        """A product, worked out by one thread so that its bytes do not hang on their number."""
+        with self._teller.work(name), _one_thread():
+            return self._shelf.kept(name, make)
+
+
+def _one_thread() -> AbstractContextManager[object]:
+    from threadpoolctl import threadpool_limits
+
+    limits: AbstractContextManager[object] = threadpool_limits(1)
+    return limits

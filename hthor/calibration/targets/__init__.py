@@ -1,0 +1,164 @@
+"""What was published of people, as counts to fit a model to; knows nothing of models or fitting.
+
+A target file says with how many trials each number was found, because percentages hide that, and marks what was
+inferred or only said in words. Our own lie in this folder.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from hthor import jsonio
+from hthor.errors import HthorError, UnknownName
+
+SCHEMA = "hthor.targets/1"
+CONDITIONS = ("none", "frontier", "oracle")
+_FOLDER = Path(__file__).parent
+_RATIO_STEP = 0.002
+"""How far a ratio may be from what the published percentages, of three digits, divide to."""
+
+
+class Count(Struct, frozen=True, kw_only=True):
+    """``k`` of ``n`` trials; ``inferred`` when the study does not say how many, and ``note`` says how it was found."""
+
+    k: int
+    n: int
+    inferred: bool = False
+    note: str = ""
+
+    @property
+    def share(self) -> float:
+        """k / n."""
+        return self.k / self.n
+
+
+class Verbal(Struct, frozen=True, kw_only=True):
+    """Something that was said in words; ``fitted`` whether the fit may use it or it is only checked."""
+
+    name: str
+    says: str
+    fitted: bool = False
+
+
+class Design(Struct, frozen=True, kw_only=True):
+    """How the study was made: ``people`` in each condition, with ``tasks`` each.
+
+    ``valid`` trials of a condition count in its success rate, ``counted`` ones in its adoption rate.
+    """
+
+    people: int
+    tasks: int
+    valid: dict[str, int]
+    counted: dict[str, int]
+    note: str = ""
+
+
+class Targets(Struct, frozen=True, kw_only=True):
+    """Published numbers by condition: "none", "frontier", "oracle". What a study does not tell is absent.
+
+    Attributes:
+        sr: successes. adoption: trials with a confirmed message.
+        ratio: TWSR / SR: mean of T*/max(T*, T) over the successes.
+        published: the percentages as printed, such as "sr none".
+        left_out: the condition that was taken out for a held-out fit, or nothing.
+    """
+
+    schema: str
+    name: str
+    source: str
+    design: Design
+    sr: dict[str, Count]
+    adoption: dict[str, Count]
+    ratio: dict[str, float]
+    published: dict[str, float]
+    verbal: tuple[Verbal, ...] = ()
+    left_out: str = ""
+
+    @property
+    def sha256(self) -> str:
+        """Hash of all of it."""
+        return jsonio.sha256(self)
+
+    @property
+    def twsr(self) -> dict[str, float]:
+        """Published TWSR by condition, a fraction."""
+        return {name: self.published[f"twsr {name}"] / 100.0 for name in self.ratio}
+
+    def without(self, condition: str) -> Targets:
+        """The same without anything about one condition, to see how well the others foretell it.
+
+        Raises:
+            UnknownName: when there is nothing about it.
+        """
+        if condition not in self.sr:
+            raise UnknownName("condition", condition, self.sr)
+        return msgspec.structs.replace(
+            self,
+            sr={name: count for name, count in self.sr.items() if name != condition},
+            adoption={name: count for name, count in self.adoption.items() if name != condition},
+            ratio={name: value for name, value in self.ratio.items() if name != condition},
+            published={name: value for name, value in self.published.items() if not name.endswith(f" {condition}")},
+            left_out=condition,
+        )
+
+
+def names() -> tuple[str, ...]:
+    """Targets that come with hthor."""
+    return tuple(sorted(path.stem for path in _FOLDER.glob("*.json")))
+
+
+def load(name_or_path: str | Path) -> Targets:
+    """Targets by name, or from a file of the same form.
+
+    Raises:
+        UnknownName: when no targets have that name.
+        HthorError: when the file cannot be read or contradicts itself; names file and field.
+    """
+    path = _FOLDER / f"{name_or_path}.json" if str(name_or_path) in names() else Path(name_or_path)
+    if path.suffix != ".json" and not path.exists():
+        hint = "A path to a file (.json) works too, and so do the logs of sessions (trials.jsonl, or a run's folder)."
+        raise UnknownName("targets", str(name_or_path), names(), hint)
+    try:
+        found = msgspec.json.decode(path.read_bytes(), type=_Strict)
+    except OSError as error:
+        raise HthorError(f"{path}: cannot be read: {error.strerror}.") from None
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        problem, _, field = str(error).partition(" - at `$")
+        raise HthorError(f"{path}: {field.strip('`.') or '$'}: {problem}; see {_FOLDER / 'paper.json'}.") from None
+    _check(path, found)
+    return Targets(**{name: getattr(found, name) for name in Targets.__struct_fields__})
+
+
+class _Strict(Targets, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """As a file must be."""
+
+
+def _check(path: Path, targets: Targets) -> None:
+    """See that numbers are what they can be, and that counts and ratios agree with what was printed."""
+    if targets.schema != SCHEMA:
+        raise HthorError(f"{path}: schema: is '{targets.schema}', this version reads '{SCHEMA}'.")
+    for metric in ("sr", "adoption", "ratio"):
+        held: dict[str, Count | float] = getattr(targets, metric)
+        if strange := sorted(set(held) - set(CONDITIONS)):
+            raise HthorError(
+                f"{path}: {metric}: no condition is called '{strange[0]}'; valid: {', '.join(CONDITIONS)}."
+            )
+    for metric, counts in (("sr", targets.sr), ("adoption", targets.adoption)):
+        for name, count in counts.items():
+            _check_count(f"{path}: {metric}.{name}", count, targets.published.get(f"{metric} {name}"))
+    for name, ratio in targets.ratio.items():
+        if name not in targets.sr or f"twsr {name}" not in targets.published:
+            raise HthorError(f"{path}: ratio.{name}: needs sr.{name} and the percentage 'twsr {name}' in 'published'.")
+        whole = targets.published[f"twsr {name}"] / 100.0 / targets.sr[name].share
+        if abs(whole - ratio) > _RATIO_STEP:
+            raise HthorError(f"{path}: ratio.{name}: is {ratio}, but TWSR / SR comes to {whole:.3f}.")
+
+
+def _check_count(place: str, count: Count, printed: float | None) -> None:
+    if not 0 <= count.k <= count.n or count.n < 1:
+        raise HthorError(f"{place}: {count.k} of {count.n} trials cannot be; expected 0 <= k <= n and n >= 1.")
+    if printed is not None and abs(100.0 * count.share - printed) > 0.05 + 1e-9:
+        raise HthorError(f"{place}: {count.k}/{count.n} is {100.0 * count.share:.1f} %, but {printed} % was printed.")

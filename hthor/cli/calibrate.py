@@ -1,0 +1,84 @@
+"""`hthor calibrate`; knows what the user types, not how anything is fitted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hthor.cli import screen
+
+
+def calibrate(
+    target: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="What to fit to: published results by name or file (paper), or the logs of sessions, "
+            "a run's folder or trials.jsonl; repeat it for several logs.",
+            show_default="paper",
+        ),
+    ] = None,
+    suite: Annotated[str, typer.Option(help="The tasks that the people do ('hthor tasks list').")] = "paper",
+    out: Annotated[
+        Path | None, typer.Option(help="The folder of the calibration.", show_default="calibration/TARGET-SUITE-SEED")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Equal seeds give the same population, byte for byte.")] = 0,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one a CPU")] = None,
+    sessions: Annotated[
+        int | None, typer.Option(min=1, help="Sessions to train on, ten trials each.", show_default="4000")
+    ] = None,
+    studies: Annotated[
+        int | None, typer.Option(min=1, help="Whole studies to check against.", show_default="200")
+    ] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="A small one, in minutes: shows that it works, and is not for use.")
+    ] = False,
+    until: Annotated[
+        str, typer.Option(help="Stop after this stage, such as training or studies.", show_default="the last")
+    ] = "",
+    prior: Annotated[str, typer.Option(help="With logs: the population that they add to.")] = "proxy",
+    json: Annotated[bool, typer.Option("--json", help="Write JSON to standard output.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+) -> None:
+    """Fit the human proxies to published results, or to logs of sessions.
+
+    Everything that was simulated is kept: the same command resumes an interrupted calibration, and a larger one goes on
+    from a smaller. The folder holds the population (population.npz and .json), the evidence for it, and the tables of
+    simulated trials. Exit code 1 when a gate was not passed.
+    """
+    targets = tuple(target or ("paper",))
+    if all(Path(word).is_dir() or word.endswith(".jsonl") for word in targets):
+        from hthor.cli import calibrate_logs
+
+        calibrate_logs.run(targets, prior, out, json)
+        return
+    from hthor.calibration import run
+
+    options = run.Options(
+        targets=targets,
+        suite=suite,
+        out=out,
+        seed=seed,
+        jobs=jobs,
+        sessions=sessions,
+        studies=studies,
+        quick=quick,
+        until=until,
+    )
+    talk = screen.console(talk=True)
+    from hthor.calibration import telling
+
+    teller = telling.Silent() if quiet else telling.Aloud(talk, live=screen.live())
+    found = run.conduct(options, teller)
+    if found is None:
+        return
+    if json:
+        screen.put_json(found)
+    else:
+        from hthor.calibration import summary
+
+        for part in summary.parts(found):
+            screen.console().print(part)
+    if not found.passed:
+        raise typer.Exit(1)

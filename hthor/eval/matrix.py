@@ -1,0 +1,101 @@
+"""Agents with several peoples: every score, and with whom each agent fares worst; knows nothing of how to show it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from msgspec import Struct
+
+from hthor.eval import peoples
+from hthor.eval.peoples import HumansRef
+from hthor.eval.score import Result
+from hthor.eval.setup import SuiteRef
+from hthor.eval.stats import Estimate
+
+SCHEMA = "hthor.peoples/1"
+
+
+class Cell(Struct, frozen=True, kw_only=True):
+    """One agent with one people: success, time-weighted success and adoption, as fractions."""
+
+    sr: Estimate
+    twsr: Estimate
+    adoption: Estimate
+
+
+class Worst(Struct, frozen=True, kw_only=True):
+    """With whom an agent succeeds least, and by how much less [fraction] than with the ``base``, the first people."""
+
+    people: str
+    sr: float
+    base: str
+    behind: float
+
+
+class Matrix(Struct, frozen=True, kw_only=True):
+    """The document that several peoples in one evaluation give.
+
+    Attributes:
+        trials: with each people.
+        cells: by the people's name, and in there by the agent's.
+        worst: by the agent's name; the extremes of the bracket do not count, as nobody is like them.
+        flips: conclusions about the agents that do not hold for everybody in the bracket.
+        results: of every run, as its result.json has it.
+    """
+
+    schema: str = SCHEMA
+    suite: SuiteRef
+    seed: int
+    trials: int
+    agents: tuple[str, ...]
+    peoples: tuple[HumansRef, ...]
+    cells: dict[str, dict[str, Cell]]
+    worst: dict[str, Worst]
+    flips: tuple[Any, ...]
+    results: tuple[Result, ...]
+
+
+def of(results: Sequence[Result]) -> Matrix:
+    """What the runs of one evaluation say together: every people with every agent, peoples in turn."""
+    whom = {result.humans.name: result.humans for result in results}
+    by_people = {name: [result for result in results if result.humans.name == name] for name in whom}
+    first = results[0]
+    return Matrix(
+        suite=first.suite,
+        seed=first.seed,
+        trials=first.counts.trials,
+        agents=tuple(dict.fromkeys(result.name for result in results)),
+        peoples=tuple(whom.values()),
+        cells={name: {result.name: _cell(result) for result in held} for name, held in by_people.items()},
+        worst=_worst(results),
+        flips=_flips(by_people),
+        results=tuple(results),
+    )
+
+
+def _cell(result: Result) -> Cell:
+    return Cell(sr=result.metrics.sr, twsr=result.metrics.twsr, adoption=result.metrics.adoption)
+
+
+def _worst(results: Sequence[Result]) -> dict[str, Worst]:
+    """Of those whom somebody may be like; nobody where there is only one such people."""
+    found: dict[str, Worst] = {}
+    for agent in dict.fromkeys(result.name for result in results):
+        held = [result for result in results if result.name == agent and result.humans.model not in peoples.EXTREMES]
+        if len(held) > 1:
+            least = min(held, key=lambda result: (result.metrics.sr.mean or 0.0, result.metrics.twsr.mean or 0.0))
+            rate, whole = least.metrics.sr.mean or 0.0, held[0].metrics.sr.mean or 0.0
+            base = held[0].humans.name
+            found[agent] = Worst(people=least.humans.name, sr=rate, base=base, behind=whole - rate)
+    return found
+
+
+def _flips(by_people: dict[str, list[Result]]) -> tuple[Any, ...]:
+    """Where both extremes are there, and somebody between them: what is not so for all."""
+    models = {held[0].humans.model for held in by_people.values()}
+    if not models.issuperset(peoples.EXTREMES) or len(models) == len(peoples.EXTREMES):
+        return ()
+    from hthor.eval import bracket
+
+    return tuple(bracket.flips(by_people))

@@ -1,0 +1,158 @@
+"""What went on in a person's mind in a logged trial: played again, with somebody listening; draws nothing.
+
+The log has no thoughts. But a person's session repeats itself to the byte, so the trials up to the one in question are
+simulated once more, and in that one the person is listened to. Listening changes nothing, which is checked: the record
+of the trial that was played again must equal the logged one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from msgspec import Struct
+
+from hthor import plugins
+from hthor.episode import EpisodeLog, play
+from hthor.errors import HthorError, RunError
+from hthor.eval import cast, crews, provenance, record, score, setup
+from hthor.eval.record import Record
+from hthor.eval.session import Session
+from hthor.types import HUMAN, Action, Briefing, Event, Observation, RobotSeat, TrialSpec
+
+SCHEMA = "hthor.mind/1"
+_JOURNAL = ("attempt", "exposure", "offer")
+
+
+class Stream(Struct, frozen=True, kw_only=True):
+    """What was thought in one trial, as `docs/logs.md` lists it, and the numbers of who thought it.
+
+    ``same`` says whether the trial went as it was logged.
+    """
+
+    schema: str = SCHEMA
+    key: str
+    same: bool
+    traits: dict[str, float]
+    events: tuple[Event, ...]
+
+
+class Listened:
+    """A human model of which somebody listens to the thoughts, in the trials that begin while ``listening``."""
+
+    def __init__(self, human: Any) -> None:
+        self.human, self.listening = human, False
+        self.thoughts: list[Event] = []
+        self._aim: object = None
+        self._trust: float | None = None
+
+    def begin(self, briefing: Briefing) -> None:
+        self.human.listener = self.thoughts.append if self.listening else None
+        self.human.begin(briefing)
+
+    def act(self, observation: Observation) -> Action:
+        action: Action = self.human.act(observation)
+        if self.listening:
+            self._look_in(observation.tick)
+        return action
+
+    def rate(self, met: bool, tick: int) -> int | None:
+        rating: int | None = self.human.rate(met, tick)
+        if self.listening:
+            self._look_in(tick)
+        return rating
+
+    @property
+    def journal(self) -> Sequence[Event]:
+        """As the model has it."""
+        return tuple(getattr(self.human, "journal", ()))
+
+    def _look_in(self, tick: int) -> None:
+        """What the person is about, and how far they trust, whenever it changes."""
+        aim, trust = self.human.about, self.human.trust.mean
+        if aim != self._aim:
+            self._aim = aim
+            self._tell(tick, "aim", about=aim)
+        if trust != self._trust:
+            self._trust = trust
+            self._tell(tick, "trust", mean=round(trust, 4))
+
+    def _tell(self, tick: int, kind: str, **data: Any) -> None:
+        self.thoughts.append(Event(tick=tick, seat=HUMAN, kind=kind, data=data))
+
+
+def listen(folder: Path, wanted: Record, *, agents: Sequence[str] = (), humans: str = "") -> Stream:
+    """Play a trial of a run again and listen.
+
+    Args:
+        folder: the run's. wanted: the trial.
+        agents: files of the run's agents that are not built in. humans: where its people come from, when the name in
+            the log does not find them.
+
+    Raises:
+        RunError: when trials before it are missing, or another version of hthor played them.
+        HthorError: when a file is needed, or the person is one whose mind cannot be looked into.
+    """
+    spec = wanted.spec
+    session = Session(participant=spec.participant, trials=_before(folder, wanted))
+    stage = cast.Stage(_sources(folder, spec, agents, humans))
+    with stage.enter(session) as company:
+        person = Listened(company.human)
+        if not all(hasattr(type(company.human), name) for name in ("about", "listener")):
+            raise HthorError(
+                f"the people of this run, '{spec.human}', have no mind to look into. --mind takes runs whose people "
+                "are the proxy, or a model made of it."
+            )
+        for trial in session.trials:
+            person.listening = trial == spec
+            log = play(trial, stage.world(trial), person, company.robots())
+            for seat in dict.fromkeys(fault.seat for fault in log.faults):
+                company.dismiss(seat)
+        traits = {name: getattr(company.human.traits, name) for name in company.human.traits.__struct_fields__}
+    return _stream(wanted, log, person.thoughts, traits)
+
+
+def _stream(wanted: Record, log: EpisodeLog, thoughts: Sequence[Event], traits: dict[str, float]) -> Stream:
+    again = record.of(wanted.spec, log)
+    written = [event for event in again.journal if event.kind in _JOURNAL]
+    said = [event for event in again.events if event.kind in ("shown", "confirmed", "declined", "covered")]
+    events = sorted([*thoughts, *written, *said], key=lambda event: event.tick)
+    same = record.encode(again) == record.encode(wanted)
+    return Stream(key=wanted.key, same=same, traits=traits, events=tuple(events))
+
+
+def _before(folder: Path, wanted: Record) -> tuple[TrialSpec, ...]:
+    """The trials of the person's session up to this one."""
+    here, logged = provenance.code_sha256(), wanted.spec.code_sha256
+    if here != logged:
+        raise RunError(
+            f"{folder} was played by another version of hthor (its code's hash was {logged[:10]} and is {here[:10]}), "
+            "in which people may think otherwise. Play the run again with 'hthor eval', or look with that version."
+        )
+    spec = wanted.spec
+    _, records = score.records(folder, setup.load(folder))
+    mine = [one.spec for one in records if one.spec.participant == spec.participant and one.spec.index <= spec.index]
+    if [one.index for one in mine] != list(range(spec.index + 1)):
+        raise RunError(
+            f"{folder} lacks some of the trials that participant {spec.participant} did before this one, which shaped "
+            "their trust. Finish the run with the 'hthor eval' command that began it."
+        )
+    return tuple(mine)
+
+
+def _sources(folder: Path, spec: TrialSpec, agents: Sequence[str], humans: str) -> cast.Sources:
+    minds = {seat.seat: _file(seat, agents) for seat in spec.robots if seat.agent.name not in plugins.names("agent")}
+    own = folder / "houses"
+    return cast.Sources(minds=minds, people=humans, houses=str(own.resolve()) if own.is_dir() else "")
+
+
+def _file(seat: RobotSeat, agents: Sequence[str]) -> str:
+    for path in agents:
+        character = crews.introduce(path)
+        if character.ref.sha256 == seat.agent.sha256:
+            return character.path
+    raise HthorError(
+        f"the agent '{seat.agent.name}' of this run came from the file {seat.agent.source}. Give that file, unchanged, "
+        f"with --agent."
+    )

@@ -1,0 +1,152 @@
+"""What a person was about, noticed, chose and was told, along the clock; knows nothing of the house."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from hthor import rules
+from hthor.eval import trace
+from hthor.eval.mind import Stream
+from hthor.eval.record import Record
+from hthor.types import Event
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_LANES = ("trust", "messages", "hands", "choices", "noticed", "is about")
+_LANE_IN = 0.46
+_SHADES = {"search": "#9ecae1", "follow": "#c9a6d6", "fetch": "#a1d99b", "deliver": "#74c476", "begin": "#dddddd"}
+_ANSWERS = {"confirmed": trace.MESSAGE, "declined": trace.IDLE_MESSAGE, "covered": "#cccccc"}
+_CHAR_S = 0.72
+"""How many seconds of the time axis a letter takes up."""
+
+
+def height(_stream: Stream) -> float:
+    """Inches that the lanes want."""
+    return _LANE_IN * len(_LANES) + 0.6
+
+
+def chances(choice: Event, beta: float) -> dict[str, float]:
+    """How likely each option was to be chosen, by name: value^beta, adding up to 1."""
+    values = [max(value, 1e-12) for value in choice.data["values"]]
+    top = max(values)
+    weights = [(value / top) ** beta for value in values]
+    total = sum(weights)
+    return {name: weight / total for name, weight in zip(choice.data["options"], weights, strict=True)}
+
+
+def draw(ax: Axes, record: Record, stream: Stream) -> None:
+    """Draw the lanes, trust lowest."""
+    events, end = stream.events, record.ticks * rules.TICK_S
+    limit = record.spec.task.time_limit
+    _draw_aims(ax, [event for event in events if event.kind == "aim"], end, 5.0)
+    wanted = {job.target for job in record.spec.task.goal.todo}
+    _draw_noticed(ax, [event for event in events if event.kind in ("noticed", "forgot")], wanted, 4.0)
+    for event in events:
+        if event.kind == "choice" and "values" in event.data:
+            _draw_choice(ax, event, stream.traits["beta"], 3.0)
+        elif event.kind == "attempt":
+            _draw_attempt(ax, event, end, 2.0)
+        elif event.kind == "shown":
+            _draw_message(ax, event, stream, end, 1.0)
+    _draw_trust(ax, [event for event in events if event.kind == "trust"], end)
+    ax.axvline(end, color=trace.TARGET if record.met else trace.FAILED, lw=1.0)
+    ax.text(end, 5.62, "done" if record.met else "time is up", fontsize=7.5, ha="center", color=trace.INK)
+    ax.set_xlim(-1.0, limit + 1.0)
+    ax.set_ylim(-0.55, 5.6)
+    ax.set_yticks(range(len(_LANES)), _LANES, fontsize=8)
+    ax.set_xlabel("time [s]", fontsize=8)
+    ax.tick_params(axis="x", labelsize=7.5)
+    ax.tick_params(axis="y", length=0)
+    for side in ("top", "right", "left"):
+        ax.spines[side].set_visible(False)
+
+
+def _draw_aims(ax: Axes, aims: list[Event], end: float, row: float) -> None:
+    starts = [aim.tick * rules.TICK_S for aim in aims]
+    for aim, begin, until in zip(aims, starts, [*starts[1:], end], strict=True):
+        words = aim.data["about"].replace("_", " ")
+        ax.barh(row, until - begin, left=begin, height=0.6, color=_SHADES.get(words.split()[0], "#eeeeee"), lw=0)
+        verb = words.split()[0]
+        label = next((text for text in (words, verb) if len(text) * _CHAR_S < until - begin), "")
+        ax.text(begin + 0.3, row, label, fontsize=7, va="center", color=trace.INK)
+
+
+def _draw_noticed(ax: Axes, seen: list[Event], wanted: set[str], row: float) -> None:
+    """A stroke for each piece of furniture; a star with its name for what matters."""
+    last, high = -math.inf, False
+    for event in seen:
+        x, name = event.tick * rules.TICK_S, event.data["object"]
+        if event.kind == "noticed" and name in wanted:
+            ax.scatter(x, row, s=60, marker="*", color=trace.TARGET, edgecolor="white", lw=0.6, zorder=4)
+            high = not high and x - last < 12.0
+            ax.text(x + 0.6, row + (0.3 if high else 0.12), name.replace("_", " "), fontsize=7, color=trace.TARGET)
+            last = x
+        else:
+            shade = trace.FAILED if event.kind == "forgot" else "#8b8478"
+            ax.plot((x, x), (row - 0.22, row + 0.02), color=shade, lw=0.9, alpha=0.8)
+
+
+def _draw_choice(ax: Axes, choice: Event, beta: float, row: float) -> None:
+    """A column of chances, the chosen option's filled."""
+    x, low = choice.tick * rules.TICK_S, row - 0.36
+    for name, share in chances(choice, beta).items():
+        chosen = name == choice.data["chosen"]
+        face = trace.TARGET if chosen else "#e6e6e6"
+        ax.bar(x, 0.72 * share, bottom=low, width=0.8, color=face, edgecolor="white", lw=0.3, zorder=3)
+        low += 0.72 * share
+
+
+def _draw_attempt(ax: Axes, event: Event, end: float, row: float) -> None:
+    begin = event.tick * rules.TICK_S
+    seconds = float(event.data.get("seconds", end - begin))
+    shade = {True: "#74c476", False: trace.FAILED}.get(event.data.get("ok"), "#bbbbbb")
+    ax.barh(row, seconds, left=begin, height=0.5, color=shade, alpha=0.8, edgecolor="white", lw=0.8)
+    ax.text(begin + 0.2, row, event.data["what"], fontsize=6.5, va="center", color=trace.INK, clip_on=True)
+
+
+def _draw_message(ax: Axes, shown: Event, stream: Stream, end: float, row: float) -> None:
+    """From when a message was shown to what became of it."""
+    number, begin = shown.data["message"], shown.tick * rules.TICK_S
+    fate = next((e for e in stream.events if e.kind in _ANSWERS and e.data["message"] == number), None)
+    until = end if fate is None else fate.tick * rules.TICK_S
+    shade = "#dddddd" if fate is None else _ANSWERS[fate.kind]
+    ax.barh(row, until - begin, left=begin, height=0.42, color=shade, alpha=0.85, lw=0)
+    trace.badge(ax, (begin, row), str(number + 1), shade if fate is not None else "#999999")
+    if fate is not None and fate.kind != "covered":
+        ax.text(until + 0.4, row, fate.kind, fontsize=6.5, va="center", color=trace.INK)
+
+
+def _draw_trust(ax: Axes, told: list[Event], end: float) -> None:
+    """Mean trust, from 0 at the foot of its lane to 1 at its top."""
+    if not told:
+        return
+    xs = [event.tick * rules.TICK_S for event in told]
+    ys = [0.8 * event.data["mean"] - 0.4 for event in told]
+    ax.fill_between((0.0, end), -0.4, 0.4, color="#f3f3f3", lw=0, zorder=0)
+    ax.step([*xs, end], [*ys, ys[-1]], where="post", color=trace.PERSON, lw=1.4)
+    for x, event, y in zip(xs, told, ys, strict=True):
+        ax.text(min(x, end) + 0.4, y + 0.12, f"{event.data['mean']:.2f}", fontsize=6.5, color=trace.PERSON)
+
+
+def offers(stream: Stream) -> list[str]:
+    """A line for each message that was weighed: what spoke for and against it, and the answer."""
+    t, lines = stream.traits, []
+    for event in stream.events:
+        if event.kind != "offer":
+            continue
+        d = event.data
+        terms = {
+            "willing": t["a0"],
+            "trust": t["a_trust"] * (d["trust"] - 0.5),
+            "gain": t["a_gain"] * math.log1p(d["gain"]),
+            "load": -t["a_load"] * d["load"],
+            "again": -t["a_again"] * d["again"],
+        }
+        logit = sum(terms.values())
+        words = " ".join(f"{name} {value:+.2f}" for name, value in terms.items())
+        chance = f"chance {100.0 / (1.0 + math.exp(-logit)):.0f} %" if d["useful"] else "of no use"
+        when = event.tick * rules.TICK_S
+        lines.append(f"message {d['message'] + 1}, read at {when:.1f} s:  {words}  →  {chance}: {d['answer']}")
+    return lines

@@ -1,0 +1,63 @@
+"""How fast a person notices what they see, glimpse by glimpse; knows nothing of what it is or of what they know.
+
+The rate is lam0 / (1 + (a50 / angle)^2) * exp(-(ecc / ecc_sd)^2 / 2) * share * exp(-clutter * beside). Glimpses that
+come at a rate and succeed independently of one another make the time to notice exponential (Koopman 1956). That it is
+long for what is small, off the middle of the view, half hidden or crowded is the common finding of visual search; the
+form of each factor is a choice. Priors and sources of the parameters stand in `hthor.humans.registry`.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+from hthor import catalog
+from hthor.humans.jobs import kind_of
+from hthor.humans.parameters import Parameters
+from hthor.types import Pose, Vec3
+
+_USUAL_M = 0.1
+
+
+def rate(traits: Parameters, angle: float, ecc: float, share: float = 1.0, beside: int = 0) -> float:
+    """Rate [1/s] at which a small thing in view is noticed.
+
+    Args:
+        angle: its size over its distance [rad], above 0.
+        ecc: how far [rad] it is off the direction of the head.
+        share: how much of it is in view, 0 to 1.
+        beside: how many other small things appear close to it.
+    """
+    small, aside = traits.a50 / angle, ecc / traits.ecc_sd
+    return traits.lam0 * share / (1.0 + small * small) * math.exp(-0.5 * aside * aside - traits.clutter * beside)
+
+
+def extent(size: Vec3) -> float:
+    """The size [m] that counts for the eye: the side of a square as large as the largest face of a box."""
+    _, middle, longest = sorted(size)
+    return math.sqrt(middle * longest)
+
+
+@cache
+def expected(target: str) -> float:
+    """The size [m] that people know things to have of the kind of this object; 0.1 m when it is of no known kind."""
+    kind = kind_of(target)
+    return extent(catalog.kind(kind).size) if kind in catalog.names() else _USUAL_M
+
+
+class Head:
+    """Where the eyes are [m] and which way the head points."""
+
+    __slots__ = ("_ahead", "_eye")
+
+    def __init__(self, pose: Pose, eye: float) -> None:
+        flat = math.cos(pose.pitch)
+        self._eye = pose.x, pose.y, eye
+        self._ahead = flat * math.cos(pose.yaw), flat * math.sin(pose.yaw), math.sin(pose.pitch)
+
+    def to(self, point: Vec3) -> tuple[float, float]:
+        """Distance [m] of a point, and how far [rad] it is off the direction of the head."""
+        (x, y, z), (ex, ey, ez), (ux, uy, uz) = point, self._eye, self._ahead
+        dx, dy, dz = x - ex, y - ey, z - ez
+        far = math.sqrt(dx * dx + dy * dy + dz * dz) or 1e-9
+        return far, math.acos(max(-1.0, min(1.0, (dx * ux + dy * uy + dz * uz) / far)))
