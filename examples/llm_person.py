@@ -41,4 +41,4 @@ class Model(proxy.Model):
 
 def ingredients(source: str = "") -> dict[str, Any]:  # noqa: ARG001  there is none
     """What decides how these people behave, besides this file and hthor itself: which model it is."""
-    return {"language_model": backends.settings().name}
+    return {"language_model": backends.named(backends.settings())}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import signal
 import sys
@@ -10,12 +11,17 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from unittest import mock
 
+import msgspec
+
 from hthor import seeds
 from hthor.episode import EpisodeLog, Fault
 from hthor.eval import cast, crews, provenance, record, session, setup
 from hthor.eval.record import Record
 from hthor.eval.session import Session
 from hthor.eval.setup import Setup
+from hthor.humans import people
+from hthor.humans.people import People
+from hthor.humans.population import Population, Validity
 from hthor.tasks import Suite
 from hthor.tasks.library import frozen
 from hthor.types import AgentRef, Event, Goal, Placement, Pose, TaskSpec, TrialSpec
@@ -43,6 +49,24 @@ def suite(count: int = 60) -> Suite:
     return frozen("fake", 1, tuple(task(number) for number in range(count)))
 
 
+def persons(name: str = "proxy", *, calibrated: bool = True) -> People:
+    """People of one draw, fitted to the fake suite of thirty tasks or to nothing."""
+    validity = Validity(suite="fake", suite_sha256=suite(30).sha256) if calibrated else Validity()
+    drawn = Population.of(
+        "few", [[0.5]], names=["v_pace"], purpose="a test", seed=0, command="a test", validity=validity
+    )
+    return People(
+        name=name,
+        word=name,
+        purpose="a test",
+        model="proxy",
+        source="",
+        population=drawn,
+        kind=None,
+        sha256=hashlib.sha256(name.encode()).hexdigest(),
+    )
+
+
 def character(name: str = "helper", *, absent: bool = False) -> crews.Character:
     return crews.Character(ref=AgentRef(name=name, source=f"{name}.py", sha256="cd" * 32), absent=absent)
 
@@ -56,7 +80,10 @@ def run_of(
     count: int = 30, *, name: str = "helper", absent: bool = False, seed: int = 0
 ) -> tuple[Setup, tuple[Session, ...]]:
     tasks, who = suite(count), crew(*name.split("+"), absent=absent)
-    with mock.patch.object(provenance, "code_sha256", return_value="34" * 32):
+    with (
+        mock.patch.object(people, "find", return_value=persons()),
+        mock.patch.object(provenance, "code_sha256", return_value="34" * 32),
+    ):
         plan = setup.settle(tasks, who, human="proxy", seed=seed, participants=None)
         return plan, session.sessions(tasks, agent=who, seed=seed)
 
@@ -96,6 +123,23 @@ def player(sources: cast.Sources | None = None) -> Callable[[Session], Iterator[
     def perform(session_: Session) -> Iterator[Record]:
         for memory, trial in enumerate(session_.trials):
             yield record.of(trial, episode(trial, memory))
+
+    return perform
+
+
+def leaning_player(sources: cast.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
+    """Robots help the people they meet, and hinder those called random."""
+
+    def perform(session_: Session) -> Iterator[Record]:
+        for trial in session_.trials:
+            chance = 0.5 if not trial.robots else 0.2 if trial.human.startswith("random") else 0.9
+            met = seeds.draw(trial.seed, "met", trial.task.id) < chance
+            log = episode(trial)
+            ticks = 300 if met else 900
+            paths = {seat: path[:1] * (ticks // 2) for seat, path in log.paths.items()}
+            last = Event(tick=ticks, seat="human", kind="success" if met else "timeout")
+            events = (*(event for event in log.events[:-1] if event.tick < ticks), last)
+            yield record.of(trial, msgspec.structs.replace(log, met=met, ticks=ticks, paths=paths, events=events))
 
     return perform
 

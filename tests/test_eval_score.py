@@ -131,7 +131,7 @@ def test_faults_are_counted_and_their_trials_too(tmp_path):
 def test_the_stored_result_says_how_it_came_about(tmp_path):
     _played(tmp_path)
     document = msgspec.json.decode((tmp_path / "result.json").read_bytes())
-    assert document["schema"] == "hthor.result/2"
+    assert document["schema"] == "hthor.result/3"
     assert set(document["versions"]) >= {"hthor", "python", "mujoco", "dm_control", "numpy"}
     assert document["effort"]["trials"] == 20
     assert (tmp_path / "result.json").read_bytes() == jsonio.pretty(document)

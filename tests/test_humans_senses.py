@@ -18,7 +18,7 @@ from world_house import COFFEE, FRIDGE, TABLE, do, on, task, wait
 from hthor import seeds
 from hthor.errors import StaleObservation
 from hthor.humans.exposure import Exposures, Glimpse
-from hthor.humans.glimpses import Head, expected, extent, rate
+from hthor.humans.glimpses import Head, Outlook, expected, extent, rate
 from hthor.humans.memory import Memory
 from hthor.humans.models.proxy import Model
 from hthor.humans.parameters import Parameters
@@ -64,6 +64,16 @@ def test_eccentricity_counts_up_and_down_as_well():
         far, aside = head.to(point)
         assert far == pytest.approx(math.dist((0.0, 0.0, 1.6), point))
         assert aside == pytest.approx(off, abs=1e-6)
+
+
+@given(
+    st.floats(-3, 3), st.floats(-3, 3), st.floats(0, 2), st.floats(-3.1, 3.1), st.floats(-1, 1), st.floats(0.03, 0.3)
+)
+def test_the_rate_at_a_place_is_that_of_a_thing_alone_there_in_full_view(x, y, z, yaw, pitch, size):
+    head = Head(Pose(x=0.0, y=0.0, yaw=yaw, pitch=pitch), 1.6)
+    far, ecc = head.to((x, y, z))
+    found = Outlook(TRAITS, size).rate(head, (x, y, z))
+    assert found == pytest.approx(rate(TRAITS, size / far, ecc), rel=1e-6, abs=1e-12)
 
 
 def test_people_know_how_large_things_are():
@@ -283,8 +293,8 @@ def after(seconds, count=400, jobs=JOBS, mind=lambda looker: None):
         one.see(apple(), fridge())
         assert one.knows
         mind(one)
-        for _ in range(round(seconds / 0.9)):
-            one.see(ticks=9)
+        for _ in range(round(seconds / 1.5)):
+            one.see(ticks=15)
     return lookers
 
 

@@ -1,4 +1,4 @@
-"""Whether intervals hold what they promise: simulated studies are fitted like the real one, and compared with the truth.
+"""Whether intervals hold what they promise: simulated studies are fitted like the real one, whose truth is known.
 
 Knows nothing of published data.
 """
@@ -28,17 +28,18 @@ class Coverage(Struct, frozen=True, kw_only=True, eq=False):
 
     Attributes:
         covered: share of the studies whose 90 % interval held the truth. overall: its mean over all parameters.
-        fitted: its mean over those whose variance the studies halve at best, see ``contraction``.
+        fitted: its mean over the parameters that were asked about.
+        means: (S, P) posterior means.
         ranks: (S, P) share of the posterior below the truth; uniform when posteriors are honest.
         recovery: correlation of truth and posterior mean. contraction: median over the studies.
         effective: least and median effective number of points, over studies.
-        figures: coverage of the eight figures' own 90 % predictive intervals is not here; see `design.quality`.
     """
 
     names: tuple[str, ...]
     covered: Array
     overall: float
     fitted: float
+    means: Array
     ranks: Array
     recovery: Array
     contraction: Array
@@ -84,6 +85,7 @@ def run(
         covered=covered,
         overall=float(covered.mean()),
         fitted=float(covered[chosen].mean()),
+        means=means,
         ranks=ranks,
         recovery=_correlations(points, means),
         contraction=np.median(1.0 - 12.0 * variances, axis=0),

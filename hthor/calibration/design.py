@@ -33,6 +33,8 @@ NAMES = tuple(
 FOLDS = 5
 """Parts of the studies; the design effects for one are found on the others."""
 _EDGE = 0.02
+_USUAL, _SPREAD, _WIDTH = 1.6, 1.0, 0.7
+"""Weak prior of phi and of the spread factor, and its sd in logarithms: it matters with a few dozen studies only."""
 _LEAST, _MOST = 0.25, 8.0
 _MOST_SPREAD = 4.0
 
@@ -40,7 +42,8 @@ _MOST_SPREAD = 4.0
 class Effects(Struct, frozen=True, kw_only=True, eq=False):
     """Design effects (3,) by condition of the metrics; 1 is binomial noise, or noise of independent successes.
 
-    ``spread`` multiplies the committee's disagreement. ``correlation`` (3, 3) of the ratios' errors, between conditions.
+    ``spread`` multiplies the committee's disagreement. ``correlation`` (3, 3) is that of the ratios'
+    errors between conditions.
     """
 
     sr: Array
@@ -82,7 +85,7 @@ class _Errors(Struct, frozen=True, eq=False):
 
 
 def effects(rates: Rates, studies: Observed) -> Effects:
-    """Design effects and spread: the most likely ones, for normal errors.
+    """Design effects and spread: the likeliest ones, for normal errors and a weak prior.
 
     Args:
         rates: what the emulator foretells at the points of the studies.
@@ -153,6 +156,7 @@ def _effects(errors: _Errors) -> Effects:
         from scipy.optimize import minimize
     except ImportError:
         raise MissingExtra("calibration", "calibration") from None
+    usual = np.log([_USUAL] * len(NAMES) + [_SPREAD])
     known = np.isfinite(errors.error)
     square = np.where(known, errors.error, 0.0) ** 2
 
@@ -160,12 +164,13 @@ def _effects(errors: _Errors) -> Effects:
         phi, spread = np.exp(logs[:-1]), np.exp(2.0 * logs[-1])
         var = phi * errors.base + spread * errors.doubt
         slope = np.where(known, (1.0 - square / var) / var, 0.0)
-        total = 0.5 * float(np.sum(np.where(known, np.log(var) + square / var, 0.0)))
+        off = (logs - usual) / _WIDTH
+        total = 0.5 * float(np.sum(np.where(known, np.log(var) + square / var, 0.0)) + off @ off)
         by_phi = 0.5 * (slope * phi * errors.base).sum(axis=0)
-        return total, np.append(by_phi, (slope * spread * errors.doubt).sum())
+        return total, np.append(by_phi, (slope * spread * errors.doubt).sum()) + off / _WIDTH
 
     bounds = [(np.log(_LEAST), np.log(_MOST))] * len(NAMES) + [(np.log(0.05), np.log(_MOST_SPREAD))]
-    best = minimize(surprise, np.zeros(len(NAMES) + 1), jac=True, method="L-BFGS-B", bounds=bounds)
+    best = minimize(surprise, usual, jac=True, method="L-BFGS-B", bounds=bounds)
     phi, spread = np.exp(best.x[:-1]), float(np.exp(best.x[-1]))
     z = errors.error / np.sqrt(phi * errors.base + spread**2 * errors.doubt)
     by_name = dict(zip(NAMES, phi, strict=True))

@@ -83,11 +83,10 @@ class Emulator(Struct, frozen=True, kw_only=True, eq=False):
         columns: dict[str, list[Array]] = {name: [] for name in Rates.__struct_fields__}
         for place, condition in enumerate(CONDITIONS):
             told = outcomes.inputs(points, place)
-            sr, ratio, spread, _ = (
-                np.array(part) for part in zip(*(outcomes.rates(member(told)) for member in self.doing), strict=True)
-            )
+            done = [outcomes.rates(member(told, outcomes.WORTHY)) for member in self.doing]
+            sr, ratio, spread = (np.array(part) for part in zip(*done, strict=True))
             alone = condition == CONDITIONS[0]
-            heard = [np.zeros(len(points)) if alone else member(told)[:, 0] for member in self.listening]
+            heard = [np.zeros(len(points)) if alone else member(told, 1)[:, 0] for member in self.listening]
             adoption = np.array(heard)
             for name, members in (("sr", sr), ("ratio", ratio), ("adoption", adoption)):
                 columns[name].append(members.mean(axis=0))
@@ -100,8 +99,7 @@ class Emulator(Struct, frozen=True, kw_only=True, eq=False):
         found = []
         for place in range(len(CONDITIONS)):
             told = outcomes.inputs(points, place)
-            met, _, _, lasts = outcomes.rates(np.mean([member(told) for member in self.doing], axis=0))
-            found.append(outcomes.quartiles(met, lasts, shares))
+            found.append(outcomes.quartiles(np.mean([member(told) for member in self.doing], axis=0), shares))
         return np.stack(found, axis=1)
 
 
@@ -132,9 +130,7 @@ def fit(table: Table, least: Array, seed: int = 0, members: int = MEMBERS) -> Em
     )
 
 
-def _committee(
-    told: Array, asked: Array, point: Array, seed: int, name: str, members: int
-) -> tuple[Network, ...]:
+def _committee(told: Array, asked: Array, point: Array, seed: int, name: str, members: int) -> tuple[Network, ...]:
     scale = _scale(told, asked, seed, name)
     fold = _folds(point, seed, members)
     return tuple(

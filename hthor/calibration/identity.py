@@ -86,7 +86,7 @@ def _course(task: object) -> dict[str, object]:
 @functools.cache
 def _code(roots: tuple[str, ...]) -> dict[str, str]:
     """Hash of every module that the roots need, and of the data files beside them, by file name."""
-    found = {path.relative_to(provenance.PACKAGE).as_posix(): _meaning(path) for path in _needed(roots).values()}
+    found = {path.relative_to(provenance.PACKAGE).as_posix(): meaning(path) for path in _needed(roots).values()}
     folders = {path.parent for path in _needed(roots).values()}
     for folder in sorted(folders):
         for path in sorted(folder.iterdir()):
@@ -144,10 +144,10 @@ def _walk(tree: ast.AST) -> Iterator[ast.AST]:
 def of_statistics() -> str:
     """Hash of the code that turns tables of trials into populations."""
     files = sorted(Path(__file__).parent.glob("*.py"))
-    return jsonio.sha256({path.name: _meaning(path) for path in files})
+    return jsonio.sha256({path.name: meaning(path) for path in files})
 
 
-def _meaning(path: Path) -> str:
+def meaning(path: Path) -> str:
     """Hash of a module without its comments, docstrings and white space, and without how it works out T*."""
     tree = ast.parse(path.read_bytes())
     for node in ast.walk(tree):

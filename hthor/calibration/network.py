@@ -24,22 +24,23 @@ _CHUNK = 16384
 
 
 class Network(Struct, frozen=True, kw_only=True, eq=False):
-    """Layers of rectified units, and a logistic one at the end; ``scale`` (F,) weighs the inputs before."""
+    """Layers of rectified units, and a logistic one at the end; float32."""
 
-    scale: Array
     weights: tuple[Array, ...]
     biases: tuple[Array, ...]
 
-    def __call__(self, inputs: Array) -> Array:
-        """(N, K) float64 probabilities of K outcomes, for inputs (N, F)."""
-        return np.concatenate([self._run(inputs[at : at + _CHUNK]) for at in range(0, max(1, len(inputs)), _CHUNK)])
+    def __call__(self, inputs: Array, first: int | None = None) -> Array:
+        """(N, K) float64 probabilities of K outcomes, or of the ``first`` of them, for inputs (N, F)."""
+        told = inputs.astype(np.float32)
+        return np.concatenate([self._run(told[at : at + _CHUNK], first) for at in range(0, max(1, len(told)), _CHUNK)])
 
-    def _run(self, inputs: Array) -> Array:
-        held = (inputs * self.scale).astype(np.float32)
+    def _run(self, held: Array, first: int | None) -> Array:
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
-            held = np.maximum(held @ weight + bias, 0.0)
-        logits = (held @ self.weights[-1] + self.biases[-1]).astype(np.float64)
-        chance: Array = 1.0 / (1.0 + np.exp(-np.clip(logits, -30.0, 30.0)))
+            held = held @ weight
+            held += bias
+            np.maximum(held, 0.0, out=held)
+        logits = held @ self.weights[-1][:, :first] + self.biases[-1][:first]
+        chance: Array = (1.0 / (1.0 + np.exp(-np.clip(logits, -30.0, 30.0)))).astype(np.float64)
         return chance
 
 
@@ -72,16 +73,20 @@ def fit(inputs: Array, outcomes: Array, seed: int, scale: Array | None = None, e
     with warnings.catch_warnings(), threadpool_limits(1):  # one thread: the order of sums decides the last bits
         warnings.simplefilter("ignore", ConvergenceWarning)
         model.fit((inputs * weighed).astype(np.float32), outcomes.astype(np.int64))
-    return Network(scale=weighed, weights=tuple(model.coefs_), biases=tuple(model.intercepts_))
+    first, *others = (weight.astype(np.float32) for weight in model.coefs_)
+    biases = tuple(bias.astype(np.float32) for bias in model.intercepts_)
+    return Network(weights=(first * weighed[:, None].astype(np.float32), *others), biases=biases)
 
 
 def sensitivity(networks: list[Network], inputs: Array, step: float = 0.1) -> Array:
     """(F,) how much the networks' answers change with each input: root mean square slope."""
 
     def answer(at: Array) -> Array:
-        return np.mean([network(at) for network in networks], axis=0)
+        total: Array = np.mean([network(at) for network in networks], axis=0)
+        return total
 
-    base, slopes = answer(inputs), []
+    base = answer(inputs)
+    slopes = []
     for place in range(inputs.shape[1]):
         moved = inputs.copy()
         moved[:, place] += step

@@ -18,6 +18,8 @@ Array = np.ndarray[Any, Any]
 
 WORTHS = tuple(np.round(np.arange(0.1, 1.01, 0.1), 1).tolist())
 """Levels of s T*/max(T*, T) that a trial may reach."""
+WORTHY = 1 + len(WORTHS)
+"""How many of the questions are about success and worth."""
 SECONDS = tuple(np.arange(10.0, rules.TIME_LIMIT_S, 5.0).tolist())
 """Times [s] at which a trial may still last."""
 HEARD = (15.0, 30.0, 45.0, 60.0)
@@ -45,24 +47,29 @@ def listening(table: Table) -> Array:
     return np.column_stack([table.adopted, table.sent >= 0, *early])
 
 
-def rates(answers: Array) -> tuple[Array, Array, Array, Array]:
-    """SR, ratio TWSR / SR, its sd between successes, and (N, times) chances that a trial still lasts.
+def rates(answers: Array) -> tuple[Array, Array, Array]:
+    """(N,) SR, ratio TWSR / SR, and its sd between successes.
 
     Args:
-        answers: (N, ...) chances of what `doing` asks.
+        answers: (N, ...) chances of what `doing` asks, at least the first `WORTHY` of them.
     """
-    met, reached, lasts = answers[:, 0], answers[:, 1 : 1 + len(WORTHS)], answers[:, 1 + len(WORTHS) :]
+    met, reached = answers[:, 0], answers[:, 1:WORTHY]
     levels = np.array([0.0, *WORTHS])
     chance = np.minimum.accumulate(np.column_stack([met, np.minimum(reached, met[:, None])]), axis=1)
     middle = (chance[:, 1:] + chance[:, :-1]) / 2.0
     safe = np.maximum(met, 1e-6)
     mean = (middle * np.diff(levels)).sum(axis=1) / safe
     square = (middle * np.diff(levels**2)).sum(axis=1) / safe
-    return met, mean, np.sqrt(np.maximum(square - mean**2, 1e-4)), lasts
+    return met, mean, np.sqrt(np.maximum(square - mean**2, 1e-4))
 
 
-def quartiles(met: Array, lasts: Array, shares: tuple[float, ...]) -> Array:
-    """(N, len(shares)) quantiles of time spent [s], the time limit where the task is not done by then."""
+def quartiles(answers: Array, shares: tuple[float, ...]) -> Array:
+    """(N, len(shares)) quantiles of time spent [s], the time limit where the task is not done by then.
+
+    Args:
+        answers: (N, ...) chances of what `doing` asks.
+    """
+    met, lasts = answers[:, 0], answers[:, WORTHY:]
     times = np.array([0.0, *SECONDS, rules.TIME_LIMIT_S])
     done = np.column_stack([np.zeros(len(met)), 1.0 - lasts, met])
     done = np.maximum.accumulate(done, axis=1)

@@ -141,15 +141,14 @@ def _around(emulator: Emulator, prior: Bank, weight: Array, seed: int) -> Bank:
     log = -0.5 * (unit**2).sum(axis=0) - np.log(np.diag(root)).sum() - 0.5 * len(told) * np.log(2.0 * np.pi)
     log = log - pdf(away).sum(axis=1)
     rates = emulator.rates(fresh)
-    both = {name: np.concatenate([getattr(prior.rates, name), getattr(rates, name)]) for name in rates.__struct_fields__}
+    parts = {name: (getattr(prior.rates, name), getattr(rates, name)) for name in Rates.__struct_fields__}
+    both = {name: np.concatenate(pair) for name, pair in parts.items()}
     return Bank(points=points, rates=Rates(**both), density=np.logaddexp(0.0, log) - np.log(2.0))
 
 
-def _posterior(
-    names: tuple[str, ...], held: Bank, weight: Array, evidence: float, seed: int, draws: int
-) -> Posterior:
+def _posterior(names: tuple[str, ...], held: Bank, weight: Array, evidence: float, seed: int, draws: int) -> Posterior:
     mean, variance = weight @ held.points, _variance(held.points, weight)
-    covariance = np.cov(held.points.T, aweights=weight)
+    covariance = np.cov(held.points.T, aweights=weight, ddof=0)
     sd = np.sqrt(variance)
     return Posterior(
         names=names,

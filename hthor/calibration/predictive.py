@@ -48,9 +48,7 @@ def draw(rates: Rates, design: Observed, effects: Effects, seed: int = 0) -> Obs
         seed: of the noise; each condition's is its own.
     """
     shape = (len(rates), len(CONDITIONS))
-    found = {
-        name: np.zeros(shape) for name in ("successes", "adopted")
-    }
+    found = {name: np.zeros(shape) for name in ("successes", "adopted")}
     for name, out_of, metric in (("successes", "trials", "sr"), ("adopted", "asked", "adoption")):
         for place, condition in enumerate(CONDITIONS):
             trials = int(getattr(design, out_of)[0, place])

@@ -23,17 +23,17 @@ class Sizes(Struct, frozen=True, kw_only=True):
     studies: int = 200
     posterior_studies: int = 60
     members: int = 6
-    draws: int = 2000
+    draws: int = 1000
     proposals: int = 1 << 18
     quick: bool = False
 
 
 FULL = Sizes()
 QUICK = Sizes(
-    sessions=150,
+    sessions=100,
     correction=0,
     studies=10,
-    posterior_studies=2,
+    posterior_studies=1,
     members=2,
     draws=400,
     proposals=1 << 14,

@@ -29,9 +29,13 @@ if TYPE_CHECKING:
     from hthor.calibration.heldout import HeldOut
     from hthor.calibration.observed import Observed
     from hthor.calibration.posterior import Posterior
-    from hthor.calibration.ranking import Ranking
+    from hthor.calibration.ranking import Ranking, Swing
 
 _T = TypeVar("_T")
+
+FITTED = tuple(one.name for one in registry.PARAMETERS if one.fitted)
+"""Parameters that the published numbers are expected to move."""
+_ABC_STUDIES = 40
 
 
 class Teller(Protocol):
@@ -184,28 +188,39 @@ class Stages:
         """How often simulated studies' 90 % intervals hold the truth."""
         from hthor.calibration import coverage
 
-        fitted, size = tuple(one.name for one in registry.PARAMETERS if one.fitted), self.brief.sizes.proposals
-        where, seed = self.studies.points, self.brief.seed
+        where, seed, size = self.studies.points, self.brief.seed, self.brief.sizes.proposals
         return self._made(
             "coverage",
-            lambda: coverage.run(self.emulator, where, self.observed, seed=seed, proposals=size // 2, fitted=fitted),
+            lambda: coverage.run(self.emulator, where, self.observed, seed=seed, proposals=size // 2, fitted=FITTED),
         )
 
     @cached_property
-    def check(self) -> Check:
-        """The same posterior by approximate Bayesian computation, on the simulated studies alone."""
+    def check(self) -> Check | None:
+        """The same posterior by approximate Bayesian computation; None with too few studies for it."""
         from hthor.calibration import abc
 
+        if self.brief.sizes.studies < _ABC_STUDIES:
+            return None
         where, seed = self.studies.points, self.brief.seed
-        return self._made("abc", lambda: abc.check(self.posterior, where, self.observed, self.published, seed=seed))
+        return self._made(
+            "abc", lambda: abc.check(self.posterior, where, self.observed, self.published, seed=seed, fitted=FITTED)
+        )
 
     @cached_property
     def held_out(self) -> tuple[HeldOut, ...]:
         """Each condition foretold by the other two."""
-        from hthor.calibration import heldout
+        from hthor.calibration import heldout, posterior
 
+        seed, size = self.brief.seed, self.brief.sizes.proposals
         return self._made(
-            "held-out", lambda: heldout.run(self.emulator, self.published, self.effects, seed=self.brief.seed)
+            "held-out",
+            lambda: heldout.run(
+                self.emulator,
+                self.published,
+                self.effects,
+                seed=seed,
+                prior=posterior.bank(self.emulator, seed, size),
+            ),
         )
 
     @cached_property
@@ -213,7 +228,15 @@ class Stages:
         """How posterior draws rank the robots."""
         from hthor.calibration import ranking
 
-        return self._made("ranking", lambda: ranking.robots(self.emulator, self.posterior.points))
+        rates = self.emulator.rates(self.posterior.points)
+        return self._made("ranking", lambda: ranking.robots(rates, self.effects))
+
+    @cached_property
+    def swings(self) -> tuple[Swing, ...]:
+        """What each parameter alone does to the gaps between robots."""
+        from hthor.calibration import ranking
+
+        return self._made("swings", lambda: ranking.sensitivity(self.emulator, self.posterior))
 
     @cached_property
     def foretold(self) -> dict[str, dict[str, np.ndarray]]:

@@ -44,7 +44,7 @@ def at(
     plan = Plan(suite=suite, identity=known, points=spots, sittings=tuple(dealt))
     sats = simulate.perform(plan, folder, jobs, watch)
     whole = simulate.tabulate(plan, sats)
-    valid, counted = _kept(whole, seed, name, design)
+    valid, counted = kept(whole, seed, name, design)
     return simulate.tabulate(plan, sats, valid=valid, counted=counted)
 
 
@@ -53,7 +53,7 @@ def root(seed: int, name: str, study: int) -> int:
     return seeds.derive(seed, "calibration", name, study)
 
 
-def _kept(whole: Table, seed: int, name: str, design: Design) -> tuple[np.ndarray, np.ndarray]:
+def kept(whole: Table, seed: int, name: str, design: Design) -> tuple[np.ndarray, np.ndarray]:
     """Which trials count in success and in adoption rates: as many in each group as in the published study."""
     valid, counted = np.zeros(len(whole), bool), np.zeros(len(whole), bool)
     group = whole.study.astype(np.int64) * len(CONDITIONS) + whole.condition

@@ -178,10 +178,10 @@ def load(path: Path) -> Table:
         RunError: when there is none, or it is not whole.
     """
     try:
-        with np.load(path, allow_pickle=False) as held:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as held:
             columns = {name: held[name] for name in TRIAL}
             return build([str(name) for name in held["names"]], held["points"], columns)
-    except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
+    except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile) as error:
         raise RunError(
             f"{path}: no table of trials: {error}. Delete it and repeat the command that wrote it."
         ) from None

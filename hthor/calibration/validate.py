@@ -30,10 +30,13 @@ from hthor.tasks import Suite
 
 SUITE = TARGETS = "paper"
 QUICK = 12
-"""Participants in each condition of a quick run: two study groups, enough to see that all works."""
+"""Participants in each condition of a quick run, at most: two study groups, enough to see that all works."""
+JUDGED = 18
+"""Participants in each condition from which on there are enough different groups for a verdict."""
 RIVALS = peoples.EXTREMES
 _RIVAL_MOST, _KIND_MOST = 30, 20
 """Participants in each condition of a simple model, and of each kind of people, at most."""
+OTHERS = "The evidence at hand is of another population than these people's."
 _SHIPPED = Path(__file__).parent / "evidence"
 
 
@@ -79,7 +82,7 @@ def conduct(options: Options, watcher: Watch) -> Outcome:
         HthorError: when there are too few participants for a study group.
         RunError: when a run's folder holds another run, or the calibration's folder no evidence.
     """
-    count = QUICK if options.quick else options.participants
+    count = min(QUICK, options.participants) if options.quick else options.participants
     if count < PEOPLE:
         raise HthorError(f"--participants {count} is too few: a group of the published study has {PEOPLE}.")
     found, suite = people.find(options.name), tasks.suite(SUITE)
@@ -166,7 +169,7 @@ def _setting(suite: Suite, options: Options, count: int, trials: int) -> Setting
         trials=trials,
         code_sha256=provenance.code_sha256(),
         versions=provenance.versions(),
-        quick=options.quick,
+        quick=options.quick or count < JUDGED,
     )
 
 
@@ -185,7 +188,7 @@ def _evidence(found: People, folder: Path | None) -> tuple[Evidence | None, str]
     else:
         return None, "The evidence of this population's calibration is not at hand; name its folder with --calibration."
     if known.origin.population_sha256 != found.population.sha256:
-        return None, "The evidence at hand is of another population than these people's."
+        return None, OTHERS
     return known, ""
 
 

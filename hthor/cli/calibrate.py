@@ -76,9 +76,11 @@ def calibrate(
     if json:
         screen.put_json(found)
     else:
-        from hthor.calibration import summary
+        from hthor.calibration import terminal
 
-        for part in summary.parts(found):
+        for part in terminal.parts(found):
             screen.console().print(part)
+        folder = run.settle(options).folder
+        talk.print(f"files: {folder}/population.json, population.npz, evidence.json, result.json", soft_wrap=True)
     if not found.passed:
         raise typer.Exit(1)

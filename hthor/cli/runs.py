@@ -196,8 +196,22 @@ def replay(
         Path | None, typer.Option(help="The file to write.", show_default="RUN/replays/TASK-KEY.png, or .mp4")
     ] = None,
     video: Annotated[bool, typer.Option("--video", help="Write a film instead of a picture.")] = False,
+    mind: Annotated[
+        bool, typer.Option("--mind", help="Instead, what the person believed, saw and chose; the session is replayed.")
+    ] = False,
+    agent: Annotated[
+        list[str] | None,
+        typer.Option(help="With --mind: the file of an agent that is not built in.", show_default=False),
+    ] = None,
+    humans: Annotated[str, typer.Option(help="With --mind: the people's file, if any.", show_default=False)] = "",
+    json: Annotated[bool, typer.Option("--json", help="With --mind: print the thoughts instead of a picture.")] = False,
 ) -> None:
     """Draw one trial from above: the paths, the messages and what came of them."""
+    if mind:
+        from hthor.cli import minds
+
+        minds.replay(run, trial, out, agent or (), humans, json)
+        return
     from hthor import houses
     from hthor.eval import find, redraw
 
@@ -233,8 +247,10 @@ def _compare_peoples(console: Console, whole: Matrix) -> None:
     console.print(report.peoples_table(whole))
     for line in report.worst_lines(whole):
         _say(console, line)
-    for flip in whole.flips:
-        _say(console, flip.sentence)
+    for found in sorted(whole.conclusions, key=lambda one: one.verdict != "flips"):
+        _say(console, f"{'! ' if found.verdict == 'flips' else ''}{found.sentence}")
+    if whole.conclusions and all(found.verdict != "flips" for found in whole.conclusions):
+        _say(console, "no conclusion flips inside the bracket")
 
 
 def _say(console: Console, text: str) -> None:

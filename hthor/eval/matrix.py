@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from msgspec import Struct
 
-from hthor.eval import peoples
+from hthor.eval import bracket, peoples
+from hthor.eval.bracket import Conclusion
 from hthor.eval.peoples import HumansRef
 from hthor.eval.score import Result
 from hthor.eval.setup import SuiteRef
@@ -25,9 +25,12 @@ class Cell(Struct, frozen=True, kw_only=True):
 
 
 class Worst(Struct, frozen=True, kw_only=True):
-    """With whom an agent succeeds least, and by how much less [fraction] than with the ``base``, the first people."""
+    """With whom an agent succeeds least, and by how much less [fraction] than with the ``base``, the first people.
 
-    people: str
+    ``peoples`` are several where they are equally bad.
+    """
+
+    peoples: tuple[str, ...]
     sr: float
     base: str
     behind: float
@@ -40,7 +43,8 @@ class Matrix(Struct, frozen=True, kw_only=True):
         trials: with each people.
         cells: by the people's name, and in there by the agent's.
         worst: by the agent's name; the extremes of the bracket do not count, as nobody is like them.
-        flips: conclusions about the agents that do not hold for everybody in the bracket.
+        conclusions: what is said of any two agents, and what becomes of it at the ends of the bracket; empty where the
+            bracket is not whole.
         results: of every run, as its result.json has it.
     """
 
@@ -52,7 +56,7 @@ class Matrix(Struct, frozen=True, kw_only=True):
     peoples: tuple[HumansRef, ...]
     cells: dict[str, dict[str, Cell]]
     worst: dict[str, Worst]
-    flips: tuple[Any, ...]
+    conclusions: tuple[Conclusion, ...]
     results: tuple[Result, ...]
 
 
@@ -69,7 +73,7 @@ def of(results: Sequence[Result]) -> Matrix:
         peoples=tuple(whom.values()),
         cells={name: {result.name: _cell(result) for result in held} for name, held in by_people.items()},
         worst=_worst(results),
-        flips=_flips(by_people),
+        conclusions=_conclusions(by_people),
         results=tuple(results),
     )
 
@@ -84,18 +88,19 @@ def _worst(results: Sequence[Result]) -> dict[str, Worst]:
     for agent in dict.fromkeys(result.name for result in results):
         held = [result for result in results if result.name == agent and result.humans.model not in peoples.EXTREMES]
         if len(held) > 1:
-            least = min(held, key=lambda result: (result.metrics.sr.mean or 0.0, result.metrics.twsr.mean or 0.0))
-            rate, whole = least.metrics.sr.mean or 0.0, held[0].metrics.sr.mean or 0.0
-            base = held[0].humans.name
-            found[agent] = Worst(people=least.humans.name, sr=rate, base=base, behind=whole - rate)
+            rates = {result.humans.name: result.metrics.sr.mean or 0.0 for result in held}
+            least, base = min(rates.values()), held[0].humans.name
+            found[agent] = Worst(
+                peoples=tuple(name for name, rate in rates.items() if rate == least),
+                sr=least,
+                base=base,
+                behind=rates[base] - least,
+            )
     return found
 
 
-def _flips(by_people: dict[str, list[Result]]) -> tuple[Any, ...]:
-    """Where both extremes are there, and somebody between them: what is not so for all."""
+def _conclusions(by_people: dict[str, list[Result]]) -> tuple[Conclusion, ...]:
+    """Where both extremes are there, and somebody between them: what of it holds for all."""
     models = {held[0].humans.model for held in by_people.values()}
-    if not models.issuperset(peoples.EXTREMES) or len(models) == len(peoples.EXTREMES):
-        return ()
-    from hthor.eval import bracket
-
-    return tuple(bracket.flips(by_people))
+    whole = models.issuperset(peoples.EXTREMES) and len(models) > len(peoples.EXTREMES)
+    return bracket.conclusions(by_people) if whole else ()

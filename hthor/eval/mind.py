@@ -7,7 +7,7 @@ of the trial that was played again must equal the logged one.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +62,10 @@ class Listened:
         if self.listening:
             self._look_in(tick)
         return rating
+
+    def state(self) -> Mapping[str, Any]:
+        state: Mapping[str, Any] = self.human.state()
+        return state
 
     @property
     def journal(self) -> Sequence[Event]:

@@ -67,9 +67,7 @@ def _moments(events: Sequence[Event]) -> list[tuple[Event, Event]]:
     return [pairs[round(k * (len(pairs) - 1) / (_MOMENTS - 1))] for k in range(_MOMENTS)]
 
 
-def _draw_moment(
-    ax: Axes, record: Record, house: HouseSpec, beliefs: Event, choice: Event, stream: Stream
-) -> None:
+def _draw_moment(ax: Axes, record: Record, house: HouseSpec, beliefs: Event, choice: Event, stream: Stream) -> None:
     plan.draw_house(ax, house)
     chances, ahead = posterior(beliefs)
     exposures = {place["id"]: place["exposure"] for place in beliefs.data["places"]}
@@ -171,5 +169,3 @@ def _legend() -> list[Any]:
         Line2D([], [], color=trace.TARGET, lw=1.6, label="what is chosen"),
         star,
     ]
-
-

@@ -18,6 +18,7 @@ _LANES = ("trust", "messages", "hands", "choices", "noticed", "is about")
 _LANE_IN = 0.46
 _SHADES = {"search": "#9ecae1", "follow": "#c9a6d6", "fetch": "#a1d99b", "deliver": "#74c476", "begin": "#dddddd"}
 _ANSWERS = {"confirmed": trace.MESSAGE, "declined": trace.IDLE_MESSAGE, "covered": "#cccccc"}
+_TRIED: dict[object, str] = {True: "#74c476", False: trace.FAILED}
 _CHAR_S = 0.72
 """How many seconds of the time axis a letter takes up."""
 
@@ -101,7 +102,7 @@ def _draw_choice(ax: Axes, choice: Event, beta: float, row: float) -> None:
 def _draw_attempt(ax: Axes, event: Event, end: float, row: float) -> None:
     begin = event.tick * rules.TICK_S
     seconds = float(event.data.get("seconds", end - begin))
-    shade = {True: "#74c476", False: trace.FAILED}.get(event.data.get("ok"), "#bbbbbb")
+    shade = _TRIED.get(event.data.get("ok"), "#bbbbbb")
     ax.barh(row, seconds, left=begin, height=0.5, color=shade, alpha=0.8, edgecolor="white", lw=0.8)
     ax.text(begin + 0.2, row, event.data["what"], fontsize=6.5, va="center", color=trace.INK, clip_on=True)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -29,7 +30,7 @@ class HumansRef(Struct, frozen=True, kw_only=True):
     Attributes:
         name: what to call them; ``source`` what they were asked for by, paths cut to the file's name.
         model: the human model; ``kind``: what is changed in the population, empty for nothing.
-        population: whom they are drawn from; ``population_sha256`` its hash.
+        population: whom they are drawn from; ``population_sha256`` its hash. Empty where it is a log that makes them.
         sha256: hash of all that makes these people, the population included.
         valid: whether that population is used where it was calibrated; ``notes`` say what is different.
     """
@@ -84,14 +85,15 @@ def settings(body: str | Shape, detector: str) -> dict[str, str | float]:
 
 def refer(found: People, suite: Suite, crew: Crew) -> HumansRef:
     """Who they are, and whether they are known to fit this suite, this world and these robots."""
-    notes = tuple(_differences(found, suite, crew))
+    drawn = not found.source
+    notes = tuple(_differences(found, suite, crew)) if drawn else ()
     return HumansRef(
         name=found.name,
-        source="@".join(Path(part).name if "/" in part else part for part in found.word.split("@")),
+        source=re.sub(r"(^|[:@])[^:@]*/", r"\1", found.word),
         model=Path(found.model).stem if found.model.endswith(".py") else found.model,
         kind=found.kind.name if found.kind is not None else "",
-        population=found.population.name,
-        population_sha256=found.population.sha256,
+        population=found.population.name if drawn else "",
+        population_sha256=found.population.sha256 if drawn else "",
         sha256=found.sha256,
         valid=not notes,
         notes=notes,

@@ -7,6 +7,7 @@ from pathlib import Path
 from hthor import houses
 from hthor.errors import HthorError
 from hthor.eval.record import Record
+from hthor.types import HouseSpec
 
 PICTURES = (".png", ".svg", ".pdf")
 
@@ -17,22 +18,41 @@ def draw(record: Record, path: Path, *, video: bool) -> None:
     Raises:
         HthorError: when the file's name does not fit, or the house has changed since.
     """
-    valid = (".mp4",) if video else PICTURES
-    if path.suffix.lower() not in valid:
-        raise HthorError(f"{path}: the name of a {'film' if video else 'picture'} must end in {' or '.join(valid)}.")
-    task = record.spec.task
-    house = houses.load(task.house)
-    if house.sha256 != task.house_sha256:
-        raise HthorError(
-            f"the house '{task.house}' has changed since this trial was played (its hash was {task.house_sha256[:10]} "
-            f"and is {house.sha256[:10]}); a picture of it would be wrong."
-        )
+    check_name(path, video=video)
+    plan = house(record)
     path.parent.mkdir(parents=True, exist_ok=True)
     if video:
         from hthor.eval import video as film
 
-        film.write(path, record.spec, record.log, house)
+        film.write(path, record.spec, record.log, plan)
     else:
         from hthor.eval import picture
 
-        picture.figure(record.spec, record.log, house).savefig(path)
+        picture.figure(record.spec, record.log, plan).savefig(path)
+
+
+def check_name(path: Path, *, video: bool) -> None:
+    """See that a file's name says what is written into it.
+
+    Raises:
+        HthorError: when it does not.
+    """
+    valid = (".mp4",) if video else PICTURES
+    if path.suffix.lower() not in valid:
+        raise HthorError(f"{path}: the name of a {'film' if video else 'picture'} must end in {' or '.join(valid)}.")
+
+
+def house(record: Record) -> HouseSpec:
+    """The house of a trial, as it was then.
+
+    Raises:
+        HthorError: when it has changed since.
+    """
+    task = record.spec.task
+    found = houses.load(task.house)
+    if found.sha256 != task.house_sha256:
+        raise HthorError(
+            f"the house '{task.house}' has changed since this trial was played (its hash was {task.house_sha256[:10]} "
+            f"and is {found.sha256[:10]}); a picture of it would be wrong."
+        )
+    return found

@@ -85,8 +85,7 @@ def comparison_table(results: Sequence[Result]) -> RenderableType:
 
 def peoples_table(matrix: Matrix) -> RenderableType:
     """Agents with several peoples: a row a people, three columns an agent, the worst of each agent marked."""
-    title = f"{matrix.suite.name}, {matrix.trials} trials with each people (means; * least success)"
-    table = _table(title)
+    table = _table(f"{matrix.suite.name}, {matrix.trials} trials with each people")
     for agent in matrix.agents:
         for heading in (f"{agent}\nsuccess %", "\nTWSR %", "\nadoption %"):
             table.add_column(heading, justify="right")
@@ -94,7 +93,7 @@ def peoples_table(matrix: Matrix) -> RenderableType:
         cells: list[str] = []
         for agent, cell in matrix.cells[people.name].items():
             worst = matrix.worst.get(agent)
-            mark = "*" if worst is not None and worst.people == people.name else ""
+            mark = "*" if worst is not None and people.name in worst.peoples else ""
             cells += [mark + _bare(cell.sr), _bare(cell.twsr), _bare(cell.adoption)]
         table.add_row(people.name, *cells)
     return _doubted(table, matrix.peoples)
@@ -104,10 +103,10 @@ def worst_lines(matrix: Matrix) -> Iterator[str]:
     """With whom each agent fares worst, a line an agent."""
     for agent, worst in matrix.worst.items():
         rate, behind = f"{worst.sr * 100.0:.1f} %", f"{worst.behind * 100.0:.1f} points"
-        if worst.people == worst.base:
-            yield f"{agent}: no people are worse off than {worst.people}, success {rate}"
+        if worst.base in worst.peoples:
+            yield f"{agent}: no people are worse off than {worst.base}, success {rate}"
         else:
-            yield f"{agent}: worst with {worst.people}, success {rate}, {behind} below {worst.base}"
+            yield f"{agent}: * worst with {', '.join(worst.peoples)}: success {rate}, {behind} below {worst.base}"
 
 
 def _bare(estimate: Estimate) -> str:

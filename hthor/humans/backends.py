@@ -47,11 +47,11 @@ def settings() -> Settings:
     return Settings(**{field: os.environ[name] for field, name in given.items() if os.environ.get(name)})
 
 
-def speaker(person: Person, chosen: Settings) -> llm.Speaker:
-    """A language model in this person's place.
+def named(chosen: Settings) -> str:
+    """The model's name.
 
     Raises:
-        HthorError: when the settings name no model.
+        HthorError: when the settings name none.
     """
     if not chosen.name:
         raise HthorError(
@@ -59,8 +59,17 @@ def speaker(person: Person, chosen: Settings) -> llm.Speaker:
             f"chat endpoint (https://HOST/v1/chat/completions), or {URL}={STUB} for a rule that needs no model. With "
             f"every answer in the cache ({CACHE}) the name alone will do."
         )
+    return chosen.name
+
+
+def speaker(person: Person, chosen: Settings) -> llm.Speaker:
+    """A language model in this person's place.
+
+    Raises:
+        HthorError: when the settings name no model.
+    """
     backend = stub if chosen.url == STUB else Endpoint(chosen, llm.temperature(person), llm.seed(person))
-    return llm.Speaker(person, backend, Path(chosen.cache), chosen.name)
+    return llm.Speaker(person, backend, Path(chosen.cache), named(chosen))
 
 
 def stub(question: str) -> str:

@@ -38,7 +38,11 @@ def individual(population: Parameters, root: int, effects: Iterable[Effect] = PA
 
 
 def practised(traits: Parameters, index: int) -> Parameters:
-    """The same person in their trial number ``index``, from 0: brisker with practice."""
+    """The same person in their trial number ``index``, from 0: brisker with practice.
+
+    What is new to people is the stick, the controllers and the search: pace, handling and dwelling get quicker. They
+    have turned their heads and read all their lives, so turning and reading stay as they are.
+    """
     lift = 1.0 + traits.learn * (1.0 - math.exp(-index / traits.n_learn))
     return msgspec.structs.replace(
         traits, v_pace=traits.v_pace * lift, t_dwell=traits.t_dwell / lift, t_manip=traits.t_manip / lift

@@ -1,4 +1,9 @@
-"""Going where a robot says that something is, and looking for it there from several sides; knows nothing of trust."""
+"""Going where a robot says that something is, and looking for it there from several sides; knows nothing of trust.
+
+The map in the headset shows the place itself, and goes on showing it, so nobody misses it by the 20 to 40 degrees by
+which people point wrong from memory; what reading the map costs is in the pace (``k_map``) and in ways that turn out
+to end at a wall.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +27,8 @@ _TRIED_M = 0.35
 _VIEWS = 3
 """A claim is worth another look, from where a door, a back or a shelf hides less."""
 _ASIDE_RAD = math.radians(50.0)
+_FURTHER_M = 3.0
+"""So far people go for another look, when the first showed nothing."""
 _TRIES = 12
 _GLANCE_S = 0.6
 
@@ -44,7 +51,10 @@ class Following:
         failed: list[Vec2] = []
         for _ in range(_TRIES):
             place = self.memory.at(position)
-            spot = self._vantage(position, place, [*looked, *hidden], failed)
+            spot = self._vantage(position, place, [*looked, *hidden], failed, _FURTHER_M if looked else math.inf)
+            if spot is None and failed and not looked:
+                failed.clear()  # by now the map tells more
+                continue
             if spot is None:
                 break
             guessed = self.walker.grid.at(*spot) != FREE
@@ -53,6 +63,8 @@ class Following:
                 continue  # the place came into view, or what is around it: choose again where to stand
             if not arrived:
                 failed.append(spot)
+                if looked:
+                    break
                 continue
             if not (yield from self._faces(position)):
                 hidden.append(self.me.here)
@@ -97,8 +109,13 @@ class Following:
     def _is_short_of(self, spot: Vec2) -> bool:
         return math.dist(self.me.here, spot) > _TRIED_M
 
-    def _vantage(self, position: Vec3, place: Place | None, seen: list[Vec2], failed: list[Vec2]) -> Vec2 | None:
-        """The nearest spot on foot from which the place may be looked at, on a side from which it was not yet."""
+    def _vantage(
+        self, position: Vec3, place: Place | None, seen: list[Vec2], failed: list[Vec2], most: float
+    ) -> Vec2 | None:
+        """The nearest spot on foot from which the place may be looked at, on a side from which it was not yet.
+
+        None when there is none, or none within ``most`` metres.
+        """
         point = position[:2]
         spots = standing.at(place, self.walker, front=True) if place is not None and place.state else []
         spots = standing.in_reach(spots, position, _NEAR_M) or standing.around(position, _REACH_M)
@@ -114,5 +131,5 @@ class Following:
         ]
         new = [spot for spot in new if self.walker.grid.at(*spot) == FREE] or new
         far = self.walker.planner.distances(self.me.here, new) if new else ()
-        ranked = [(way, spot) for way, spot in zip(far, new, strict=True) if math.isfinite(way)]
+        ranked = [(way, spot) for way, spot in zip(far, new, strict=True) if math.isfinite(way) and way <= most]
         return min(ranked)[1] if ranked else None

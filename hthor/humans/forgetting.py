@@ -17,7 +17,7 @@ from hthor.humans.memory import Memory, Place
 from hthor.humans.subject import Subject
 from hthor.humans.things import Known, Things
 
-_EVERY_S = 0.9
+_EVERY_S = 1.5
 
 
 class Forgetting:
@@ -56,7 +56,7 @@ class Forgetting:
                 yield place
 
     def due(self) -> bool:
-        """Whether it is time to look again; about once a second is enough."""
+        """Whether it is time to look again; every second or two is enough."""
         if self.me.now.tick - self._checked < self._every:
             return False
         self._checked = self.me.now.tick

@@ -48,16 +48,37 @@ def expected(target: str) -> float:
 class Head:
     """Where the eyes are [m] and which way the head points."""
 
-    __slots__ = ("_ahead", "_eye")
+    __slots__ = ("ahead", "eye")
 
     def __init__(self, pose: Pose, eye: float) -> None:
         flat = math.cos(pose.pitch)
-        self._eye = pose.x, pose.y, eye
-        self._ahead = flat * math.cos(pose.yaw), flat * math.sin(pose.yaw), math.sin(pose.pitch)
+        self.eye = pose.x, pose.y, eye
+        self.ahead = flat * math.cos(pose.yaw), flat * math.sin(pose.yaw), math.sin(pose.pitch)
 
     def to(self, point: Vec3) -> tuple[float, float]:
         """Distance [m] of a point, and how far [rad] it is off the direction of the head."""
-        (x, y, z), (ex, ey, ez), (ux, uy, uz) = point, self._eye, self._ahead
+        (x, y, z), (ex, ey, ez), (ux, uy, uz) = point, self.eye, self.ahead
         dx, dy, dz = x - ex, y - ey, z - ez
         far = math.sqrt(dx * dx + dy * dy + dz * dz) or 1e-9
         return far, math.acos(max(-1.0, min(1.0, (dx * ux + dy * uy + dz * uz) / far)))
+
+
+class Outlook:
+    """How fast a thing of ``size`` [m] would be noticed, were it where one looks, alone and in full view.
+
+    The same as `rate` says, in one go: this is asked of all furniture in view at every glimpse.
+    """
+
+    __slots__ = ("_aside", "_most", "_small")
+
+    def __init__(self, traits: Parameters, size: float) -> None:
+        self._most, self._small, self._aside = traits.lam0, (traits.a50 / size) ** 2, 0.5 / traits.ecc_sd**2
+
+    def rate(self, head: Head, point: Vec3) -> float:
+        """Rate [1/s] at a point [m]."""
+        (x, y, z), (ex, ey, ez), (ux, uy, uz) = point, head.eye, head.ahead
+        dx, dy, dz = x - ex, y - ey, z - ez
+        far2 = dx * dx + dy * dy + dz * dz + 1e-18
+        along = (dx * ux + dy * uy + dz * uz) / math.sqrt(far2)
+        ecc = math.acos(along) if -1.0 < along < 1.0 else 0.0 if along > 0.0 else math.pi
+        return self._most / (1.0 + self._small * far2) * math.exp(-self._aside * ecc * ecc)

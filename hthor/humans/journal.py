@@ -10,13 +10,15 @@ head        ``pitch``, flat pairs of a tick and the head's pitch [mrad] from tha
             the path is; ``fastest`` [rad/s], what the body turns at most. Written once a trial.
 attempt     ``what`` was tried ("pick", "place", "open", "close", "drop"), under the tick at which that began; the
             ``seconds`` that it took and whether it was ``ok``; ``why`` not, where it was not: "missed" when the hand
-            closed on nothing, else the world's words; ``at`` [m], where on the furniture, of a "place". What was given up or cut off by the end has neither.
-exposure    what of the object wanted came into view, and whether it was noticed: see `hthor.humans.perception`.
+            closed on nothing, else the world's words; ``at`` [m], where on the furniture, of a "place". What was given
+            up or cut off by the end has neither.
+exposure    what of the object wanted came into view, and whether it was noticed: see `hthor.humans.exposure`.
 choice      what could be searched next, and what was: see `hthor.humans.search`.
-offer       a message that was read, what spoke for and against it, and the answer: see `hthor.humans.messages`.
+offer       a message that was read, what spoke for and against it, and the answer: see `hthor.humans.talking`.
+misled      the person left the place to which a confirmed message had led, without what it was about.
 ==========  ============================================================================================================
 
-Stick and head are recorded by the umpire for every human model, attempts by the hands; the last three are worked out
+Stick and head are recorded by the umpire for every human model, attempts by the hands; the others are worked out
 from what was in view, on the way and on the panel, and a human model that has no such notions leaves them out.
 """
 

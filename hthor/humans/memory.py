@@ -141,7 +141,7 @@ class Memory:
 
     def expose(self, place: Place, amount: float, tick: int) -> None:
         """The place was looked at."""
-        place.exposure = self.exposure(place, tick) + amount
+        place.exposure = place.exposure * math.exp((place.since - tick) / self.tau) + amount
         place.since = tick
 
     def at(self, point: Vec3, margin: float = 0.1) -> Place | None:

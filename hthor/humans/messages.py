@@ -11,9 +11,9 @@ from hthor.humans.parameters import Parameters
 from hthor.types import Message
 
 _SAME_M = 0.5
-_WORDS, _FEWEST = 12, 4
+WORDS, FEWEST = 12, 4
 """Words of the message that ``t_read`` is for, and of the shortest that is worth counting: a glance takes its time."""
-_KNOWN = 0.5
+KNOWN = 0.5
 """Share of that time for a text that was read before. Ours: people recognise it, and look for what is new."""
 
 
@@ -89,9 +89,9 @@ class Reader:
         self._count += 1
         number, traits = self._count, self.traits
         notice = traits.t_notice * self._luck("notice", number)
-        read = traits.t_read * max(_FEWEST, len(message.text.split())) / _WORDS * self._luck("read", number)
+        read = traits.t_read * max(FEWEST, len(message.text.split())) / WORDS * self._luck("read", number)
         if any(same(message, old) for old in self._read):
-            read *= _KNOWN
+            read *= KNOWN
         noticed = tick + notice / self.tick_s
         again = sum(same(message, old) for old in self._refused)
         until = noticed + read / self.tick_s

@@ -38,7 +38,7 @@ class People(Struct, frozen=True, kw_only=True, eq=False):
         word: finds them again, in any process and from any folder.
         purpose: what they are, in a few words.
         model: the human model's name, or the path of its file.
-        source: what that model is made from, such as the log that is replayed; mostly empty.
+        source: what that model is made from in place of a population, such as the log that is replayed; mostly empty.
         kind: what is changed in the population, None for nothing.
         sha256: hash of all that makes them but hthor's own code.
     """
@@ -117,7 +117,7 @@ def _split(word: str) -> tuple[str, Population | None]:
 def _people(word: str, left: str, model: str, source: str, population: Population, kind: Kind | None) -> People:
     made = {
         "model": model if not model.endswith(".py") else plugins.sha256(model),
-        "population": population.sha256,
+        "population": "" if source else population.sha256,
         "changes": [] if kind is None else kind.essence,
         "ingredients": _ingredients(model, source),
     }

@@ -16,7 +16,7 @@ import math
 from hthor.humans.beliefs import holders
 from hthor.humans.exposure import Exposures, Glimpse
 from hthor.humans.forgetting import Forgetting
-from hthor.humans.glimpses import Head, expected, extent, rate
+from hthor.humans.glimpses import Head, Outlook, expected, extent, rate
 from hthor.humans.memory import Memory, Place
 from hthor.humans.subject import Subject
 from hthor.humans.things import Known, Things
@@ -42,7 +42,7 @@ class Eyes:
         self.attention: Place | Vec3 | None = None
         self.at = -1
         self._before = -1
-        self._size = sum(map(expected, things.known)) / len(things.known)
+        self._outlook = Outlook(me.traits, sum(map(expected, things.known)) / len(things.known))
         self._forgetting, self._exposures = Forgetting(me, things, memory), Exposures(me)
         self._holders = frozenset(holders())
         self._gathered: dict[str, float] = {}
@@ -113,8 +113,7 @@ class Eyes:
             place.views += 1
         place.at = tick
         if place.state != "closed":
-            far, ecc = head.to(seen.position)
-            memory.expose(place, rate(self.traits, self._size / far, ecc) * seconds, tick)
+            memory.expose(place, self._outlook.rate(head, seen.position) * seconds, tick)
 
     def _rate_of_large(self, seen: Detection) -> float:
         """Rate [1/s] of recognising furniture and what is as large."""

@@ -77,6 +77,7 @@ class Talk:
     def mislead(self) -> None:
         """A robot's word led nowhere."""
         self.experience.misled, self.experience.helped = True, None
+        self.me.note("misled")
 
     def _offer(self, reading: Reading, claim: Claim | None, trust: float, busy: bool, errands: Errands | None) -> Offer:
         saved, metres = 0.0, None

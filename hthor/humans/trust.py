@@ -1,4 +1,10 @@
-"""A person's trust in the robots, a Beta distribution that trials move; knows nothing of how trust is acted upon."""
+"""A person's trust in the robots, a Beta distribution that trials move; knows nothing of how trust is acted upon.
+
+The law is Guo and Yang's (2021): experience adds to one of two counts, more firmly held trust moves less, and bad
+experience may weigh more than good. What an experience is worth follows the outcome too, whoever brought it about
+(outcome bias: Yang, Schemanske and Searle 2021). Their contrast effect, that help counts for more with those who would
+have failed without it, is left out: no data at hand tell how a person would have fared alone.
+"""
 
 from __future__ import annotations
 

@@ -97,7 +97,7 @@ def again(question: str, reply: str, limit: int) -> str:
 
 def read_choice(reply: str, situation: Situation) -> int | None:
     """The index of the option that an answer names; None for anything but one number that is listed."""
-    match = re.fullmatch(r"\W*(?:option\s+)?(\d{1,3})\W*", reply.strip(), re.IGNORECASE)
+    match = re.fullmatch(r"[\s\"'*(]*(?:option\s+)?(\d{1,3})[\s\"'*).:]*", reply, re.IGNORECASE)
     shown = listed(situation)
     number = int(match[1]) if match else 0
     return shown[number - 1] if 1 <= number <= len(shown) else None

@@ -1,4 +1,4 @@
-"""What is believed of each parameter before the logs are looked at, as normal laws on a fitting scale; reads no logs."""
+"""What is believed of each parameter before logs are looked at, as normal laws on a fitting scale; reads no logs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Belief(Struct, frozen=True, kw_only=True):
     @property
     def middle(self) -> float:
         """The median in the parameter's own unit."""
-        return off(self.mean, self.scale)
+        return float(off(self.mean, self.scale))
 
     def term(self) -> Term:
         """The parameter in a model, with what is believed as its prior."""

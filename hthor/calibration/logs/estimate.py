@@ -21,6 +21,8 @@ NEEDS: dict[str, tuple[int, str]] = {
     "k_map": (20, "guided walks"),
     "t_manip": (30, "attempts"),
     "p_fail": (30, "attempts"),
+    "t_notice": (15, "messages"),
+    "t_read": (15, "messages"),
     "reading": (15, "messages"),
     "a0": (100, "messages"),
     "a_trust": (100, "messages"),

@@ -48,9 +48,8 @@ def readings(record: Record) -> tuple[Reading, ...]:
     shown: list[Message] = []
     begun: tuple[int, Message, bool] | None = None
     for event in record.events:
-        number = event.data.get("message")
         if event.kind == "shown":
-            message = sent[number]
+            message = sent[event.data["message"]]
             if begun is None or not same(message, begun[1]):
                 found += _left(begun, event.tick)
                 begun = event.tick, message, any(same(message, old) for old in shown)

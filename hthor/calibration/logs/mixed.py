@@ -18,15 +18,18 @@ Array = Any
 
 _STEPS, _H, _REACH = 12, 1e-3, 1.5
 _EDGE = 1e-3
+_SEARCH = {"maxiter": 200, "eps": 1e-4, "ftol": 1e-9, "gtol": 1e-4}
+_FAR = 5.0
+"""No parameter is looked for farther from what was believed of it, in standard deviations."""
 
 
 class Term(Struct, frozen=True, kw_only=True):
-    """One parameter of a model: where its search begins, and a normal prior, of infinite ``sd`` for none."""
+    """One parameter of a model: where its search begins, and a normal prior."""
 
     name: str
     start: float
     mean: float = 0.0
-    sd: float = math.inf
+    sd: float = 1.0
 
 
 class Fit(Struct, frozen=True, kw_only=True):
@@ -68,7 +71,8 @@ def fit(likelihood: Likelihood, terms: Sequence[Term], person: Array, spread: Te
 
     start = np.array([term.start for term in free])
     with np.errstate(all="ignore"):
-        found = minimize(loss, start, method="Nelder-Mead" if len(free) < 2 else "BFGS", options={"maxiter": 200})
+        bounds = [(term.mean - _FAR * term.sd, term.mean + _FAR * term.sd) for term in free]
+        found = minimize(loss, start, method="L-BFGS-B", bounds=bounds, options=_SEARCH)
         covariance = _inverse(_curvature(loss, found.x))
     errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     names = [term.name for term in free]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -151,7 +152,7 @@ def _stops(record: Record, on: Array, yaw: Array, turned: Array, rate: float) ->
     """
     busy = [event.tick for event in record.journal if event.kind == "attempt"]
     edges, found = np.flatnonzero(np.diff(on.astype(int))), []
-    for off, again in zip(edges[:-1], edges[1:], strict=True):
+    for off, again in pairwise(edges):
         if not on[off] or again - off > _STOP_TICKS or any(off <= tick <= again for tick in busy):
             continue
         a, b = (off + 1) // rules.LOG_EVERY_TICKS, min(-(-(again + 1) // rules.LOG_EVERY_TICKS), len(yaw) - 1)

@@ -8,7 +8,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor.calibration.report import gates, groups, measures, misfits, published, words
-from hthor.calibration.report.document import Findings, Played, Setting, Subject
+from hthor.calibration.report.document import Findings, Played, Rival, Setting, Subject
 from hthor.calibration.report.evidence import Evidence
 from hthor.calibration.report.groups import Array, Groups
 from hthor.calibration.table import Table
@@ -42,6 +42,7 @@ def findings(
     study = published.of(targets)
     own = _groups(made.trials, made, targets, setting.seed)
     rivals = {name: _groups(table, made, targets, setting.seed) for name, table in made.rivals.items()}
+    scored = tuple(measures.rival(name, study, made.rivals[name], made.least, drawn) for name, drawn in rivals.items())
     bare = Findings(
         subject=subject,
         setting=setting,
@@ -52,16 +53,28 @@ def findings(
         reach=measures.reach(made.trials),
         trust=measures.trust(made.trials, own),
         own=measures.rival(subject.name, study, made.trials, made.least, own),
-        rivals=tuple(
-            measures.rival(name, study, made.rivals[name], made.least, drawn) for name, drawn in rivals.items()
-        ),
+        rivals=scored,
         kinds=tuple(kinds),
         suites=tuple(suites),
-        evidence=evidence,
+        evidence=_with_rivals(evidence, scored),
         evidence_missing=evidence_missing,
         scope=words.SCOPE,
     )
     return msgspec.structs.replace(bare, gates=gates.judge(bare), misfits=misfits.find(bare))
+
+
+def _with_rivals(evidence: Evidence | None, scored: Sequence[Rival]) -> Evidence | None:
+    """The evidence, with how well simple models foretell each condition that was left out."""
+    if evidence is None:
+        return None
+    held_out = tuple(
+        msgspec.structs.replace(
+            part,
+            rivals={**{one.played.name: one.log_score[part.condition] for one in scored}, **part.rivals},
+        )
+        for part in evidence.held_out
+    )
+    return msgspec.structs.replace(evidence, held_out=held_out)
 
 
 def _groups(trials: Table, made: Materials, targets: Targets, seed: int) -> dict[str, Groups]:

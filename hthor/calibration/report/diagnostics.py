@@ -105,7 +105,10 @@ def reliability(parts: Sequence[Emulated]) -> Figure:
 def swings(parts: Sequence[Swing]) -> Figure:
     """What each parameter, moved over its prior, does to the gaps in success between the robots."""
     pairs = list(dict.fromkeys((one.better, one.worse) for one in parts))
-    names = list(dict.fromkeys(one.name for one in parts))
+    widest: dict[str, float] = {}
+    for one in parts:
+        widest[one.name] = max(widest.get(one.name, 0.0), abs(one.high - one.low))
+    names = sorted(widest, key=lambda name: -widest[name])
     with ink.style():
         made = ink.sheet(0.75 + 0.165 * len(names))
         panels = made.subplots(1, len(pairs), sharey=True, squeeze=False)[0]

@@ -32,7 +32,10 @@ class Subject(Struct, frozen=True, kw_only=True):
 
 
 class Setting(Struct, frozen=True, kw_only=True):
-    """What was played: so many people in each condition, ``trials`` trials in all three together."""
+    """What was played: so many people in each condition, ``trials`` trials in all three together.
+
+    ``quick``: too few people for a verdict on what was played.
+    """
 
     suite: str
     suite_sha256: str

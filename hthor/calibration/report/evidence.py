@@ -34,14 +34,17 @@ class Band(Struct, frozen=True, kw_only=True):
 
 
 class Predictive(Struct, frozen=True, kw_only=True):
-    """A published figure before and after the fit: medians and 90 % intervals of simulated study groups.
+    """A published figure before and after the fit: medians and 90 % intervals of study groups.
 
-    ``design_effect`` is the variance of that figure over the binomial one, None for a ratio.
+    ``prior`` and ``posterior`` are foretold by the emulator, ``simulated`` is what whole studies of people of the
+    posterior showed in the real world. ``design_effect`` is the variance of that figure over that of independent
+    trials, None where the fit does not look at it.
     """
 
     figure: str
     prior: Band
     posterior: Band
+    simulated: Band | None = None
     design_effect: float | None = None
 
 
@@ -79,7 +82,7 @@ class ParameterFinding(Struct, frozen=True, kw_only=True):
     ``contraction`` is 1 - posterior variance / prior variance in the unit cube. ``recovery`` is the correlation of true
     values and posterior means over simulated studies, ``coverage`` the share of them whose 90 % interval held the
     truth, ``ranks`` a histogram of the truth's rank among posterior draws (flat when the posterior is honest).
-    ``fitted``: whether the calibration moves it; the others are drawn from their priors.
+    ``fitted``: whether the calibration means to move it; all are sampled.
     """
 
     name: str
@@ -121,17 +124,21 @@ class Emulated(Struct, frozen=True, kw_only=True):
 
 
 class Shift(Struct, frozen=True, kw_only=True):
-    """By how much ABC's posterior median of a parameter differs from ours, in our posterior standard deviations."""
+    """By how much ABC's posterior median of a parameter differs from ours, in our posterior standard deviations.
+
+    ``error`` is the standard error of that shift: ABC rests on few simulated studies.
+    """
 
     name: str
     shift: float
+    error: float | None = None
 
 
 class Swing(Struct, frozen=True, kw_only=True):
-    """What a parameter does to the gap between two robots when it goes from its prior's 5 % to its 95 % quantile.
+    """What a parameter does to a gap between robots when it alone goes from a low to a high quantile of its prior.
 
     ``low`` and ``high`` are the mean gaps in SR at either end; ``ordered`` the share of draws at the worse end in which
-    the order of the robots holds.
+    the better robot is ahead.
     """
 
     name: str
@@ -145,8 +152,9 @@ class Swing(Struct, frozen=True, kw_only=True):
 class Ranking(Struct, frozen=True, kw_only=True):
     """How often posterior draws rank the robots oracle over frontier over none.
 
-    ``sr``, ``twsr`` and ``both`` are shares of the draws, each judged on ``trials`` trials a robot; ``pairs`` has the
-    share of each pair, such as ``sr oracle>frontier``.
+    ``sr``, ``twsr`` and ``both`` are shares of the draws, each judged on ``trials`` trials a robot, chance and all;
+    ``expected`` those of the draws in which the robots' true rates are in that order, by the same names; ``pairs`` has
+    the share of each pair, such as ``sr oracle>frontier``.
     """
 
     suite: str
@@ -155,6 +163,7 @@ class Ranking(Struct, frozen=True, kw_only=True):
     sr: float
     twsr: float
     both: float
+    expected: dict[str, float] = {}
     pairs: dict[str, float] = {}
     swings: tuple[Swing, ...] = ()
 
@@ -181,6 +190,7 @@ class Evidence(Struct, frozen=True, kw_only=True):
     schema: str = SCHEMA
     origin: Origin
     predictive: tuple[Predictive, ...] = ()
+    simulated_studies: int = 0
     held_out: tuple[HeldOut, ...] = ()
     parameters: tuple[ParameterFinding, ...] = ()
     coverage: Coverage | None = None

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from hthor.calibration.report import diagnostics, forecasts, html, ink, tables, words
 from hthor.calibration.report.document import Findings
 from hthor.calibration.report.evidence import Evidence
+from hthor.calibration.table import CONDITIONS
 
 
 def predictive(found: Findings) -> list[str]:
@@ -18,6 +21,7 @@ def predictive(found: Findings) -> list[str]:
             "Unlike those of section 2, each of these groups has one population of its own, so that what is not known "
             "of the population is in the intervals too."
         ),
+        html.paragraph(words.simulated(evidence)) if evidence.simulated_studies else "",
         html.table(tables.PREDICTIVE, tables.predictive(evidence.predictive, found.published.figures)),
         html.figure(
             ink.svg(
@@ -35,10 +39,9 @@ def held_out(found: Findings) -> list[str]:
     evidence = found.evidence
     own = {found.own.played.name: found.own, **{one.played.name: one for one in found.rivals}}
     if evidence is None or not evidence.held_out:
-        scores = [
-            [name, *(words.signed(one.log_score[where], 2) for where in one.log_score)] for name, one in own.items()
-        ]
-        heads = ("human model", *(words.CONDITION[name] for name in found.own.log_score))
+        known = [name for name in CONDITIONS if name in found.own.log_score]
+        scores = [[name, *(words.signed(one.log_score[where], 2) for where in known)] for name, one in own.items()]
+        heads = ("human model", *(words.CONDITION[name] for name in known))
         return [
             *_without(found, "no condition can be left out of a fit"),
             html.table(heads, scores, "Log score of the published counts and ratios [nats], higher is better"),
@@ -120,8 +123,8 @@ def emulator(found: Findings) -> list[str]:
         drawn if any(one.bins for one in evidence.emulated) else "",
         html.paragraph(words.cross_check(evidence.abc)) if evidence.abc else "",
         html.table(
-            ("parameter", "shift of the median [posterior sd]"),
-            [[one.name, words.signed(one.shift, 2)] for one in evidence.abc],
+            ("parameter", "shift of the median [posterior sd]", "standard error"),
+            [[one.name, words.signed(one.shift, 2), words.plain(one.error)] for one in evidence.abc],
         )
         if evidence.abc
         else "",
@@ -150,6 +153,12 @@ def _draws(found: Findings, evidence: Evidence | None) -> list[str]:
                 "Mean gap in success between two robots with one parameter at the low and at the high end of its prior "
                 "and the others at posterior draws.",
             ),
+            html.table(
+                ("parameter", "", *(f"SR {a} less {b}" for a, b in tables.pairs(home.swings)), "worst order [%]"),
+                tables.swings(home.swings, evidence.parameters),
+                "From the low to the high end of the prior [points]; share of draws in order at the worst end",
+                words=(0, 1),
+            ),
         ]
     return parts
 
@@ -160,7 +169,11 @@ def _suites(found: Findings) -> list[str]:
     return [
         "<h3>By suite</h3>",
         html.paragraph(words.suites(found)),
-        html.table(("suite", *tables.MODELS[1:]), tables.models(found.suites), "Means [%]"),
+        html.table(
+            ("suite", *tables.MODELS[1:]),
+            tables.models((msgspec.structs.replace(found.own.played, name=found.setting.suite), *found.suites)),
+            "Means [%]",
+        ),
     ]
 
 

@@ -24,7 +24,7 @@ CONDITION = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
 def table(rows: Sequence[Predicted]) -> Figure:
     """The eight figures: published values, and what simulated study groups show."""
     with ink.style():
-        made, panels = _panels(1.75)
+        made, panels = _panels(1.75, [row.band for row in rows])
         for row in rows:
             metric, condition = row.figure.split()
             ax, y, shade = panels[metric], CONDITIONS.index(condition), ink.CONDITION[condition]
@@ -47,7 +47,7 @@ def table(rows: Sequence[Predicted]) -> Figure:
 def before_after(rows: Sequence[Predictive], published: dict[str, float]) -> Figure:
     """Prior and posterior predictive intervals of the eight figures."""
     with ink.style():
-        made, panels = _panels(2.1)
+        made, panels = _panels(2.1, [band for row in rows for band in (row.prior, row.posterior)])
         for row in rows:
             metric, condition = row.figure.split()
             ax, y = panels[metric], CONDITIONS.index(condition)
@@ -65,7 +65,7 @@ def before_after(rows: Sequence[Predictive], published: dict[str, float]) -> Fig
 def held_out(parts: Sequence[HeldOut]) -> Figure:
     """What the other two conditions predict of each, 80 % intervals."""
     with ink.style():
-        made, panels = _panels(1.75)
+        made, panels = _panels(1.75, [row.band for part in parts for row in part.figures])
         for part in parts:
             for row in part.figures:
                 metric, condition = row.figure.split()
@@ -87,7 +87,11 @@ def scores(findings: Findings) -> Figure:
         made = ink.sheet(1.9)
         panels = made.subplots(1, len(findings.evidence.held_out), sharex=True, sharey=True, squeeze=False)[0]
         for ax, part in zip(panels, findings.evidence.held_out, strict=True):
-            named = {"fitted on the others": part.log_score, "prior": part.log_score_prior, **part.rivals}
+            named = {
+                "fitted on the others": part.log_score,
+                "prior": part.log_score_prior,
+                **dict(sorted(part.rivals.items())),
+            }
             for y, score in enumerate(named.values()):
                 shade = ink.CONDITION[part.condition] if y == 0 else ink.PRIOR
                 ax.barh(y, score, height=0.6, color=shade)
@@ -101,18 +105,19 @@ def scores(findings: Findings) -> Figure:
     return made
 
 
-def _panels(height: float) -> tuple[Figure, dict[str, Axes]]:
+def _panels(height: float, bands: Sequence[Band]) -> tuple[Figure, dict[str, Axes]]:
+    """Three axes that share a scale, from the ten below the lowest band on."""
+    first = 10 * int(10.0 * min([0.5, *(band.low for band in bands)]))
     made = ink.sheet(height)
     panels = made.subplots(1, 3, sharey=True)
     for ax, (metric, title) in zip(panels, METRICS.items(), strict=True):
         ink.bare(ax)
         ax.set_title(f"{title} [%]")
-        ax.set_xlim(0, 100)
-        ax.set_xticks(range(0, 101, 25))
+        ax.set_xlim(first, 100)
         ax.set_ylim(2.6, -0.6)
         ax.set_yticks(range(3), [CONDITION[name] for name in CONDITIONS])
         if metric == "adoption":
-            ax.text(50, 0, "no robot to adopt", ha="center", va="center", color=ink.SOFT, fontsize=7)
+            ax.text((first + 100) / 2, 0, "no robot to adopt", ha="center", va="center", color=ink.SOFT, fontsize=7)
     return made, dict(zip(METRICS, panels, strict=True))
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import msgspec
+
 from hthor.calibration.report import words
 from hthor.calibration.report.document import Findings, Gate, Predicted, Trust, Verdict
 from hthor.calibration.report.evidence import Evidence
@@ -23,12 +25,16 @@ def judge(found: Findings) -> tuple[Gate, ...]:
     return (
         *_table(found.table, short),
         _trust(found.trust, short),
-        *_held_out(found.evidence),
-        _coverage(found.evidence),
-        _emulator(found.evidence),
-        _abc(found.evidence),
-        _ranking(found.evidence),
+        *of_evidence(found.evidence),
     )
+
+
+def of_evidence(found: Evidence | None) -> tuple[Gate, ...]:
+    """The bars for a calibration. A quick one is shown and not judged."""
+    gates = (*_held_out(found), _coverage(found), _emulator(found), _abc(found), _ranking(found))
+    if found is None or not found.origin.quick:
+        return gates
+    return tuple(msgspec.structs.replace(gate, verdict="not judged") for gate in gates)
 
 
 def failed(gates: Sequence[Gate]) -> list[Gate]:
@@ -88,11 +94,8 @@ def _coverage(found: Evidence | None) -> Gate:
     ask = ("coverage", f"90 % intervals hold {low:.2f} to {high:.2f} of the truths, over {STUDIES} studies or more")
     if found is None or found.coverage is None:
         return _gate(*ask, _ABSENT, None)
-    enough = found.coverage.studies >= STUDIES
     said = f"{found.coverage.mean:.3f} over {found.coverage.studies} studies"
-    if not enough and found.origin.quick:
-        return _gate(*ask, f"{said}: too few to judge", None)
-    return _gate(*ask, said, enough and low <= found.coverage.mean <= high)
+    return _gate(*ask, said, found.coverage.studies >= STUDIES and low <= found.coverage.mean <= high)
 
 
 def _emulator(found: Evidence | None) -> Gate:

@@ -20,7 +20,7 @@ Cell = str | Mark
 
 def paragraph(text: str, mood: str = "") -> str:
     """A paragraph."""
-    return f"<p{_class(mood)}>{escape(text)}</p>"
+    return f"<p{_class(mood)}>{_held(text)}</p>"
 
 
 def paragraphs(texts: Iterable[str]) -> str:
@@ -30,7 +30,7 @@ def paragraphs(texts: Iterable[str]) -> str:
 
 def bullets(texts: Sequence[str]) -> str:
     """A list."""
-    return "<ul>\n" + "\n".join(f"<li>{escape(text)}</li>" for text in texts) + "\n</ul>"
+    return "<ul>\n" + "\n".join(f"<li>{_held(text)}</li>" for text in texts) + "\n</ul>"
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[Cell]], caption: str = "", words: Collection[int] = (0,)) -> str:
@@ -47,7 +47,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[Cell]], caption: str = ""
 
 def figure(drawing: str, caption: str) -> str:
     """A drawing, which is put in as it is, and what it shows."""
-    return f"<figure>{drawing}<figcaption>{escape(caption)}</figcaption></figure>"
+    return f"<figure>{drawing}<figcaption>{_held(caption)}</figcaption></figure>"
 
 
 def section(number: int, name: str, title: str, *parts: str) -> str:
@@ -65,6 +65,11 @@ def _cell(cell: Cell, column: int, wordy: bool) -> str:
     tag = 'th scope="row"' if column == 0 else f"td{_class('' if wordy else 'n')}"
     inside = f'<b class="{cell.mood}">{escape(cell.word)}</b>' if isinstance(cell, Mark) else escape(cell)
     return f"<{tag}>{inside}</{tag.split()[0]}>"
+
+
+def _held(text: str) -> str:
+    """Text whose numbers stay with their units."""
+    return escape(text).replace(" %", "\u00a0%")
 
 
 def _class(name: str) -> str:

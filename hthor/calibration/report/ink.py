@@ -120,6 +120,7 @@ def svg(made: Figure, name: str, words: str) -> str:
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
     text = re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
     text = re.sub(r'( id="|href="#|url\(#)', rf"\g<1>{name}-", text)
+    text = text.replace("xlink:href", "href")
     for colour, variable in VARIABLES.items():
         text = re.sub(colour, f"var(--{variable})", text, flags=re.IGNORECASE)
     text = text.replace("'DejaVu Sans'", "inherit").replace("font-family: inherit", "")
@@ -127,8 +128,8 @@ def svg(made: Figure, name: str, words: str) -> str:
     assert head is not None
     width, height = (float(value) for value in re.findall(r'(?:width|height)="([\d.]+)pt"', head.group(0)))
     opening = (
-        f'<svg role="img" viewBox="0 0 {width:g} {height:g}" style="max-width:{width * 4 / 3:.0f}px" '
-        f'xmlns:xlink="http://www.w3.org/1999/xlink"><title>{escape(words)}</title>'
+        f'<svg role="img" viewBox="0 0 {width:g} {height:g}" style="max-width:{width * 4 / 3:.0f}px">'
+        f"<title>{escape(words)}</title>"
     )
     lines = (line.strip() for line in (opening + text[head.end() :]).splitlines())
     return "\n".join(line for line in lines if line)

@@ -9,6 +9,7 @@ from html import escape
 
 from hthor.calibration.report import fitted, forecasts, html, ink, sessions, style, tables, words
 from hthor.calibration.report.document import Findings
+from hthor.calibration.table import CONDITIONS
 
 _TITLES = (
     ("data", "Data"),
@@ -75,7 +76,9 @@ def _head(found: Findings, title: str) -> str:
         said += f" Failed: {words.listed(failed)}."
     notes = list(subject.notes)
     if setting.quick:
-        notes.append("A quick run: too few people to judge what is played. Leave out --quick for a verdict.")
+        notes.append(
+            "Too few people to judge what was played. For a verdict leave out --quick, and ask for 18 people or more."
+        )
     return "\n".join(
         (
             f"<h1>{escape(title)}</h1>",
@@ -90,12 +93,14 @@ def _head(found: Findings, title: str) -> str:
 
 def _data(found: Findings) -> list[str]:
     published = found.published
-    ratios = words.listed(f"{words.CONDITION[name]} {value:.3f}" for name, value in published.ratio.items())
+    ratios = words.listed(
+        f"{words.CONDITION[name]} {published.ratio[name]:.3f}" for name in CONDITIONS if name in published.ratio
+    )
     says = [f"{about}: {text}" for about, text in published.verbal]
     return [
         html.paragraph(f"Source: {published.source}. Targets “{published.name}”, {published.sha256[:10]}."),
         html.paragraph(f"Design: {published.design}") if published.design else "",
-        html.table(tables.COUNTS, tables.counts(published), words=(0, 3)),
+        html.table(tables.COUNTS, tables.counts(published), words=(0, 3, 4)),
         html.paragraph(
             f"TWSR is used as its ratio to SR ({ratios}), because the two are not independent. Each figure of the "
             "study is that of one group of six people, so a model is compared with groups of six, not with its own "

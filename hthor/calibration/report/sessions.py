@@ -50,7 +50,9 @@ def trust(found: Trust) -> Figure:
         for shift, curve in zip((-0.06, 0.06), found.curves, strict=False):
             shade = ink.CONDITION[curve.condition]
             x = [trial + 1 + shift for trial in range(len(curve.mean))]
-            ax.errorbar(x, curve.mean, yerr=curve.se, color=shade, marker="o", ms=4, lw=1.4, elinewidth=1.0, capsize=0)
+            ax.errorbar(
+                x, curve.mean, yerr=curve.se, color=shade, marker="o", ms=3.2, lw=1.4, elinewidth=1.0, capsize=0
+            )
             ax.annotate(
                 CONDITION[curve.condition],
                 (x[-1], curve.mean[-1]),

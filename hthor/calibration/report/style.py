@@ -30,8 +30,7 @@ thead th{vertical-align:bottom;font-weight:600;border-bottom:1.5px solid var(--s
 tbody th{font-weight:normal}
 .n{text-align:right;white-space:nowrap}
 thead .n{white-space:normal}
-td b{white-space:nowrap}
-td b.quiet{white-space:normal}
+td b,tbody th{white-space:nowrap}
 b{font-weight:600}
 b.good{color:var(--oracle)}
 b.bad{color:var(--published)}

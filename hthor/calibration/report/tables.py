@@ -5,21 +5,32 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hthor.calibration.report import words
-from hthor.calibration.report.document import Count, Curve, Difference, Gate, Played, Predicted, Published, Spent
-from hthor.calibration.report.evidence import FIGURES, Band, Emulated, HeldOut, ParameterFinding, Predictive, Ranking
+from hthor.calibration.report.document import Curve, Difference, Gate, Played, Predicted, Published, Spent
+from hthor.calibration.report.evidence import (
+    FIGURES,
+    Band,
+    Emulated,
+    HeldOut,
+    ParameterFinding,
+    Predictive,
+    Ranking,
+    Swing,
+)
 from hthor.calibration.report.html import Cell, Mark, mark
 
 Rows = list[list[Cell]]
 GATES = ("bar", "asks", "found", "verdict")
 TABLE = ("figure [%]", "published", "median", "90 % interval", "all trials", "covered", "off by", "allowed", "close")
-COUNTS = ("count", "k / n", "%", "read as")
+COUNTS = ("count", "k / n", "%", "", "how it was found")
 PREDICTIVE = (
     "figure [%]",
     "published",
-    "prior median",
-    "prior 90 %",
-    "posterior median",
-    "posterior 90 %",
+    "prior",
+    "90 %",
+    "posterior",
+    "90 %",
+    "simulated",
+    "90 %",
     "design effect",
 )
 HELD_OUT = ("held out", "figure", "published", "median", "80 % interval", "inside")
@@ -68,15 +79,15 @@ def table(rows: Sequence[Predicted]) -> Rows:
 def counts(found: Published) -> Rows:
     """Published counts, and which of them are inferred."""
     return [
-        [words.figure(one.figure), f"{one.k} / {one.n}", words.percent(one.k / one.n), _read(one)]
+        [
+            words.figure(one.figure),
+            f"{one.k} / {one.n}",
+            words.percent(one.k / one.n),
+            Mark("inferred", "bad") if one.inferred else Mark("derived", "quiet"),
+            one.note,
+        ]
         for one in found.counts
     ]
-
-
-def _read(one: Count) -> Cell:
-    if one.inferred:
-        return Mark(f"inferred: {one.note}" if one.note else "inferred", "bad")
-    return Mark(one.note or "as published", "quiet")
 
 
 def predictive(rows: Sequence[Predictive], published: dict[str, float]) -> Rows:
@@ -89,6 +100,8 @@ def predictive(rows: Sequence[Predictive], published: dict[str, float]) -> Rows:
             words.span(row.prior, 100.0),
             words.percent(row.posterior.median),
             words.span(row.posterior, 100.0),
+            words.percent(row.simulated.median) if row.simulated else "–",
+            words.span(row.simulated, 100.0) if row.simulated else "–",
             "–" if row.design_effect is None else f"{row.design_effect:.2f}",
         ]
         for row in rows
@@ -138,7 +151,7 @@ def parameters(parts: Sequence[ParameterFinding]) -> Rows:
             Mark(words.identified(one), _MOODS[words.identified(one)]),
             f"{one.meaning} [{one.unit}]" if one.unit else one.meaning,
             _three(one.prior),
-            _three(one.posterior) if one.fitted else "as the prior",
+            _three(one.posterior),
             f"{max(0.0, one.contraction):.2f}",
             "–" if one.recovery is None else words.signed(one.recovery, 2).lstrip("+"),
             "–" if one.coverage is None else f"{one.coverage:.2f}",
@@ -163,17 +176,13 @@ def emulated(parts: Sequence[Emulated]) -> Rows:
         [
             one.outcome,
             words.CONDITION.get(one.condition, one.condition),
-            _number(one.z_sd),
-            _number(one.score, 3),
-            _number(one.baseline, 3),
+            words.plain(one.z_sd),
+            words.plain(one.score, 3),
+            words.plain(one.baseline, 3),
             "–" if one.score is None or one.baseline is None else words.signed(one.score - one.baseline, 3),
         ]
         for one in parts
     ]
-
-
-def _number(value: float | None, digits: int = 2) -> str:
-    return "–" if value is None else f"{value:.{digits}f}".replace("-", "−")
 
 
 def spent(parts: Sequence[Spent]) -> Rows:
@@ -230,3 +239,29 @@ def rankings(parts: Sequence[Ranking]) -> Rows:
         [one.suite, str(one.draws), str(one.trials), *(words.percent(value) for value in (one.sr, one.twsr, one.both))]
         for one in parts
     ]
+
+
+def pairs(parts: Sequence[Swing]) -> list[tuple[str, str]]:
+    """The pairs of robots that swings are of, in words."""
+    found = dict.fromkeys((one.better, one.worse) for one in parts)
+    return [(words.CONDITION[better], words.CONDITION[worse]) for better, worse in found]
+
+
+def swings(parts: Sequence[Swing], known: Sequence[ParameterFinding]) -> Rows:
+    """What each parameter does to the gaps between robots [points], the parameters that are not identified first."""
+    said = {one.name: words.identified(one) for one in known}
+    names = sorted(dict.fromkeys(one.name for one in parts), key=lambda name: said.get(name) != words.NOT)
+    rows: Rows = []
+    for name in names:
+        own = [one for one in parts if one.name == name]
+        worst = [one.ordered for one in own if one.ordered is not None]
+        word = said.get(name, words.NOT)
+        rows.append(
+            [
+                name,
+                Mark(word, _MOODS[word]),
+                *(f"{words.signed(100.0 * one.low)} → {words.signed(100.0 * one.high)}" for one in own),
+                words.percent(min(worst)) if worst else "–",
+            ]
+        )
+    return rows

@@ -14,6 +14,7 @@ RECOVERS, RECOVERS_WEAKLY = 0.6, 0.45
 """Recovery that it takes besides, where it was worked out."""
 METRIC = {"sr": "SR", "twsr": "TWSR", "adoption": "adoption"}
 CONDITION = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
+_ROBOT = {"frontier": "the frontier robot", "oracle": "the oracle"}
 SCOPE = (
     "Populations that pass are consistent with the 175 published trials; they support relative comparison of "
     "assistants on the same suite. They are not evidence about individual people, trust mechanisms or memory."
@@ -23,8 +24,6 @@ SCOPE = (
 def identified(one: ParameterFinding) -> str:
     """Whether the published numbers tell the parameter, in two words at most."""
     recovery = 1.0 if one.recovery is None else one.recovery
-    if not one.fitted:
-        return NOT
     if one.contraction >= CONTRACTS and recovery >= RECOVERS:
         return IDENTIFIED
     return WEAKLY if one.contraction >= CONTRACTS_WEAKLY and recovery >= RECOVERS_WEAKLY else NOT
@@ -92,7 +91,7 @@ def held_out(parts: Sequence[HeldOut]) -> list[str]:
         sentences.append(f"Outside: {listed(out)}.")
     for part in parts:
         gains = [f"{signed(part.log_score - part.log_score_prior, 2)} nats over the prior"]
-        gains += [f"{signed(part.log_score - score, 2)} over {name}" for name, score in part.rivals.items()]
+        gains += [f"{signed(part.log_score - score, 2)} over {name}" for name, score in sorted(part.rivals.items())]
         sentences.append(f"{_upper(CONDITION[part.condition])}: {listed(gains)}.")
     return sentences
 
@@ -131,7 +130,8 @@ def cross_check(parts: Sequence[Shift]) -> str:
     worst = max(parts, key=lambda one: abs(one.shift))
     return (
         f"Approximate Bayesian computation on whole simulated studies moves no posterior median by more than "
-        f"{abs(worst.shift):.2f} of our posterior standard deviations ({worst.name})."
+        f"{abs(worst.shift):.2f} of our posterior standard deviations ({worst.name})"
+        + ("." if worst.error is None else f", known to ± {worst.error:.2f}.")
     )
 
 
@@ -141,6 +141,7 @@ def ranking(one: Ranking) -> str:
         f"On {one.suite}, judged at {one.trials} trials a robot, oracle > frontier > none holds in success for "
         f"{percent(one.sr)} %, in time-weighted success for {percent(one.twsr)} % and in both for "
         f"{percent(one.both)} % of {one.draws} posterior draws."
+        + (f" The true rates are in that order in {percent(one.expected['both'])} %." if "both" in one.expected else "")
     )
 
 
@@ -226,8 +227,8 @@ def minima(pairs: Sequence[Difference]) -> str:
 def reach(parts: Sequence[Reach]) -> str:
     """What adoption is made of."""
     each = "; ".join(
-        f"{CONDITION[one.condition]}, a message was shown in {percent(one.shown)} % of the trials, and confirmed in "
-        f"{percent(one.confirmed)} % of those"
+        f"with {_ROBOT[one.condition]}, a message was shown in {percent(one.shown)} % of the trials"
+        + ("" if one.confirmed is None else f", and confirmed in {percent(one.confirmed)} % of those")
         for one in parts
     )
     return f"Adoption is reach times willingness. {_upper(each)}."
@@ -251,6 +252,19 @@ def trust(found: Trust) -> list[str]:
         f"That trust in the frontier robot converges is not claimed: its mean moves by {_mean(steps[:half]):.2f} a "
         f"trial in the first half of the session and by {_mean(steps[half:]):.2f} in the second.",
     ]
+
+
+def simulated(found: Evidence) -> str:
+    """What the columns of section 3 are."""
+    return (
+        f"Prior and posterior are foretold by the emulator; simulated are the medians and intervals of "
+        f"{found.simulated_studies} whole studies that people of the posterior did in the simulated world."
+    )
+
+
+def plain(value: float | None, digits: int = 2) -> str:
+    """A number without a sign of its own; a dash where there is none."""
+    return "–" if value is None else f"{value:.{digits}f}".replace("-", "−")
 
 
 def _holds_zero(band: Band) -> bool:

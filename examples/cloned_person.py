@@ -1,0 +1,120 @@
+"""A person whose decisions were learnt from logs: what to search next, what to say to messages.
+
+    hthor eval --agent frontier --suite paper --humans examples/cloned_person.py
+
+Two logits with a handful of weights each, in cloned_person.json beside this file; `examples/clone.py` learns them from
+runs. The rest of the person (eyes, memory, legs, hands, reading times) is the proxy's. Everybody has the same head, so
+what differs between people's ways of deciding is lost.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from hthor import jsonio, seeds
+from hthor.errors import HthorError
+from hthor.humans.models import proxy
+from hthor.humans.person import Person
+from hthor.humans.policy import Answer, Choice, Offer, Situation
+from hthor.types import Briefing
+
+WEIGHTS = Path(__file__).with_suffix(".json")
+SCHEMA = "hthor.example.clone/1"
+LEAST = 0.001  # a share of belief below which it makes no difference
+
+
+class Model(proxy.Model):
+    """The proxy with a head that was cloned."""
+
+    def __init__(self, person: Person, state: Mapping[str, Any] | None = None) -> None:
+        super().__init__(person, state)
+        self._weights = load()
+
+    def begin(self, briefing: Briefing) -> None:
+        """A trial begins, with luck of its own."""
+        self.policy = Clone(self._weights, seeds.derive(self.person.trial(self.trials), "clone"))
+        super().begin(briefing)
+
+
+class Clone:
+    """Decides by the weights; chance is drawn by name, so that a message shifts no luck but its own."""
+
+    def __init__(self, weights: Mapping[str, Any], root: int) -> None:
+        self.weights, self.root = weights, root
+
+    def choose(self, situation: Situation) -> int:
+        """A conditional logit over the options."""
+        weights = self.weights["choice"]
+        best, most = 0, -math.inf
+        for number, option in enumerate(situation.options):
+            luck = seeds.draw(self.root, situation.aim, situation.number, option.name)
+            utility = dot(weights, features(row(option))) - math.log(-math.log(luck))
+            best, most = (number, utility) if utility > most else (best, most)
+        return best
+
+    def answer(self, offer: Offer) -> Answer:
+        """A logit of confirming; what is not confirmed is left alone as often as in the logs."""
+        chance = logistic(dot(self.weights["answer"], reasons(told(offer))))
+        if seeds.draw(self.root, "confirm", offer.number) < chance:
+            return "confirm"
+        return "ignore" if seeds.draw(self.root, "ignore", offer.number) < self.weights["ignored"] else "decline"
+
+
+def row(option: Choice) -> list[float]:
+    """An option as the journal's "choice" has it: `hthor.humans.situations.FEATURES`."""
+    is_door = option.verb == "pass"
+    return [option.knowledge, option.uniform, option.metres, option.exposure, float(option.closed), float(is_door)]
+
+
+def features(option: Sequence[float]) -> list[float]:
+    """What the choice may depend on, of one row of the journal."""
+    knowledge, uniform, metres, exposure, closed, is_door = option
+    return [
+        math.log(knowledge + LEAST),
+        math.log(uniform + LEAST),
+        math.log1p(metres),
+        min(exposure, 5.0),
+        closed,
+        is_door,
+    ]
+
+
+def told(offer: Offer) -> dict[str, Any]:
+    """An offer as the journal's "offer" has it."""
+    return {name: getattr(offer, name) for name in ("trust", "useful", "gain", "load", "again")}
+
+
+def reasons(offer: Mapping[str, Any]) -> list[float]:
+    """What an answer may depend on, of one "offer" of the journal."""
+    useful = float(offer["useful"])
+    return [1.0, useful, offer["trust"] - 0.5, math.log1p(offer["gain"]), offer["load"], min(offer["again"], 3.0)]
+
+
+def dot(weights: Sequence[float], values: Sequence[float]) -> float:
+    """Their scalar product."""
+    return sum(weight * value for weight, value in zip(weights, values, strict=True))
+
+
+def logistic(logit: float) -> float:
+    """The chance that a logit stands for."""
+    return 1.0 / (1.0 + math.exp(-logit)) if logit > -700.0 else 0.0
+
+
+def load(path: Path = WEIGHTS) -> dict[str, Any]:
+    """The weights; says how to learn them when there are none."""
+    try:
+        found: dict[str, Any] = msgspec.json.decode(path.read_bytes())
+    except OSError:
+        raise HthorError(f"{path} is not there. Learn it from runs: python examples/clone.py RUN ...") from None
+    if found.get("schema") != SCHEMA:
+        raise HthorError(f"{path} is of schema {found.get('schema')}, not {SCHEMA}. Learn it anew: examples/clone.py.")
+    return found
+
+
+def ingredients(source: str = "") -> dict[str, Any]:  # noqa: ARG001  there is none
+    """What decides how these people behave, besides this file and hthor itself: the weights."""
+    weights = load()
+    return {"weights_sha256": jsonio.sha256({name: weights[name] for name in ("choice", "answer", "ignored")})}

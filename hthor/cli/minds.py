@@ -1,0 +1,35 @@
+"""`hthor replay --mind`; knows what the user typed, not how a mind is looked into."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from hthor.cli import screen
+
+
+def replay(run: Path, trial: str, out: Path | None, agents: Sequence[str], humans: str, json: bool) -> None:
+    """Play a person's session again up to one trial, and draw or print what went on in their mind."""
+    from hthor import houses
+    from hthor.eval import find, mind, mind_picture, redraw
+
+    houses.shelve(run / "houses")  # where the suite brought its own
+    record = find.trial(run, trial)
+    house = redraw.house(record)
+    stream = mind.listen(run, record, agents=agents, humans=humans)
+    if not stream.same:
+        talk = screen.console(talk=True)
+        talk.print(
+            "the trial went otherwise than it was logged: something here does not repeat itself. What follows is what "
+            "the person thought this time.",
+            soft_wrap=True,
+        )
+    if json:
+        screen.put_json(stream)
+        return
+    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}-mind.png"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    redraw.check_name(path, video=False)
+    mind_picture.figure(record, house, stream).savefig(path)
+    sys.stdout.write(f"{path}\n")

@@ -1,0 +1,200 @@
+"""Calibrations from the first session to the population: real sessions few, and statistics on made-up ones."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+
+import calibration_fakes as fakes
+import msgspec
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from hthor import tasks
+from hthor.calibration import emulator, identity, ledger, points, run, simulate, sitting, studies, table, telling
+from hthor.cli.app import app
+from hthor.errors import HthorError, MissingExtra, RunError, UnknownName
+from hthor.eval import crews, progress
+from hthor.eval.cast import Stage
+from hthor.eval.session import sessions
+from hthor.humans import registry
+from hthor.humans.population import Population
+from hthor.tasks import library
+
+PAPER = tasks.suite("paper")
+TINY = library.frozen("tiny", 1, tuple(task for task in PAPER.tasks if task.house == PAPER.tasks[0].house)[:2])
+
+
+# -------------------------------------------------------------------------------------------------------- real sessions
+
+
+def _train(folder, count, jobs=1, suite=TINY):
+    return simulate.training(suite, 3, count, folder, jobs, progress.Silent())
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("trained")
+    return folder, _train(folder, 3)
+
+
+def _same(first, second):
+    return all(np.array_equal(getattr(first, name), getattr(second, name)) for name in ("points", *table.TRIAL))
+
+
+def test_a_session_is_one_persons_trials_in_each_condition_in_turn(trained):
+    _, made = trained
+    assert made.condition.tolist() == [0, 0, 1, 1, 2, 2]
+    assert made.index.tolist() == [0, 1] * 3
+    assert sorted(made.task[:2].tolist()) == [0, 1]
+    assert made.point.tolist() == [0, 0, 1, 1, 2, 2]
+    assert made.points.shape == (3, len(registry.names()))
+    alone = made.condition == 0
+    assert (made.trust[alone] == 0).all()
+    assert ((made.trust[~alone] >= 1) & (made.trust[~alone] <= 7)).all()
+    assert (made.messages[alone] == 0).all()
+    assert (made.ticks[~made.met] == 900).all()
+    assert (made.picked[made.met] >= 0).all()
+    assert ((made.confirmed >= 0) == made.adopted).all()
+    assert (made.shown[made.adopted] <= made.confirmed[made.adopted]).all()
+
+
+def test_more_workers_and_an_interruption_give_the_same_table(trained, tmp_path):
+    folder, made = trained
+    lines = (folder / ledger.FILE).read_bytes().splitlines(keepends=True)
+    (tmp_path / ledger.IDENTITY).write_bytes((folder / ledger.IDENTITY).read_bytes())
+    (tmp_path / ledger.FILE).write_bytes(lines[2] + lines[0][:50])  # the third was done first, the next one cut short
+    assert _same(_train(tmp_path, 3, jobs=2), made)
+
+
+def test_a_larger_table_goes_on_from_a_smaller_and_nothing_is_played_twice(trained, monkeypatch):
+    folder, made = trained
+    monkeypatch.setattr(simulate.runner, "perform", lambda *_, **__: pytest.fail("it was all played before"))
+    assert _same(_train(folder, 3), made)
+    assert _same(_train(folder, 2), made.take(made.session < 2)) is False  # the points are fewer
+    assert _train(folder, 2).ticks.tolist() == made.ticks[:4].tolist()
+
+
+def test_a_changed_world_is_refused(trained, monkeypatch):
+    folder, _ = trained
+    known = identity.of(TINY)
+    changed = identity.Identity(parts={**known.parts, "humans/search.py": "x"})
+    monkeypatch.setattr(identity, "of", lambda _: changed)
+    with pytest.raises(RunError, match=r"another world or person: humans/search\.py"):
+        _train(folder, 3)
+
+
+def test_a_session_is_what_an_evaluation_would_have_played():
+    """The same person out of the same population meets the same trials, whoever asks."""
+    from hthor.episode import play
+    from hthor.humans import effects
+    from hthor.humans.models.proxy import Model
+    from hthor.humans.person import Person, root
+
+    point = points.spread(1, len(registry.names()), 0, "x")[0]
+    one = simulate.place(TINY, identity.of(TINY), 5, 0, point.tolist(), 1)
+    stage, seats = Stage(), crews.form(["scout"], ["frontier"]).seats
+    rows = list(sitting.sit(one, TINY, seats, stage))
+
+    dealt = sessions(TINY, agent="frontier", seed=5, participants=1)[0]
+    traits = effects.individual(registry.from_unit(point.tolist()), root(5, 0))
+    human, logs = Model(Person(seed=5, participant=0, traits=traits)), []
+    with stage.enter(dealt) as company:
+        for trial in dealt.trials:
+            logs.append((trial, play(trial, stage.world(trial), human, company.robots())))
+    for row, (trial, log) in zip(rows, logs, strict=True):
+        told = dict(zip(sitting.OUTCOMES, row, strict=True))
+        assert TINY.tasks[told["task"]].id == trial.task.id
+        assert (told["met"], told["trust"]) == (log.met, log.trust)
+        assert told["ticks"] == (log.ticks if log.met else 900)
+        assert told["messages"] == sum(event.kind == "sent" for event in log.events)
+
+
+def test_every_condition_meets_hands_alike():
+    """Which third of the tasks a session gets says nothing of its condition."""
+    pairs = [(number % 3, simulate.turn(number)) for number in range(9)]
+    assert len(set(pairs)) == 9
+
+
+# --------------------------------------------------------------------------------------------------- whole calibrations
+
+
+@pytest.fixture
+def made_up(monkeypatch):
+    monkeypatch.setattr(simulate, "at", fakes.sessions)
+    monkeypatch.setattr(studies, "at", fakes.whole)
+
+
+def _options(folder, **more):
+    return run.Options(out=Path(folder), quick=True, jobs=1, sessions=90, **more)
+
+
+def _bytes(folder):
+    names = ("population.json", "population.npz", "evidence.json", "result.json", "training.npz", "studies.npz")
+    return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in names}
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_another(made_up, tmp_path):
+    for name, seed in (("a", 0), ("b", 0), ("c", 1)):
+        assert run.conduct(_options(tmp_path / name, seed=seed), telling.Silent()) is not None
+    assert _bytes(tmp_path / "a") == _bytes(tmp_path / "b")
+    assert _bytes(tmp_path / "a")["population.npz"] != _bytes(tmp_path / "c")["population.npz"]
+
+
+def test_products_are_kept_and_what_was_learned_is_told(made_up, tmp_path, monkeypatch):
+    found = run.conduct(_options(tmp_path), telling.Silent())
+    before = _bytes(tmp_path)
+    monkeypatch.setattr(emulator, "fit", lambda *_, **__: pytest.fail("it was fitted before"))
+    assert run.conduct(_options(tmp_path), telling.Silent()) == found
+    assert _bytes(tmp_path) == before
+
+    people = Population.load(tmp_path / "population.json")
+    assert people.sha256 == found.population_sha256
+    assert people.names == registry.names()
+    assert people.validity.suite_sha256 == PAPER.sha256
+    assert people.validity.settings["robot"] == "scout"
+    assert "(inferred)" in " ".join(people.statistics)
+    learned = {one.name: one for one in found.parameters}
+    assert learned["v_pace"].recovery > 0.7  # the made-up people's success hangs on it
+    assert learned["v_pace"].contraction > 0.05
+    assert learned["tau_seen"].word == "not identified"
+    shown = {row.figure: row for row in found.figures}
+    assert len(shown) == 8
+    for row in shown.values():
+        assert row.posterior.high - row.posterior.low < row.prior.high - row.prior.low + 3.0
+    nearer = [abs(r.posterior.median - r.published) <= abs(r.prior.median - r.published) + 1.0 for r in shown.values()]
+    assert sum(nearer) >= 6
+
+
+def test_the_command_ends_with_1_when_a_gate_is_not_passed(made_up, tmp_path, monkeypatch):
+    words = ["calibrate", "--quick", "--quiet", "--sessions", "90", "--out", str(tmp_path)]
+    good = CliRunner().invoke(app, [*words, "--json"])
+    document = json.loads(good.stdout)
+    assert good.exit_code == (0 if all(gate["passed"] for gate in document["gates"]) else 1)
+    assert document["population_sha256"] == Population.load(tmp_path / "population.npz").sha256
+
+    from hthor.calibration import gates
+
+    monkeypatch.setattr(gates, "QUICK", msgspec.structs.replace(gates.QUICK, z_sd=(5.0, 6.0)))
+    bad = CliRunner().invoke(app, words)
+    assert bad.exit_code == 1
+    assert "FAILED" in bad.stdout
+
+
+def test_a_calibration_may_stop_after_a_stage(made_up, tmp_path, monkeypatch):
+    monkeypatch.setattr(studies, "at", lambda *_: pytest.fail("it was to stop before"))
+    assert run.conduct(_options(tmp_path, until="training"), telling.Silent()) is None
+    with pytest.raises(UnknownName, match=r"stage 'trainings'\. Did you mean 'training'"):
+        run.conduct(_options(tmp_path, until="trainings"), telling.Silent())
+
+
+def test_wrong_input_is_told_before_anything_is_done(tmp_path, monkeypatch):
+    with pytest.raises(UnknownName, match="suite 'papers'"):
+        run.settle(run.Options(suite="papers"))
+    with pytest.raises(HthorError, match="one set of published results"):
+        run.settle(run.Options(targets=("paper", "paper")))
+    monkeypatch.setitem(__import__("sys").modules, "sklearn", None)
+    with pytest.raises(MissingExtra, match=r"hthor\[calibration\]"):
+        run.conduct(_options(tmp_path), telling.Silent())

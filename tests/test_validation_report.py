@@ -1,0 +1,529 @@
+"""The validation report: what it works out of trials, what it says of them, and the page that it makes."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import eval_fakes
+import msgspec
+import numpy as np
+import pytest
+import validation_fakes as fakes
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from hthor.calibration import table as tables
+from hthor.calibration import targets, validate
+from hthor.calibration.report import (
+    assemble,
+    diagnostics,
+    evidence,
+    gates,
+    groups,
+    html,
+    ink,
+    measures,
+    page,
+    published,
+    trials,
+    words,
+)
+from hthor.calibration.report.document import Findings, Setting, Subject
+from hthor.calibration.report.evidence import FIGURES
+from hthor.cli import app as cli
+from hthor.errors import HthorError, RunError
+from hthor.humans import people
+
+PUBLISHED = published.of(targets.load("paper"))
+
+
+def subject(**more: str) -> Subject:
+    return Subject(**{"name": "paper", "model": "proxy", "sha256": "12" * 32, **more})
+
+
+def setting(**more: object) -> Setting:
+    plain = Setting(
+        suite="paper",
+        suite_sha256="56" * 32,
+        simulation=1,
+        seed=0,
+        participants=12,
+        trials=360,
+        code_sha256="78" * 32,
+        versions={"hthor": "0"},
+    )
+    return msgspec.structs.replace(plain, **more)
+
+
+@functools.cache
+def whole(*, known: bool = True, quick: bool = False, seed: int = 0) -> Findings:
+    return assemble.findings(
+        subject(),
+        setting(quick=quick),
+        targets.load("paper"),
+        assemble.Materials(
+            trials=fakes.trials(12, seed), least=fakes.LEAST, hands=3, rivals={"greedy": fakes.trials(6, 9)}
+        ),
+        evidence=fakes.evidence(PUBLISHED.figures) if known else None,
+        evidence_missing="" if known else "This human model was not calibrated.",
+    )
+
+
+def drawn(table: tables.Table, draws: int = 400) -> dict[str, groups.Groups]:
+    design = targets.load("paper").design
+    return groups.together(table, fakes.LEAST, hands=3, valid=design.valid, counted=design.counted, draws=draws)
+
+
+# ------------------------------------------------------------------------------------------------------------- groups
+
+
+def test_a_group_is_of_the_published_size() -> None:
+    made = drawn(fakes.trials(12))
+    for name, count in (("none", 58), ("frontier", 59), ("oracle", 58)):
+        assert np.allclose(made[name].sr * count, np.round(made[name].sr * count))
+    assert np.allclose(made["oracle"].adoption * 50, np.round(made["oracle"].adoption * 50))
+    assert set(groups.figures(made)) == set(FIGURES)
+
+
+def test_groups_do_every_task_twice() -> None:
+    one = fakes.trials(12).take(np.flatnonzero(fakes.trials(12).condition == 0))
+    chance = np.random.default_rng(0)
+    rows = groups._people(one)[groups._chosen(12, 3, chance, 5)].reshape(5, -1)
+    for group in one.task[rows]:
+        assert np.array_equal(np.sort(group), np.repeat(np.arange(30), 2))
+
+
+def test_groups_of_people_who_are_all_alike_are_all_alike() -> None:
+    made = drawn(fakes.trials(12, sr=dict.fromkeys(fakes.RATES, 1.1), adopts=dict.fromkeys(fakes.RATES, -0.1)))
+    assert np.all(made["none"].sr == 1.0)
+    assert np.all(made["oracle"].adoption == 0.0)
+
+
+def test_the_mean_of_groups_is_the_mean_of_all_trials() -> None:
+    run = fakes.trials(30)
+    made = drawn(run, draws=2000)
+    average = measures.means(run, fakes.LEAST)
+    for name, draws in groups.figures(made).items():
+        assert average[name] == pytest.approx(float(draws.mean()), abs=0.01)
+
+
+def test_too_few_people_for_a_group_are_refused() -> None:
+    with pytest.raises(HthorError, match="too few"):
+        drawn(fakes.trials(3))
+
+
+def test_a_missing_trial_is_noticed() -> None:
+    run = fakes.trials(6)
+    with pytest.raises(HthorError, match="missing"):
+        drawn(run.take(np.arange(len(run)) != 7))
+
+
+def test_slopes() -> None:
+    steps = np.arange(10.0)
+    assert groups.slopes(np.stack([3.0 + 0.25 * steps, 5.0 - 0.5 * steps])) == pytest.approx([0.25, -0.5])
+
+
+@given(st.floats(0.02, 0.98), st.floats(1.0, 4.0), st.integers(2, 60))
+@settings(max_examples=60, deadline=None)
+def test_chances_of_all_counts_add_up_to_one(share: float, phi: float, n: int) -> None:
+    chances = [math.exp(groups.log_count(k, n, share, phi)) for k in range(n + 1)]
+    assert sum(chances) == pytest.approx(1.0, abs=1e-6)
+    assert sum(k * chance for k, chance in enumerate(chances)) == pytest.approx(n * share, rel=1e-6)
+
+
+def test_clustering_widens_a_count() -> None:
+    def spread(phi: float) -> float:
+        chance = np.exp([groups.log_count(k, 50, 0.6, phi) for k in range(51)])
+        return float((chance * (np.arange(51) - 30.0) ** 2).sum())
+
+    assert spread(2.0) == pytest.approx(2.0 * 50 * 0.24, rel=1e-6)
+    assert spread(1.0) == pytest.approx(50 * 0.24, rel=0.02)
+
+
+# ----------------------------------------------------------------------------------------------------------- measures
+
+
+def test_the_table_tells_covered_from_close() -> None:
+    rows = {row.figure: row for row in whole().table}
+    assert list(rows) == list(FIGURES)
+    for row in rows.values():
+        assert row.covered == (row.band.low <= row.published <= row.band.high)
+        assert row.close == (abs(row.band.median - row.published) <= row.tolerance + 1e-9)
+    far = msgspec.structs.replace(rows["sr none"], published=rows["sr none"].band.high + 0.001, tolerance=0.5)
+    assert not far.covered
+    assert far.close
+
+
+def test_a_share_in_the_middle_has_a_percentile_in_the_middle() -> None:
+    made = drawn(fakes.trials(30))
+    median = {name: float(np.median(draws)) for name, draws in groups.figures(made).items()}
+    study = msgspec.structs.replace(PUBLISHED, figures=median)
+    for row in measures.table(study, fakes.trials(30), fakes.LEAST, made):
+        assert 0.4 < row.percentile < 0.6
+
+
+def test_time_spent_is_what_it_is() -> None:
+    run = fakes.trials(12)
+    found = {one.condition: one for one in measures.spent(run)}
+    seconds = tables.seconds(run)[run.condition == 2]
+    assert found["oracle"].least == pytest.approx(seconds.min())
+    assert found["oracle"].lower == pytest.approx(np.percentile(seconds, 25))
+    assert found["oracle"].most <= 90.0
+    gaps = {(one.statistic, one.a, one.b): one.value for one in measures.differences(run, drawn(run))}
+    assert gaps["lower quartile", "oracle", "none"] == pytest.approx(found["oracle"].lower - found["none"].lower)
+    assert len(gaps) == 6
+
+
+def test_trust_is_known_only_where_both_robots_were_rated() -> None:
+    run = fakes.trials(12)
+    found = measures.trust(run, drawn(run))
+    assert found is not None
+    rated = run.trust[run.condition == 2].astype(float)
+    oracle = next(curve for curve in found.curves if curve.condition == "oracle")
+    assert np.mean(oracle.mean) == pytest.approx(rated.mean())
+    assert len(oracle.mean) == 10
+    assert oracle.slope > 0.0
+    silent = msgspec.structs.replace(run, trust=np.zeros_like(run.trust))
+    assert measures.trust(silent, drawn(silent)) is None
+
+
+def test_a_model_that_is_right_scores_better() -> None:
+    right, wrong = (
+        fakes.trials(30, 1),
+        fakes.trials(30, 1, dict.fromkeys(fakes.RATES, 0.3), dict.fromkeys(fakes.RATES, 0.1)),
+    )
+    good = measures.rival("good", PUBLISHED, right, fakes.LEAST, drawn(right)).log_score
+    bad = measures.rival("bad", PUBLISHED, wrong, fakes.LEAST, drawn(wrong)).log_score
+    assert all(good[name] > bad[name] + 1.0 for name in good)
+
+
+def test_records_become_the_same_numbers() -> None:
+    suite = eval_fakes.suite(30)
+    runs = {}
+    for condition, absent in (("none", True), ("oracle", False)):
+        _, dealt = eval_fakes.run_of(30, absent=absent)
+        runs[condition] = [done for session in dealt for done in eval_fakes.player()(session)]
+    made = trials.table(runs, suite)
+    for number, condition in ((0, "none"), (2, "oracle")):
+        one = made.take(made.condition == number)
+        order = sorted(runs[condition], key=lambda done: (done.spec.participant, done.spec.index))
+        place = np.lexsort((one.index, one.participant))
+        assert np.array_equal(one.met[place], [bool(done.metrics.sr) for done in order])
+        assert np.allclose(tables.seconds(one)[place], [done.metrics.time_s for done in order])
+        assert np.allclose(tables.twsr(one, tables.t_star(suite))[place], [done.metrics.twsr for done in order])
+        assert np.array_equal(one.adopted[place], [bool(done.metrics.adoption) for done in order])
+        assert np.array_equal(one.trust[place], [done.metrics.trust or 0 for done in order])
+
+
+# -------------------------------------------------------------------------------------------------------------- words
+
+
+@given(st.integers(0, 8), st.integers(0, 8))
+@settings(max_examples=30, deadline=None)
+def test_the_verdict_counts(covered: int, close: int) -> None:
+    base = whole()
+    rows = tuple(
+        msgspec.structs.replace(
+            row,
+            published=0.5,
+            tolerance=0.04,
+            band=evidence.Band(low=0.4 if place < covered else 0.6, median=0.5 if place < close else 0.9, high=0.95),
+        )
+        for place, row in enumerate(base.table)
+    )
+    said = words.verdict(msgspec.structs.replace(base, table=rows))
+    assert said.startswith(f"{covered} of 8 published figures")
+    assert f"and {close} of 8 medians" in said
+    assert ("Outside" in said) == (covered < 8)
+    assert ("Too far" in said) == (close < 8)
+
+
+@pytest.mark.parametrize(
+    ("contraction", "recovery", "word"),
+    [
+        (0.79, 0.89, words.IDENTIFIED),
+        (0.79, None, words.IDENTIFIED),
+        (0.79, 0.50, words.WEAKLY),
+        (0.27, 0.53, words.WEAKLY),
+        (0.21, 0.17, words.NOT),
+        (0.05, 0.90, words.NOT),
+    ],
+)
+def test_what_is_identified(contraction: float, recovery: float | None, word: str) -> None:
+    one = fakes.evidence(PUBLISHED.figures).parameters[0]
+    one = msgspec.structs.replace(one, contraction=contraction, recovery=recovery)
+    assert words.identified(one) == word
+
+
+def test_converging_is_never_claimed() -> None:
+    said = " ".join((*words.trust(whole().trust), *whole().misfits))  # type: ignore[arg-type]
+    assert "is not claimed" in said
+    for sentence in re.split(r"(?<=[.:]) ", said):
+        if "converg" in sentence:
+            assert "claimed" in sentence
+
+
+def test_quartiles_that_differ_are_told_by_how_much() -> None:
+    found = whole()
+    near = [msgspec.structs.replace(one, value=6.9) for one in found.differences]
+    far = [msgspec.structs.replace(one, value=-9.5 if one.a == "oracle" else 1.0) for one in found.differences]
+    assert "within 7 s of one another" in words.quartiles(found.spent, near)
+    assert "2.5 s beyond 7 s" in words.quartiles(found.spent, far)
+
+
+def test_small_words() -> None:
+    assert words.listed([]) == "none"
+    assert words.listed(["a", "b", "c"]) == "a, b and c"
+    assert words.signed(-0.04) == "0.0"
+    assert words.signed(-1.26) == "−1.3"
+    assert words.percent(None) == "–"
+    assert words.span(evidence.Band(low=-0.01, median=0.0, high=2.0)) == "0.0 … 2.0"
+
+
+def test_the_worst_kind_is_named() -> None:
+    kinds = tuple(
+        measures.played(name, fakes.trials(6, 1, {"none": 0.3, "frontier": 0.6, "oracle": oracle}), fakes.LEAST)
+        for name, oracle in (("fast", 0.95), ("slow", 0.4))
+    )
+    said = words.kinds(msgspec.structs.replace(whole(), kinds=kinds))
+    assert "slow people fare worst" in said
+    assert "does not hold in both SR and TWSR for slow" in said
+
+
+# -------------------------------------------------------------------------------------------------------------- gates
+
+
+def verdicts(found: Findings) -> dict[str, str]:
+    return {gate.name: gate.verdict for gate in gates.judge(found)}
+
+
+def changed(**parts: object) -> Findings:
+    known = whole().evidence
+    assert known is not None
+    return msgspec.structs.replace(whole(), evidence=msgspec.structs.replace(known, **parts))
+
+
+def test_good_evidence_passes() -> None:
+    found = verdicts(changed())
+    passed = (
+        "held-out figures",
+        "held-out log scores",
+        "coverage",
+        "emulator",
+        "ABC cross-check",
+        "order of the robots",
+    )
+    assert {name: found[name] for name in passed} == dict.fromkeys(passed, "passed")
+
+
+def test_each_bar_can_be_missed() -> None:
+    known = whole().evidence
+    assert known is not None
+    assert known.coverage is not None
+    first = known.held_out[0]
+    outside = msgspec.structs.replace(first.figures[0], published=first.figures[0].band.high + 0.01)
+    order = msgspec.structs.replace(known.rankings[0], twsr=0.94)
+    missed = {
+        "held-out figures": {"held_out": (msgspec.structs.replace(first, figures=(outside,)),)},
+        "held-out log scores": {"held_out": (msgspec.structs.replace(first, log_score=-99.0),)},
+        "coverage": {"coverage": msgspec.structs.replace(known.coverage, mean=0.85)},
+        "emulator": {"emulator_z": 1.11},
+        "ABC cross-check": {"abc": (evidence.Shift(name="v_pace", shift=-0.5),)},
+        "order of the robots": {"rankings": (order,)},
+    }
+    for name, parts in missed.items():
+        found = verdicts(changed(**parts))
+        assert [gate for gate, verdict in found.items() if verdict == "failed" and gate in missed] == [name]
+
+
+def test_too_few_simulated_studies_fail() -> None:
+    known = whole().evidence
+    assert known is not None
+    assert known.coverage is not None
+    few = msgspec.structs.replace(known.coverage, studies=199)
+    assert verdicts(changed(coverage=few))["coverage"] == "failed"
+
+
+def test_what_is_quick_or_unknown_is_not_judged() -> None:
+    assert set(verdicts(whole(known=False, quick=True)).values()) == {"not judged"}
+    known = whole().evidence
+    assert known is not None
+    quick = changed(origin=msgspec.structs.replace(known.origin, quick=True), emulator_z=7.0)
+    assert verdicts(quick)["emulator"] == "not judged"
+
+
+# --------------------------------------------------------------------------------------------------------------- page
+
+
+@functools.cache
+def rendered(known: bool) -> str:
+    return page.render(whole(known=known))
+
+
+def test_the_page_is_whole_and_needs_nothing_else() -> None:
+    for known in (True, False):
+        text = rendered(known)
+        assert re.findall(r"<h2><span>(\d+)</span>", text) == [str(number) for number in range(1, 12)]
+        for stranger in ("http", "<script", "src=", "@import", "url(h", "xlink"):
+            assert stranger not in text
+        ids = re.findall(r' id="([^"]+)"', text)
+        assert len(ids) == len(set(ids))
+        assert set(re.findall(r'href="#([^"]+)"', text)) <= set(ids)
+        assert set(re.findall(r"url\(#([^)]+)\)", text)) <= set(ids)
+        assert text.count("<svg") == text.count("</svg>") > 2
+    assert rendered(True).count("<svg") > rendered(False).count("<svg")
+
+
+def test_the_same_findings_make_the_same_page() -> None:
+    assert page.render(whole(known=False)) == rendered(False)
+    drawings = [ink.svg(diagnostics.contraction(whole().evidence.parameters), "a", "b") for _ in range(2)]  # type: ignore[union-attr]
+    assert drawings[0] == drawings[1]
+
+
+def test_drawings_are_well_formed_and_in_the_colours_of_the_page() -> None:
+    body = rendered(True).partition("</style>")[2]
+    drawings = re.findall(r"<svg.*?</svg>", body, flags=re.DOTALL)
+    for drawing in drawings:
+        ElementTree.fromstring(drawing)
+    assert not re.search(r"#[0-9a-f]{6}\b", body)
+    assert set(re.findall(r"var\(--(\w+)\)", body)) <= set(ink.VARIABLES.values())
+    assert ink.DARK.keys() == ink.VARIABLES.keys()
+
+
+def test_the_page_shows_the_numbers_of_its_findings() -> None:
+    text = rendered(True)
+    for row in whole().table:
+        assert f'<td class="n">{words.span(row.band, 100.0)}</td>' in text
+    assert text.count(">not identified<") >= 20
+    for one in whole().spent:
+        assert f">{one.lower:.1f}</td>" in text
+    assert tuple(whole(seed=5).table) != whole().table
+
+
+def test_without_a_calibration_the_page_says_so_in_each_section() -> None:
+    text = rendered(False)
+    for name in ("predictive", "held-out", "parameters", "coverage", "emulator", "ranking"):
+        section = text.partition(f'<section id="{name}">')[2].partition("</section>")[0]
+        assert "This human model was not calibrated." in section
+    assert "Log score of the published counts" in text
+
+
+def test_names_cannot_break_the_page() -> None:
+    found = msgspec.structs.replace(whole(known=False), subject=subject(name="<b>&", purpose='"</title>'))
+    text = page.render(found)
+    assert "<b>&" not in text
+    assert "&lt;b&gt;&amp;" in text
+    assert html.table(("<i>",), [("&",)]).count("&amp;") == 1
+
+
+def test_findings_travel_as_json() -> None:
+    text = msgspec.json.encode(whole())
+    assert msgspec.json.decode(text, type=Findings) == whole()
+    assert whole().schema == "hthor.validation/1"
+
+
+# ----------------------------------------------------------------------------------------------------------- evidence
+
+
+def test_evidence_is_read_back(tmp_path: Path) -> None:
+    known = fakes.evidence(PUBLISHED.figures)
+    (tmp_path / evidence.FILE).write_bytes(evidence.encode(known))
+    assert evidence.load(tmp_path) == evidence.load(tmp_path / evidence.FILE) == known
+
+
+def test_evidence_that_cannot_be_used_says_what_to_do(tmp_path: Path) -> None:
+    with pytest.raises(RunError, match="hthor calibrate"):
+        evidence.load(tmp_path)
+    (tmp_path / evidence.FILE).write_text("{")
+    with pytest.raises(RunError, match=r"evidence\.json"):
+        evidence.load(tmp_path)
+    strange = msgspec.structs.replace(fakes.evidence(PUBLISHED.figures), schema="hthor.evidence/0")
+    (tmp_path / evidence.FILE).write_bytes(evidence.encode(strange))
+    with pytest.raises(RunError, match="schema"):
+        evidence.load(tmp_path)
+
+
+def test_evidence_of_another_population_is_not_believed(tmp_path: Path) -> None:
+    known = fakes.evidence(PUBLISHED.figures)
+    (tmp_path / evidence.FILE).write_bytes(evidence.encode(known))
+    found = people.find("literature")
+    assert validate._evidence(found, tmp_path) == (None, validate.OTHERS)
+    mine = msgspec.structs.replace(known.origin, population_sha256=found.population.sha256)
+    (tmp_path / evidence.FILE).write_bytes(evidence.encode(msgspec.structs.replace(known, origin=mine)))
+    assert validate._evidence(found, tmp_path)[0] is not None
+
+
+@pytest.mark.parametrize(
+    ("name", "says"), [("greedy", "not calibrated"), ("cautious", "by hand"), ("literature", "no data")]
+)
+def test_people_without_evidence_are_told_apart(name: str, says: str) -> None:
+    known, missing = validate._evidence(people.find(name), None)
+    assert known is None
+    assert says in missing
+
+
+# ------------------------------------------------------------------------------------------------------------ command
+
+
+@pytest.fixture
+def stage(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str, int]]:
+    """Nobody plays; what would have been played is noted."""
+    asked: list[tuple[str, str, int]] = []
+
+    def play(self: object, word: str, suite: object, participants: int) -> tables.Table:
+        asked.append((word, getattr(suite, "name", ""), participants))
+        return fakes.trials(participants)
+
+    monkeypatch.setattr(validate._Stage, "play", play)
+    return asked
+
+
+def test_the_command_writes_the_report_and_fails_with_its_bars(
+    stage: list[tuple[str, str, int]], tmp_path: Path
+) -> None:
+    done = CliRunner().invoke(cli.app, ["humans", "validate", "literature", "--out", str(tmp_path), "--json"])
+    stored = msgspec.json.decode((tmp_path / "validation.json").read_bytes(), type=Findings)
+    failed = gates.failed(stored.gates)
+    assert done.exit_code == (1 if failed else 0)
+    assert failed  # the made-up people are too slow for the published TWSR
+    assert msgspec.json.decode(done.stdout, type=Findings) == stored
+    assert (tmp_path / "validation.html").read_text() == page.render(stored)
+    assert "published figures covered" in done.stderr
+    assert "not cleared: " in done.stderr
+    assert [(word, many) for word, _, many in stage] == [("literature", 60), ("greedy", 30), ("random", 30)]
+
+
+def test_a_quick_run_is_small_and_judges_nothing_played(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
+    done = CliRunner().invoke(cli.app, ["humans", "validate", "greedy", "--quick", "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.stderr
+    assert [many for _, _, many in stage] == [validate.QUICK]
+    assert "SR no robot" in done.stdout
+
+
+def test_kinds_and_suites_are_played_when_asked_for(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
+    options = validate.Options(name="literature", quick=True, kinds=True, suites=("smoke",), out=tmp_path)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(measures, "played", lambda name, run, least: _played(name))
+        done = validate.conduct(options, lambda _: pytest.fail("nobody plays"))
+    names = [word for word, suite, _ in stage if suite == "paper"]
+    assert "cautious" in names
+    assert ("literature", "smoke", validate.QUICK) in stage
+    assert "By kind of people" in (tmp_path / "validation.html").read_text()
+    assert [one.name for one in done.findings.suites] == ["smoke"]
+
+
+def _played(name: str) -> object:
+    from hthor.calibration.report.document import Played
+
+    return Played(name=name, figures=dict.fromkeys(FIGURES, 0.5), trials=30)
+
+
+def test_too_few_participants_are_refused_before_anything_is_played(stage: list[tuple[str, str, int]]) -> None:
+    with pytest.raises(HthorError, match="too few"):
+        validate.conduct(validate.Options(participants=5), lambda _: pytest.fail("nobody plays"))
+    assert not stage
