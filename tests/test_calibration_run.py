@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 from pathlib import Path
 
@@ -10,10 +11,23 @@ import calibration_fakes as fakes
 import msgspec
 import numpy as np
 import pytest
+from rich.console import Console
 from typer.testing import CliRunner
 
 from hthor import tasks
-from hthor.calibration import emulator, identity, ledger, points, run, simulate, sitting, studies, table, telling
+from hthor.calibration import (
+    emulator,
+    identity,
+    ledger,
+    points,
+    run,
+    simulate,
+    sitting,
+    stages,
+    studies,
+    table,
+    telling,
+)
 from hthor.cli.app import app
 from hthor.errors import HthorError, MissingExtra, RunError, UnknownName
 from hthor.eval import crews, progress
@@ -121,10 +135,29 @@ def test_every_condition_meets_hands_alike():
 # --------------------------------------------------------------------------------------------------- whole calibrations
 
 
+@pytest.fixture(scope="module", autouse=True)
+def cheap():
+    """As small as it can be: what is found is not looked at too closely."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "QUICK", msgspec.structs.replace(run.QUICK, proposals=1 << 12, draws=200))
+        yield
+
+
 @pytest.fixture
 def made_up(monkeypatch):
     monkeypatch.setattr(simulate, "at", fakes.sessions)
     monkeypatch.setattr(studies, "at", fakes.whole)
+
+
+@pytest.fixture(scope="module")
+def calibrated(tmp_path_factory):
+    """A calibration that is done: its folder, and what it found."""
+    folder = tmp_path_factory.mktemp("calibrated") / "first"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(simulate, "at", fakes.sessions)
+        patch.setattr(studies, "at", fakes.whole)
+        found = run.conduct(_options(folder), telling.Silent())
+    return folder, found
 
 
 def _options(folder, **more):
@@ -136,21 +169,23 @@ def _bytes(folder):
     return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in names}
 
 
-def test_the_same_seed_gives_the_same_bytes_and_another_another(made_up, tmp_path):
-    for name, seed in (("a", 0), ("b", 0), ("c", 1)):
-        assert run.conduct(_options(tmp_path / name, seed=seed), telling.Silent()) is not None
-    assert _bytes(tmp_path / "a") == _bytes(tmp_path / "b")
-    assert _bytes(tmp_path / "a")["population.npz"] != _bytes(tmp_path / "c")["population.npz"]
+def test_the_same_seed_gives_the_same_bytes_and_another_others(made_up, calibrated, tmp_path):
+    folder, found = calibrated
+    assert run.conduct(_options(tmp_path / "again"), telling.Silent()) == found
+    assert _bytes(tmp_path / "again") == _bytes(folder)
+    assert run.conduct(_options(tmp_path / "other", seed=1, until="training"), telling.Silent()) is None
+    other = stages.Stages(run.settle(_options(tmp_path / "other", seed=1)), telling.Silent())
+    assert not np.array_equal(other.training.met, table.load(folder / "training.npz").met)
 
 
-def test_products_are_kept_and_what_was_learned_is_told(made_up, tmp_path, monkeypatch):
-    found = run.conduct(_options(tmp_path), telling.Silent())
-    before = _bytes(tmp_path)
+def test_products_are_kept_and_what_was_learned_is_told(made_up, calibrated, monkeypatch):
+    folder, found = calibrated
+    before = _bytes(folder)
     monkeypatch.setattr(emulator, "fit", lambda *_, **__: pytest.fail("it was fitted before"))
-    assert run.conduct(_options(tmp_path), telling.Silent()) == found
-    assert _bytes(tmp_path) == before
+    assert run.conduct(_options(folder), telling.Silent()) == found
+    assert _bytes(folder) == before
 
-    people = Population.load(tmp_path / "population.json")
+    people = Population.load(folder / "population.json")
     assert people.sha256 == found.population_sha256
     assert people.names == registry.names()
     assert people.validity.suite_sha256 == PAPER.sha256
@@ -168,12 +203,13 @@ def test_products_are_kept_and_what_was_learned_is_told(made_up, tmp_path, monke
     assert sum(nearer) >= 6
 
 
-def test_the_command_ends_with_1_when_a_gate_is_not_passed(made_up, tmp_path, monkeypatch):
-    words = ["calibrate", "--quick", "--quiet", "--sessions", "90", "--out", str(tmp_path)]
+def test_the_command_ends_with_1_when_a_gate_is_not_passed(made_up, calibrated, monkeypatch):
+    folder, _ = calibrated
+    words = ["calibrate", "--quick", "--quiet", "--sessions", "90", "--out", str(folder)]
     good = CliRunner().invoke(app, [*words, "--json"])
     document = json.loads(good.stdout)
     assert good.exit_code == (0 if all(gate["passed"] for gate in document["gates"]) else 1)
-    assert document["population_sha256"] == Population.load(tmp_path / "population.npz").sha256
+    assert document["population_sha256"] == Population.load(folder / "population.npz").sha256
 
     from hthor.calibration import gates
 
@@ -181,6 +217,20 @@ def test_the_command_ends_with_1_when_a_gate_is_not_passed(made_up, tmp_path, mo
     bad = CliRunner().invoke(app, words)
     assert bad.exit_code == 1
     assert "FAILED" in bad.stdout
+
+
+def test_each_stage_is_told_of(made_up, tmp_path):
+    heard = io.StringIO()
+    teller = telling.Aloud(Console(file=heard, width=100), live=False)
+    with teller.watch("training") as watch:
+        watch.begin(3, 1)
+        watch.played(True, False)
+        watch.played(False, False)
+    with teller.work("emulator"):
+        pass
+    assert "training: 3 trials, 1 of them played before" in heard.getvalue()
+    assert "success 50 %" in heard.getvalue()
+    assert "emulator" not in heard.getvalue()  # it took no time worth telling
 
 
 def test_a_calibration_may_stop_after_a_stage(made_up, tmp_path, monkeypatch):

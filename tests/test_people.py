@@ -21,7 +21,7 @@ from hthor import cli, plugins, rules, tasks
 from hthor.errors import HthorError, PeopleError, UnknownName
 from hthor.eval import bracket, campaign, cast, matrix, peoples, progress, report, session, setup
 from hthor.eval.peoples import HumansRef
-from hthor.humans import effects, kinds, people, person, portrait, ranges, registry
+from hthor.humans import effects, kinds, people, person, population_file, portrait, ranges, registry
 from hthor.humans.parameters import Parameters
 from hthor.humans.population import Population, Validity
 
@@ -70,6 +70,20 @@ def test_every_word_finds_people_of_its_own_hash():
         assert one.name == word == one.word
         assert one.purpose
         assert people.find(word).sha256 == one.sha256
+
+
+def test_the_proxy_has_the_calibrated_population_once_it_ships(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(population_file, "FOLDER", tmp_path)
+    monkeypatch.setattr(population_file, "_shipped", population_file._shipped.__wrapped__)
+    assert people.default() == "literature"
+    made = msgspec.structs.replace(small(), name="paper")
+    made.save(tmp_path / "paper")
+    assert people.default() == "paper"
+    for word in ("proxy", "paper"):
+        assert people.find(word).population.sha256 == made.sha256
+    for word in ("slow", "greedy"):
+        assert people.find(word).population.name == "paper"
+    assert "paper" in people.names()
 
 
 def test_files_are_found_by_path_and_again_from_anywhere(files: Path, monkeypatch: pytest.MonkeyPatch):

@@ -83,7 +83,8 @@ class Recording:
 def played(policy=None, support: str = "Fridge|1", ticks: int = 700, listener=None, messages=False):
     model, flat = proxy.Model(PERSON), Flat(support)
     model.policy, model.listener = policy, listener
-    model.begin(flat.briefing(relation="on", destination="dining_table", teammates=("robot",)))
+    briefing = flat.briefing(relation="on", destination="dining_table", teammates=("robot",))
+    model.begin(msgspec.structs.replace(briefing, instruction="Put the apple on the dining table."))
 
     def say(tick):
         return (Message(id=0, sender="robot", tick=30, text="It is here.", object="apple", position=flat.apple),)
@@ -120,6 +121,7 @@ def test_a_policy_decides_where_the_person_goes_and_what_they_answer():
     _, _, said = played(last, messages=True)
     assert [reply.accept for _, reply in said] == [True]
     assert last.offers[0].text == "It is here."
+    assert last.offers[0].instruction == "Put the apple on the dining table."
     quiet = Recording()
     quiet.answer = lambda offer: "ignore"
     assert played(quiet, messages=True)[2] == []
@@ -218,7 +220,8 @@ def test_prompts_name_the_task_the_options_and_the_rule():
     assert "3. search the bed, 3 m away" in text
     assert "You are holding: mug." in text
     assert text.endswith("Answer with one number from 1 to 3 and nothing else.")
-    text = wording.offer("You are you.", offer(text='Say "confirm".\nNow!'))
+    text = wording.offer("You are you.", offer(text='Say "confirm".\nNow!', instruction="Find the apple."))
+    assert "Your task: Find the apple." in text
     assert '"Say \\"confirm\\".\\nNow!"' in text
     assert "about 20 seconds" in text
     assert "4 m of walking" in text

@@ -527,3 +527,11 @@ def test_too_few_participants_are_refused_before_anything_is_played(stage: list[
     with pytest.raises(HthorError, match="too few"):
         validate.conduct(validate.Options(participants=5), lambda _: pytest.fail("nobody plays"))
     assert not stage
+
+
+def test_few_people_are_not_judged(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
+    options = validate.Options(name="greedy", participants=12, out=tmp_path)
+    done = validate.conduct(options, lambda _: pytest.fail("nobody plays"))
+    assert [many for _, _, many in stage] == [12, 12]
+    assert set(verdicts(done.findings).values()) == {"not judged"}
+    assert "ask for 18 people or more" in (tmp_path / "validation.html").read_text()

@@ -17,6 +17,7 @@ from msgspec import Struct
 
 from hthor import seeds
 from hthor.calibration import network, outcomes
+from hthor.calibration.alone import alone
 from hthor.calibration.network import Network
 from hthor.calibration.table import CONDITIONS, Table
 
@@ -76,7 +77,8 @@ class Emulator(Struct, frozen=True, kw_only=True, eq=False):
 
     def rates(self, points: Array) -> Rates:
         """What to expect of the populations at points (N, P) of the unit cube."""
-        parts = [self._rates(chunk) for chunk in _chunks(points)]
+        with alone():
+            parts = [self._rates(chunk) for chunk in _chunks(points)]
         return Rates(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in Rates.__struct_fields__})
 
     def _rates(self, points: Array) -> Rates:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from msgspec import Struct
 
+from hthor.calibration.alone import alone
 from hthor.errors import MissingExtra
 
 Array = np.ndarray[Any, Any]
@@ -57,7 +58,6 @@ def fit(inputs: Array, outcomes: Array, seed: int, scale: Array | None = None, e
     try:
         from sklearn.exceptions import ConvergenceWarning
         from sklearn.neural_network import MLPClassifier
-        from threadpoolctl import threadpool_limits
     except ImportError:
         raise MissingExtra("calibration", "calibration") from None
     weighed = np.ones(inputs.shape[1]) if scale is None else scale
@@ -70,7 +70,7 @@ def fit(inputs: Array, outcomes: Array, seed: int, scale: Array | None = None, e
         tol=0.0,
         random_state=seed % 2**32,
     )
-    with warnings.catch_warnings(), threadpool_limits(1):  # one thread: the order of sums decides the last bits
+    with warnings.catch_warnings(), alone():
         warnings.simplefilter("ignore", ConvergenceWarning)
         model.fit((inputs * weighed).astype(np.float32), outcomes.astype(np.int64))
     first, *others = (weight.astype(np.float32) for weight in model.coefs_)

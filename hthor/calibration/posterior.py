@@ -16,6 +16,7 @@ from msgspec import Struct
 from hthor import seeds
 from hthor.calibration import likelihood
 from hthor.calibration import points as places
+from hthor.calibration.alone import alone
 from hthor.calibration.design import Effects
 from hthor.calibration.emulator import Emulator, Rates
 from hthor.calibration.observed import Observed
@@ -31,7 +32,7 @@ ENOUGH = 4000.0
 """Effective number of weighed points from which no second round is needed."""
 _INFORMED = 0.03
 _WIDER = 1.5
-_DIGITS = 1e-6
+_EDGE = 1e-6
 
 
 class Bank(Struct, frozen=True, kw_only=True, eq=False):
@@ -89,11 +90,12 @@ def sample(
         prior: a `bank` to weigh; by default one of ``proposals`` points is made.
     """
     held = prior or bank(emulator, seed, proposals)
-    weight, evidence = weights(held, study, effects)
-    if effective(weight) < ENOUGH:
-        held = _around(emulator, held, weight, seed)
+    with alone():
         weight, evidence = weights(held, study, effects)
-    return _posterior(emulator.names, held, weight, evidence, seed, draws)
+        if effective(weight) < ENOUGH:
+            held = _around(emulator, held, weight, seed)
+            weight, evidence = weights(held, study, effects)
+        return _posterior(emulator.names, held, weight, evidence, seed, draws)
 
 
 def weights(held: Bank, study: Observed, effects: Effects) -> tuple[Array, float]:
@@ -133,7 +135,7 @@ def _around(emulator: Emulator, prior: Bank, weight: Array, seed: int) -> Bank:
     chance = np.random.Generator(np.random.Philox(seeds.derive(seed, "around")))
     fresh = places.spread(count, dimensions, seed, "around")
     fresh[:, told] = cdf(mean + chance.standard_normal((count, len(told))) @ root.T)
-    fresh = np.clip(fresh, _DIGITS, 1.0 - _DIGITS)
+    fresh = np.round(np.clip(fresh, _EDGE, 1.0 - _EDGE), 9)  # as many digits as points have in files
 
     points = np.concatenate([prior.points, fresh])
     away = _probit(points)[:, told]
@@ -181,7 +183,7 @@ def _probit(points: Array) -> Array:
         from scipy.special import ndtri
     except ImportError:
         raise MissingExtra("calibration", "calibration") from None
-    z: Array = ndtri(np.clip(points, _DIGITS, 1.0 - _DIGITS))
+    z: Array = ndtri(np.clip(points, _EDGE, 1.0 - _EDGE))
     return z
 
 

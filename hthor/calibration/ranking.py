@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from msgspec import Struct
 
+from hthor import seeds
 from hthor.calibration import table as tables
 from hthor.calibration.design import Effects
 from hthor.calibration.emulator import Emulator, Rates
@@ -21,6 +22,7 @@ PAIRS = (("oracle", "frontier"), ("frontier", "none"))
 METRICS = ("sr", "twsr")
 TRIALS = 600
 """Trials with each robot that an order is judged on."""
+_MEASUREMENTS = 256
 ENDS = (0.1, 0.9)
 """Quantiles of a parameter's prior between which it is moved."""
 
@@ -52,7 +54,7 @@ class Ranking(Struct, frozen=True, kw_only=True, eq=False):
         pairs: each pair and metric.
         holds: share of the draws in which every expected gap is positive; by metric, and "both".
         measured: mean over the draws of the chance that the order comes out right when each robot is measured on
-            ``trials`` trials; pairs are taken as if independent of one another.
+            ``trials`` trials, whose noise is that of people and tasks.
         sure: share of the draws in which that chance is at least 1/2.
     """
 
@@ -81,7 +83,7 @@ class Swing(Struct, frozen=True, kw_only=True):
 
 
 def robots(
-    rates: Rates, effects: Effects, trials: int = TRIALS, correlation: dict[str, float] | None = None
+    rates: Rates, effects: Effects, trials: int = TRIALS, correlation: dict[str, float] | None = None, seed: int = 0
 ) -> Ranking:
     """Judge the order oracle > frontier > none.
 
@@ -89,13 +91,14 @@ def robots(
         rates: what to expect at the D draws of a posterior.
         effects: design effects; they say how much a rate measured on so many trials varies.
         correlation: by metric, of the same people's trials with two robots, see `paired`; 0 when they are others.
+        seed: of the noise that measurements are drawn with.
     """
-    shared = correlation or {}
+    shared = {metric: min(1.0, max(0.0, value)) for metric, value in (correlation or {}).items()}
     pairs = tuple(
         _gap(rates, effects, trials, metric, pair, shared.get(metric, 0.0)) for metric in METRICS for pair in PAIRS
     )
     by_metric = {metric: [gap for gap in pairs if gap.metric == metric] for metric in METRICS} | {"both": list(pairs)}
-    chance = {name: np.prod([gap.chances for gap in gaps], axis=0) for name, gaps in by_metric.items()}
+    chance = _measured(rates, effects, trials, shared, seed)
     return Ranking(
         trials=trials,
         draws=len(rates),
@@ -139,6 +142,34 @@ def sensitivity(emulator: Emulator, found: Posterior, metric: str = "sr") -> tup
             ends.append(emulator.rates(points))
         swings += [_swing(name, metric, better, worse, ends) for better, worse in PAIRS]
     return tuple(swings)
+
+
+def _measured(rates: Rates, effects: Effects, trials: int, shared: dict[str, float], seed: int) -> dict[str, Array]:
+    """(D,) chance that all gaps come out positive when measured, by metric, and "both".
+
+    SR and TWSR of one robot rise and fall together: a trial's covariance of the two is TWSR (1 - SR).
+    """
+    chance = np.random.Generator(np.random.Philox(seeds.derive(seed, "ranking")))
+    common = chance.standard_normal((2, _MEASUREMENTS))
+    seen = []
+    for place in range(len(CONDITIONS)):
+        own = chance.standard_normal((2, _MEASUREMENTS))
+        mixed = [
+            np.sqrt(shared.get(metric, 0.0)) * common[k] + np.sqrt(1.0 - shared.get(metric, 0.0)) * own[k]
+            for k, metric in enumerate(METRICS)
+        ]
+        sr, twsr = (np.sqrt(_noise(rates, effects, trials, metric, place)) for metric in METRICS)
+        together = effects.sr[place] * rates.twsr[:, place] * (1.0 - rates.sr[:, place]) / trials
+        alike = np.clip(together / np.maximum(sr * twsr, 1e-12), -1.0, 1.0)
+        second = alike[:, None] * mixed[0] + np.sqrt(1.0 - alike**2)[:, None] * mixed[1]
+        noise = sr[:, None] * mixed[0], twsr[:, None] * second
+        seen.append((rates.sr[:, place, None] + noise[0], rates.twsr[:, place, None] + noise[1]))
+    right: list[Array] = []
+    for k in range(len(METRICS)):
+        gaps = [seen[CONDITIONS.index(better)][k] - seen[CONDITIONS.index(worse)][k] for better, worse in PAIRS]
+        right.append(np.all([gap > 0.0 for gap in gaps], axis=0))
+    by_metric = dict(zip(METRICS, right, strict=True)) | {"both": right[0] & right[1]}
+    return {name: held.mean(axis=1) for name, held in by_metric.items()}
 
 
 def _swing(name: str, metric: str, better: str, worse: str, ends: list[Rates]) -> Swing:

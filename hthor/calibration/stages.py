@@ -35,7 +35,6 @@ _T = TypeVar("_T")
 
 FITTED = tuple(one.name for one in registry.PARAMETERS if one.fitted)
 """Parameters that the published numbers are expected to move."""
-_ABC_STUDIES = 40
 
 
 class Teller(Protocol):
@@ -96,7 +95,9 @@ class Stages:
     @cached_property
     def predicted(self) -> Table:
         """Whole studies of people of the posterior."""
-        return self._studies("predicted", self.posterior.points[: self.brief.sizes.posterior_studies])
+        draws, count = self.posterior.points, self.brief.sizes.posterior_studies
+        evenly = np.arange(count) * len(draws) // count  # draws that lie together come from the same round of weighing
+        return self._studies("predicted", draws[evenly])
 
     def _sessions(self, name: str, where: np.ndarray) -> Table:
         brief = self.brief
@@ -199,12 +200,10 @@ class Stages:
         """The same posterior by approximate Bayesian computation; None with too few studies for it."""
         from hthor.calibration import abc
 
-        if self.brief.sizes.studies < _ABC_STUDIES:
+        if self.brief.sizes.studies < abc.FEWEST:
             return None
-        where, seed = self.studies.points, self.brief.seed
-        return self._made(
-            "abc", lambda: abc.check(self.posterior, where, self.observed, self.published, seed=seed, fitted=FITTED)
-        )
+        where, means, seed = self.studies.points, self.coverage.means, self.brief.seed
+        return self._made("abc", lambda: abc.check(self.posterior, where, means, seed=seed, fitted=FITTED))
 
     @cached_property
     def held_out(self) -> tuple[HeldOut, ...]:

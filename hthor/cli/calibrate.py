@@ -26,10 +26,10 @@ def calibrate(
     seed: Annotated[int, typer.Option(help="Equal seeds give the same population, byte for byte.")] = 0,
     jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one a CPU")] = None,
     sessions: Annotated[
-        int | None, typer.Option(min=1, help="Sessions to train on, ten trials each.", show_default="4000")
+        int | None, typer.Option(min=30, help="Sessions to train on, ten trials each.", show_default="4000")
     ] = None,
     studies: Annotated[
-        int | None, typer.Option(min=1, help="Whole studies to check against.", show_default="200")
+        int | None, typer.Option(min=10, help="Whole studies to check against.", show_default="200")
     ] = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="A small one, in minutes: shows that it works, and is not for use.")

@@ -19,7 +19,8 @@ _LARGE = 1000.0
 _LEGEND = (
     "people sd: how far people are from the mean, one standard deviation (of the logarithm, as a percentage; of the "
     "logit; or in the unit itself). grade: what could identify it: A the published results (A- weakly), B logs of "
-    "sessions (B- weakly), C the literature only. the data: what those that this population was fitted to say of it."
+    "sessions (B- weakly), C the literature only, own nothing at hand. the data: what those that this population was "
+    "fitted to say of it."
 )
 
 Name = Annotated[
@@ -35,9 +36,6 @@ Name = Annotated[
 @app.callback()
 def _group() -> None:
     """People: populations, kinds of people, human models."""
-
-
-app.command("validate")(validate.validate)
 
 
 @app.command("list")
@@ -98,6 +96,9 @@ def sample(
     columns = portrait.personal(found)
     held = [(row["participant"], *(float(_number(row[name])) for name in columns)) for row in rows]
     screen.put_table(("participant", *columns), held)
+
+
+app.command("validate")(validate.validate)
 
 
 def _everybody() -> list[dict[str, Any]]:

@@ -24,8 +24,10 @@ from hthor.types import HUMAN, Event, HouseSpec, Vec2
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MOMENTS, _COLUMNS = 4, 2
-_WIDE = 11.0
+_MOMENTS, _TALL = 4, 1.1
+"""Plans of houses that are so much deeper than wide stand in one row, others in two."""
+_WIDE, _WIDER = 11.0, 14.0
+"""Inches, with two plans in a row and with more."""
 _SHADES = colormaps["YlOrBr"]
 _TOP, _NAMED = 0.35, 0.03
 """A place that is so likely has the darkest shade; less likely ones than the second bear no number."""
@@ -35,25 +37,29 @@ _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidt
 
 
 def figure(record: Record, house: HouseSpec, stream: Stream) -> Figure:
-    """Draw a mind, 11 inches wide."""
+    """Draw a mind, 11 inches wide, 14 where the house is deep."""
     moments = _moments(stream.events)
-    rows = math.ceil(len(moments) / _COLUMNS)
     wide, deep = _extent(house)
-    plan_high = max(2.6, _WIDE / _COLUMNS * deep / wide + 0.45)
+    columns = max(2, min(len(moments), _MOMENTS)) if deep > _TALL * wide else 2
+    inches = _WIDE if columns == 2 else _WIDER
+    rows = math.ceil(len(moments) / columns) or 1
+    plan_high = max(2.6, inches / columns * deep / wide + 0.45)
     lanes = mind_timeline.height(stream)
     words = mind_timeline.offers(stream)
     told = 0.2 * len(words) + 0.1
-    sheet = Figure(figsize=(_WIDE, 0.9 + plan_high * rows + lanes + told), dpi=160, layout="constrained")
-    grid = sheet.add_gridspec(rows + 2, _COLUMNS, height_ratios=[plan_high] * rows + [lanes, max(told, 0.05)])
+    sheet = Figure(figsize=(inches, 0.9 + plan_high * rows + lanes + told), dpi=160, layout="constrained")
+    grid = sheet.add_gridspec(rows + 2, columns, height_ratios=[plan_high] * rows + [lanes, max(told, 0.05)])
     for number, (beliefs, choice) in enumerate(moments):
-        ax = sheet.add_subplot(grid[divmod(number, _COLUMNS)])
+        ax = sheet.add_subplot(grid[divmod(number, columns)])
         _draw_moment(ax, record, house, beliefs, choice, stream)
+    if not moments:
+        _draw_end(sheet.add_subplot(grid[0, :]), record, house, stream)
     mind_timeline.draw(sheet.add_subplot(grid[rows, :]), record, stream)
     _write(sheet.add_subplot(grid[rows + 1, :]), words)
     spec = record.spec
     whose = f"{spec.task.id}, participant {spec.participant}, trial {spec.index + 1}"
     sheet.suptitle(f"“{spec.task.instruction}”   {whose}", fontsize=11, x=0.01, ha="left", color=trace.INK)
-    sheet.legend(handles=_legend(), loc="outside lower center", ncols=6, fontsize=8, frameon=False)
+    sheet.legend(handles=_legend(), loc="outside lower center", ncols=6, fontsize=7.5, frameon=False)
     return sheet
 
 
@@ -86,15 +92,31 @@ def _draw_moment(ax: Axes, record: Record, house: HouseSpec, beliefs: Event, cho
     if goal is not None:
         arrow = {"arrowstyle": "-|>", "color": trace.TARGET, "lw": 1.6, "shrinkA": 5, "shrinkB": 2}
         ax.annotate("", goal, here, arrowprops=arrow, zorder=13)
-    for wanted in (job.target for job in record.spec.task.goal.todo):
-        start = next((placed for placed in record.spec.task.objects if placed.id == wanted), None)
-        if start is not None:
-            ax.scatter(*start.position[:2], s=70, marker="*", color=trace.TARGET, edgecolor="white", lw=0.7, zorder=12)
+    _draw_targets(ax, record)
     chosen, share = _plain(choice.data["chosen"], beliefs), shares[choice.data["chosen"]]
-    what = "the object" if choice.data["aim"] == "target" else f"the {choice.data['aim']}"
+    what = f"the {_sought(record, choice.data['aim'])}"
     elsewhere = f"{100 * ahead:.0f} % behind doorways" if ahead > 0.0 else "nothing is left unseen"
-    title = f"{until * rules.TICK_S:.1f} s: looks for {what}; {elsewhere}\nchooses {chosen} ({100 * share:.0f} %)"
-    ax.set_title(title, fontsize=8.5, loc="left", color=trace.INK)
+    title = f"{until * rules.TICK_S:.1f} s: looks for {what},\n{elsewhere};\nchooses {chosen} ({100 * share:.0f} %)"
+    ax.set_title(title, fontsize=8, loc="left", color=trace.INK)
+
+
+def _draw_end(ax: Axes, record: Record, house: HouseSpec, stream: Stream) -> None:
+    """The whole way, and what was noticed, of a trial in which nothing had to be searched for."""
+    plan.draw_house(ax, house)
+    noticed = {event.data["object"] for event in stream.events if event.kind == "noticed"}
+    for thing in house.things:
+        if thing.id in noticed:
+            _draw_place(ax, thing, 0.0, 0.0)
+    _draw_way(ax, record, record.ticks)
+    _draw_targets(ax, record)
+    ax.set_title("nothing had to be searched for", fontsize=8.5, loc="left", color=trace.INK)
+
+
+def _draw_targets(ax: Axes, record: Record) -> None:
+    wanted = {job.target for job in record.spec.task.goal.todo}
+    for placed in record.spec.task.objects:
+        if placed.id in wanted:
+            ax.scatter(*placed.position[:2], s=70, marker="*", color=trace.TARGET, edgecolor="white", lw=0.7, zorder=12)
 
 
 def posterior(beliefs: Event) -> tuple[dict[str, float], float]:
@@ -135,6 +157,15 @@ def _spots(house: HouseSpec) -> Mapping[str, Vec2]:
     return spots
 
 
+def _sought(record: Record, aim: str) -> str:
+    """What is looked for, in words."""
+    goal = record.spec.task.goal
+    kinds = {placed.id: placed.kind for placed in record.spec.task.objects}
+    several = len(goal.todo) > 1
+    word = kinds.get(goal.target, goal.target) if aim == "target" else goal.destination or aim
+    return "objects" if several and aim == "target" else plan.title(word).lower()
+
+
 def _plain(option: str, beliefs: Event) -> str:
     """An option in words."""
     kinds = {place["id"]: place["kind"] for place in beliefs.data["places"]}
@@ -160,11 +191,11 @@ def _extent(house: HouseSpec) -> Vec2:
 
 
 def _legend() -> list[Any]:
-    star = Line2D([], [], ls="", marker="*", markersize=9, color=trace.TARGET, label="where the object is")
+    star = Line2D([], [], ls="", marker="*", markersize=9, color=trace.TARGET, label="where it really lay")
     return [
         Patch(facecolor=_SHADES(0.86), edgecolor="#7d766a", label=f"expected there ({100 * _TOP:.0f} % or more)"),
-        Patch(facecolor=_SHADES(0.06), edgecolor="#7d766a", label="known, hardly expected"),
-        Patch(facecolor="white", edgecolor="#56B4E9", lw=2, label="looked at, the thicker the better"),
+        Patch(facecolor=_SHADES(0.06), edgecolor="#7d766a", label="hardly expected"),
+        Patch(facecolor="white", edgecolor="#56B4E9", lw=2, label="looked at, thicker: better"),
         Patch(facecolor="#d9d4cb", edgecolor="#a8a196", label="not noticed yet"),
         Line2D([], [], color=trace.TARGET, lw=1.6, label="what is chosen"),
         star,

@@ -14,7 +14,16 @@ from hthor.types import Event
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_LANES = ("trust", "messages", "hands", "choices", "noticed", "is about")
+_LANES = {
+    "trust": "trust",
+    "messages": "shown",
+    "hands": "attempt",
+    "chooses": "choice",
+    "noticed": "noticed",
+    "is about": "aim",
+}
+"""The kind of event that each lane is for, the lowest first."""
+_TERMS = {"a0": "willing", "trust": "trust", "gain": "gain", "load": "load", "again": "again"}
 _LANE_IN = 0.46
 _SHADES = {"search": "#9ecae1", "follow": "#c9a6d6", "fetch": "#a1d99b", "deliver": "#74c476", "begin": "#dddddd"}
 _ANSWERS = {"confirmed": trace.MESSAGE, "declined": trace.IDLE_MESSAGE, "covered": "#cccccc"}
@@ -23,9 +32,15 @@ _CHAR_S = 0.72
 """How many seconds of the time axis a letter takes up."""
 
 
-def height(_stream: Stream) -> float:
+def lanes(stream: Stream) -> list[str]:
+    """The lanes that there is something for, the lowest first."""
+    kinds = {event.kind for event in stream.events}
+    return [name for name, kind in _LANES.items() if kind in kinds]
+
+
+def height(stream: Stream) -> float:
     """Inches that the lanes want."""
-    return _LANE_IN * len(_LANES) + 0.6
+    return _LANE_IN * len(lanes(stream)) + 0.7
 
 
 def chances(choice: Event, beta: float) -> dict[str, float]:
@@ -39,24 +54,27 @@ def chances(choice: Event, beta: float) -> dict[str, float]:
 
 def draw(ax: Axes, record: Record, stream: Stream) -> None:
     """Draw the lanes, trust lowest."""
-    events, end = stream.events, record.ticks * rules.TICK_S
-    limit = record.spec.task.time_limit
-    _draw_aims(ax, [event for event in events if event.kind == "aim"], end, 5.0)
+    events, end, limit = stream.events, record.ticks * rules.TICK_S, record.spec.task.time_limit
+    names = lanes(stream)
+    rows = {name: float(row) for row, name in enumerate(names)}
+    _draw_aims(ax, [event for event in events if event.kind == "aim"], end, rows["is about"])
     wanted = {job.target for job in record.spec.task.goal.todo}
-    _draw_noticed(ax, [event for event in events if event.kind in ("noticed", "forgot")], wanted, 4.0)
+    if "noticed" in rows:
+        _draw_noticed(ax, stream, wanted, rows["noticed"], end)
     for event in events:
         if event.kind == "choice" and "values" in event.data:
-            _draw_choice(ax, event, stream.traits["beta"], 3.0)
+            _draw_choice(ax, event, stream.traits["beta"], rows["chooses"])
         elif event.kind == "attempt":
-            _draw_attempt(ax, event, end, 2.0)
+            _draw_attempt(ax, event, end, rows["hands"])
         elif event.kind == "shown":
-            _draw_message(ax, event, stream, end, 1.0)
+            _draw_message(ax, event, stream, end, rows["messages"])
     _draw_trust(ax, [event for event in events if event.kind == "trust"], end)
+    top = len(names) - 0.4
     ax.axvline(end, color=trace.TARGET if record.met else trace.FAILED, lw=1.0)
-    ax.text(end, 5.62, "done" if record.met else "time is up", fontsize=7.5, ha="center", color=trace.INK)
+    ax.text(end, top + 0.05, "done" if record.met else "time is up", fontsize=7.5, ha="center", color=trace.INK)
     ax.set_xlim(-1.0, limit + 1.0)
-    ax.set_ylim(-0.55, 5.6)
-    ax.set_yticks(range(len(_LANES)), _LANES, fontsize=8)
+    ax.set_ylim(-0.55, top)
+    ax.set_yticks(range(len(names)), names, fontsize=8)
     ax.set_xlabel("time [s]", fontsize=8)
     ax.tick_params(axis="x", labelsize=7.5)
     ax.tick_params(axis="y", length=0)
@@ -72,21 +90,31 @@ def _draw_aims(ax: Axes, aims: list[Event], end: float, row: float) -> None:
         verb = words.split()[0]
         label = next((text for text in (words, verb) if len(text) * _CHAR_S < until - begin), "")
         ax.text(begin + 0.3, row, label, fontsize=7, va="center", color=trace.INK)
+        if not label:
+            ax.text(begin, row - 0.43, verb, fontsize=6, va="center", color=trace.INK)
 
 
-def _draw_noticed(ax: Axes, seen: list[Event], wanted: set[str], row: float) -> None:
-    """A stroke for each piece of furniture; a star with its name for what matters."""
+def _draw_noticed(ax: Axes, stream: Stream, wanted: set[str], row: float, end: float) -> None:
+    """A stroke for each piece of furniture, red when it is forgotten; a star with its name for what matters."""
+    seen = {e.data["object"]: e.data for e in stream.events if e.kind == "exposure"}
     last, high = -math.inf, False
-    for event in seen:
+    for event in stream.events:
+        if event.kind not in ("noticed", "forgot"):
+            continue
         x, name = event.tick * rules.TICK_S, event.data["object"]
         if event.kind == "noticed" and name in wanted:
             ax.scatter(x, row, s=60, marker="*", color=trace.TARGET, edgecolor="white", lw=0.6, zorder=4)
-            high = not high and x - last < 12.0
-            ax.text(x + 0.6, row + (0.3 if high else 0.12), name.replace("_", " "), fontsize=7, color=trace.TARGET)
+            high = not high and x - last < 20.0
+            after = f", {seen[name]['seconds']:.1f} s in view before" if name in seen else ""
+            words = name.replace("_", " ") + after
+            ax.text(x + 0.6, row + (0.3 if high else 0.12), words, fontsize=7, color=trace.TARGET)
             last = x
         else:
             shade = trace.FAILED if event.kind == "forgot" else "#8b8478"
             ax.plot((x, x), (row - 0.22, row + 0.02), color=shade, lw=0.9, alpha=0.8)
+    missed = [f"{n.replace('_', ' ')} in view for {d['seconds']:.1f} s" for n, d in seen.items() if not d["noticed"]]
+    if missed:
+        ax.text(end - 0.4, row + 0.14, f"not noticed: {', '.join(missed)}", fontsize=7, ha="right", color=trace.FAILED)
 
 
 def _draw_choice(ax: Axes, choice: Event, beta: float, row: float) -> None:
@@ -97,6 +125,9 @@ def _draw_choice(ax: Axes, choice: Event, beta: float, row: float) -> None:
         face = trace.TARGET if chosen else "#e6e6e6"
         ax.bar(x, 0.72 * share, bottom=low, width=0.8, color=face, edgecolor="white", lw=0.3, zorder=3)
         low += 0.72 * share
+    words = choice.data["chosen"]
+    label = "doorway" if words.startswith("door ") else words.rsplit("_", 1)[0].replace("_", " ")
+    ax.text(x, row + 0.38, label, fontsize=5.8, ha="center", va="bottom", color=trace.INK)
 
 
 def _draw_attempt(ax: Axes, event: Event, end: float, row: float) -> None:
@@ -133,21 +164,14 @@ def _draw_trust(ax: Axes, told: list[Event], end: float) -> None:
 
 def offers(stream: Stream) -> list[str]:
     """A line for each message that was weighed: what spoke for and against it, and the answer."""
-    t, lines = stream.traits, []
+    numbers = {e.data["number"]: e.data["message"] + 1 for e in stream.events if e.kind == "offer"}
+    lines = []
     for event in stream.events:
-        if event.kind != "offer":
-            continue
-        d = event.data
-        terms = {
-            "willing": t["a0"],
-            "trust": t["a_trust"] * (d["trust"] - 0.5),
-            "gain": t["a_gain"] * math.log1p(d["gain"]),
-            "load": -t["a_load"] * d["load"],
-            "again": -t["a_again"] * d["again"],
-        }
-        logit = sum(terms.values())
-        words = " ".join(f"{name} {value:+.2f}" for name, value in terms.items())
-        chance = f"chance {100.0 / (1.0 + math.exp(-logit)):.0f} %" if d["useful"] else "of no use"
-        when = event.tick * rules.TICK_S
-        lines.append(f"message {d['message'] + 1}, read at {when:.1f} s:  {words}  →  {chance}: {d['answer']}")
+        if event.kind == "weighed":
+            data = event.data
+            terms = " ".join(f"{words} {data[name] + 0.0:+.2f}" for name, words in _TERMS.items())
+            share = f"chance {100.0 * data['share']:.0f} %" if data["relevant"] else "not about the task"
+            end = f"{data['answer']}{', by a slip' if data['slipped'] else ''}"
+            which, when = numbers.get(data["message"], data["message"]), event.tick * rules.TICK_S
+            lines.append(f"message {which}, read at {when:.1f} s:  {terms}  →  {share}: {end}")
     return lines

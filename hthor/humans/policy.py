@@ -64,7 +64,7 @@ class Offer(Struct, frozen=True, kw_only=True):
 
     ``trust`` is mean trust, 0 to 1; ``useful`` whether it could still help; ``gain`` [s] the time that following it is
     expected to save, never negative; ``load`` the work in hand, 0 to 1; ``again`` how often the same was refused;
-    ``metres`` the way to the place that it names, None when it names none.
+    ``metres`` the way to the place that it names, None when it names none; ``instruction`` what the person has to do.
     """
 
     text: str
@@ -77,6 +77,7 @@ class Offer(Struct, frozen=True, kw_only=True):
     load: float
     again: int
     metres: float | None = None
+    instruction: str = ""
 
 
 class Policy(Protocol):

@@ -96,4 +96,5 @@ class Talk:
             load=float(busy),
             again=reading.again,
             metres=metres,
+            instruction=self.me.task.instruction,
         )

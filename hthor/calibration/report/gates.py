@@ -16,7 +16,6 @@ Z_SD = (0.9, 1.1)
 ABC_SHIFT = 0.5
 ORDER = 0.95
 """Share of posterior draws that have to rank the robots oracle > frontier > none."""
-_ABSENT = "there is no calibration to ask"
 
 
 def judge(found: Findings) -> tuple[Gate, ...]:
@@ -76,11 +75,15 @@ def _trust(found: Trust | None, short: bool) -> Gate:
     return _gate(name, asks, said, None if short else found.gap > 0.0 and slope > 0.0)
 
 
+def _absent(found: Evidence | None) -> str:
+    return "there is no calibration to ask" if found is None else "not worked out in this calibration"
+
+
 def _held_out(found: Evidence | None) -> tuple[Gate, ...]:
     inside = ("held-out figures", "every one that exists inside its 80 % interval")
     better = ("held-out log scores", "above the prior's in every condition")
     if found is None or not found.held_out:
-        return (_gate(*inside, _ABSENT, None), _gate(*better, _ABSENT, None))
+        return (_gate(*inside, _absent(found), None), _gate(*better, _absent(found), None))
     rows = [row for part in found.held_out for row in part.figures]
     out = [words.figure(row.figure) for row in rows if not row.inside]
     gains = {words.CONDITION[part.condition]: part.log_score - part.log_score_prior for part in found.held_out}
@@ -93,7 +96,7 @@ def _coverage(found: Evidence | None) -> Gate:
     low, high = COVERAGE
     ask = ("coverage", f"90 % intervals hold {low:.2f} to {high:.2f} of the truths, over {STUDIES} studies or more")
     if found is None or found.coverage is None:
-        return _gate(*ask, _ABSENT, None)
+        return _gate(*ask, _absent(found), None)
     said = f"{found.coverage.mean:.3f} over {found.coverage.studies} studies"
     return _gate(*ask, said, found.coverage.studies >= STUDIES and low <= found.coverage.mean <= high)
 
@@ -102,14 +105,14 @@ def _emulator(found: Evidence | None) -> Gate:
     low, high = Z_SD
     ask = ("emulator", f"standard deviation of its standardised errors from {low} to {high}")
     if found is None or found.emulator_z is None:
-        return _gate(*ask, _ABSENT, None)
+        return _gate(*ask, _absent(found), None)
     return _gate(*ask, f"{found.emulator_z:.2f}", low <= found.emulator_z <= high)
 
 
 def _abc(found: Evidence | None) -> Gate:
     ask = ("ABC cross-check", f"medians of the fitted parameters within {ABC_SHIFT} posterior standard deviations")
     if found is None or not found.abc:
-        return _gate(*ask, _ABSENT, None)
+        return _gate(*ask, _absent(found), None)
     worst = max(found.abc, key=lambda one: abs(one.shift))
     return _gate(*ask, f"at most {abs(worst.shift):.2f} ({worst.name})", abs(worst.shift) < ABC_SHIFT)
 
@@ -121,7 +124,7 @@ def _ranking(found: Evidence | None) -> Gate:
     )
     home = next((one for one in found.rankings if one.suite == found.origin.suite), None) if found else None
     if home is None:
-        return _gate(*ask, _ABSENT, None)
+        return _gate(*ask, _absent(found), None)
     share = min(home.sr, home.twsr)
     said = f"SR {words.percent(home.sr)} %, TWSR {words.percent(home.twsr)} %, at {home.trials} trials a robot"
     return _gate(*ask, said, share >= ORDER)

@@ -44,7 +44,7 @@ code{font-size:.88em}
  main{max-width:none;padding:0}
  body{font-size:10pt}
  nav{display:none}
- figure,tr{break-inside:avoid}
+ figure,tr,.wide{break-inside:avoid}
  h2,h3{break-after:avoid}
  .wide{overflow:visible}
  table{font-size:7.5pt}
