@@ -236,6 +236,8 @@ def test_each_stage_is_told_of(made_up, tmp_path):
 def test_a_calibration_may_stop_after_a_stage(made_up, tmp_path, monkeypatch):
     monkeypatch.setattr(studies, "at", lambda *_: pytest.fail("it was to stop before"))
     assert run.conduct(_options(tmp_path, until="training"), telling.Silent()) is None
+    monkeypatch.setattr(studies, "at", fakes.whole)
+    assert run.conduct(_options(tmp_path, until="correction"), telling.Silent()) is None  # a small one has none
     with pytest.raises(UnknownName, match=r"stage 'trainings'\. Did you mean 'training'"):
         run.conduct(_options(tmp_path, until="trainings"), telling.Silent())
 
@@ -248,3 +250,17 @@ def test_wrong_input_is_told_before_anything_is_done(tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "sklearn", None)
     with pytest.raises(MissingExtra, match=r"hthor\[calibration\]"):
         run.conduct(_options(tmp_path), telling.Silent())
+
+
+def test_a_folder_that_is_called_like_a_target_is_not_taken_for_logs(tmp_path, monkeypatch):
+    from hthor.cli import calibrate_logs
+
+    monkeypatch.chdir(tmp_path)
+    for name in ("paper", "mine"):
+        (tmp_path / name).mkdir()
+    asked = []
+    monkeypatch.setattr(calibrate_logs, "run", lambda targets, *_: asked.append(targets))
+    monkeypatch.setattr(run, "conduct", lambda options, _: asked.append(options.targets))
+    for name in ("paper", "mine"):
+        CliRunner().invoke(app, ["calibrate", "--target", name, "--quiet"])
+    assert asked == [("paper",), ("mine",)]

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -16,6 +17,7 @@ from hthor.calibration.logs import (
     accepting,
     beliefs,
     choosing,
+    conduct,
     estimate,
     gather,
     mixed,
@@ -37,6 +39,7 @@ from hthor.errors import RunError
 from hthor.eval import cast, record
 from hthor.eval.record import Record
 from hthor.humans.parameters import Parameters
+from hthor.humans.population import Population
 from hthor.humans.trust import Experience as Lived
 from hthor.humans.trust import Trust, initial
 from hthor.tasks import library
@@ -342,3 +345,32 @@ def test_recovery_counts_what_was_found_and_what_was_covered() -> None:
         recovery.Dataset(truth=a.truth, found=b.found, errors=a.errors) for a, b in zip(made, made[::-1], strict=True)
     ]
     assert not recovery.summary(scrambled)[0].passed
+
+
+def test_logs_become_a_population_the_same_every_time(played: tuple[Parameters, list[Record]], tmp_path: Path) -> None:
+    log = tmp_path / "trials.jsonl"
+    log.write_bytes(b"".join(record.encode(one) for one in played[1]))
+    told: list[str] = []
+    found, made = conduct.conduct([log], "literature", tmp_path / "a", told.append)
+    conduct.conduct([log], "literature", tmp_path / "b", told.append)
+    for name in ("population.json", "population.npz", "estimates.json"):
+        one, other = ((tmp_path / folder / name).read_bytes() for folder in ("a", "b"))
+        assert one.replace(b'"a"', b'"b"') == other, name
+    loaded = Population.load(tmp_path / "a" / "population.npz")
+    assert loaded.sha256 == made.sha256
+    rows = {row.name: row for row in found.rows}
+    assert rows["v_pace"].after == pytest.approx(played[0].v_pace, rel=0.1)
+    assert rows["tau_mem"].estimate is None
+    assert rows["tau_mem"].after == pytest.approx(rows["tau_mem"].before, rel=0.3), (
+        "no draw of these priors knows others"
+    )
+    assert (found.people, found.trials) == (6, len(played[1]))
+    assert "24 trials of 6 people" in found.notes[0]
+    assert told.count("walking") == 2
+
+
+def test_a_log_without_a_journal_is_refused(played: tuple[Parameters, list[Record]], tmp_path: Path) -> None:
+    bare = [msgspec.structs.replace(one, journal=()) for one in played[1]]
+    (tmp_path / "trials.jsonl").write_bytes(b"".join(record.encode(one) for one in bare))
+    with pytest.raises(RunError, match="holds no journal of the person"):
+        conduct.conduct([tmp_path], "literature", tmp_path / "out", lambda _: None)

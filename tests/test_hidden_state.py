@@ -12,7 +12,7 @@ from hthor.episode import EpisodeLog, play
 from hthor.eval import cast
 from hthor.eval.session import sessions
 from hthor.tasks import library
-from hthor.types import HUMAN, Action, Briefing, Event, Observation, TrialSpec
+from hthor.types import Action, Briefing, Event, Observation, TrialSpec
 
 PERCEIVED = ("detections", "scan", "sighting")
 """What a headset's wearer has of the senses: what is in view and how much of it, and what stops a walker."""
@@ -130,9 +130,9 @@ def test_a_person_plays_on_without_the_truth(agent: str, stage: cast.Stage) -> N
     veiled, plain = trials(agent, stage, veiled=True), trials(agent, stage, veiled=False)
     assert veiled == plain, "what was hidden had been used"
     assert sum(log.ticks for log in veiled) > 4 * 50
-    assert any(event.kind == "picked" and event.seat == HUMAN for log in veiled for event in log.events) or any(
-        log.met for log in veiled
-    )
+    kinds = {event.kind for log in veiled for event in log.journal}
+    assert {"choice", "exposure", "stick", "head"} <= kinds, "they did not search, so this test showed little"
+    assert ("offer" in kinds) == (agent == "oracle")
 
 
 def test_the_veil_holds(stage: cast.Stage) -> None:

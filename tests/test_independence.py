@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import msgspec
 import pytest
 
 from hthor import rules, tasks
@@ -26,6 +27,16 @@ class Wanderer:
         if observation.outcome is not None and not observation.outcome.ok:
             return Action(motion=Rotate(yaw=self.turn))
         return Action(motion=Move(forward=0.4, left=0.1))
+
+
+class Spinner:
+    """Stays where it is, turns round and round, and says nothing."""
+
+    def begin(self, briefing: Briefing) -> None:
+        self.turn = 0.7
+
+    def act(self, observation: Observation) -> Action:
+        return Action(motion=Rotate(yaw=self.turn))
 
 
 @pytest.fixture(scope="module")
@@ -83,3 +94,30 @@ def test_a_robot_that_is_never_in_the_way_changes_nothing_at_all(stage: cast.Sta
             assert together.ticks == without.ticks
             undisturbed += 1
     assert undisturbed, "the wanderer got in everybody's way, so this test showed nothing"
+
+
+def person(log: EpisodeLog) -> bytes:
+    """All that a trial's log has of the person, as it is written."""
+    events = [event for event in log.events if event.seat == HUMAN]
+    return msgspec.json.encode((log.paths[HUMAN], events, log.journal, log.ticks, log.met, log.trust, log.idle[HUMAN]))
+
+
+def test_two_robots_that_neither_speak_nor_stand_in_the_way_meet_the_same_person(stage: cast.Stage) -> None:
+    """Byte for byte: path, stick, pitch, attempts, glimpses, choices, trust."""
+    apart = 0
+    pairs = zip(first_trials("frontier", stage, Spinner()), first_trials("frontier", stage, Wanderer()), strict=True)
+    for spun, wandered in pairs:
+        if meeting(spun) >= spun.ticks and meeting(wandered) >= wandered.ticks:
+            assert person(spun) == person(wandered)
+            apart += spun.paths["robot"] != wandered.paths["robot"]
+    assert apart > 2, "the robots were hardly ever out of the way, so this test showed nothing"
+
+
+def test_the_person_alone_is_the_same_person(stage: cast.Stage, alone: list[EpisodeLog]) -> None:
+    """Without a robot nobody is asked how far they trust it; all else is the same, byte for byte."""
+    same = 0
+    for without, spun in zip(alone, first_trials("frontier", stage, Spinner()), strict=True):
+        if meeting(spun) >= spun.ticks:
+            assert person(msgspec.structs.replace(spun, trust=None)) == person(without)
+            same += 1
+    assert same > 2

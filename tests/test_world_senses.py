@@ -11,6 +11,7 @@ from world_house import COFFEE, FRIDGE, TABLE, do, on, task, wait
 
 from hthor import rules
 from hthor.errors import StaleObservation
+from hthor.navigation.map import OCCUPIED, UNKNOWN, GridMap
 from hthor.types import Close, Open, Pick, Pose, Rotate
 from hthor.world import World, bodies
 
@@ -136,6 +137,21 @@ def test_the_scan_meets_walls_and_furniture_only(world: World) -> None:
     before = world.senses("robot").scan().ranges
     world.teleport("human", Pose(x=3.4, y=1.1))
     assert np.array_equal(world.senses("robot").scan().ranges, before)
+
+
+def test_people_see_walls_over_tables_and_robots_do_not(world: World) -> None:
+    world.teleport("human", Pose(x=1.2, y=2.6, yaw=0.0))  # the table lies between them and the wall at 5 m
+    scan = world.senses("human").scan()
+    assert scan.tops[24] < world.bodies["human"].eye
+    assert scan.ranges[24] < scan.beyond[24] == pytest.approx(5.0 - 1.2, abs=0.12)
+    assert np.all(scan.beyond >= scan.ranges)
+    walls = np.isinf(scan.tops)
+    assert np.array_equal(scan.beyond[walls], scan.ranges[walls])
+    assert world.senses("robot").scan().beyond is None
+    grid = GridMap(1.2, 2.6)
+    grid.integrate(scan)
+    assert OCCUPIED in (grid.at(4.9, 2.6), grid.at(4.95, 2.6), grid.at(5.0, 2.6))
+    assert grid.at(4.0, 2.6) == UNKNOWN, "the floor behind the table was not seen"
 
 
 def test_scans_agree_with_the_free_space_grid(world: World) -> None:

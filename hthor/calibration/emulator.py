@@ -154,10 +154,10 @@ def _scale(told: Array, asked: Array, seed: int, name: str) -> Array:
 
 
 def _folds(point: Array, seed: int, members: int) -> Array:
-    """(N,) which member does not see a trial: all trials of a point go together."""
+    """(N,) which member does not see a trial, if any: all trials of a point go together, and nobody misses many."""
     numbers, of_trial = np.unique(point, return_inverse=True)
     order = np.argsort(np.random.Generator(np.random.Philox(seeds.derive(seed, "folds"))).random(len(numbers)))
-    folds: Array = (order % members)[of_trial]
+    folds: Array = (order % max(members, MEMBERS))[of_trial]
     return folds
 
 

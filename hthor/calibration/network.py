@@ -19,7 +19,9 @@ EPOCHS = 20
 """Passes over the trials; a fixed number, as held-out trials of the same people would not show overfitting."""
 ALPHA = 0.3
 """L2 penalty, for about 25 outcomes at once."""
-_BATCH = 512
+_BATCHES = 64
+"""Steps of a pass over the trials, unless a batch would be smaller or larger than these:"""
+_LEAST_BATCH, _MOST_BATCH = 32, 512
 _STEP = 2e-3
 _CHUNK = 16384
 
@@ -64,7 +66,7 @@ def fit(inputs: Array, outcomes: Array, seed: int, scale: Array | None = None, e
     model = MLPClassifier(
         hidden_layer_sizes=HIDDEN,
         alpha=ALPHA,
-        batch_size=min(_BATCH, len(inputs)),
+        batch_size=min(len(inputs), max(_LEAST_BATCH, min(_MOST_BATCH, len(inputs) // _BATCHES))),
         learning_rate_init=_STEP,
         max_iter=epochs,
         tol=0.0,

@@ -154,7 +154,7 @@ def _posterior(names: tuple[str, ...], held: Bank, weight: Array, evidence: floa
     sd = np.sqrt(variance)
     return Posterior(
         names=names,
-        points=held.points[resampled(weight, draws, seeds.draw(seed, "resample"))],
+        points=held.points[_mixed(resampled(weight, draws, seeds.draw(seed, "resample")), seed)],
         mean=mean,
         sd=sd,
         contraction=1.0 - 12.0 * variance,
@@ -170,6 +170,13 @@ def resampled(weight: Array, draws: int, start: float) -> Array:
     marks = (np.arange(draws) + start) / draws
     found: Array = np.minimum(np.searchsorted(np.cumsum(weight), marks, side="right"), len(weight) - 1)
     return found
+
+
+def _mixed(rows: Array, seed: int) -> Array:
+    """The same in an order of no meaning, so that the first few are as good a sample as any."""
+    order = np.random.Generator(np.random.Philox(seeds.derive(seed, "mix"))).permutation(len(rows))
+    mixed: Array = rows[order]
+    return mixed
 
 
 def _variance(points: Array, weight: Array) -> Array:

@@ -19,7 +19,6 @@ from hthor.errors import HthorError, MissingExtra, UnknownName
 from hthor.tasks import library
 
 ROOT = Path("calibration")
-PLAN, RESULT = "calibration.json", "result.json"
 SIMULATED = ("training", "studies", "correction", "predicted")
 """Stages that simulate, in order; a calibration can be told to stop after one of them."""
 
@@ -55,7 +54,8 @@ def conduct(options: Options, teller: Teller) -> Summary | None:
     stages = Stages(brief, teller)
     if options.until:
         for name in SIMULATED[: SIMULATED.index(options.until) + 1]:
-            getattr(stages, name)
+            if name != "correction" or brief.sizes.correction:
+                getattr(stages, name)
         return None
     from hthor.calibration import findings
 

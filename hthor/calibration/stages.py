@@ -13,6 +13,7 @@ from msgspec import Struct
 
 from hthor import jsonio
 from hthor.calibration import identity, points, simulate, studies, table
+from hthor.calibration.alone import alone
 from hthor.calibration.shelf import Shelf
 from hthor.calibration.sizes import Sizes
 from hthor.calibration.table import Table
@@ -149,7 +150,8 @@ class Stages:
     def _effects(self, name: str, fitted: Emulator) -> Effects:
         from hthor.calibration import design
 
-        return self._made(name, lambda: design.effects(fitted.rates(self.studies.points), self.observed))
+        where, seen = self.studies.points, self.observed
+        return self._made(name, lambda: design.effects(fitted.rates(where), seen))
 
     def _posterior(self, name: str, fitted: Emulator, effects: Effects) -> Posterior:
         from hthor.calibration import posterior
@@ -181,18 +183,18 @@ class Stages:
         """How far the emulator is off whole studies, in its own standard deviations."""
         from hthor.calibration import design
 
-        rates = self.emulator.rates(self.studies.points)
-        return self._made("quality", lambda: design.quality(rates, self.observed))
+        fitted, where, seen = self.emulator, self.studies.points, self.observed
+        return self._made("quality", lambda: design.quality(fitted.rates(where), seen))
 
     @cached_property
     def coverage(self) -> Coverage:
         """How often simulated studies' 90 % intervals hold the truth."""
         from hthor.calibration import coverage
 
-        where, seed, size = self.studies.points, self.brief.seed, self.brief.sizes.proposals
+        fitted, where, seen = self.emulator, self.studies.points, self.observed
+        seed, size = self.brief.seed, self.brief.sizes.proposals // 2
         return self._made(
-            "coverage",
-            lambda: coverage.run(self.emulator, where, self.observed, seed=seed, proposals=size // 2, fitted=FITTED),
+            "coverage", lambda: coverage.run(fitted, where, seen, seed=seed, proposals=size, fitted=FITTED)
         )
 
     @cached_property
@@ -203,23 +205,19 @@ class Stages:
         if self.brief.sizes.studies < abc.FEWEST:
             return None
         where, means, seed = self.studies.points, self.coverage.means, self.brief.seed
-        return self._made("abc", lambda: abc.check(self.posterior, where, means, seed=seed, fitted=FITTED))
+        found = self.posterior
+        return self._made("abc", lambda: abc.check(found, where, means, seed=seed, fitted=FITTED))
 
     @cached_property
     def held_out(self) -> tuple[HeldOut, ...]:
         """Each condition foretold by the other two."""
         from hthor.calibration import heldout, posterior
 
+        fitted, aim, effects = self.emulator, self.published, self.effects
         seed, size = self.brief.seed, self.brief.sizes.proposals
         return self._made(
             "held-out",
-            lambda: heldout.run(
-                self.emulator,
-                self.published,
-                self.effects,
-                seed=seed,
-                prior=posterior.bank(self.emulator, seed, size),
-            ),
+            lambda: heldout.run(fitted, aim, effects, seed=seed, prior=posterior.bank(fitted, seed, size)),
         )
 
     @cached_property
@@ -227,15 +225,16 @@ class Stages:
         """How posterior draws rank the robots."""
         from hthor.calibration import ranking
 
-        rates = self.emulator.rates(self.posterior.points)
-        return self._made("ranking", lambda: ranking.robots(rates, self.effects))
+        fitted, where, effects, seed = self.emulator, self.posterior.points, self.effects, self.brief.seed
+        return self._made("ranking", lambda: ranking.robots(fitted.rates(where), effects, seed=seed))
 
     @cached_property
     def swings(self) -> tuple[Swing, ...]:
         """What each parameter alone does to the gaps between robots."""
         from hthor.calibration import ranking
 
-        return self._made("swings", lambda: ranking.sensitivity(self.emulator, self.posterior))
+        fitted, found = self.emulator, self.posterior
+        return self._made("swings", lambda: ranking.sensitivity(fitted, found))
 
     @cached_property
     def foretold(self) -> dict[str, dict[str, np.ndarray]]:
@@ -261,12 +260,5 @@ class Stages:
 
     def _made(self, name: str, make: Callable[[], _T]) -> _T:
         """A product, worked out by one thread so that its bytes do not hang on their number."""
-        with self._teller.work(name), _one_thread():
+        with self._teller.work(name), alone():
             return self._shelf.kept(name, make)
-
-
-def _one_thread() -> AbstractContextManager[object]:
-    from threadpoolctl import threadpool_limits
-
-    limits: AbstractContextManager[object] = threadpool_limits(1)
-    return limits

@@ -48,7 +48,7 @@ def calibrate(
     simulated trials. Exit code 1 when a gate was not passed.
     """
     targets = tuple(target or ("paper",))
-    if all(Path(word).is_dir() or word.endswith(".jsonl") for word in targets):
+    if all(_is_log(word) for word in targets):
         from hthor.cli import calibrate_logs
 
         calibrate_logs.run(targets, prior, out, json)
@@ -84,3 +84,10 @@ def calibrate(
         talk.print(f"files: {folder}/population.json, population.npz, evidence.json, result.json", soft_wrap=True)
     if not found.passed:
         raise typer.Exit(1)
+
+
+def _is_log(target: str) -> bool:
+    """Whether a target is a run's folder or its log, not published results."""
+    from hthor.calibration import targets
+
+    return target not in targets.names() and (Path(target).is_dir() or target.endswith(".jsonl"))

@@ -86,6 +86,22 @@ class GridMap:
             self._obstacles,
             self._count,
         )
+        if scan.beyond is not None:
+            beyond = np.array(scan.beyond, dtype=np.float64)
+            place = CELL_M, origin.x, origin.y, origin.yaw
+            self._count = marching.beyond(
+                self.cells,
+                self.left,
+                self.bottom,
+                *place,
+                self._as_bearings(scan.bearings),
+                ranges,
+                beyond,
+                scan.limit,
+                self.bounds,
+                self._obstacles,
+                self._count,
+            )
         marching.surround(self.beside, self._obstacles, first, self._count, self.left, self.bottom, _BESIDE_CELLS)
         self.version += 1
 

@@ -62,6 +62,41 @@ def _sweep(cells: Any, x: float, y: float, ux: float, uy: float, count: int, bou
 
 
 @numba.njit(
+    "int64(uint8[:,::1], int64, int64, float64, float64, float64, float64, float64[::1], float64[::1], float64[::1],"
+    " float64, int64[::1], int32[:,::1], int64)",
+    cache=True,
+)
+def beyond(
+    cells: Any,
+    left: int,
+    bottom: int,
+    cell: float,
+    x: float,
+    y: float,
+    yaw: float,
+    bearings: Any,
+    ranges: Any,
+    walls: Any,
+    limit: float,
+    bounds: Any,
+    found: Any,
+    count: int,
+) -> int:
+    """Fill the cells of ``walls`` [m] that were seen over what the beams met; returns the count of obstacles.
+
+    The floor between stays unknown.
+    """
+    px, py = x / cell - left, y / cell - bottom
+    for k in range(len(bearings)):
+        if walls[k] <= ranges[k] or walls[k] >= limit - 1e-6:
+            continue
+        reach, angle = walls[k] / cell + 0.2, yaw + bearings[k]
+        b, a = math.floor(py + reach * math.sin(angle)), math.floor(px + reach * math.cos(angle))
+        count = _fill(cells, b, a, left, bottom, bounds, found, count, False)
+    return count
+
+
+@numba.njit(
     "int64(uint8[:,::1], uint8[:,::1], int64, int64, float64, float64, float64, float64, float64[::1], float64[::1],"
     " float64[::1], float64, float64, float64, float64, int64[::1], int32[:,::1], int64)",
     cache=True,

@@ -65,8 +65,10 @@ class Scan(Struct, frozen=True, kw_only=True):
 
     ``bearings`` (N,) float64 [rad] are relative to the heading, ``ranges`` (N,) float64 [m] from the body's axis, equal
     to ``limit`` [m] where nothing was met. ``tops`` (N,) float64 [m] are the heights of what was met, as a depth
-    camera tells a wall from a table; infinite for walls and where nothing was met. ``origin`` is the pose it was taken
-    from.
+    camera tells a wall from a table; infinite for walls and where nothing was met. ``beyond`` (N,) float64 [m] is the
+    way to the first thing behind what was met that is too tall to be looked over, as people see walls over tables;
+    ``limit`` where there is none, and None from a sensor that does not look over things. ``origin`` is the pose it was
+    taken from.
     """
 
     origin: Pose
@@ -74,6 +76,7 @@ class Scan(Struct, frozen=True, kw_only=True):
     ranges: Any
     limit: float
     tops: Any = None
+    beyond: Any = None
 
 
 class Camera(Struct, frozen=True, kw_only=True):

@@ -10,7 +10,7 @@ import numpy as np
 
 from hthor.houses import cells, solids
 from hthor.houses.freespace import FreeSpace
-from hthor.types import BodySpec, HouseSpec, Pose, Scan
+from hthor.types import BodySpec, HouseSpec, Pose, RobotSpec, Scan
 
 
 class Scanner:
@@ -22,13 +22,14 @@ class Scanner:
         self._bearings.setflags(write=False)
         self._limit = spec.scan_range
         self._tops = _tops(house, space, spec.height)
+        self._over = 0.0 if isinstance(spec, RobotSpec) else spec.eye  # a robot's range finder looks over nothing
 
     def scan(self, pose: Pose, space: FreeSpace) -> Scan:
         """What the sensor measures from ``pose`` now, exact on the obstacle raster of 5 cm cells."""
-        ranges, tops = _march(
-            space.raw, self._tops, *space.origin, space.cell, pose.x, pose.y, pose.yaw, self._bearings, self._limit
-        )
-        return Scan(origin=pose, bearings=self._bearings, ranges=ranges, limit=self._limit, tops=tops)
+        place = *space.origin, space.cell, pose.x, pose.y, pose.yaw
+        ranges, tops, walls = _march(space.raw, self._tops, *place, self._bearings, self._limit, self._over)
+        beyond = walls if self._over else None
+        return Scan(origin=pose, bearings=self._bearings, ranges=ranges, limit=self._limit, tops=tops, beyond=beyond)
 
 
 def _tops(house: HouseSpec, space: FreeSpace, height: float) -> np.ndarray:
@@ -46,11 +47,23 @@ def _tops(house: HouseSpec, space: FreeSpace, height: float) -> np.ndarray:
 
 @numba.njit(cache=True)
 def _march(
-    raw: Any, tops: Any, ox: float, oy: float, cell: float, x: float, y: float, yaw: float, bearings: Any, limit: float
+    raw: Any,
+    tops: Any,
+    ox: float,
+    oy: float,
+    cell: float,
+    x: float,
+    y: float,
+    yaw: float,
+    bearings: Any,
+    limit: float,
+    over: float,
 ) -> Any:
-    """Ranges and tops (N,) [m]: each beam goes from cell edge to cell edge until it enters a cell that is not clear."""
+    """Ranges, tops and what lies beyond (N,) [m]: each beam goes from cell edge to cell edge until it enters a cell
+    that is not clear, and on over all that is lower than ``over`` [m].
+    """
     ny, nx = raw.shape
-    out, met = np.empty(len(bearings)), np.full(len(bearings), np.inf)
+    out, met, beyond = np.empty(len(bearings)), np.full(len(bearings), np.inf), np.full(len(bearings), limit)
     px, py, far = (x - ox) / cell, (y - oy) / cell, limit / cell
     for k in range(len(bearings)):
         ux, uy = math.cos(yaw + bearings[k]), math.sin(yaw + bearings[k])
@@ -60,7 +73,7 @@ def _march(
         dy = 1.0 / abs(uy) if uy != 0.0 else 1e30
         tx = ((i + 1 - px) if si > 0 else (px - i)) * dx if ux != 0.0 else 1e30
         ty = ((j + 1 - py) if sj > 0 else (py - j)) * dy if uy != 0.0 else 1e30
-        t = 0.0
+        t, first = 0.0, far
         while t < far:
             if tx < ty:
                 t, tx, i = tx, tx + dx, i + si
@@ -68,8 +81,11 @@ def _march(
                 t, ty, j = ty, ty + dy, j + sj
             if not (0 <= i < nx and 0 <= j < ny):
                 break
-            if not raw[j, i]:
-                met[k] = tops[j, i] if t < far else np.inf
-                break
-        out[k] = min(t, far) * cell
-    return out, met
+            if not raw[j, i] and t < far:
+                if first == far:
+                    first, met[k] = t, tops[j, i]
+                if tops[j, i] >= over:
+                    beyond[k] = t * cell
+                    break
+        out[k] = min(t, first) * cell
+    return out, met, beyond

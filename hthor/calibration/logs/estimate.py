@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from msgspec import Struct
 
-from hthor.calibration.logs.beliefs import Belief, Scale, off
+from hthor.calibration.logs.beliefs import Belief, Scale, off, on
 from hthor.calibration.logs.mixed import Fit
 
 _Z90 = 1.6449
@@ -75,9 +75,11 @@ def of(belief: Belief, at: float, se: float, n: int, method: str) -> Estimate:
     """An estimate of a parameter of which something was believed.
 
     Args:
-        at: value on the belief's scale. se: its standard error there.
+        at: value on the belief's scale, brought back to the prior's bounds when it is beyond them. se: its standard
+            error there.
     """
     needed, what = NEEDS[belief.name]
+    at = min(max(at, float(on(belief.low, belief.scale))), float(on(belief.high, belief.scale)))
     value, low, high = (
         min(max(float(off(at + z * se, belief.scale)), belief.low), belief.high) for z in (0.0, -_Z90, _Z90)
     )

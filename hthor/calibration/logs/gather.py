@@ -64,7 +64,7 @@ def walking(desk: Desk) -> None:
         desk.spread("omega", fit)
     stops = [stop for _, w in walks for stop in w.stops]
     desk.median("t_on", [w.start for _, w in walks], "first move or turn", least=rules.TICK_S)
-    desk.rate("stop_every", sum(w.under_way for _, w in walks), len(stops), "time under way by stops", least=0.1)
+    desk.rate("stop_every", sum(w.under_way for _, w in walks), len(stops), "time under way by stops", least=0.2)
     desk.median("stop_s", stops, "standing still in a straight walk", least=rules.TICK_S / 2)
     desk.median("k_map", [r for _, w in walks for r in w.guided], "pace after a confirmed message", least=0.02)
 

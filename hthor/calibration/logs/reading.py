@@ -29,7 +29,7 @@ def notice(rows: Sequence[tuple[float, int, int, int]], belief: Belief) -> Fit:
     Args:
         rows: as `hthor.calibration.logs.timing.sample` takes them.
     """
-    return log_normal(sample(rows), belief.term(), 0.0, noise=Parameters().read_sd)
+    return log_normal(sample(rows), belief.term(), 0.0, noise=Parameters().read_sd, noise_sd=0.3)
 
 
 def durations(readings: Sequence[Reading], person: Array, beliefs: Mapping[str, Belief]) -> Fit:

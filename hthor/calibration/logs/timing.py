@@ -13,7 +13,7 @@ from hthor.calibration.logs.mixed import Array, Fit, Term, fit
 from hthor.humans.parameters import Parameters
 
 SPREAD, NOISE, LEARN = "spread", "noise", "learn"
-_SPREAD_SD, _NOISE_SD = 1.5, 1.5
+_SPREAD_SD = 1.5
 _LEAST_NOISE = 0.01
 """Nobody is measured more exactly than to 1 %."""
 
@@ -49,13 +49,23 @@ def spread_term(effect: float) -> Term:
     return Term(name=SPREAD, start=centre, mean=centre, sd=_SPREAD_SD)
 
 
-def log_normal(data: Sample, middle: Term, effect: float, *, noise: float, practice: int = 0, learn: Any = 0.0) -> Fit:
+def log_normal(
+    data: Sample,
+    middle: Term,
+    effect: float,
+    *,
+    noise: float,
+    noise_sd: float = 1.5,
+    practice: int = 0,
+    learn: Any = 0.0,
+) -> Fit:
     """Fit median, spread between people, noise and, where it is free, practice.
 
     Args:
         middle: the logarithm of the median, in the first trial.
         effect: the spread between people in units of ``sigma``, 0 when there is none.
-        noise: a guess of the standard deviation of one number's logarithm.
+        noise: a guess of the standard deviation of one number's logarithm. noise_sd: how rough that guess is, as the
+            standard deviation of its own logarithm.
         practice: 1 when numbers grow with practice, -1 when they shrink, 0 when neither.
         learn: how much: a number, or a `Term` to find.
     """
@@ -71,7 +81,7 @@ def log_normal(data: Sample, middle: Term, effect: float, *, noise: float, pract
         seen = -0.5 * z * z - math.log(sd)
         return np.where(data.censored == 0, seen, log_ndtr(np.where(data.censored > 0, -z, z)))
 
-    terms = [middle, Term(name=NOISE, start=math.log(noise), mean=math.log(noise), sd=_NOISE_SD)]
+    terms = [middle, Term(name=NOISE, start=math.log(noise), mean=math.log(noise), sd=noise_sd)]
     if is_free:
         terms.append(learn)
     return fit(likelihood, terms, data.person, spread_term(effect) if effect else None)

@@ -1,0 +1,146 @@
+"""`hthor replay --mind`: what is heard is what was logged; beliefs, choices and answers add up; it can be seen."""
+
+from __future__ import annotations
+
+import json
+import math
+from itertools import pairwise
+from pathlib import Path
+
+import msgspec
+import pytest
+from typer.testing import CliRunner
+
+from hthor import tasks
+from hthor.cli.app import app
+from hthor.errors import HthorError, RunError
+from hthor.eval import campaign, find, log, mind, mind_picture, mind_timeline, progress, redraw
+from hthor.eval.mind import Stream
+from hthor.eval.record import Record
+from hthor.tasks import library
+from hthor.types import HUMAN, Event
+
+PNG = b"\x89PNG\r\n"
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small run with the oracle: one person, three trials in one house."""
+    folder = tmp_path_factory.mktemp("mind")
+    smoke = tasks.suite("smoke")
+    few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house == "hazel")[:3])
+    (folder / "few.json").write_bytes(library.encode(few))
+    options = campaign.Options(
+        agents=("oracle",), suite=str(folder / "few.json"), participants=1, jobs=1, seed=4, out=folder / "run"
+    )
+    list(campaign.conduct(options, lambda _: progress.Silent()))
+    return folder / "run"
+
+
+@pytest.fixture(scope="module")
+def heard(run: Path) -> list[tuple[Record, Stream]]:
+    records = [find.trial(run, str(number)) for number in range(3)]
+    return [(one, mind.listen(run, one)) for one in records]
+
+
+def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[Record, Stream]]) -> None:
+    assert [stream.same for _, stream in heard] == [True] * 3
+    assert all(stream.key == record.key for record, stream in heard)
+    assert all([e.tick for e in s.events] == sorted(e.tick for e in s.events) for _, s in heard)
+
+
+def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[Record, Stream]]) -> None:
+    for record, stream in heard:
+        logged = [event.tick for event in record.journal if event.kind == "choice" and event.data["aim"] == "target"]
+        thought = [event.tick for event in stream.events if event.kind == "choice" and event.data["aim"] == "target"]
+        assert thought == logged
+        for kind in ("attempt", "exposure", "offer"):
+            assert [e for e in stream.events if e.kind == kind] == [e for e in record.journal if e.kind == kind]
+        aims = [event.data["about"] for event in stream.events if event.kind == "aim"]
+        assert aims[0] == "begin"
+        assert all(a != b for a, b in pairwise(aims))
+    kinds = {event.kind for _, stream in heard for event in stream.events}
+    assert {"beliefs", "choice", "noticed", "aim", "trust", "weighed", "offer", "shown"} <= kinds
+
+
+def test_beliefs_and_chances_add_up(heard: list[tuple[Record, Stream]]) -> None:
+    seen = 0
+    for _, stream in heard:
+        for event in stream.events:
+            if event.kind == "beliefs":
+                places, ahead = mind_picture.posterior(event)
+                assert sum(places.values()) + ahead == pytest.approx(1.0)
+            elif event.kind == "choice":
+                shares = mind_timeline.chances(event, stream.traits["beta"])
+                assert sum(shares.values()) == pytest.approx(1.0)
+                assert event.data["chosen"] in shares
+                seen += 1
+    assert seen
+
+
+def test_the_terms_of_an_answer_are_its_chance(heard: list[tuple[Record, Stream]]) -> None:
+    weighed = [event.data for _, stream in heard for event in stream.events if event.kind == "weighed"]
+    assert weighed
+    for data in weighed:
+        logit = sum(data[name] for name in ("a0", "trust", "gain", "load", "again"))
+        share = 1.0 / (1.0 + math.exp(-logit)) if data["relevant"] else 0.0
+        assert data["share"] == pytest.approx(share, abs=1e-3)
+
+
+def test_trust_at_the_end_is_what_the_next_trial_begins_with(heard: list[tuple[Record, Stream]]) -> None:
+    courses = [[e.data["mean"] for e in stream.events if e.kind == "trust"] for _, stream in heard]
+    for before, after in pairwise(courses):
+        assert before[-1] == after[0]
+
+
+def test_it_is_drawn(heard: list[tuple[Record, Stream]], tmp_path: Path) -> None:
+    record, stream = max(heard, key=lambda pair: len(pair[1].events))
+    figure = mind_picture.figure(record, redraw.house(record), stream)
+    figure.savefig(tmp_path / "mind.png", dpi=40)
+    assert (tmp_path / "mind.png").read_bytes().startswith(PNG)
+    quiet = msgspec.structs.replace(stream, events=tuple(e for e in stream.events if e.kind == "aim"))
+    mind_picture.figure(record, redraw.house(record), quiet).savefig(tmp_path / "quiet.png", dpi=40)
+    assert mind_timeline.lanes(quiet) == ["is about"]
+
+
+def test_the_command_prints_thoughts_or_draws_them(run: Path, heard: list[tuple[Record, Stream]]) -> None:
+    found = CliRunner().invoke(app, ["replay", str(run), "1", "--mind", "--json"])
+    assert found.exit_code == 0, found.output
+    told = json.loads(found.stdout)
+    assert told["schema"] == mind.SCHEMA
+    assert told["events"] == json.loads(msgspec.json.encode(heard[1][1].events))
+
+
+def test_a_damaged_past_is_no_past(run: Path, tmp_path: Path) -> None:
+    """Without the trials before it nobody knows how far the person trusted; from other code nothing can be told."""
+    for name in ("run.json", "trials.jsonl"):
+        (tmp_path / name).write_bytes((run / name).read_bytes())
+    lines = (run / "trials.jsonl").read_bytes().splitlines(keepends=True)
+    (tmp_path / "trials.jsonl").write_bytes(b"".join(lines[1:]))
+    wanted = find.trial(tmp_path, "2")
+    with pytest.raises(RunError, match="lacks some of the trials that participant 0 did before"):
+        mind.listen(tmp_path, wanted)
+    other = msgspec.structs.replace(wanted, spec=msgspec.structs.replace(wanted.spec, code_sha256="0" * 64))
+    with pytest.raises(RunError, match="another version of hthor"):
+        mind.listen(run, other)
+
+
+def test_whose_agent_is_a_file_needs_the_file(run: Path) -> None:
+    _, record = next(log.read(run / "trials.jsonl"))
+    (seat,) = record.spec.robots
+    agent = msgspec.structs.replace(seat.agent, name="mine", source="my_agent.py")
+    spec = msgspec.structs.replace(record.spec, robots=(msgspec.structs.replace(seat, agent=agent),))
+    with pytest.raises(HthorError, match=r"came from the file my_agent\.py\. Give that file, unchanged, with --agent"):
+        mind._sources(run, spec, (), "")
+
+
+def test_forgetting_and_misses_have_their_marks() -> None:
+    events = (
+        Event(tick=0, seat=HUMAN, kind="aim", data={"about": "begin"}),
+        Event(tick=5, seat=HUMAN, kind="noticed", data={"object": "sofa"}),
+        Event(tick=9, seat=HUMAN, kind="forgot", data={"object": "sofa"}),
+        Event(tick=20, seat=HUMAN, kind="attempt", data={"what": "pick", "ok": False, "seconds": 1.0}),
+    )
+    stream = Stream(key="", same=True, traits={"beta": 1.0}, events=events)
+    assert mind_timeline.lanes(stream) == ["hands", "noticed", "is about"]
+    assert mind_timeline.offers(stream) == []
