@@ -33,7 +33,7 @@ class Bounds(Struct, frozen=True, kw_only=True):
 
 
 FULL = Bounds(coverage=(0.86, 0.94), z_sd=(0.9, 1.1), shift=0.5, effective=400.0, studies=200, covered=1.0)
-QUICK = Bounds(coverage=(0.75, 1.0), z_sd=(0.6, 1.6), shift=math.inf, effective=30.0, studies=10, covered=0.75)
+QUICK = Bounds(coverage=(0.75, 1.0), z_sd=(0.5, 2.0), shift=math.inf, effective=30.0, studies=10, covered=0.75)
 
 _CLOSE = "medians, SR and TWSR within 4 points, adoption within 7"
 

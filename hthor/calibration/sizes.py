@@ -30,7 +30,7 @@ class Sizes(Struct, frozen=True, kw_only=True):
 
 FULL = Sizes()
 QUICK = Sizes(
-    sessions=100,
+    sessions=120,
     correction=0,
     studies=10,
     posterior_studies=1,

@@ -2,8 +2,9 @@
 
 What the logs measure takes the place of what was believed: each draw gets new values of those parameters, by their
 estimates and errors. The other parameters keep the draws that go with such values, by importance weights: draws far
-from the estimates count less. Estimates are often far more exact than draws are dense, so their errors are widened for
-that, as little as leaves enough draws.
+from the estimates count less. Only measured parameters that the others evidently go together with are weighed: where
+draws are independent, weighing would add nothing but noise. Estimates are often far more exact than draws are dense,
+so their errors are widened for the weights, as little as leaves enough draws.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from hthor.calibration.logs.gather import READING
 _WIDENINGS = tuple(0.05 * 1.2**k for k in range(30))
 _LEAST_SHARE, _LEAST_DRAWS = 0.1, 50.0
 _REACH = 3.0
+_EVIDENT = 4.0
+"""A correlation is evident when it is so many times what independent draws show by chance."""
 
 
 class Updated(Struct, frozen=True, kw_only=True):
@@ -49,12 +52,26 @@ def update(
     """
     used = {one.name: one for one in estimates if one.used and one.name in names}
     scaled = {name: on(draws[:, names.index(name)], beliefs[name].scale) for name in used}
-    weight, effective, widening = _weights(scaled, used, beliefs, np.asarray(weights))
+    others = [on(draws[:, names.index(name)], beliefs[name].scale) for name in names if name not in used]
+    telling = {name: values for name, values in scaled.items() if _tells(values, others, np.asarray(weights))}
+    weight, effective, widening = _weights(telling, used, beliefs, np.asarray(weights))
     kept = np.array(draws)[_picked(weight, seeds.draw(seed, "pick"), len(draws))]
     for name in used:
         kept[:, names.index(name)] = _drawn(used[name], beliefs[name], len(kept), seed)
     _whole_reading(kept, names, estimates, beliefs, seed)
     return Updated(draws=kept, effective=effective, widening=widening, direct=tuple(used))
+
+
+def _tells(values: Any, others: Sequence[Any], weights: Any) -> bool:
+    """Whether any of the others goes together with these values, more than chance would make it."""
+    chance = _EVIDENT * math.sqrt(float((weights**2).sum()))
+    return any(abs(_correlation(values, other, weights)) > chance for other in others)
+
+
+def _correlation(a: Any, b: Any, weights: Any) -> float:
+    x, y = (values - float((weights * values).sum()) for values in (a, b))
+    scale = math.sqrt(float((weights * x * x).sum()) * float((weights * y * y).sum()))
+    return float((weights * x * y).sum()) / scale if scale > 0.0 else 0.0
 
 
 def _weights(
@@ -63,6 +80,8 @@ def _weights(
     """Importance weights, and how much the errors had to be widened for them."""
     least = max(_LEAST_DRAWS, _LEAST_SHARE / (before**2).sum())
     weight, effective, widening = before, 1.0 / float((before**2).sum()), 0.0
+    if not scaled:
+        return weight, effective, widening
     for widening in _WIDENINGS:
         log = np.log(np.maximum(before, 1e-300))
         for name, values in scaled.items():
