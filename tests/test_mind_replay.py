@@ -117,7 +117,7 @@ def test_a_damaged_past_is_no_past(run: Path, tmp_path: Path) -> None:
         (tmp_path / name).write_bytes((run / name).read_bytes())
     lines = (run / "trials.jsonl").read_bytes().splitlines(keepends=True)
     (tmp_path / "trials.jsonl").write_bytes(b"".join(lines[1:]))
-    wanted = find.trial(tmp_path, "2")
+    wanted = find.trial(tmp_path, "1")
     with pytest.raises(RunError, match="lacks some of the trials that participant 0 did before"):
         mind.listen(tmp_path, wanted)
     other = msgspec.structs.replace(wanted, spec=msgspec.structs.replace(wanted.spec, code_sha256="0" * 64))

@@ -28,8 +28,8 @@ _LANE_IN = 0.46
 _SHADES = {"search": "#9ecae1", "follow": "#c9a6d6", "fetch": "#a1d99b", "deliver": "#74c476", "begin": "#dddddd"}
 _ANSWERS = {"confirmed": trace.MESSAGE, "declined": trace.IDLE_MESSAGE, "covered": "#cccccc"}
 _TRIED: dict[object, str] = {True: "#74c476", False: trace.FAILED}
-_CHAR_S = 0.72
-"""How many seconds of the time axis a letter takes up."""
+_CHAR, _NAMES = 0.008, 4
+"""What share of the time axis a letter takes up; so many names stand in a row."""
 
 
 def lanes(stream: Stream) -> list[str]:
@@ -57,7 +57,7 @@ def draw(ax: Axes, record: Record, stream: Stream) -> None:
     events, end, limit = stream.events, record.ticks * rules.TICK_S, record.spec.task.time_limit
     names = lanes(stream)
     rows = {name: float(row) for row, name in enumerate(names)}
-    _draw_aims(ax, [event for event in events if event.kind == "aim"], end, rows["is about"])
+    _draw_aims(ax, [event for event in events if event.kind == "aim"], end, rows["is about"], _CHAR * limit)
     wanted = {job.target for job in record.spec.task.goal.todo}
     if "noticed" in rows:
         _draw_noticed(ax, stream, wanted, rows["noticed"], end)
@@ -82,13 +82,13 @@ def draw(ax: Axes, record: Record, stream: Stream) -> None:
         ax.spines[side].set_visible(False)
 
 
-def _draw_aims(ax: Axes, aims: list[Event], end: float, row: float) -> None:
+def _draw_aims(ax: Axes, aims: list[Event], end: float, row: float, letter_s: float) -> None:
     starts = [aim.tick * rules.TICK_S for aim in aims]
     for aim, begin, until in zip(aims, starts, [*starts[1:], end], strict=True):
         words = aim.data["about"].replace("_", " ")
         ax.barh(row, until - begin, left=begin, height=0.6, color=_SHADES.get(words.split()[0], "#eeeeee"), lw=0)
         verb = words.split()[0]
-        label = next((text for text in (words, verb) if len(text) * _CHAR_S < until - begin), "")
+        label = next((text for text in (words, verb) if len(text) * letter_s < until - begin), "")
         ax.text(begin + 0.3, row, label, fontsize=7, va="center", color=trace.INK)
         if not label:
             ax.text(begin, row - 0.43, verb, fontsize=6, va="center", color=trace.INK)
@@ -106,15 +106,17 @@ def _draw_noticed(ax: Axes, stream: Stream, wanted: set[str], row: float, end: f
             ax.scatter(x, row, s=60, marker="*", color=trace.TARGET, edgecolor="white", lw=0.6, zorder=4)
             high = not high and x - last < 20.0
             after = f", {seen[name]['seconds']:.1f} s in view before" if name in seen else ""
-            words = name.replace("_", " ") + after
+            words = _words(name) + after
             ax.text(x + 0.6, row + (0.3 if high else 0.12), words, fontsize=7, color=trace.TARGET)
             last = x
         else:
             shade = trace.FAILED if event.kind == "forgot" else "#8b8478"
             ax.plot((x, x), (row - 0.22, row + 0.02), color=shade, lw=0.9, alpha=0.8)
-    missed = [f"{n.replace('_', ' ')} in view for {d['seconds']:.1f} s" for n, d in seen.items() if not d["noticed"]]
+    missed = [f"{_words(name)} ({data['seconds']:.1f} s)" for name, data in seen.items() if not data["noticed"]]
     if missed:
-        ax.text(end - 0.4, row + 0.14, f"not noticed: {', '.join(missed)}", fontsize=7, ha="right", color=trace.FAILED)
+        more = ", …" if len(missed) > _NAMES else ""
+        words = f"in view, not noticed: {', '.join(missed[:_NAMES])}{more}"
+        ax.text(end - 0.4, row - 0.36, words, fontsize=6.5, ha="right", va="center", color=trace.FAILED)
 
 
 def _draw_choice(ax: Axes, choice: Event, beta: float, row: float) -> None:
@@ -126,7 +128,7 @@ def _draw_choice(ax: Axes, choice: Event, beta: float, row: float) -> None:
         ax.bar(x, 0.72 * share, bottom=low, width=0.8, color=face, edgecolor="white", lw=0.3, zorder=3)
         low += 0.72 * share
     words = choice.data["chosen"]
-    label = "doorway" if words.startswith("door ") else words.rsplit("_", 1)[0].replace("_", " ")
+    label = "doorway" if words.startswith("door ") else _words(words)
     ax.text(x, row + 0.38, label, fontsize=5.8, ha="center", va="bottom", color=trace.INK)
 
 
@@ -160,6 +162,12 @@ def _draw_trust(ax: Axes, told: list[Event], end: float) -> None:
     ax.step([*xs, end], [*ys, ys[-1]], where="post", color=trace.PERSON, lw=1.4)
     for x, event, y in zip(xs, told, ys, strict=True):
         ax.text(min(x, end) + 0.4, y + 0.12, f"{event.data['mean']:.2f}", fontsize=6.5, color=trace.PERSON)
+
+
+def _words(name: str) -> str:
+    """An object's or a thing's id in words, without its number."""
+    kind, _, number = name.rpartition("_")
+    return (kind if number.isdecimal() else name).replace("_", " ")
 
 
 def offers(stream: Stream) -> list[str]:
