@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from hthor.geometry import to_house, to_local
+from hthor.geometry import to_house
 from hthor.humans.memory import Place
 from hthor.humans.walking import Walker
-from hthor.navigation.map import FREE
+from hthor.navigation.spots import MAYBE, YES, usable
 from hthor.types import Vec2, Vec3
 
 GAP_M = 0.42
@@ -61,17 +61,23 @@ def _spread(half: float, wide: bool) -> list[float]:
 
 def _usable(spots: list[Vec2], place: Place, walker: Walker) -> list[Vec2]:
     """Spots known to be free; when there is none, those that might be."""
-    open_to = [spot for spot in spots if walker.planner.fits(*spot) and faces(spot, place, walker)]
-    known = [spot for spot in open_to if walker.grid.at(*spot) == FREE]
-    return known or open_to
+    ranks = usable(walker.grid, walker.planner, spots, [_edge(spot, place) for spot in spots], walker.margin)
+    best = YES if YES in ranks else MAYBE
+    return [spot for spot, rank in zip(spots, ranks, strict=True) if rank == best]
 
 
 def faces(spot: Vec2, place: Place, walker: Walker) -> bool:
     """Whether nothing on the map stands between a spot and the nearest edge of the place: no wall, above all."""
-    x, y, _ = to_local((spot[0], spot[1], 0.0), place.centre, place.yaw)
-    w, d = place.size[0] / 2.0, place.size[1] / 2.0
-    edge = to_house((max(-w, min(w, x)), max(-d, min(d, y)), 0.0), place.centre, place.yaw)
-    return not walker.grid.meets(spot, edge[:2], walker.margin)
+    return not walker.grid.meets(spot, _edge(spot, place), walker.margin)
+
+
+def _edge(spot: Vec2, place: Place) -> Vec2:
+    """The point of a place's outline, or inside it, that is nearest to a spot."""
+    cx, cy, _ = place.centre
+    cos, sin = math.cos(place.yaw), math.sin(place.yaw)
+    dx, dy, w, d = spot[0] - cx, spot[1] - cy, place.size[0] / 2.0, place.size[1] / 2.0
+    x, y = max(-w, min(w, dx * cos + dy * sin)), max(-d, min(d, dy * cos - dx * sin))
+    return cx + x * cos - y * sin, cy + x * sin + y * cos
 
 
 def _speck(point: Vec3) -> Place:

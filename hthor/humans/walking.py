@@ -206,8 +206,7 @@ class Walker:
 
     def _open(self, ahead: list[Vec2]) -> bool:
         """Whether the rest of the way still looks free."""
-        way = (self.me.here, *ahead)
-        return all(self.planner.straight(a, b) for a, b in pairwise(way))
+        return self.planner.clear((self.me.here, *ahead))
 
     def _bumped(self) -> bool:
         outcome = self.me.now.outcome

@@ -94,6 +94,12 @@ class Planner:
         bx, by = self._cell(b)
         return bool(pulling.line_cost(self._cells, self._level, self.optimistic, ax, ay, bx, by) >= 0.0)
 
+    def clear(self, points: Sequence[Vec2]) -> bool:
+        """Whether the body can go straight from each point [m] to the next; where it stands now does not count."""
+        self._follow()
+        row = np.array(points) / CELL_M - (self.grid.left, self.grid.bottom)
+        return bool(pulling.clear(self._cells, self._level, self.optimistic, row))
+
     @property
     def levels(self) -> NDArray[np.uint8]:
         """(ny, nx) uint8 over the map: 0 clear, 1 tight, 2 no room for the body."""

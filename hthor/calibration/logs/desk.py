@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import msgspec
 import numpy as np
 
 from hthor.calibration.logs import estimate, timing
@@ -39,7 +40,10 @@ class Desk:
 
     def spread(self, name: str, fit: Fit) -> None:
         """How much people differ in this parameter tells how much they differ in all."""
-        self.spreads.append((fit.value[SPREAD] - math.log(parameter(name).effect), fit.se[SPREAD]))
+        log, se = fit.value[SPREAD], fit.se[SPREAD]
+        self.spreads.append((log - math.log(parameter(name).effect), se))
+        if name in self.found:
+            self.found[name] = msgspec.structs.replace(self.found[name], between=(math.exp(log), se))
 
     def capped(self, rows: Sequence[tuple[float, Reduced, float]]) -> Sample:
         """Numbers of trials with the most that the device allows; those near that are lower bounds."""

@@ -49,7 +49,8 @@ class Estimate(Struct, frozen=True, kw_only=True):
     """A parameter's value in its own unit; ``at`` and ``se`` are that value and its standard error on ``scale``.
 
     ``low`` and ``high`` bound 90 % of it, ``n`` counts the data, ``needed`` of them are wanted. ``words`` says in words
-    how far it can be relied on.
+    how far it can be relied on. ``between`` is the standard deviation between people on the scale, with its standard
+    error relative to it, None where everybody is taken to be alike.
     """
 
     name: str
@@ -64,6 +65,7 @@ class Estimate(Struct, frozen=True, kw_only=True):
     needed: int
     method: str
     words: str
+    between: tuple[float, float] | None = None
 
     @property
     def used(self) -> bool:
