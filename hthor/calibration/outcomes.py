@@ -58,7 +58,7 @@ def rates(answers: Array) -> tuple[Array, Array, Array]:
     chance = np.minimum.accumulate(np.column_stack([met, np.minimum(reached, met[:, None])]), axis=1)
     middle = (chance[:, 1:] + chance[:, :-1]) / 2.0
     safe = np.maximum(met, 1e-6)
-    mean = (middle * np.diff(levels)).sum(axis=1) / safe
+    mean = np.minimum((middle * np.diff(levels)).sum(axis=1) / safe, 1.0)
     square = (middle * np.diff(levels**2)).sum(axis=1) / safe
     return met, mean, np.sqrt(np.maximum(square - mean**2, 1e-4))
 

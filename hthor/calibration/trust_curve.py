@@ -1,8 +1,8 @@
 """How trust goes over a session, by robot, at any point of the prior; knows nothing of what decides it.
 
 The mean report after each trial is foretold by a committee of networks, like rates. How much people differ around it,
-and how alike one person's reports are, is the covariance of what is left over, so that the curve of a few raters, which
-is what a study shows, can be drawn with its noise.
+and how alike one person's reports are, is the covariance of what is left over in people whom a network has not seen, so
+that the curve of a few raters, which is what a study shows, can be drawn with its noise.
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ import numpy as np
 from msgspec import Struct
 
 from hthor import rules, seeds
-from hthor.calibration import network, outcomes
+from hthor.calibration import committee, outcomes
+from hthor.calibration.alone import alone
+from hthor.calibration.committee import MEMBERS
 from hthor.calibration.network import Network
 from hthor.calibration.table import CONDITIONS, Table
 
@@ -21,7 +23,8 @@ Array = np.ndarray[Any, Any]
 
 ROBOTS = CONDITIONS[1:]
 """Conditions in which trust is asked for."""
-MEMBERS = 3
+EPOCHS = 8
+"""Passes over the reports: few, as the ten reports of one person are much alike and easily learnt by heart."""
 RATERS = 6
 """People that rate each robot in the published study."""
 _NOISE = 128
@@ -41,7 +44,8 @@ class TrustCurve(Struct, frozen=True, kw_only=True, eq=False):
         for robot in range(len(ROBOTS)):
             for index in range(rules.SESSION_TASKS):
                 told = _inputs(points, np.full(len(points), robot + 1), np.full(len(points), index))
-                above = np.mean([member(told) for member in self.members], axis=0)
+                with alone():
+                    above = np.mean([member(told) for member in self.members], axis=0)
                 found[:, robot, index] = rules.TRUST_MIN + above.sum(axis=1)
         return found
 
@@ -83,13 +87,12 @@ def fit(table: Table, seed: int = 0, members: int = MEMBERS) -> TrustCurve:
     held = table.take(table.trust > 0)
     told = _inputs(held.unit(), held.condition, held.index)
     above = held.trust[:, None] > np.arange(rules.TRUST_MIN, rules.TRUST_MAX)
-    curve = TrustCurve(
-        members=tuple(network.fit(told, above, seeds.derive(seed, "network", "trust", k)) for k in range(members)),
-        covariance=np.zeros(0),
-    )
-    said = np.mean([member(told) for member in curve.members], axis=0).sum(axis=1) + rules.TRUST_MIN
-    covariance = [_covariance(held, held.trust - said, robot) for robot in range(1, len(CONDITIONS))]
-    return TrustCurve(members=curve.members, covariance=np.stack(covariance))
+    nets = committee.fit(told, above, held.point, len(table.names), seed, "trust", members, EPOCHS)
+    rows, chance = committee.unseen(nets, told, held.point, seed)
+    left = np.full(len(held), np.nan)
+    left[rows] = held.trust[rows] - rules.TRUST_MIN - chance.sum(axis=1)
+    covariance = [_covariance(held, left, robot) for robot in range(1, len(CONDITIONS))]
+    return TrustCurve(members=nets, covariance=np.stack(covariance))
 
 
 def reports(table: Table) -> Array:
