@@ -51,11 +51,13 @@ class Walker:
 
     ``haste`` scales the pace: below 1 while reading or following a map. Nearer than ``margin`` [m] to a piece of
     furniture, what is on the map is taken for a part of it. A person's stick gives the pace directly, one short move a
-    tick; larger turns are made standing, and now and then people stop to look aside.
+    tick; larger turns are made standing, and while people are ``looking`` for something they stop now and then to look
+    aside.
     """
 
     def __init__(self, me: Subject, memory: Memory, x: float, y: float, margin: float = 0.12) -> None:
         self.me, self.memory, self.haste, self.margin, self._bumps = me, memory, 1.0, margin, 0
+        self.looking = True
         self._robot: tuple[float, float, float] | None = None
         self._robot_until = -1
         self._drawn = me.now.tick
@@ -174,7 +176,7 @@ class Walker:
                 if outcome is not None and not outcome.ok and outcome.motion == "move":
                     yield from self._give_way(ahead[0])
                     return False
-                self._until_stop -= me.tick_s
+                self._until_stop -= me.tick_s if self.looking else 0.0
                 if self._until_stop <= 0.0:
                     yield from self._look_aside()
                     now = me.now

@@ -79,7 +79,7 @@ class Model:
         if observation.tick - self._eyes.at >= GLIMPSE_TICKS or self._eyes.at < 0:
             walker.sense()
             self._eyes.look(observation)
-        walker.haste = self._haste()
+        walker.haste, walker.looking = self._haste(), self._is_looking()
         return Action(motion=self._motion(), say=say)
 
     def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the hour of help counts, not of the end
@@ -188,11 +188,14 @@ class Model:
         """Share of the pace that is left while reading, or while following the map to where one has never been."""
         if self._talk.reader.reads(self._me.now.tick):
             return 1.0 / self._me.traits.k_read
-        aim = self._aim
-        led = aim.verb == "follow" or (
-            aim.verb == "deliver"
-            and aim.duty is not None
-            and self._claims.lead is not None
-            and not self._duties.knows(aim.duty)
-        )
+        led = self._aim.verb == "follow" or (self._claims.lead is not None and self._lacks_home())
         return 1.0 / self._me.traits.k_map if led else 1.0
+
+    def _is_looking(self) -> bool:
+        """Whether the person goes about to find something, and not to where they know or were told it is."""
+        return self._aim.verb == "search" or (self._claims.lead is None and self._lacks_home())
+
+    def _lacks_home(self) -> bool:
+        """Whether the person has something in hand and does not know where it belongs."""
+        aim = self._aim
+        return aim.verb == "deliver" and aim.duty is not None and not self._duties.knows(aim.duty)
