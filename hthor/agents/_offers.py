@@ -8,6 +8,8 @@ from hthor.types import Briefing, Detection, Observation, Receipt
 
 AGAIN_S = 10.0
 """How long to leave the person alone after a message was declined or covered."""
+ASIDE_M = 2.0
+"""So far from it a robot waits: whoever opens a fridge and reaches into it needs the floor before it."""
 APART_M = 1.3
 """How far from the target a robot waits: out of the person's way, and close enough to see it."""
 _HOLLOW = ("bathtub", "fridge", "garbage_can", "sink")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from hthor import geometry, rules
 from hthor.agents._jobs import PAPER_KINDS, Knowledge
-from hthor.agents._offers import APART_M, Offers, lend_a_hand, place, please_look, sighting, spot, title
+from hthor.agents._offers import ASIDE_M, Offers, lend_a_hand, place, please_look, sighting, spot, title
 from hthor.types import HUMAN, Briefing, Job, Motion, Observation, Receipt, Send, Thing, ThingState, Vec2, Vec3, Wait
 
 if TYPE_CHECKING:
@@ -241,5 +241,5 @@ class Teller:
             return Wait(seconds=0.5)
         self.aside = errand
         here = (observation.pose.x, observation.pose.y)
-        self.follower.take(self.routes.retreat(here, (where[0], where[1]), APART_M))
+        self.follower.take(self.routes.retreat(here, (where[0], where[1]), ASIDE_M))
         return self.follower.next(observation.pose) or Wait(seconds=0.5)

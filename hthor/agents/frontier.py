@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hthor.agents._jobs import PAPER_KINDS
-from hthor.agents._offers import APART_M, Offers, sighting, spot
+from hthor.agents._offers import APART_M, ASIDE_M, Offers, sighting, spot
 from hthor.types import HUMAN, Action, Briefing, Detection, Motion, Observation, Send, Wait
 
 if TYPE_CHECKING:
@@ -82,6 +82,6 @@ class Agent:
             follower.take(self.explorer.planner.path((pose.x, pose.y), (x, y), within=APART_M))
         elif not self.aside and not speaking:
             self.aside = True
-            self.explorer.retreat(pose, (x, y), APART_M)
+            self.explorer.retreat(pose, (x, y), ASIDE_M)
         step = follower.next(pose)
         return step or face(pose, self.target.position, body.eye, body.pitch_limit) or Wait(seconds=0.5)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hthor.agents._crew import able
 from hthor.agents._jobs import PAPER_KINDS, todo
-from hthor.agents._offers import APART_M
+from hthor.agents._offers import ASIDE_M
 from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Send, Wait
 
 if TYPE_CHECKING:
@@ -226,5 +226,5 @@ class Agent:
         here = (observation.pose.x, observation.pose.y)
         if not self.is_aside:
             self.is_aside = True
-            self.follower.take(self.routes.retreat(here, here, APART_M))
+            self.follower.take(self.routes.retreat(here, here, ASIDE_M))
         return self.follower.next(observation.pose) or Wait(seconds=0.5)

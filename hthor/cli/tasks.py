@@ -86,7 +86,9 @@ def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
         screen.put_json({"suite": shelf.name, "task": spec, "before": round(hard.before, 3), "score_s": hard.score})
         return
     sys.stdout.write(f"{spec.id}: {spec.instruction}\n\n")
-    share = f"{hard.level}: takes at least {hard.least:.1f} s, {100 * hard.before:.0f} % of where it is expected is nearer"
+    share = (
+        f"{hard.level}: takes at least {hard.least:.1f} s, {100 * hard.before:.0f} % of where it is expected is nearer"
+    )
     facts = [
         ("suite", f"{shelf.name} {shelf.version}"),
         ("kind", spec.kind),
