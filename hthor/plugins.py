@@ -70,6 +70,7 @@ def loaded(sort: str, name: str) -> ModuleType | None:
     return sys.modules.get(f"{package}.{name}")
 
 
+@functools.cache
 def purpose(sort: str, name: str) -> str:
     """The first sentence of a plug-in's file, up to a semicolon; read without importing it.
 
