@@ -84,4 +84,4 @@ class Agent:
             self.aside = True
             self.explorer.retreat(pose, (x, y), ASIDE_M)
         step = follower.next(pose)
-        return step or face(pose, self.target.position, body.eye, body.pitch_limit) or Wait(seconds=0.5)
+        return step or face(pose, self.target.position, body.eye, body.pitch_limit) or Wait(seconds=1.0)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct
 
-from hthor import plugins
+from hthor import garbage, plugins
 from hthor.errors import AgentError, HthorError
 from hthor.types import Mind, RobotSeat, TrialSpec
 
@@ -61,6 +61,7 @@ class Stage:
         self._sources = sources or Sources()
         self._worlds: dict[object, World] = {}
         self._people: People | None = None
+        garbage.release_with(self)
         if self._sources.houses:
             from hthor import houses
 
@@ -99,6 +100,7 @@ class Stage:
                 profile="fast" if pack is None else "nice",
                 assets=pack or "",
             )
+            garbage.keep()
         return self._worlds[key]
 
     def _persons(self, trial: TrialSpec) -> People:

@@ -83,21 +83,18 @@ class Approach:
         if not new:
             new, self._tried = spots, []
         seen_from = self.eyes.subject.spot if self._tried else None
-        distances = self.walker.planner.distances(self.me.here, new) if new else ()
-        ranked = [
-            (far + _aslant(spot, point, seen_from), spot)
-            for far, spot in zip(distances, new, strict=True)
-            if math.isfinite(far)
-        ]
-        if not ranked:
+        if seen_from is None:
+            ((far, number),) = self.walker.planner.nearest(self.me.here, [new])
+        else:
+            ways = self.walker.planner.distances(self.me.here, new)
+            far, number = min((way + _aslant(new[k], point, seen_from), k) for k, way in enumerate(ways))
+        if not math.isfinite(far):
             return None
-        self._tried.append(min(ranked)[1])
+        self._tried.append(new[number])
         return self._tried[-1]
 
 
-def _aslant(spot: Vec2, point: Vec3, seen_from: Vec2 | None) -> float:
-    """How far [rad] a spot lies off the line along which an object was seen; 0 when that does not matter."""
-    if seen_from is None:
-        return 0.0
+def _aslant(spot: Vec2, point: Vec3, seen_from: Vec2) -> float:
+    """How far [rad] a spot lies off the line along which an object was seen."""
     a = math.atan2(spot[1] - point[1], spot[0] - point[0])
     return abs(wrap(a - math.atan2(seen_from[1] - point[1], seen_from[0] - point[0])))

@@ -130,6 +130,5 @@ class Following:
             and not walls.hide(spot)
         ]
         new = [spot for spot in new if self.walker.grid.at(*spot) == FREE] or new
-        far = self.walker.planner.distances(self.me.here, new) if new else ()
-        ranked = [(way, spot) for way, spot in zip(far, new, strict=True) if math.isfinite(way) and way <= most]
-        return min(ranked)[1] if ranked else None
+        ((way, number),) = self.walker.planner.nearest(self.me.here, [new])
+        return new[number] if math.isfinite(way) and way <= most else None

@@ -54,4 +54,4 @@ def gain(me: Subject, walker: Walker, search: Search, position: Vec3 | None) -> 
         return 0.0, None
     left = max(0.0, me.task.time_limit - me.now.tick * me.tick_s)
     metres, there = way(me, walker, position)
-    return max(0.0, searching(search.options(), left, me.traits.kappa) - there), metres
+    return max(0.0, searching(search.recent(), left, me.traits.kappa) - there), metres

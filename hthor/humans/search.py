@@ -18,6 +18,7 @@ from hthor.humans.walking import Walker
 from hthor.types import Vec2
 
 _STALE_TICKS = 100
+_FRESH_TICKS = 50
 DOOR_S = 2.0
 SETTLE_S = 1.0
 
@@ -55,10 +56,12 @@ class Search:
         self.uniform: Mapping[str, float] = {}
         self._spots: dict[str, tuple[int, list[Vec2]]] = {}
         self._choices = 0
+        self._thought: tuple[int, list[Option]] = (-_FRESH_TICKS, [])
 
     def choose(self) -> Option | None:
         """The next thing to do: by the person's own law, or as the policy says that decides in their place."""
         options, number, me = self.options(), self._choices, self.me
+        self._thought = me.now.tick, options
         self._choices += 1
         if not options:
             return None
@@ -83,20 +86,27 @@ class Search:
 
         return max(options, key=utility)
 
+    def recent(self) -> list[Option]:
+        """What came to mind at the last choice, if that was just now; else everything that can be thought of."""
+        tick, _ = self._thought
+        if self.me.now.tick - tick >= _FRESH_TICKS:
+            self._thought = self.me.now.tick, self.options()
+        return self._thought[1]
+
     def options(self) -> list[Option]:
         """Everything that can be thought of from here."""
         doorways = [door for door in self.memory.doorways.values() if door.sides and not door.spent]
         beliefs = self.beliefs(bool(doorways))
         places = [place for place in self.memory.places.values() if beliefs[place.id] > 0.0 and not self.done(place)]
         spots = [self.spots(place) for place in places]
-        distances = self._distances([*(spot for some in spots for spot in some), *(door.beyond for door in doorways)])
+        nearest = self._nearest([*spots, *([door.beyond] for door in doorways)])
         found = []
         for place, some in zip(places, spots, strict=True):
-            option = self._searching(place, beliefs[place.id], some, [next(distances) for _ in some])
+            option = self._searching(place, beliefs[place.id], some, *next(nearest))
             found += [option] if option else []
         ahead = self.ahead(beliefs)
         for door in doorways:
-            metres = next(distances)
+            metres, _ = next(nearest)
             seconds = metres / self.me.traits.v_pace + DOOR_S
             if math.isfinite(seconds):
                 value = ahead / len(doorways) / seconds**self.me.traits.kappa
@@ -140,13 +150,13 @@ class Search:
             self._spots[place.id] = (self.me.now.tick, known)
         return known
 
-    def _distances(self, points: Sequence[Vec2]) -> Iterator[float]:
-        return iter(self.walker.planner.distances(self.me.here, points) if points else ())
+    def _nearest(self, groups: Sequence[Sequence[Vec2]]) -> Iterator[tuple[float, int]]:
+        """How far on foot [m] the nearest point of each group is, and which it is."""
+        return iter(self.walker.planner.nearest(self.me.here, groups) if groups else ())
 
     def _searching(
-        self, place: Place, belief: float, spots: Sequence[Vec2], distances: Sequence[float]
+        self, place: Place, belief: float, spots: Sequence[Vec2], least: float, number: int
     ) -> Option | None:
-        least = min(distances, default=math.inf)
         if not math.isfinite(least):
             return None
         traits, exposure = self.me.traits, self.memory.exposure(place, self.me.now.tick)
@@ -156,7 +166,7 @@ class Search:
         return Option(
             name=place.id,
             value=belief * math.exp(-exposure) / seconds**traits.kappa,
-            spot=spots[list(distances).index(least)],
+            spot=spots[number],
             place=place,
             metres=least,
             seconds=seconds,

@@ -21,7 +21,7 @@ from hthor.navigation.planner import Planner, length
 from hthor.types import Motion, Move, Rotate, Vec2, Wait
 
 _TURN_RAD = math.radians(12.0)
-_MAP_EVERY_M, _MAP_EVERY_RAD = 0.2, 0.35
+_MAP_EVERY_M, _MAP_EVERY_RAD = 0.4, 0.6
 _ARRIVED_M = 0.03
 _CHECK_TICKS = 5
 _CREEP = 0.3
@@ -139,14 +139,17 @@ class Walker:
     def _by_doorway(self, goal: Vec2, most: float) -> Way | None:
         """The way through the doorway not yet passed that promises the shortest way, ``most`` metres in all."""
         doors = [door for door in self.memory.doorways.values() if door.sides and not door.spent]
-        if not doors:
-            return None
-        after = [math.dist(door.beyond, goal) for door in doors]
-        before = self.planner.distances(self.me.here, [door.beyond for door in doors], most - min(after))
-        metres = [far + rest for far, rest in zip(before, after, strict=True)]
-        best = min(range(len(doors)), key=lambda k: (metres[k], doors[k].id))
-        path = self.planner.path(self.me.here, doors[best].beyond) if metres[best] <= most else None
-        return None if path is None else Way(path=path, metres=metres[best], doorway=doors[best])
+        here, best = self.me.here, None
+        least = {door.id: math.dist(here, door.beyond) + math.dist(door.beyond, goal) for door in doors}
+        for door in sorted(doors, key=lambda door: (least[door.id], door.id)):
+            if least[door.id] >= most:
+                break
+            rest = math.dist(door.beyond, goal)
+            path = self.planner.path(here, door.beyond, most=most - rest)
+            if path is not None and length(path) + rest < most:
+                most = length(path) + rest
+                best = Way(path=path, metres=most, doorway=door)
+        return best
 
     def _follow(self, path: tuple[Vec2, ...], stop: Callable[[], bool]) -> Deed:
         """Walk the path; False when it turns out to be blocked."""

@@ -58,7 +58,7 @@ class Field:
         news = sum(window.watch(spot) for spot in spots if spot >= 0)
         endless = math.isinf(most)
         if news:
-            window.spread(news, searching.FAR if endless else math.floor(most / CELL_M * searching.STEP) + 1)
+            window.spread(news, price(most))
         found = []
         for point, spot in zip(points, spots, strict=True):
             if spot >= 0 and window.settled(spot):
@@ -66,6 +66,37 @@ class Field:
             else:
                 found.append(self.distance(point) if endless else math.inf)
         return tuple(found)
+
+    def nearest(self, groups: Sequence[Sequence[Vec2]]) -> tuple[tuple[float, int], ...]:
+        """For each group of points the walking distance [m] to the nearest, as `distance`, and which of them it is.
+
+        Infinite and -1 where there is no way to any.
+        """
+        window = self.window
+        if window is None:
+            return ((math.inf, -1),) * len(groups)
+        spots = [[self._spot(point) for point in group] for group in groups]
+        cells = [{spot for spot in group if spot >= 0} for group in spots]
+        for spot in set().union(*cells):
+            window.watch(spot)
+        missing = [number for number, group in enumerate(cells) if group]
+        while missing:
+            found = window.spread(len(missing))  # each of them needs one more watched cell at least
+            if found < 0:
+                break
+            left = [number for number in missing if not any(map(window.settled, cells[number]))]
+            wanted = set().union(*(cells[number] for number in left))
+            for spot in set().union(*(cells[number] for number in missing)) - wanted:
+                window.ignore(spot)
+            missing = left
+        return tuple(self._nearest(group, cells) for group, cells in zip(groups, spots, strict=True))
+
+    def _nearest(self, points: Sequence[Vec2], spots: Sequence[int]) -> tuple[float, int]:
+        """Of the ``spots`` of these points the nearest that was reached; those of no spot count when none was."""
+        assert self.window is not None
+        reached = [(self.metres(spot), k) for k, spot in enumerate(spots) if spot >= 0 and self.window.settled(spot)]
+        least = min(reached or ((self.distance(point), k) for k, point in enumerate(points)), default=(math.inf, -1))
+        return least if math.isfinite(least[0]) else (math.inf, -1)
 
     def path(self, b: Vec2, within: float = 0.0) -> tuple[Vec2, ...] | None:
         """Way points [m] as `Planner.path` gives them. Ask before the map grows; afterwards None is given."""
@@ -136,3 +167,8 @@ class Field:
         rank = np.where(good, cost if within > 0.0 else apart, np.inf)
         j, i = divmod(int(np.argmin(rank)), i1 + 1 - i0)
         return window.flat(j + j0, i + i0) if good[j, i] else -1
+
+
+def price(metres: float) -> int:
+    """What a way of so many metres of clear cells costs, rounded up."""
+    return searching.FAR if math.isinf(metres) else math.floor(metres / CELL_M * searching.STEP) + 1

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hthor.navigation import marching, pulling, searching
-from hthor.navigation.field import ESCAPE_CELLS, Field
+from hthor.navigation.field import ESCAPE_CELLS, Field, price
 from hthor.navigation.map import CELL_M, GridMap
 from hthor.navigation.window import Window
 from hthor.types import Vec2
@@ -35,13 +35,14 @@ class Planner:
         self._cells: NDArray[np.uint8] = grid.cells
         self._allocate()
 
-    def path(self, a: Vec2, b: Vec2, within: float = 0.0) -> tuple[Vec2, ...] | None:
+    def path(self, a: Vec2, b: Vec2, within: float = 0.0, most: float = math.inf) -> tuple[Vec2, ...] | None:
         """Way points [m] from ``a`` to ``b``, both included, or None when there is no way.
 
         Args:
             a: where the body is. When it stands too close to something it first leaves by the nearest free cell.
             b: where to go. A place that the body cannot stand on is replaced by the nearest one within 0.7 m.
             within: [m] being this close to ``b`` is enough; the path then ends where that is first so.
+            most: [m] longer ways along the lattice, with their costs, do not count.
         """
         self._follow()
         start, escape = self._enter(a)
@@ -57,7 +58,7 @@ class Planner:
         apart = abs(start[1] - math.floor(goal[0])), abs(start[0] - math.floor(goal[1]))
         key = searching.rank(*apart, within / CELL_M)
         window = Window(self._cells, self._level, self.optimistic, self._window(start, (a, b)), start, key)
-        end = window.seek(*goal, within / CELL_M)
+        end = window.seek(*goal, within / CELL_M, price(most))
         return None if end < 0 else self.pulled(window, end, a, None if snapped else b, escape)
 
     def distance(self, a: Vec2, b: Vec2, within: float = 0.0) -> float:
@@ -78,6 +79,13 @@ class Planner:
         to 8 % longer than the way walked.
         """
         return self.field(a, points).distances(points, most)
+
+    def nearest(self, a: Vec2, groups: Sequence[Sequence[Vec2]]) -> tuple[tuple[float, int], ...]:
+        """For each group of points the walking distance [m] to the nearest of them, as `distances`, and which it is.
+
+        Infinite and -1 where there is no way to any. One search serves all groups, and ends once each is reached.
+        """
+        return self.field(a, [point for group in groups for point in group]).nearest(groups)
 
     def fits(self, x: float, y: float) -> bool:
         """Whether the body may stand at (``x``, ``y``) [m], as far as the map tells."""

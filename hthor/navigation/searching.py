@@ -108,7 +108,7 @@ def prepare(
 
 
 @numba.njit(
-    "int64(uint8[::1], int32[::1], int8[::1], int64, int64, int64, float64, float64, float64,"
+    "int64(uint8[::1], int32[::1], int8[::1], int64, int64, int64, float64, float64, float64, int64,"
     " int32[::1], int32[::1], int32[::1], int64[::1])",
     cache=True,
 )
@@ -122,6 +122,7 @@ def seek(
     goal_x: float,
     goal_y: float,
     within: float,
+    most: int,
     heads: Any,
     chain: Any,
     item: Any,
@@ -132,13 +133,14 @@ def seek(
     Args:
         width: of the bordered window. left, bottom: the map's column and row of the window's cell 0.
         goal_x, goal_y: the goal [cells of the map].
+        most: give up where any way costs more.
     """
     offsets = _offsets(width)
     slack = math.ceil(within * _SLACK) if within > 0.0 else 0
     gx, gy = math.floor(goal_x), math.floor(goal_y)
     near2 = within * within
     key, used, waiting = memo[0], memo[1], memo[2]
-    while waiting > 0:
+    while waiting > 0 and key <= most:
         bucket = np.uint64(key & _LAST)
         entry = heads[bucket]
         if entry < 0:

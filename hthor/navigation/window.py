@@ -59,10 +59,13 @@ class Window:
         x0, x1, y0, y1 = self.edges
         return x0 <= column <= x1 and y0 <= row <= y1
 
-    def seek(self, x: float, y: float, within: float) -> int:
-        """Where the way to within ``within`` cells of (``x``, ``y``) [cells] ends, flat; -1 when there is none."""
+    def seek(self, x: float, y: float, within: float, most: int = searching.FAR) -> int:
+        """Where the way to within ``within`` cells of (``x``, ``y``) [cells] ends, flat.
+
+        -1 when there is none that costs ``most`` or less.
+        """
         arrays = self.state, self.cost, self.came, self.width, self.left, self.bottom
-        return int(searching.seek(*arrays, x, y, within, *self._queue))
+        return int(searching.seek(*arrays, x, y, within, most, *self._queue))
 
     def watch(self, flat: int) -> bool:
         """Stop at this cell when it is reached; says whether that is news: it can be, and was not watched yet."""
@@ -70,6 +73,10 @@ class Window:
         if news:
             self.state[flat] |= searching.WATCHED
         return news
+
+    def ignore(self, flat: int) -> None:
+        """Do not stop at this cell any more."""
+        self.state[flat] &= ~np.uint8(searching.WATCHED)
 
     def spread(self, watched: int, most: int = searching.FAR) -> int:
         """Go on until so many watched cells are reached, or all that costs at most ``most`` is; the last one, or -1."""

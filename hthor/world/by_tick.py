@@ -7,6 +7,7 @@ from typing import Any
 
 from hthor import houses
 from hthor.errors import HthorError, TaskError, UnknownName
+from hthor.garbage import uncollected
 from hthor.houses.freespace import FreeSpace
 from hthor.types import (
     BodySpec,
@@ -27,7 +28,6 @@ from hthor.world import avatar, bodies, contents, detector, interaction, starts
 from hthor.world.arranging import Arranging
 from hthor.world.doors import Doors
 from hthor.world.env import FastEnv
-from hthor.world.garbage import uncollected
 from hthor.world.gaze import Gaze
 from hthor.world.hinges import Hinges
 from hthor.world.interaction import Hands
