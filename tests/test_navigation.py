@@ -166,6 +166,36 @@ def test_paths_there_and_back_are_about_equal_and_field_agrees(a: tuple[float, f
     assert length(walked) == pytest.approx(there, rel=0.05, abs=0.1)
 
 
+@settings(max_examples=30, deadline=None)
+@given(SPOTS, st.lists(st.lists(SPOTS, min_size=1, max_size=4), max_size=4))
+def test_the_nearest_of_each_group_is_the_nearest_by_the_distances_of_all(
+    a: tuple[float, float], groups: list[list[tuple[float, float]]]
+) -> None:
+    planner = Planner(whole(), RADIUS)
+    far = planner.distances(a, [point for group in groups for point in group])
+    for (metres, number), group in zip(planner.nearest(a, groups), groups, strict=True):
+        apart, far = far[: len(group)], far[len(group) :]
+        assert metres == pytest.approx(min(apart), abs=1e-9)
+        assert apart[number] == pytest.approx(metres, abs=1e-9)
+
+
+def test_the_nearest_of_nothing_or_of_what_cannot_be_reached_is_infinitely_far() -> None:
+    planner = Planner(whole(), RADIUS, optimistic=False)
+    near, none, away = planner.nearest((1.0, 1.0), [[(90.0, 90.0), (1.0, 3.2)], [], [(90.0, 90.0)]])
+    assert near[1] == 1
+    assert none == away == (math.inf, -1)
+
+
+@settings(max_examples=30, deadline=None)
+@given(SPOTS, SPOTS, st.floats(0.1, 12.0))
+def test_a_path_of_bounded_length_is_the_same_path_or_none(
+    a: tuple[float, float], b: tuple[float, float], most: float
+) -> None:
+    planner = Planner(whole(), RADIUS)
+    (lattice,) = planner.distances(a, [b])
+    assert planner.path(a, b, most=most) == (planner.path(a, b) if lattice <= most + CELL_M / 50 else None)
+
+
 _WHOLE: list[GridMap] = []
 
 

@@ -99,9 +99,9 @@ def held_out(parts: Sequence[HeldOut]) -> list[str]:
 def parameters(parts: Sequence[ParameterFinding]) -> list[str]:
     """Which parameters the published numbers tell."""
     by_word = {word: [one.name for one in parts if identified(one) == word] for word in (IDENTIFIED, WEAKLY, NOT)}
+    counts = {word: f"{len(names)}{f' ({listed(names)})' if names else ''}" for word, names in by_word.items()}
     return [
-        f"Of {len(parts)} parameters {len(by_word[IDENTIFIED])} are identified ({listed(by_word[IDENTIFIED])}) and "
-        f"{len(by_word[WEAKLY])} weakly so ({listed(by_word[WEAKLY])}). "
+        f"Of {len(parts)} parameters {counts[IDENTIFIED]} are identified and {counts[WEAKLY]} weakly so. "
         f"The other {len(by_word[NOT])} are not identified: what they are comes from the literature or from our own "
         "choice, not from the published study."
     ]

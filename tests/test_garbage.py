@@ -1,0 +1,30 @@
+"""What is made to stay is not searched for garbage, as long as its owner is there."""
+
+from __future__ import annotations
+
+import gc
+
+from hthor import garbage
+
+
+class Owner:
+    """Something that keeps things."""
+
+
+def test_what_is_kept_is_let_go_with_its_owner():
+    gc.unfreeze()
+    owner = Owner()
+    garbage.release_with(owner)
+    garbage.keep()
+    assert gc.get_freeze_count() > 0
+    del owner
+    assert gc.get_freeze_count() == 0
+
+
+def test_nothing_is_searched_while_much_is_made_and_the_collector_is_left_as_it_was():
+    with garbage.uncollected():
+        assert not gc.isenabled()
+        with garbage.uncollected():
+            pass
+        assert not gc.isenabled()
+    assert gc.isenabled()
