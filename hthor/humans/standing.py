@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Sequence
 
 from hthor.geometry import to_house
 from hthor.humans.memory import Place
@@ -19,7 +21,7 @@ _DIRECTIONS = 20
 
 def at(place: Place, walker: Walker, front: bool = False) -> list[Vec2]:
     """Spots [m] along the edges of a place, ``front`` only or all round, where the person could stand and see it."""
-    return _usable(_around(place, front), place, walker)
+    return _usable(_around(place.centre, place.size, place.yaw, front), place, walker)
 
 
 def near(point: Vec3, support: Place | None, walker: Walker, reach: float) -> list[Vec2]:
@@ -43,14 +45,15 @@ def in_reach(spots: list[Vec2], point: Vec3, reach: float) -> list[Vec2]:
     return [spot for spot in spots if math.dist(spot, point[:2]) <= reach]
 
 
-def _around(place: Place, front: bool) -> list[Vec2]:
-    half = (place.size[0] / 2.0, place.size[1] / 2.0)
+@functools.lru_cache(maxsize=4096)
+def _around(centre: Vec3, size: Vec3, yaw: float, front: bool) -> tuple[Vec2, ...]:
+    half = (size[0] / 2.0, size[1] / 2.0)
     deep = half[1] + GAP_M
     local = [(s, deep) for s in _spread(half[0], front)]
     if not front:
         local += [(s, -deep) for s in _spread(half[0], front)]
         local += [(side * (half[0] + GAP_M), s) for side in (-1.0, 1.0) for s in _spread(half[1], front)]
-    return [to_house((x, y, 0.0), place.centre, place.yaw)[:2] for x, y in local]
+    return tuple(to_house((x, y, 0.0), centre, yaw)[:2] for x, y in local)
 
 
 def _spread(half: float, wide: bool) -> list[float]:
@@ -59,7 +62,7 @@ def _spread(half: float, wide: bool) -> list[float]:
     return [k * _SPACING_M * (0.6 if wide else 1.0) for k in range(-count, count + 1)]
 
 
-def _usable(spots: list[Vec2], place: Place, walker: Walker) -> list[Vec2]:
+def _usable(spots: Sequence[Vec2], place: Place, walker: Walker) -> list[Vec2]:
     """Spots known to be free; when there is none, those that might be."""
     ranks = usable(walker.grid, walker.planner, spots, [_edge(spot, place) for spot in spots], walker.margin)
     best = YES if YES in ranks else MAYBE

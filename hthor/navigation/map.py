@@ -65,6 +65,7 @@ class GridMap:
         self._reserve(16 * len(scan.ranges) + 64)
         first = self._count
         ranges = np.array(scan.ranges, dtype=np.float64)  # a copy: what came over a wire is read-only
+        bearings = self._as_bearings(scan.bearings)
         tops = np.zeros(len(ranges)) if scan.tops is None else np.array(scan.tops, dtype=np.float64)
         self._count = marching.integrate(
             self.cells,
@@ -75,7 +76,7 @@ class GridMap:
             origin.x,
             origin.y,
             origin.yaw,
-            self._as_bearings(scan.bearings),
+            bearings,
             ranges,
             tops,
             LOW_M,
@@ -94,7 +95,7 @@ class GridMap:
                 self.left,
                 self.bottom,
                 *place,
-                self._as_bearings(scan.bearings),
+                bearings,
                 ranges,
                 beyond,
                 scan.limit,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,8 +106,8 @@ class Planner:
     def clear(self, points: Sequence[Vec2]) -> bool:
         """Whether the body can go straight from each point [m] to the next; where it stands now does not count."""
         self._follow()
-        row = np.array(points) / CELL_M - (self.grid.left, self.grid.bottom)
-        return bool(pulling.clear(self._cells, self._level, self.optimistic, row))
+        known, ends = (self._cells, self._level, self.optimistic), [self._cell(point) for point in points]
+        return all(pulling.line_cost(*known, *a, *b) >= 0.0 for a, b in pairwise(ends))
 
     @property
     def levels(self) -> NDArray[np.uint8]:

@@ -33,15 +33,6 @@ def line_cost(cells: Any, level: Any, optimistic: bool, ax: float, ay: float, bx
     return length * (STEP + (TIGHT - STEP) * tight / n)
 
 
-@numba.njit("boolean(uint8[:,::1], uint8[:,::1], boolean, float64[:,::1])", cache=True)
-def clear(cells: Any, level: Any, optimistic: bool, points: Any) -> bool:
-    """Whether the body fits on all the straight lines from each point [cells] to the next."""
-    for k in range(len(points) - 1):
-        if line_cost(cells, level, optimistic, points[k, 0], points[k, 1], points[k + 1, 0], points[k + 1, 1]) < 0.0:
-            return False
-    return True
-
-
 @numba.njit(
     "int64(uint8[:,::1], uint8[:,::1], boolean, float64[:,::1], float64[::1], int64[::1])",
     cache=True,
