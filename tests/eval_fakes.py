@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import os
+import resource
 import signal
+import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from unittest import mock
 
@@ -15,10 +18,12 @@ import msgspec
 
 from hthor import seeds
 from hthor.episode import EpisodeLog, Fault
-from hthor.eval import cast, crews, provenance, record, session, setup
+from hthor.eval import cast, crews, engines, provenance, record, session, setup, worker
+from hthor.eval.engines import SessionFailed
 from hthor.eval.record import Record
 from hthor.eval.session import Session
 from hthor.eval.setup import Setup
+from hthor.eval.worker import News
 from hthor.humans import people
 from hthor.humans.people import People
 from hthor.humans.population import Population, Validity
@@ -188,15 +193,96 @@ def failing_player(error: str) -> Callable[[Session], Iterator[Record]]:
     return perform
 
 
+GUEST = """
+import ctypes, os, sys
+ctypes.CDLL(None).prctl(1, 9)
+if os.getppid() != int(sys.argv[1]):
+    os._exit(0)
+for line in sys.stdin.buffer:
+    os.write(1, line)
+"""
+
+
+def guarded_player(seconds: float = 0.004) -> Callable[[Session], Iterator[Record]]:
+    """Each session has a guest, a process that has to answer in each trial; if not, the trial has a fault."""
+
+    def perform(session_: Session) -> Iterator[Record]:
+        words = [sys.executable, "-S", "-E", "-c", GUEST, str(os.getpid())]
+        with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0) as guest:
+            assert guest.stdin is not None
+            assert guest.stdout is not None
+            try:
+                for memory, trial in enumerate(session_.trials):
+                    time.sleep(seconds)
+                    log = episode(trial, memory)
+                    try:
+                        guest.stdin.write(b"act\n")
+                        answer = guest.stdout.readline()
+                    except BrokenPipeError:
+                        answer = b""
+                    if not answer:
+                        fault = Fault(seat="robot", kind="died", tick=1, detail="killed by SIGKILL")
+                        log = msgspec.structs.replace(log, faults=(fault,))
+                    yield record.of(trial, log)
+            finally:
+                guest.kill()
+
+    return perform
+
+
+def killing_player(times: int) -> Callable[[Session], Iterator[Record]]:
+    """The agent of the third trial is killed in the first ``times`` plays of a session."""
+    plays: dict[int, int] = {}
+
+    def perform(session_: Session) -> Iterator[Record]:
+        plays[session_.participant] = plays.get(session_.participant, 0) + 1
+        for memory, trial in enumerate(session_.trials):
+            log = episode(trial, memory)
+            if memory == 2 and plays[session_.participant] <= times:
+                fault = Fault(seat="robot", kind="died", tick=1, detail="killed by SIGKILL")
+                log = msgspec.structs.replace(log, faults=(fault,))
+            yield record.of(trial, log)
+
+    return perform
+
+
+class Here:
+    """An engine that plays in this process, which saves starting others."""
+
+    def __init__(self, *, jobs: int | None = None, address: str = "", gpus: float = 0.0) -> None:
+        pass
+
+    def perform(self, sessions, make) -> Generator[News | None, None, None]:
+        player = worker.Player(make)
+        for one in sessions:
+            for news in player.play(one):
+                if isinstance(news, worker.Failed):
+                    raise SessionFailed(news)
+                yield news
+
+
 def run_in(folder: Path, *, count: int = 60, jobs: int = 2, seconds: float = 0.02) -> None:
     """A whole run as a command does it."""
-    import functools
+    _evaluate(folder, count, functools.partial(slow_player, seconds), engines.find("local", jobs=jobs))
 
+
+def guarded(folder: str, count: str) -> None:
+    """A whole run with guests."""
+    _evaluate(Path(folder), int(count), guarded_player, engines.find("local", jobs=2))
+
+
+def clustered(folder: str, count: str, address: str) -> None:
+    """A whole run on a Ray cluster."""
+    make = functools.partial(slow_player, 0.01)
+    _evaluate(Path(folder), int(count), make, engines.find("ray", address=address))
+    sys.stdout.write(f"{resource.getrusage(resource.RUSAGE_SELF).ru_maxrss}\n")
+
+
+def _evaluate(folder: Path, count: int, make, engine: engines.Engine) -> None:
     from hthor.eval import progress, run
 
     plan, dealt = run_of(count)
-    make = functools.partial(slow_player, seconds)
-    run.evaluate(plan, dealt, make, folder=folder, jobs=jobs, watch=progress.Silent())
+    run.evaluate(plan, dealt, make, folder=folder, engine=engine, watch=progress.Silent())
 
 
 if __name__ == "__main__":
@@ -205,7 +291,13 @@ if __name__ == "__main__":
     try:
         import eval_fakes  # workers must find its functions under this name, not under __main__
 
-        eval_fakes.run_in(Path(sys.argv[1]))
+        if sys.argv[1] in ("guarded", "clustered"):
+            getattr(eval_fakes, sys.argv[1])(*sys.argv[2:])
+        else:
+            eval_fakes.run_in(Path(sys.argv[1]))
     except HthorError as error:
         sys.stderr.write(f"{error}\n")
         sys.exit(error.exit_code)
+    except OSError as error:
+        sys.stderr.write(f"{error.filename}: {error.strerror}\n")
+        sys.exit(2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import functools
 import os
 import random
@@ -15,7 +16,7 @@ import eval_fakes as fakes
 import pytest
 
 from hthor.errors import RunError
-from hthor.eval import progress, run, runner, score
+from hthor.eval import log, progress, run, runner, score
 from hthor.eval.score import Result
 
 
@@ -107,6 +108,38 @@ def test_our_own_error_in_a_worker_leaves_its_traceback(tmp_path: Path):
         _run(tmp_path, functools.partial(fakes.failing_player, "own"))
     assert caught.value.exit_code == 1
     assert "eval_fakes.py" in (tmp_path / "error.txt").read_text()
+
+
+@pytest.mark.parametrize(("times", "faults"), [(1, 0), (2, 0), (3, 3)])
+def test_an_agent_that_is_killed_from_outside_plays_again(tmp_path: Path, times: int, faults: int):
+    plan, dealt = fakes.run_of(30)
+    make = functools.partial(fakes.killing_player, times)
+    result = run.evaluate(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
+    assert (result.counts.trials, result.counts.faults) == (30, faults)
+
+
+def test_a_full_disk_leaves_whole_lines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    plan, dealt = fakes.run_of(30)
+    real, room = os.write, 20_000
+
+    def write(handle: int, data: bytes) -> int:
+        nonlocal room
+        if not room:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        count = real(handle, data[:room])
+        room -= count
+        return count
+
+    monkeypatch.setattr(log.os, "write", write)
+    with pytest.raises(OSError, match=r"No space left.*trials\.jsonl"):
+        run.evaluate(plan, dealt, fakes.player, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
+    monkeypatch.undo()
+    held = _lines(tmp_path)
+    assert 0 < len(held) < 30
+    assert all(line.endswith(b"\n") for line in held)
+    watch = Notes()
+    run.evaluate(plan, dealt, fakes.player, folder=tmp_path, engine=fakes.Here(), watch=watch)
+    assert (watch.kept, watch.new, watch.notes) == (len(held), 30 - len(held), [])
 
 
 def test_another_run_is_refused_and_told_apart(tmp_path: Path):

@@ -9,13 +9,14 @@ from typing import Annotated
 import typer
 
 from hthor import __version__
-from hthor.cli import assets, boards, calibrate, homes, lists, people, priors, runs, suite, tasks
+from hthor.cli import assets, boards, calibrate, homes, lists, people, priors, runs, shards, suite, tasks
 from hthor.errors import HthorError
 
 EPILOG = (
-    "Exit codes: 0 done; 1 a check failed (a house, a task, a suite, a table, a gate of a calibration), or an error of "
-    "our own; 2 wrong usage or input; 3 done, but the agent failed in some trials; 4 the agent's file does not load; "
-    "75 the run is being written by another process; 130 interrupted, the same command resumes."
+    "Exit codes: 0 done; 1 a check failed (a house, a task, a suite, a table, a gate of a calibration, a merge that "
+    "lacks trials), or an error of our own; 2 wrong usage or input; 3 done, but the agent failed in some trials; 4 the "
+    "agent's file does not load; 75 the run is being written by another process; 130 interrupted, the same command "
+    "resumes."
 )
 
 app = typer.Typer(
@@ -27,6 +28,7 @@ app = typer.Typer(
     rich_markup_mode=None if os.environ.get("TERM") == "dumb" else "rich",
 )
 app.command("eval")(runs.evaluate)
+app.command("merge")(shards.merge)
 app.command("score")(runs.score)
 app.command("replay")(runs.replay)
 app.command("calibrate")(calibrate.calibrate)

@@ -89,7 +89,9 @@ def evaluate(
             min=1, help="How many people, ten tasks each.", show_default="so many that every task is done once"
         ),
     ] = None,
-    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one a CPU")] = None,
+    jobs: Annotated[
+        int | None, typer.Option("--jobs", "-j", min=1, help="Worker processes.", show_default="one a CPU")
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -97,6 +99,21 @@ def evaluate(
             show_default="runs/NAME-SUITE-HASH",
         ),
     ] = None,
+    shard: Annotated[
+        str,
+        typer.Option(
+            metavar="I/N",
+            help="Play only the I-th of N shares of the run, counted from 1, in a folder of its own; 'hthor merge' "
+            "joins them.",
+            show_default=False,
+        ),
+    ] = "",
+    engine: Annotated[
+        str, typer.Option(help="Where trials are played: local, in processes of this machine, or ray, on a cluster.")
+    ] = "local",
+    address: Annotated[
+        str, typer.Option(help="With --engine ray: the cluster's address.", show_default="the one that is here")
+    ] = "",
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
 ) -> None:
@@ -127,6 +144,9 @@ def evaluate(
         participants=participants,
         jobs=jobs,
         out=out,
+        shard=shard,
+        engine=engine,
+        address=address,
     )
     paper = talk if json else screen.console()
     done: list[Done] = []
@@ -225,6 +245,7 @@ def replay(
 def _show(console: Console, one: Done) -> None:
     """A run's table, its first fault, where its files are, and what to do with them."""
     from hthor.eval import find, report
+    from hthor.eval.shard import whole_folder
 
     result, folder = one.result, one.folder
     console.print(report.result_table(result))
@@ -236,6 +257,12 @@ def _show(console: Console, one: Done) -> None:
         _say(console, f"{'An' if whose else 'The'} agent failed in {many} trials{whose}; {alone}.")
         _say(console, f"First in trial {faulty.key} ({faulty.spec.task.id}), {find.fault_words(faulty)}")
     more = ", suite.json" if (folder / "suite.json").exists() else ""
+    if one.plan.shard:
+        base, of = whole_folder(folder), one.plan.shard.of
+        _say(console, f"shard {one.plan.shard.words} is done: {result.counts.trials} of {one.plan.trials} trials")
+        _say(console, f"files: {folder}/run.json, trials.jsonl{more}")
+        _say(console, f"next:  hthor merge {base}-shard-*-of-{of} --out {base}")
+        return
     _say(console, f"files: {folder}/run.json, trials.jsonl, result.json{more}")
     _say(console, f"next:  hthor replay {folder} 0    hthor score {folder} --all    hthor leaderboard add {folder}")
 

@@ -15,6 +15,7 @@ from hthor.eval import score
 from hthor.eval.peoples import HumansRef
 from hthor.eval.score import Counts, Hashes, Scores
 from hthor.eval.setup import PROCEDURAL, AssetsRef, KindRef, Setup, SuiteRef
+from hthor.eval.shard import whole_folder
 from hthor.types import RobotSeat
 
 ENTRY_SCHEMA = "hthor.entry/3"
@@ -101,7 +102,7 @@ def _read(path: Path) -> Entry:
 
 
 def command(folder: Path, plan: Setup) -> str:
-    """The command that finishes a run."""
+    """The command that finishes a run, or a shard of one."""
     parts = [f"hthor eval{_who(plan.robots)} --humans {plan.humans.source}"]
     if plan.kind is not None and plan.kind.sha256:
         parts.append(f"--kind {plan.kind.name}.py")
@@ -111,7 +112,8 @@ def command(folder: Path, plan: Setup) -> str:
     parts += [] if plan.assets.name == PROCEDURAL else [f"--assets {plan.assets.name}"]
     detector = next((robot.detector for robot in plan.seats), OWN)
     parts += [] if detector == OWN else [f"--detector {detector}"]
-    parts.append(f"--seed {plan.seed} --participants {plan.participants} --out {folder}")
+    parts.append(f"--seed {plan.seed} --participants {plan.participants}")
+    parts.append(f"--shard {plan.shard.words} --out {whole_folder(folder)}" if plan.shard else f"--out {folder}")
     return " ".join(parts)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import os
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
@@ -12,7 +11,7 @@ from msgspec import Struct
 
 from hthor import detectors
 from hthor.errors import HthorError
-from hthor.eval import cast, crews, peoples, programme, run, setup
+from hthor.eval import cast, crews, engines, peoples, programme, run, setup, shard
 from hthor.eval.crews import Crew
 from hthor.eval.programme import Programme
 from hthor.eval.run import Watcher
@@ -40,6 +39,9 @@ class Options(Struct, frozen=True, kw_only=True):
     participants: int | None = None
     jobs: int | None = None
     out: Path | None = None
+    shard: str = ""
+    engine: str = engines.LOCAL
+    address: str = ""
 
 
 class ClosableWatcher(Watcher, Protocol):
@@ -84,9 +86,11 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
     pack = cast.furnish(options.assets)
     shown = setup.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
     chosen = programme.choose(options.suite, options.kind)
-    parts = _parts(options, chosen, _crews(options, chosen, detector), whom, shown)
+    found = _crews(options, chosen, detector)
+    parts = _parts(options, chosen, found, whom, shown)
     for part in parts:
         setup.examine(part.folder, part.plan)
+        _engine(options, part.crew)  # is there such an engine?
     told: set[str] = set()
     for part in parts:
         watch = watcher(part.title)
@@ -119,12 +123,20 @@ def _parts(
             )
             title = plan.name if len(whom) == 1 else f"{plan.name}, {people.name} people"
             folder = _folder(options, plan, len(found), len(whom))
+            if options.shard:
+                plan = setup.divide(plan, shard.read(options.shard), len(chosen.suite.tasks))
+                assert plan.shard
+                title, folder = f"{title}, shard {plan.shard.words}", plan.shard.folder(folder)
             parts.append(Part(crew=crew, people=people, plan=plan, folder=folder, title=title))
     names = [part.plan.name for part in parts[: len(found)]]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise HthorError(f"two agents are called '{twice[0]}'. Rename one of the files, or evaluate them one by one.")
     return parts
+
+
+def _engine(options: Options, crew: Crew) -> engines.Engine:
+    return engines.find(options.engine, jobs=options.jobs, address=options.address, gpus=crew.gpus)
 
 
 def _perform(options: Options, chosen: Programme, part: Part, watch: ClosableWatcher, told: set[str]) -> Result:
@@ -156,8 +168,8 @@ def _perform(options: Options, chosen: Programme, part: Part, watch: ClosableWat
         people=part.people.word,
     )
     make = functools.partial(cast.player, sources)
-    jobs = options.jobs or len(os.sched_getaffinity(0))
-    return run.evaluate(plan, dealt, make, folder=folder, jobs=jobs, watch=watch, extra=extra)
+    mine = plan.shard.share(dealt) if plan.shard else dealt
+    return run.evaluate(plan, mine, make, folder=folder, engine=_engine(options, crew), watch=watch, extra=extra)
 
 
 def _crews(options: Options, chosen: Programme, detector: str) -> list[Crew]:

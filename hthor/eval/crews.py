@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import re
 from collections.abc import Sequence
@@ -12,7 +13,7 @@ from msgspec import Struct
 
 from hthor import plugins
 from hthor.detectors import OWN
-from hthor.errors import HthorError, UnknownName
+from hthor.errors import AgentError, HthorError, UnknownName
 from hthor.types import AgentRef, RobotSeat
 
 ALIASES = {"tall": "tender", "small": "puck"}
@@ -25,13 +26,15 @@ class Character(Struct, frozen=True, kw_only=True):
 
     ``path`` is ``file.py`` or ``file.py:Class``, empty for a built-in agent. It stays out of ``ref``, which is part of
     every trial's key, so that a run reads the same wherever the file lies. ``bodies`` names the robots that it is made
-    for (empty: any); ``absent`` means that there is no robot in the world at all.
+    for (empty: any); ``absent`` means that there is no robot in the world at all; ``gpus`` is how much of a GPU it
+    asks for, which only an engine cares about.
     """
 
     ref: AgentRef
     path: str = ""
     bodies: tuple[str, ...] = ()
     absent: bool = False
+    gpus: float = 0.0
 
 
 class Shape(Struct, frozen=True, kw_only=True):
@@ -86,6 +89,11 @@ class Crew(Struct, frozen=True, kw_only=True):
     def bodies(self) -> dict[str, str]:
         """The files of bodies that are not ours, by seat."""
         return {seat: shape.path for seat, (shape, _) in self._by_seat if shape.path}
+
+    @property
+    def gpus(self) -> float:
+        """How much of a GPU a trial needs."""
+        return sum(character.gpus for _, (_, character) in self._by_seat)
 
     @property
     def _by_seat(self) -> list[tuple[str, tuple[Shape, Character]]]:
@@ -191,7 +199,12 @@ def _own(name: str) -> Character:
         sha256=hashlib.sha256(file.read_bytes()).hexdigest(),
         privileges=tuple(getattr(made, "privileges", ())),
     )
-    return Character(ref=ref, bodies=tuple(getattr(made, "robots", ())), absent=bool(getattr(made, "absent", False)))
+    return Character(
+        ref=ref,
+        bodies=tuple(getattr(made, "robots", ())),
+        absent=bool(getattr(made, "absent", False)),
+        gpus=float(getattr(made, "gpus", 0.0)),
+    )
 
 
 def _guest(path: str) -> Character:
@@ -210,7 +223,30 @@ def _guest(path: str) -> Character:
         path=str(Path(file).resolve()) + colon + class_name,
         bodies=tuple(info.robots),
         absent=info.absent,
+        gpus=_gpus(Path(file), class_name),
     )
+
+
+def _gpus(file: Path, class_name: str) -> float:
+    """What ``gpus = 0.25`` in an agent's class says; read, not run, as only its own process may run it.
+
+    Raises:
+        AgentError: when it is no number from 0 on.
+    """
+    if file.suffix != ".py" or not file.is_file():
+        return 0.0
+    found = 0.0
+    for node in ast.parse(file.read_bytes()).body:
+        if not isinstance(node, ast.ClassDef) or (class_name and node.name != class_name):
+            continue
+        for line in node.body:
+            names = [line.target] if isinstance(line, ast.AnnAssign) else getattr(line, "targets", [])
+            if any(isinstance(name, ast.Name) and name.id == "gpus" for name in names):
+                value = getattr(getattr(line, "value", None), "value", None)
+                if isinstance(value, bool) or not isinstance(value, (int, float)) or value < 0:
+                    raise AgentError(f"{file}:{line.lineno}: {node.name}.gpus must be a number, such as 0.25 or 1.")
+                found = max(found, float(value))
+    return found
 
 
 def _tidy(name: str) -> str:

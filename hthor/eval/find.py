@@ -54,7 +54,7 @@ def first_fault(folder: Path) -> Record:
     Raises:
         LookupError: when it never did.
     """
-    _, records = score.records(folder, setup.load(folder))
+    _, records = score.digest(folder, setup.load(folder))
     return next(record for record in records if record.faults)
 
 

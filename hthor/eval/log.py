@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import os
 import socket
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import TracebackType
+from typing import NamedTuple
 
 from hthor.errors import RunError, RunLocked
 from hthor.eval import record
@@ -16,6 +18,15 @@ from hthor.eval.record import Record
 
 SYNC_S = 0.25
 """Longest time that a written record may wait for the disk."""
+_BLOCK = 1 << 16
+
+
+class Place(NamedTuple):
+    """Where a line lies: file, first byte and number of bytes. Logs of any length are handled by these."""
+
+    path: Path
+    start: int
+    size: int
 
 
 def read(path: Path) -> Iterator[tuple[bytes, Record]]:
@@ -39,8 +50,29 @@ def read(path: Path) -> Iterator[tuple[bytes, Record]]:
                 ) from None
 
 
+def places(path: Path) -> Iterator[tuple[Place, bytes, Record]]:
+    """As `read`, with the place of each line."""
+    start = 0
+    for line, found in read(path):
+        yield Place(path, start, len(line)), line, found
+        start += len(line)
+
+
+def fetch(wanted: Iterable[Place]) -> Iterator[bytes]:
+    """The lines at these places, in their order, one in memory at a time."""
+    with contextlib.ExitStack() as stack:
+        files = {}
+        for place in wanted:
+            if place.path not in files:
+                files[place.path] = stack.enter_context(place.path.open("rb"))
+            files[place.path].seek(place.start)
+            yield files[place.path].read(place.size)
+
+
 class Log:
-    """The one writer of a run's log. Use as a context manager.
+    """The one writer of a run's log. Use as a context manager. ``key in log`` says whether a trial is there.
+
+    Of what is written only keys and checksums are kept in memory.
 
     Args:
         folder: the run's folder, made when absent.
@@ -55,12 +87,14 @@ class Log:
         folder.mkdir(parents=True, exist_ok=True)
         self._lock = lock(folder)
         try:
-            self.lines = {found.key: line for line, found in read(self.path)}
+            self._checks = {found.key: record.checksum(line) for line, found in read(self.path)}
             self.torn = cut_torn_line(self.path)
+            self._file = os.open(self.path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC, 0o644)
+            sync_folder(folder)
         except BaseException:
             os.close(self._lock)
             raise
-        self._file = os.open(self.path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC, 0o644)
+        self._size = os.fstat(self._file).st_size
         self._dirty_since: float | None = None
 
     def __enter__(self) -> Log:
@@ -71,17 +105,30 @@ class Log:
     ) -> None:
         self.close()
 
+    def __contains__(self, key: str) -> bool:
+        return key in self._checks
+
+    def __len__(self) -> int:
+        return len(self._checks)
+
+    def agrees(self, key: str, line: bytes) -> bool:
+        """Whether the line that is there for this trial is this one."""
+        return self._checks.get(key) == record.checksum(line)
+
     def append(self, key: str, line: bytes) -> bool:
         """Write a trial's line once; says whether it was new."""
-        if key in self.lines:
+        if key in self._checks:
             return False
         written = 0
         try:
             while written < len(line):
                 written += os.write(self._file, line[written:])
-        except OSError as error:  # a full disk; the next command cuts the torn line
-            raise OSError(error.errno, error.strerror, str(self.path)) from None
-        self.lines[key] = line
+        except OSError as error:  # a full disk; what the cut leaves, the next command cuts
+            with contextlib.suppress(OSError):
+                os.ftruncate(self._file, self._size)
+            raise self._named(error) from None
+        self._size += written
+        self._checks[key] = record.checksum(line)
         if self._dirty_since is None:
             self._dirty_since = time.monotonic()
         self.sync(due=True)
@@ -91,14 +138,22 @@ class Log:
         """Put what was written on the disk; with ``due`` only what has waited for `SYNC_S`."""
         if self._dirty_since is None or (due and time.monotonic() - self._dirty_since < SYNC_S):
             return
-        os.fdatasync(self._file)
+        try:
+            os.fdatasync(self._file)
+        except OSError as error:  # some file systems learn only now that there is no room
+            raise self._named(error) from None
         self._dirty_since = None
 
     def close(self) -> None:
         """Put everything on the disk and let others write."""
-        self.sync()
-        os.close(self._file)
-        os.close(self._lock)
+        try:
+            self.sync()
+        finally:
+            os.close(self._file)
+            os.close(self._lock)
+
+    def _named(self, error: OSError) -> OSError:
+        return OSError(error.errno, error.strerror, str(self.path))
 
 
 def lock(folder: Path) -> int:
@@ -112,9 +167,20 @@ def lock(folder: Path) -> int:
         raise RunLocked(
             f"{folder} is being written by {owner}. Wait for it, stop it, or choose another folder with --out."
         ) from None
-    os.ftruncate(handle, 0)
-    os.pwrite(handle, f"process {os.getpid()} on {socket.gethostname()}".encode(), 0)
+    with contextlib.suppress(OSError):  # on a full disk the lock holds as well, but without its owner's name
+        os.ftruncate(handle, 0)
+        os.pwrite(handle, f"process {os.getpid()} on {socket.gethostname()}".encode(), 0)
     return handle
+
+
+def sync_folder(folder: Path) -> None:
+    """Have the disk know the folder's files by name, without which their content is lost with the power."""
+    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        with contextlib.suppress(OSError):  # some network file systems do not know the word
+            os.fsync(handle)
+    finally:
+        os.close(handle)
 
 
 def cut_torn_line(path: Path) -> int:
@@ -122,8 +188,13 @@ def cut_torn_line(path: Path) -> int:
     if not path.exists():
         return 0
     with path.open("r+b") as file:
-        data = file.read()
-        whole = data.rfind(b"\n") + 1
-        if whole < len(data):
+        size = end = file.seek(0, os.SEEK_END)
+        whole = 0
+        while end and not whole:
+            start = max(0, end - _BLOCK)
+            file.seek(start)
+            newline = file.read(end - start).rfind(b"\n")
+            whole, end = (start + newline + 1 if newline >= 0 else 0), start
+        if whole < size:
             file.truncate(whole)
-    return len(data) - whole
+    return size - whole

@@ -71,6 +71,11 @@ def encode(record: Record) -> bytes:
     return body + _CHECK % zlib.crc32(body)
 
 
+def checksum(line: bytes) -> int:
+    """The checksum that a line carries."""
+    return int(line[-_CHECK_LENGTH:][10:18], 16)
+
+
 def decode(line: bytes) -> Record:
     """The record of a whole line.
 

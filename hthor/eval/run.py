@@ -13,13 +13,16 @@ from typing import Protocol
 
 from hthor import jsonio
 from hthor.errors import HthorError, RunError
-from hthor.eval import record, runner, score, setup
+from hthor.eval import engines, log, record, score, setup
+from hthor.eval.engines import Engine, Make, SessionFailed
 from hthor.eval.log import Log
-from hthor.eval.runner import Make
 from hthor.eval.score import Effort, Result
 from hthor.eval.session import Session
 from hthor.eval.setup import Setup
 from hthor.eval.worker import Finished, Played
+
+EFFORT = "effort.json"
+"""What a shard took. A result it has none, as that is of whole runs."""
 
 
 class Watcher(Protocol):
@@ -50,17 +53,19 @@ def evaluate(
     make: Make,
     *,
     folder: Path,
-    jobs: int,
+    jobs: int | None = None,
+    engine: Engine | None = None,
     watch: Watcher,
     extra: Mapping[str, bytes] | None = None,
 ) -> Result:
     """Play what a run still lacks, and score it.
 
     Args:
-        plan: the configuration. sessions: its trials.
+        plan: the configuration. sessions: its trials, or those of its shard.
         make: picklable; called in each worker, gives what plays a session.
         folder: the run's folder; made when absent, finished when it holds a part of this run.
-        jobs: number of worker processes.
+        jobs: number of worker processes, when no ``engine`` is given.
+        engine: where sessions are played; on this machine when not given.
         extra: other files to leave in the folder, by name, such as a suite that was made for this run.
 
     Raises:
@@ -74,13 +79,14 @@ def evaluate(
         setup.write(folder, plan)
         for name, data in (extra or {}).items():
             jsonio.write(folder / name, data)
-        wanted = {record.key(trial): session for session in sessions for trial in session.trials}
-        left = [session for session in sessions if any(record.key(t) not in book.lines for t in session.trials)]
-        watch.begin(len(wanted), len(wanted) - sum(key not in book.lines for key in wanted))
+        keys = [[record.key(trial) for trial in session.trials] for session in sessions]
+        wanted = [key for some in keys for key in some]
+        left = [session for session, some in zip(sessions, keys, strict=True) if any(key not in book for key in some)]
+        watch.begin(len(wanted), sum(key in book for key in wanted))
         if book.torn:
             watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")
-        cost = _play(book, left, make, jobs, watch) if left else None
-        missing = [key for key in wanted if key not in book.lines]
+        cost = _play(book, engine or engines.find(engines.LOCAL, jobs=jobs), left, make, watch) if left else None
+        missing = [key for key in wanted if key not in book]
         if missing:
             raise RunError(f"{folder}: {len(missing)} trials were not played, {missing[0]} is one. Run it again.")
     if cost is None:
@@ -90,10 +96,10 @@ def evaluate(
     return _finish(folder, plan, Effort(wall_s=round(wall_s, 3), cpu_s=round(cpu_s, 3), trials=trials))
 
 
-def _play(book: Log, sessions: Sequence[Session], make: Make, jobs: int, watch: Watcher) -> tuple[float, int]:
+def _play(book: Log, engine: Engine, sessions: Sequence[Session], make: Make, watch: Watcher) -> tuple[float, int]:
     """Play sessions and write down what is new; CPU time [s] and the number of new trials."""
     cpu_s, new, other = 0.0, 0, 0
-    with stoppable() as stop, closing(runner.perform(sessions, make, jobs=jobs)) as stream:
+    with stoppable() as stop, closing(engine.perform(sessions, make)) as stream:
         try:
             for news in stream:
                 if isinstance(news, Played):
@@ -101,14 +107,14 @@ def _play(book: Log, sessions: Sequence[Session], make: Make, jobs: int, watch: 
                         new += 1
                         watch.played(news.met, news.faulty)
                     else:
-                        other += book.lines[news.key] != news.line
+                        other += not book.agrees(news.key, news.line)
                 elif isinstance(news, Finished):
                     cpu_s += news.cpu_s
                 book.sync(due=True)
                 watch.beat()
                 if stop.is_set():
-                    raise Interrupted(f"interrupted after {len(book.lines)} trials; resume with the same command.")
-        except runner.SessionFailed as failure:
+                    raise Interrupted(f"interrupted after {len(book)} trials; resume with the same command.")
+        except SessionFailed as failure:
             if failure.detail:
                 jsonio.write(book.path.with_name("error.txt"), failure.detail.encode())
                 raise InternalFailure(f"{failure}. The traceback is in {book.path.with_name('error.txt')}.") from None
@@ -125,9 +131,14 @@ class InternalFailure(HthorError):
 
 
 def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
-    lines, records = score.records(folder, plan)
+    """Score what is there, and store that: a whole run's result, or what a shard took."""
+    there, records = score.digest(folder, plan)
+    if plan.shard:
+        if effort is not None:
+            jsonio.write(folder / EFFORT, jsonio.pretty(effort))
+        return score.summarise(plan, log.fetch(there), records, effort)
     stored = score.load(folder)
-    result = score.summarise(plan, lines, records, effort or (stored.effort if stored else None))
+    result = score.summarise(plan, log.fetch(there), records, effort or (stored.effort if stored else None))
     if result != stored:
         score.store(folder, result)
     return result

@@ -14,6 +14,7 @@ from msgspec import Struct
 from hthor import jsonio
 from hthor.errors import RunError
 from hthor.eval import log, metrics, setup, stats
+from hthor.eval.log import Place
 from hthor.eval.metrics import TrialMetrics
 from hthor.eval.peoples import HumansRef
 from hthor.eval.record import Record
@@ -112,15 +113,34 @@ def records(folder: Path, plan: Setup) -> tuple[list[bytes], list[Record]]:
     """
     found = sorted(log.read(folder / "trials.jsonl"), key=lambda pair: (pair[1].spec.participant, pair[1].spec.index))
     for _, record in found:
-        _check_origin(folder, record, plan)
-    keys = [record.key for _, record in found]
-    twice = next((key for key in keys if keys.count(key) > 1), "") if len(set(keys)) < len(keys) else ""
-    if twice:
-        raise RunError(f"{folder / 'trials.jsonl'}: trial {twice} is there twice. Delete one of the two lines.")
+        check_origin(folder, record, plan)
+    _check_once(folder, [record.key for _, record in found])
     return [line for line, _ in found], [record for _, record in found]
 
 
-def _check_origin(folder: Path, record: Record, plan: Setup) -> None:
+def digest(folder: Path, plan: Setup) -> tuple[list[Place], list[Record]]:
+    """As `records`, for runs of any length: lines stay on the disk, and records come without paths and journal.
+
+    Raises:
+        RunError: as `records`.
+    """
+    found: list[tuple[Place, Record]] = []
+    for place, _, record in log.places(folder / "trials.jsonl"):
+        check_origin(folder, record, plan)
+        found.append((place, msgspec.structs.replace(record, paths={}, journal=())))
+    found.sort(key=lambda pair: (pair[1].spec.participant, pair[1].spec.index))
+    _check_once(folder, [record.key for _, record in found])
+    return [place for place, _ in found], [record for _, record in found]
+
+
+def _check_once(folder: Path, keys: Sequence[str]) -> None:
+    twice = next((key for key in keys if keys.count(key) > 1), "") if len(set(keys)) < len(keys) else ""
+    if twice:
+        raise RunError(f"{folder / 'trials.jsonl'}: trial {twice} is there twice. Delete one of the two lines.")
+
+
+def check_origin(folder: Path, record: Record, plan: Setup) -> None:
+    """See that a record is one of this run's."""
     spec = record.spec
     pairs = {
         "seed": (spec.seed, plan.seed),
@@ -141,6 +161,9 @@ def _check_origin(folder: Path, record: Record, plan: Setup) -> None:
 
 def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], effort: Effort | None = None) -> Result:
     """The result of the records of a run, whole or not."""
+    trials = hashlib.sha256()
+    for line in lines:
+        trials.update(line)
     kinds = sorted({record.spec.task.kind for record in records})
     whole = scores(records)
     by_kind = {
@@ -174,7 +197,7 @@ def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], ef
             human=plan.humans.sha256,
             rules=plan.rules_sha256,
             code=plan.code_sha256,
-            trials=hashlib.sha256(b"".join(lines)).hexdigest(),
+            trials=trials.hexdigest(),
         ),
         assets=plan.assets,
         effort=effort,

@@ -74,17 +74,26 @@ def sessions(
             kind_sha256=kind_sha256,
         )
 
-    count = people_for(len(suite.tasks)) if participants is None else participants
+    hands = people_for(len(suite.tasks))
+    count = hands if participants is None else participants
+    decks = [_deck(suite.tasks, seed, round_) for round_ in range(math.ceil(count / hands))]
     return tuple(
         Session(
             participant=participant,
             trials=tuple(
                 trial(suite.tasks[number], participant, index)
-                for index, number in enumerate(deal(suite.tasks, seed, participant))
+                for index, number in enumerate(_hand(decks[participant // hands], seed, participant))
             ),
         )
         for participant in range(count)
     )
+
+
+def trials_of(tasks: int, participants: Sequence[int]) -> int:
+    """How many trials these participants have, with so many tasks in the suite."""
+    hands = people_for(tasks)
+    places = (participant % hands for participant in participants)
+    return sum((hand + 1) * tasks // hands - hand * tasks // hands for hand in places)
 
 
 def deal(tasks: Sequence[TaskSpec], seed: int, participant: int) -> list[int]:
@@ -93,9 +102,13 @@ def deal(tasks: Sequence[TaskSpec], seed: int, participant: int) -> list[int]:
     The tasks are a deck, dealt out in hands of at most `rules.SESSION_TASKS`; when it is used up it is mixed anew. The
     houses alternate in the deck, so that each hand has its share of every house.
     """
-    hands = people_for(len(tasks))
-    round_, hand = divmod(participant, hands)
-    deck = _deck(tasks, seed, round_)
+    return _hand(_deck(tasks, seed, participant // people_for(len(tasks))), seed, participant)
+
+
+def _hand(deck: Sequence[int], seed: int, participant: int) -> list[int]:
+    """What a participant is dealt from the deck of their round."""
+    hands = people_for(len(deck))
+    hand = participant % hands
     held = deck[hand * len(deck) // hands : (hand + 1) * len(deck) // hands]
     return [held[place] for place in seeds.shuffled(len(held), seed, "order", participant)]
 

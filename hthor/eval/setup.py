@@ -11,11 +11,12 @@ import msgspec
 from msgspec import Struct
 
 from hthor import jsonio, rules
-from hthor.errors import RunError
-from hthor.eval import peoples, provenance
+from hthor.errors import HthorError, RunError
+from hthor.eval import peoples, provenance, session
 from hthor.eval.crews import Crew
 from hthor.eval.peoples import HumansRef
 from hthor.eval.session import people_for
+from hthor.eval.shard import Shard
 from hthor.humans import people
 from hthor.humans.people import PROXY, People
 from hthor.tasks import Suite
@@ -57,6 +58,7 @@ class Setup(Struct, frozen=True, kw_only=True):
 
     ``robots`` lists every robot with its body, mind and detector; a mind that wants no robot stands there without a
     seat. ``kind`` is None when every task of the suite is played. ``trials`` is how many there are in a whole run.
+    ``shard`` is there only in a run that was divided among machines.
     """
 
     schema: str = SCHEMA
@@ -71,11 +73,17 @@ class Setup(Struct, frozen=True, kw_only=True):
     code_sha256: str
     versions: dict[str, str]
     assets: AssetsRef
+    shard: Shard | msgspec.UnsetType = msgspec.UNSET
 
     @property
     def sha256(self) -> str:
         """Hash of the whole configuration."""
         return jsonio.sha256(self)
+
+    @property
+    def whole(self) -> Setup:
+        """The run that this is a shard of; an undivided run is its own."""
+        return msgspec.structs.replace(self, shard=msgspec.UNSET) if self.shard else self
 
     @property
     def seats(self) -> tuple[RobotSeat, ...]:
@@ -94,7 +102,7 @@ class Setup(Struct, frozen=True, kw_only=True):
         if self.kind is not None and self.kind.name != played:
             played = f"{played}-{self.kind.name}"
         whose = "" if self.humans.name == PROXY else f"-{self.humans.name}"
-        return f"{self.name}-{played}{whose}-{self.sha256[:10]}"
+        return f"{self.name}-{played}{whose}-{self.whole.sha256[:10]}"
 
 
 def crew_name(robots: Sequence[RobotSeat]) -> str:
@@ -133,6 +141,21 @@ def settle(
         versions=provenance.versions(),
         assets=assets or AssetsRef(sha256=provenance.code_sha256()),
     )
+
+
+def divide(plan: Setup, part: Shard, tasks: int) -> Setup:
+    """The configuration of one shard of a run over so many tasks.
+
+    Raises:
+        HthorError: when there are more shards than people.
+    """
+    if part.of > plan.participants:
+        raise HthorError(
+            f"--shard {part.words}: this run has {plan.participants} people of ten tasks each, who are not divided, so "
+            f"there can be {plan.participants} shards at most."
+        )
+    trials = session.trials_of(tasks, part.share(range(plan.participants)))
+    return msgspec.structs.replace(plan, shard=msgspec.structs.replace(part, trials=trials))
 
 
 def load(folder: Path) -> Setup:
@@ -177,7 +200,7 @@ def examine(folder: Path, plan: Setup) -> None:
     there = load(folder)
     if there != plan:
         raise RunError(
-            f"{folder} holds another run: {'; '.join(_differences(there, plan))}. "
+            f"{folder} holds another run: {'; '.join(differences(there, plan))}. "
             "Choose another folder with --out, or delete this one."
         )
 
@@ -198,7 +221,8 @@ def _has_bytes(path: Path) -> bool:
     return path.exists() and path.stat().st_size > 0
 
 
-def _differences(there: Setup, here: Setup) -> list[str]:
+def differences(there: Setup, here: Setup) -> list[str]:
+    """What is not the same in two configurations, in words."""
     before, now = _flat(msgspec.to_builtins(there)), _flat(msgspec.to_builtins(here))
     names = [name for name in {**before, **now} if before.get(name) != now.get(name)]
     return [f"{name} is {_short(before.get(name))} there and {_short(now.get(name))} here" for name in names]

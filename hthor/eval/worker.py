@@ -8,13 +8,15 @@ import signal
 import sys
 import traceback
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+from contextlib import closing
+from typing import TYPE_CHECKING, cast
 
 from msgspec import Struct
 
-from hthor.errors import HthorError
+from hthor.errors import AgentError, HthorError
 
 if TYPE_CHECKING:
+    from collections.abc import Generator
     from multiprocessing.connection import Connection
 
     from hthor.eval.record import Record
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 """One thread a worker: more would only fight over the cores, and sums of floats would depend on their number."""
+REPEATS = 2
+"""How often a session begins again because an agent's process was killed."""
+_KILLED = "SIGKILL"
 
 
 class Played(Struct, frozen=True, kw_only=True):
@@ -64,22 +69,58 @@ def work(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Recor
         _serve(pipe, make)
     except (EOFError, BrokenPipeError, ConnectionResetError):
         return  # the parent is gone, and so is the reason to go on
-    except Exception as error:
-        pipe.send(_failure(error))
 
 
 def _serve(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Record]]]) -> None:
-    from hthor.eval import record
-
-    began = _cpu_s()
-    perform = make()
+    player = Player(make)
     for session in iter(pipe.recv, None):
-        for done in perform(session):
-            line = record.encode(done)
-            pipe.send(Played(key=done.key, line=line, met=done.met, faulty=bool(done.faults)))
-        now = _cpu_s()
-        pipe.send(Finished(cpu_s=now - began))
-        began = now
+        for news in player.play(session):
+            pipe.send(news)
+
+
+class Player:
+    """What every worker does with sessions, whoever started it and wherever it sends what it tells."""
+
+    def __init__(self, make: Callable[[], Callable[[Session], Iterator[Record]]]) -> None:
+        self._make = make
+        self._perform: Callable[[Session], Iterator[Record]] | None = None
+        self._cpu_s = _cpu_s()
+
+    def play(self, session: Session) -> Iterator[News]:
+        """Tell of each trial when it is over; the last piece of news is that the session is over, or failed."""
+        from hthor.eval import record
+
+        try:
+            if self._perform is None:
+                self._perform = self._make()
+            for done in _steadily(self._perform, session):
+                line = record.encode(done)
+                yield Played(key=done.key, line=line, met=done.met, faulty=bool(done.faults))
+        except Exception as error:
+            yield _failure(error)
+            return
+        before, self._cpu_s = self._cpu_s, _cpu_s()
+        yield Finished(cpu_s=self._cpu_s - before)
+
+
+def _steadily(perform: Callable[[Session], Iterator[Record]], session: Session) -> Iterator[Record]:
+    """A session's trials. One in which an agent's process was killed is not told of: the session begins again.
+
+    SIGKILL mostly comes from outside, from a kernel that ran out of memory or a machine that goes down, and then the
+    trial is not the agent's failure. An agent that ends itself that way does so again, and the fault stands.
+    """
+    for left in reversed(range(REPEATS + 1)):
+        try:
+            with closing(cast("Generator[Record, None, None]", perform(session))) as trials:
+                for done in trials:
+                    if left and any(fault.kind == "died" and _KILLED in fault.detail for fault in done.faults):
+                        break
+                    yield done
+                else:
+                    return
+        except AgentError as error:  # it was killed before it could say what it is
+            if not left or _KILLED not in str(error):
+                raise
 
 
 def _failure(error: Exception) -> Failed:

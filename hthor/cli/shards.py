@@ -1,0 +1,50 @@
+"""`hthor merge`; knows what the user types, not how records are joined."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hthor.cli import screen
+
+_MISSING_EXIT, _FAULTS_EXIT = 1, 3
+
+
+def merge(
+    folders: Annotated[list[Path], typer.Argument(metavar="FOLDER...", help="The shards' folders.")],
+    out: Annotated[Path, typer.Option(help="The whole run's folder.")],
+    json: Annotated[
+        bool, typer.Option("--json", help="Write JSON to standard output; words go to standard error.")
+    ] = False,
+) -> None:
+    """Join the shards of a run that 'hthor eval --shard i/N' played on several machines.
+
+    The result is the one of an undivided run, byte for byte but for what it cost. Says what is missing, if anything,
+    and the commands that play it; merge again when they are done.
+    """
+    from hthor.eval import merge as merging
+
+    done = merging.merge(folders, out)
+    if json:
+        screen.put_json(done)
+    elif done.result is not None:
+        from hthor.eval import report
+
+        screen.console().print(report.result_table(done.result))
+    talk = screen.console(talk=True)
+
+    def say(text: str) -> None:
+        talk.print(text, markup=False, highlight=False, soft_wrap=True)
+
+    say(f"{done.trials} of {done.plan.trials} trials are in {out}/, {done.new} of them new.")
+    if done.result is not None:
+        if done.result.counts.faults:
+            raise typer.Exit(_FAULTS_EXIT)
+        return
+    for gap in done.gaps:
+        lacks = "is missing" if gap.trials is None else f"lacks {gap.trials} trials"
+        say(f"shard {gap.number}/{gap.of} {lacks}: {gap.command}")
+    say("Then merge again.")
+    raise typer.Exit(_MISSING_EXIT)
