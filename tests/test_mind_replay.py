@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from hthor import tasks
 from hthor.cli.app import app
 from hthor.errors import HthorError, RunError
-from hthor.eval import campaign, find, log, mind, mind_picture, mind_timeline, progress, redraw
+from hthor.eval import again, campaign, find, log, mind, mind_picture, mind_timeline, progress, redraw
 from hthor.eval.mind import Stream
 from hthor.eval.record import Record
 from hthor.tasks import library
@@ -131,7 +131,7 @@ def test_whose_agent_is_a_file_needs_the_file(run: Path) -> None:
     agent = msgspec.structs.replace(seat.agent, name="mine", source="my_agent.py")
     spec = msgspec.structs.replace(record.spec, robots=(msgspec.structs.replace(seat, agent=agent),))
     with pytest.raises(HthorError, match=r"came from the file my_agent\.py\. Give that file, unchanged, with --agent"):
-        mind._sources(run, spec, (), "")
+        again.sources(run, spec, (), "")
 
 
 def test_forgetting_and_misses_have_their_marks() -> None:
