@@ -16,6 +16,7 @@ from hthor.cli.app import app
 from hthor.errors import HthorError, RunError
 from hthor.eval import again, campaign, find, log, mind, mind_picture, mind_timeline, progress, redraw
 from hthor.eval.mind import Stream
+from hthor.eval.pages import filming
 from hthor.eval.record import Record
 from hthor.tasks import library
 from hthor.types import HUMAN, Event
@@ -47,6 +48,17 @@ def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[Record, St
     assert [stream.same for _, stream in heard] == [True] * 3
     assert all(stream.key == record.key for record, stream in heard)
     assert all([e.tick for e in s.events] == sorted(e.tick for e in s.events) for _, s in heard)
+
+
+def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run: Path) -> None:
+    one = find.trial(run, "1")
+    views = filming.film(run, one, [0, one.ticks])
+    assert sorted(views) == [0, one.ticks]
+    for seen in views.values():
+        assert seen.keys() == one.paths.keys()
+        assert all(view.shape == (filming.SIZE[1], filming.SIZE[0], 3) for view in seen.values())
+    with pytest.raises(RunError, match="went otherwise than it was logged"):
+        filming.film(run, msgspec.structs.replace(one, ticks=one.ticks - 1), [0])
 
 
 def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[Record, Stream]]) -> None:

@@ -41,7 +41,7 @@ def _spoken(record: Record) -> Moment | None:
         return None
     fates = [trace.fate(record.log, event.data["message"]) for event in sent]
     number = fates.index("confirmed") if "confirmed" in fates else 0
-    return Moment(tick=sent[number].tick, words=f"message {number + 1}")
+    return Moment(tick=sent[number].tick, words=f"{sent[number].seat}, message {number + 1}")
 
 
 def _done(record: Record) -> Moment | None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import string
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -17,13 +19,16 @@ from hthor.eval.pages import ink
 from hthor.eval.pages.filming import Views
 from hthor.eval.pages.moments import MANY, Moment
 from hthor.eval.record import Record
-from hthor.types import HUMAN, HouseSpec
+from hthor.types import HUMAN, HouseSpec, Vec2
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _MAP_WIDE, _VIEW_WIDE = 3.1, 1.62
-_HEAD, _GAP = 0.42, 0.2
+_HEAD, _EDGES = 0.36, 0.5
+"""Inches above each row, and above and below all."""
+_NEAR_M = 0.5
+_WORDS_MAX = 60
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.0, foreground="white")]
 
 
@@ -43,7 +48,7 @@ def figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
     seats = [list(row.record.paths) for row in rows]
     highs = [max(deep, 0.75 * _VIEW_WIDE * len(held) + 0.2) + _HEAD for held in seats]
     with ink.style():
-        made = ink.sheet(sum(highs) + 0.5 + _GAP * len(rows), _MAP_WIDE + MANY * _VIEW_WIDE)
+        made = ink.sheet(sum(highs) + _EDGES, _MAP_WIDE + MANY * _VIEW_WIDE)
         made.set_facecolor("white")
         bands = made.subfigures(len(rows), 1, height_ratios=highs, squeeze=False)[:, 0]
         for band, row, held in zip(bands, rows, seats, strict=True):
@@ -53,9 +58,14 @@ def figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
             for column, moment in enumerate(row.moments):
                 for line, seat in enumerate(held):
                     view = row.views[moment.tick][seat]
-                    _draw_view(band.add_subplot(grid[line, column + 1]), view, seat, column, moment, first=line == 0)
-            band.suptitle(_headline(row), x=0.012, ha="left", fontsize=9.5, weight="bold", color=ink.INK)
-        made.legend(handles=_legend(rows), loc="outside lower center", ncols=6)
+                    ax = band.add_subplot(grid[line, column + 1])
+                    ax.set_anchor("C" if len(held) == 1 else "S" if line == 0 else "N")
+                    _draw_view(ax, view, seat, column, moment, first=line == 0)
+            band.suptitle(_headline(row), x=0.012, ha="left", fontsize=8.5, weight="bold", color=ink.INK)
+        destined = bool(trace.destinations(rows[0].record.spec, house))
+        handles = _legend(rows, destined=destined)
+        made.legend(handles=handles, loc="outside lower left", ncols=len(handles), fontsize=7, columnspacing=1.4)
+        made.suptitle(_task(rows[0].record), x=0.012, ha="left", fontsize=9, color=ink.INK)
     return made
 
 
@@ -66,12 +76,24 @@ def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
         picture.draw_path(ax, record.log, seat)
     for _, start in trace.targets(record.spec, house):
         ax.scatter(*start.position[:2], s=80, marker="*", color=trace.TARGET, edgecolor="white", lw=0.6, zorder=12)
+    for seat in record.paths:
+        for place, letters in _places(row, seat):
+            _letter(ax, place, letters, trace.colour(seat))
+
+
+def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
+    """Where a seat was at the moments; letters of moments at which it was in one place stand together."""
+    found: list[tuple[Vec2, str]] = []
     for letter, moment in zip(string.ascii_lowercase, row.moments, strict=False):
-        for seat in record.paths:
-            _letter(ax, trace.at(record.log, seat, moment.tick), letter, trace.colour(seat))
+        place = trace.at(row.record.log, seat, moment.tick)
+        if found and math.dist(found[-1][0], place) < _NEAR_M:
+            found[-1] = (found[-1][0], f"{found[-1][1]} {letter}")
+        else:
+            found.append((place, letter))
+    return found
 
 
-def _letter(ax: Axes, place: tuple[float, float], letter: str, shade: str) -> None:
+def _letter(ax: Axes, place: Vec2, letter: str, shade: str) -> None:
     text = ax.annotate(
         letter, place, (5, 5), textcoords="offset points", fontsize=8, weight="bold", color=shade, zorder=15
     )
@@ -93,19 +115,32 @@ def _draw_view(ax: Axes, view: Any, seat: str, column: int, moment: Moment, *, f
 def _headline(row: Row) -> str:
     record, seconds = row.record, row.record.ticks * rules.TICK_S
     end = f"done in {seconds:.1f} s" if record.met else f"not done in {seconds:.0f} s"
-    return f"{row.label}: {end}"
+    said = [
+        f"message {number}: “{textwrap.shorten(event.data['text'], _WORDS_MAX, placeholder=' …')}” "
+        f"({trace.fate(record.log, event.data['message'])})"
+        for number, event in enumerate(trace.messages(record.log), 1)
+        if any(moment.tick == event.tick for moment in row.moments)
+    ]
+    return "; ".join([f"{row.label}: {end}", *said[:1]])
 
 
-def _legend(rows: Sequence[Row]) -> list[Line2D]:
+def _task(record: Record) -> str:
+    spec = record.spec
+    whose = f"{spec.task.id}, person {spec.participant}, trial {spec.index + 1}, T* {spec.task.t_star:.1f} s"
+    return f"“{spec.task.instruction}”  {whose}"
+
+
+def _legend(rows: Sequence[Row], *, destined: bool) -> list[Line2D]:
     seats = dict.fromkeys(seat for row in rows for seat in row.record.paths)
     named = {seat: "person" if seat == HUMAN else seat for seat in seats}
-    return [
-        *(
-            Line2D([], [], color=trace.colour(seat), lw=2, label=f"{name}: way and view")
-            for seat, name in named.items()
-        ),
-        Line2D([], [], ls="", marker="o", mfc="white", mec=ink.SOFT, label="start"),
-        Line2D([], [], ls="", marker="o", mfc=ink.SOFT, mec="white", label="end; small: every 10 s"),
-        Line2D([], [], ls="", marker="*", mfc=trace.TARGET, mec="white", ms=9, label="target at the start"),
-        Line2D([], [], ls="", marker="s", mfc=plan.MARKED, mec=plan.MARKED_EDGE, label="destination"),
+    ways = [
+        Line2D([], [], color=trace.colour(seat), lw=2, label=f"{name}, way and view") for seat, name in named.items()
     ]
+    marks = [
+        Line2D([], [], ls="", marker="o", mfc="white", mec=ink.SOFT, label="start"),
+        Line2D([], [], ls="", marker="o", mfc=ink.SOFT, mec="white", label="end"),
+        Line2D([], [], ls="", marker="*", mfc=trace.TARGET, mec="white", ms=9, label="target at the start"),
+    ]
+    if destined:
+        marks.append(Line2D([], [], ls="", marker="s", mfc=plan.MARKED, mec=plan.MARKED_EDGE, label="destination"))
+    return [*ways, *marks]

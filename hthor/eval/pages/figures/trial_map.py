@@ -32,7 +32,7 @@ def figure(record: Record, house: HouseSpec, alone: Record | None) -> Figure:
             picture.draw_path(ax, record.log, seat)
         for _, start in trace.targets(record.spec, house):
             ax.scatter(
-                *start.position[:2], s=70, marker="*", color=trace.TARGET, edgecolor="white", linewidths=0.6, zorder=12
+                *start.position[:2], s=95, marker="*", color=trace.TARGET, edgecolor="white", linewidths=0.6, zorder=12
             )
         for number, event in enumerate(trace.messages(record.log), 1):
             trace.badge(ax, trace.at(record.log, event.seat, event.tick), str(number), trace.tint(record.log, event))
