@@ -32,9 +32,10 @@ PUBLISHED = Published(
 )
 
 
-def run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, count: int = 20) -> Path:
+def run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, count: int = 20, people: str = "") -> Path:
     """A whole run's folder without playing it."""
     plan, dealt = fakes.run_of(count, name=name, absent=absent, seed=seed)
+    plan = msgspec.structs.replace(plan, humans=msgspec.structs.replace(plan.humans, name=people or plan.humans.name))
     jsonio.write(folder / "run.json", jsonio.pretty(plan))
     made = [record.of(trial, fakes.episode(trial)) for session in dealt for trial in session.trials]
     jsonio.write(folder / "trials.jsonl", b"".join(record.encode(one) for one in made))
@@ -158,6 +159,18 @@ def test_a_report_of_one_run_without_anything_to_set_it_against(folders: list[Pa
     assert not (tmp_path / "one" / "figures" / "uplift.svg").exists()
     lone = write.report([folders[0]], tmp_path / "lone")
     assert (lone.shown, lone.trust) == ((), ())
+
+
+def test_several_peoples_have_a_section_of_their_own(folders: list[Path], tmp_path: Path) -> None:
+    others = [run(tmp_path / "a", "helper", people="slow"), run(tmp_path / "b", "silent", absent=True, people="slow")]
+    found = write.report([*folders[:2], *others], tmp_path / "out")
+    assert found.by_people is not None
+    assert [(group.name, sorted(group.sr)) for group in found.by_people.groups] == [
+        ("proxy", ["helper", "no robot"]),
+        ("slow", ["helper", "no robot"]),
+    ]
+    assert [arm.folder for arm in found.arms] == ["alone", "helper"]
+    assert (tmp_path / "out" / "figures" / "people.svg").exists()
 
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")

@@ -78,7 +78,7 @@ def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
         ax.scatter(*start.position[:2], s=80, marker="*", color=trace.TARGET, edgecolor="white", lw=0.6, zorder=12)
     for seat in record.paths:
         for place, letters in _places(row, seat):
-            _letter(ax, place, letters, trace.colour(seat))
+            _letter(ax, place, letters, seat)
 
 
 def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
@@ -93,9 +93,20 @@ def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
     return found
 
 
-def _letter(ax: Axes, place: Vec2, letter: str, shade: str) -> None:
+def _letter(ax: Axes, place: Vec2, letters: str, seat: str) -> None:
+    """Above a person and below a robot, as they may stand in one place."""
+    side = 1 if seat == HUMAN else -1
     text = ax.annotate(
-        letter, place, (5, 5), textcoords="offset points", fontsize=8, weight="bold", color=shade, zorder=15
+        letters,
+        place,
+        (5 * side, 5 * side),
+        textcoords="offset points",
+        ha="left" if side > 0 else "right",
+        va="bottom" if side > 0 else "top",
+        fontsize=8,
+        weight="bold",
+        color=trace.colour(seat),
+        zorder=15,
     )
     text.set_path_effects(_STROKE)
 
