@@ -162,12 +162,12 @@ def test_a_report_of_one_run_without_anything_to_set_it_against(folders: list[Pa
 
 
 def test_several_peoples_have_a_section_of_their_own(folders: list[Path], tmp_path: Path) -> None:
-    others = [run(tmp_path / "a", "helper", people="slow"), run(tmp_path / "b", "silent", absent=True, people="slow")]
+    others = [run(tmp_path / "a", "clumsy", people="slow"), run(tmp_path / "b", "silent", absent=True, people="slow")]
     found = write.report([*folders[:2], *others], tmp_path / "out")
     assert found.by_people is not None
     assert [(group.name, sorted(group.sr)) for group in found.by_people.groups] == [
         ("proxy", ["helper", "no robot"]),
-        ("slow", ["helper", "no robot"]),
+        ("slow", ["clumsy", "no robot"]),
     ]
     assert [arm.folder for arm in found.arms] == ["alone", "helper"]
     assert (tmp_path / "out" / "figures" / "people.svg").exists()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from matplotlib.lines import Line2D
@@ -27,17 +27,23 @@ class Mark(Struct, frozen=True, kw_only=True):
     shape: str
 
 
-def of(arms: Sequence[Arm]) -> dict[str, Mark]:
-    """A mark for each run by its label; the paper's three conditions always look alike, the first of each at least."""
+def of(arms: Sequence[Arm], more: Iterable[str] = ()) -> dict[str, Mark]:
+    """A mark for each run by its label; the paper's three conditions always look alike, the first of each at least.
+
+    Args:
+        more: labels that may be of none of the runs.
+    """
     found: dict[str, Mark] = {}
     taken: set[str] = set()
-    for arm in arms:
-        if arm.condition and arm.condition not in taken:
-            taken.add(arm.condition)
-            found[arm.label] = Mark(shade=ink.CONDITION[arm.condition], shape=_SHAPES[arm.condition])
+    conditions = {arm.label: arm.condition for arm in arms}
+    for label in dict.fromkeys((*conditions, *more)):
+        condition = conditions.get(label, "")
+        if condition and condition not in taken:
+            taken.add(condition)
+            found[label] = Mark(shade=ink.CONDITION[condition], shape=_SHAPES[condition])
         else:
             number = len(found) - len(taken)
-            found[arm.label] = Mark(shade=_OTHERS[number % len(_OTHERS)], shape=_MORE[number % len(_MORE)])
+            found[label] = Mark(shade=_OTHERS[number % len(_OTHERS)], shape=_MORE[number % len(_MORE)])
     return found
 
 

@@ -20,12 +20,13 @@ def figure(splits: Sequence[Split], arms: Sequence[Arm], *, ranked: bool = False
     Args:
         ranked: the group in which people do worst first.
     """
-    own = marks.of(arms)
+    own = marks.of(arms, (label for split in splits for group in split.groups for label in group.sr))
     groups = [(split, _ranked(split.groups) if ranked else split.groups) for split in splits]
-    height = (len(arms) - 1) * _STEP + 0.55
+    labels = [label for label in own if any(label in group.sr for _, held in groups for group in held)]
+    height = (len(labels) - 1) * _STEP + 0.55
     rows = sum(len(held) for _, held in groups)
     with ink.style():
-        made = ink.sheet(0.75 + _ROW * rows * max(2.0, len(arms)) + 0.24 * len(splits), 6.4)
+        made = ink.sheet(0.75 + _ROW * rows * max(2.0, len(labels)) + 0.24 * len(splits), 6.4)
         ax = made.subplots()
         y, ticks = 0.0, []
         for split, held in groups:
@@ -34,8 +35,9 @@ def figure(splits: Sequence[Split], arms: Sequence[Arm], *, ranked: bool = False
                 y += 0.75 * height
             for group in held:
                 ticks.append((y, f"{group.name}, {marks.count(list(group.sr.values()))}"))
-                for number, (label, one) in enumerate(group.sr.items()):
-                    marks.interval(ax, y + _STEP * (number - (len(group.sr) - 1) / 2), one, own[label], thin=True)
+                for label, one in group.sr.items():
+                    shift = labels.index(label) - (len(labels) - 1) / 2
+                    marks.interval(ax, y + _STEP * shift, one, own[label], thin=True)
                 ax.axhline(y + height / 2, color=ink.LINE, lw=0.4)
                 y += height
             y += 0.2
@@ -44,8 +46,7 @@ def figure(splits: Sequence[Split], arms: Sequence[Arm], *, ranked: bool = False
         ax.set_xlim(-1, 101)
         ax.set_xlabel("success rate [%], with 95 % intervals")
         ink.bare(ax)
-        shown = {label for _, held in groups for group in held for label in group.sr}
-        handles = [marks.handle(own[arm.label], arm.label) for arm in arms if arm.label in shown]
+        handles = [marks.handle(own[label], label) for label in labels]
         made.legend(handles=handles, loc="outside upper right", ncols=min(4, len(handles)))
     return made
 
