@@ -14,8 +14,9 @@ from typer.testing import CliRunner
 from hthor import tasks
 from hthor.cli.app import app
 from hthor.errors import HthorError, RunError
-from hthor.eval import campaign, find, log, mind, mind_picture, mind_timeline, progress, redraw
+from hthor.eval import again, campaign, find, log, mind, mind_picture, mind_timeline, progress, redraw
 from hthor.eval.mind import Stream
+from hthor.eval.pages import filming
 from hthor.eval.record import Record
 from hthor.tasks import library
 from hthor.types import HUMAN, Event
@@ -47,6 +48,17 @@ def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[Record, St
     assert [stream.same for _, stream in heard] == [True] * 3
     assert all(stream.key == record.key for record, stream in heard)
     assert all([e.tick for e in s.events] == sorted(e.tick for e in s.events) for _, s in heard)
+
+
+def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run: Path) -> None:
+    one = find.trial(run, "1")
+    views = filming.film(run, one, [0, one.ticks])
+    assert sorted(views) == [0, one.ticks]
+    for seen in views.values():
+        assert seen.keys() == one.paths.keys()
+        assert all(view.shape == (filming.SIZE[1], filming.SIZE[0], 3) for view in seen.values())
+    with pytest.raises(RunError, match="went otherwise than it was logged"):
+        filming.film(run, msgspec.structs.replace(one, ticks=one.ticks - 1), [0])
 
 
 def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[Record, Stream]]) -> None:
@@ -131,7 +143,7 @@ def test_whose_agent_is_a_file_needs_the_file(run: Path) -> None:
     agent = msgspec.structs.replace(seat.agent, name="mine", source="my_agent.py")
     spec = msgspec.structs.replace(record.spec, robots=(msgspec.structs.replace(seat, agent=agent),))
     with pytest.raises(HthorError, match=r"came from the file my_agent\.py\. Give that file, unchanged, with --agent"):
-        mind._sources(run, spec, (), "")
+        again.sources(run, spec, (), "")
 
 
 def test_forgetting_and_misses_have_their_marks() -> None:

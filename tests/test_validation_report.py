@@ -25,8 +25,6 @@ from hthor.calibration.report import (
     evidence,
     gates,
     groups,
-    html,
-    ink,
     measures,
     page,
     published,
@@ -37,6 +35,7 @@ from hthor.calibration.report.document import Findings, Setting, Subject
 from hthor.calibration.report.evidence import FIGURES
 from hthor.cli import app as cli
 from hthor.errors import HthorError, RunError
+from hthor.eval.pages import html, ink
 from hthor.humans import people
 
 PUBLISHED = published.of(targets.load("paper"))

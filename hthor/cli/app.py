@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from hthor import __version__
-from hthor.cli import assets, boards, calibrate, homes, lists, people, priors, runs, shards, suite, tasks
+from hthor.cli import assets, boards, calibrate, homes, lists, people, priors, reports, runs, shards, suite, tasks
 from hthor.errors import HthorError
 
 EPILOG = (
@@ -31,6 +31,8 @@ app.command("eval")(runs.evaluate)
 app.command("merge")(shards.merge)
 app.command("score")(runs.score)
 app.command("replay")(runs.replay)
+app.command("report")(reports.report)
+app.command("case")(reports.case)
 app.command("calibrate")(calibrate.calibrate)
 app.add_typer(boards.app, name="leaderboard")
 app.add_typer(assets.app, name="assets")

@@ -13,13 +13,12 @@ from typing import Any
 
 from msgspec import Struct
 
-from hthor import plugins
 from hthor.episode import EpisodeLog, play
-from hthor.errors import HthorError, RunError
-from hthor.eval import cast, crews, provenance, record, score, setup
+from hthor.errors import HthorError
+from hthor.eval import again, cast, record
 from hthor.eval.record import Record
 from hthor.eval.session import Session
-from hthor.types import HUMAN, Action, Briefing, Event, Observation, RobotSeat, TrialSpec
+from hthor.types import HUMAN, Action, Briefing, Event, Observation
 
 SCHEMA = "hthor.mind/1"
 _JOURNAL = ("attempt", "exposure", "offer")
@@ -99,8 +98,8 @@ def listen(folder: Path, wanted: Record, *, agents: Sequence[str] = (), humans: 
         HthorError: when a file is needed, or the person is one whose mind cannot be looked into.
     """
     spec = wanted.spec
-    session = Session(participant=spec.participant, trials=_before(folder, wanted))
-    stage = cast.Stage(_sources(folder, spec, agents, humans))
+    session = Session(participant=spec.participant, trials=again.before(folder, wanted))
+    stage = cast.Stage(again.sources(folder, spec, agents, humans))
     with stage.enter(session) as company:
         person = Listened(company.human)
         if not all(hasattr(type(company.human), name) for name in ("about", "listener")):
@@ -124,39 +123,3 @@ def _stream(wanted: Record, log: EpisodeLog, thoughts: Sequence[Event], traits: 
     events = sorted([*thoughts, *written, *said], key=lambda event: event.tick)
     same = record.encode(again) == record.encode(wanted)
     return Stream(key=wanted.key, same=same, traits=traits, events=tuple(events))
-
-
-def _before(folder: Path, wanted: Record) -> tuple[TrialSpec, ...]:
-    """The trials of the person's session up to this one."""
-    here, logged = provenance.code_sha256(), wanted.spec.code_sha256
-    if here != logged:
-        raise RunError(
-            f"{folder} was played by another version of hthor (its code's hash was {logged[:10]} and is {here[:10]}), "
-            "in which people may think otherwise. Play the run again with 'hthor eval', or look with that version."
-        )
-    spec = wanted.spec
-    _, records = score.records(folder, setup.load(folder))
-    mine = [one.spec for one in records if one.spec.participant == spec.participant and one.spec.index <= spec.index]
-    if [one.index for one in mine] != list(range(spec.index + 1)):
-        raise RunError(
-            f"{folder} lacks some of the trials that participant {spec.participant} did before this one, which shaped "
-            "their trust. Finish the run with the 'hthor eval' command that began it."
-        )
-    return tuple(mine)
-
-
-def _sources(folder: Path, spec: TrialSpec, agents: Sequence[str], humans: str) -> cast.Sources:
-    minds = {seat.seat: _file(seat, agents) for seat in spec.robots if seat.agent.name not in plugins.names("agent")}
-    own = folder / "houses"
-    return cast.Sources(minds=minds, people=humans, houses=str(own.resolve()) if own.is_dir() else "")
-
-
-def _file(seat: RobotSeat, agents: Sequence[str]) -> str:
-    for path in agents:
-        character = crews.introduce(path)
-        if character.ref.sha256 == seat.agent.sha256:
-            return character.path
-    raise HthorError(
-        f"the agent '{seat.agent.name}' of this run came from the file {seat.agent.source}. Give that file, unchanged, "
-        f"with --agent."
-    )

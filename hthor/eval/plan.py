@@ -20,17 +20,20 @@ if TYPE_CHECKING:
 
 FLOORS = {"kitchen": "#f6ecd9", "living_room": "#eef1e3", "bedroom": "#e9edf4", "bathroom": "#e3f0f0"}
 MARKED, MARKED_EDGE, MARKED_FLOOR = "#bfe3d4", "#00795a", "#dcf0e6"
-WALL_PT = 3.2
+WALL_PT, SMALL_WALL_PT = 3.2, 1.6
+_NAME_PT, _SMALL_NAME_PT = 8.5, 6.5
 _FURNITURE, _EDGE = "#d9d4cb", "#a8a196"
 
 
-def draw_house(ax: Axes, house: HouseSpec, *, marked: Collection[str] = ()) -> None:
+def draw_house(ax: Axes, house: HouseSpec, *, marked: Collection[str] = (), small: bool = False) -> None:
     """Draw rooms, walls, openings and furniture to scale.
 
     Args:
         ax: axes in metres of the house frame; limits and aspect are set here.
         marked: ids of things and rooms to draw in the accent colour: a task's destinations.
+        small: for a plan of a few inches, with thin walls and without the names of things.
     """
+    wall_pt = SMALL_WALL_PT if small else WALL_PT
     for room in house.rooms:
         shade = MARKED_FLOOR if room.id in marked else FLOORS.get(room.kind, "#eeeeee")
         ax.add_patch(Polygon(room.polygon, closed=True, facecolor=shade, edgecolor="none"))
@@ -38,14 +41,14 @@ def draw_house(ax: Axes, house: HouseSpec, *, marked: Collection[str] = ()) -> N
         if not thing.parent:
             _draw_thing(ax, thing, thing.id in marked)
     for thing in house.things:
-        if thing.kind in catalog.RECEPTACLES and thing.id not in marked:
+        if thing.kind in catalog.RECEPTACLES and thing.id not in marked and not small:
             _label(ax, thing)
     for wall in house.walls:
-        ax.plot(*zip(wall.a, wall.b, strict=True), color=trace.INK, lw=WALL_PT, solid_capstyle="projecting", zorder=4)
+        ax.plot(*zip(wall.a, wall.b, strict=True), color=trace.INK, lw=wall_pt, solid_capstyle="projecting", zorder=4)
     for opening in house.openings:
-        _draw_opening(ax, opening)
+        _draw_opening(ax, opening, wall_pt)
     for room in house.rooms:
-        _name_room(ax, room, house)
+        _name_room(ax, room, house, _SMALL_NAME_PT if small else _NAME_PT)
     _frame(ax, house)
 
 
@@ -83,24 +86,24 @@ def _label(ax: Axes, thing: Thing) -> None:
     ax.text(x, y, title(thing.kind), ha="center", va="center", rotation=turned, fontsize=5.2, color="#8b8478", zorder=3)
 
 
-def _draw_opening(ax: Axes, opening: Opening) -> None:
+def _draw_opening(ax: Axes, opening: Opening, wall_pt: float) -> None:
     (ax0, ay0), (bx, by) = opening.a, opening.b
     xs, ys = (ax0, bx), (ay0, by)
     if opening.kind == "window":
-        ax.plot(xs, ys, color="white", lw=WALL_PT - 1.0, solid_capstyle="butt", zorder=5)
+        ax.plot(xs, ys, color="white", lw=wall_pt - 1.0, solid_capstyle="butt", zorder=5)
         ax.plot(xs, ys, color="#6fa8c9", lw=0.9, solid_capstyle="butt", zorder=5.1)
     elif opening.passable:
-        ax.plot(xs, ys, color="#f4f1ea", lw=WALL_PT + 0.6, solid_capstyle="butt", zorder=5)
+        ax.plot(xs, ys, color="#f4f1ea", lw=wall_pt + 0.6, solid_capstyle="butt", zorder=5)
     else:
-        ax.plot(xs, ys, color="#8a6d4b", lw=WALL_PT, solid_capstyle="butt", zorder=5)
+        ax.plot(xs, ys, color="#8a6d4b", lw=wall_pt, solid_capstyle="butt", zorder=5)
         width = math.dist(opening.a, opening.b)
         heading = math.degrees(math.atan2(by - ay0, bx - ax0))
         ax.add_patch(Arc(opening.a, 2 * width, 2 * width, angle=heading, theta1=-35, theta2=0, color="#8a6d4b", lw=0.6))
 
 
-def _name_room(ax: Axes, room: Room, house: HouseSpec) -> None:
+def _name_room(ax: Axes, room: Room, house: HouseSpec, size: float) -> None:
     x, y = _quiet_spot(room, house)
-    text = ax.text(x, y, room.name, ha="center", va="center", fontsize=8.5, color="#5d6470", style="italic", zorder=6)
+    text = ax.text(x, y, room.name, ha="center", va="center", fontsize=size, color="#5d6470", style="italic", zorder=6)
     text.set_path_effects([patheffects.withStroke(linewidth=2.5, foreground=FLOORS.get(room.kind, "#eeeeee"))])
 
 

@@ -11,10 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from hthor.calibration.report import ink, words
+from hthor.calibration.report import words
 from hthor.calibration.report.evidence import Emulated, ParameterFinding, Swing
 from hthor.calibration.report.forecasts import CONDITION
 from hthor.calibration.table import CONDITIONS
+from hthor.eval.pages import ink
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

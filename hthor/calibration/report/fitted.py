@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import msgspec
 
-from hthor.calibration.report import diagnostics, forecasts, html, ink, tables, words
+from hthor.calibration.report import diagnostics, forecasts, tables, words
 from hthor.calibration.report.document import Findings
 from hthor.calibration.report.evidence import Evidence
 from hthor.calibration.table import CONDITIONS
+from hthor.eval.pages import html, ink
 
 
 def predictive(found: Findings) -> list[str]:

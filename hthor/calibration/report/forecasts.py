@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from hthor.calibration.report import ink
 from hthor.calibration.report.document import Findings, Predicted
 from hthor.calibration.report.evidence import Band, HeldOut, Predictive
 from hthor.calibration.table import CONDITIONS
+from hthor.eval.pages import ink
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from html import escape
 
-from hthor.calibration.report import fitted, forecasts, html, ink, sessions, style, tables, words
+from hthor.calibration.report import fitted, forecasts, sessions, tables, words
 from hthor.calibration.report.document import Findings
 from hthor.calibration.table import CONDITIONS
+from hthor.eval.pages import html, ink, style
 
 _TITLES = (
     ("data", "Data"),

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from hthor import rules
-from hthor.calibration.report import ink
 from hthor.calibration.report.document import Spent, Trust
 from hthor.calibration.report.forecasts import CONDITION
+from hthor.eval.pages import ink
 
 
 def spent(parts: Sequence[Spent]) -> Figure:

@@ -16,7 +16,7 @@ from hthor.calibration.report.evidence import (
     Ranking,
     Swing,
 )
-from hthor.calibration.report.html import Cell, Mark, mark
+from hthor.eval.pages.html import Cell, Mark, mark
 
 Rows = list[list[Cell]]
 GATES = ("bar", "asks", "found", "verdict")

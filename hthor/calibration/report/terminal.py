@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hthor.calibration.report import tables
 from hthor.calibration.report.document import Findings
-from hthor.calibration.report.html import Cell, Mark
+from hthor.eval.pages.html import Cell, Mark
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from hthor.calibration.report.document import QUARTILE_S, Difference, Findings, Played, Reach, Spent, Trust
 from hthor.calibration.report.evidence import Band, Coverage, Evidence, HeldOut, ParameterFinding, Ranking, Shift
+from hthor.eval.pages.numbers import listed as listed
+from hthor.eval.pages.numbers import percent as percent
+from hthor.eval.pages.numbers import plain as plain
+from hthor.eval.pages.numbers import signed as signed
 
 IDENTIFIED, WEAKLY, NOT = "identified", "weakly identified", "not identified"
 CONTRACTS, CONTRACTS_WEAKLY = 0.4, 0.1
@@ -35,26 +39,9 @@ def figure(name: str) -> str:
     return f"{METRIC[metric]} {CONDITION[condition]}"
 
 
-def percent(value: float | None, digits: int = 1) -> str:
-    """A fraction in per cent, without the sign; a dash where there is none."""
-    return "–" if value is None else f"{100.0 * value:.{digits}f}"
-
-
 def span(band: Band, scale: float = 1.0, digits: int = 1) -> str:
     """An interval: "47.1 … 81.0"."""
     return f"{_minus(scale * band.low, digits)} … {_minus(scale * band.high, digits)}"
-
-
-def signed(value: float, digits: int = 1) -> str:
-    """A number with its sign; a true minus, and no sign at zero."""
-    text = f"{value:+.{digits}f}".replace("-", "−")
-    return text[1:] if float(f"{value:.{digits}f}") == 0.0 else text
-
-
-def listed(names: Iterable[str], nothing: str = "none") -> str:
-    """Names in a row: "a, b and c"."""
-    held = list(names)
-    return nothing if not held else held[0] if len(held) == 1 else f"{', '.join(held[:-1])} and {held[-1]}"
 
 
 def verdict(found: Findings) -> str:
@@ -260,11 +247,6 @@ def simulated(found: Evidence) -> str:
         f"Prior and posterior are foretold by the emulator; simulated are the medians and intervals of "
         f"{found.simulated_studies} whole studies that people of the posterior did in the simulated world."
     )
-
-
-def plain(value: float | None, digits: int = 2) -> str:
-    """A number without a sign of its own; a dash where there is none."""
-    return "–" if value is None else f"{value:.{digits}f}".replace("-", "−")
 
 
 def _holds_zero(band: Band) -> bool:

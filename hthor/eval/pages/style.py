@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hthor.calibration.report import ink
+from hthor.eval.pages import ink
 
 _RULES = """
 *{box-sizing:border-box}
@@ -52,11 +52,11 @@ code{font-size:.88em}
 """
 
 
-def css() -> str:
-    """The whole sheet. Paper is light in print, whatever the screen is."""
+def css(more: str = "") -> str:
+    """The whole sheet, with a page's own rules ``more``. Paper is light in print, whatever the screen is."""
     light = "".join(f"--{name}:{colour};" for colour, name in ink.VARIABLES.items())
     dark = "".join(f"--{name}:{ink.DARK[colour]};" for colour, name in ink.VARIABLES.items())
     return (
         f":root{{color-scheme:light dark;{light}}}\n"
-        f"@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}{_RULES}"
+        f"@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}{_RULES}{more}"
     )

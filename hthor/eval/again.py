@@ -1,0 +1,60 @@
+"""What it takes to play a logged trial again: the session before it and where everything lies; plays nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from hthor import plugins
+from hthor.errors import HthorError, RunError
+from hthor.eval import cast, crews, provenance, score, setup
+from hthor.eval.record import Record
+from hthor.types import RobotSeat, TrialSpec
+
+
+def before(folder: Path, wanted: Record) -> tuple[TrialSpec, ...]:
+    """The trials of the person's session up to this one.
+
+    Raises:
+        RunError: when trials before it are missing, or another version of hthor played them.
+    """
+    here, logged = provenance.code_sha256(), wanted.spec.code_sha256
+    if here != logged:
+        raise RunError(
+            f"{folder} was played by another version of hthor (its code's hash was {logged[:10]} and is {here[:10]}), "
+            "in which people may think otherwise. Play the run again with 'hthor eval', or look with that version."
+        )
+    spec = wanted.spec
+    _, records = score.records(folder, setup.load(folder))
+    mine = [one.spec for one in records if one.spec.participant == spec.participant and one.spec.index <= spec.index]
+    if [one.index for one in mine] != list(range(spec.index + 1)):
+        raise RunError(
+            f"{folder} lacks some of the trials that participant {spec.participant} did before this one, which shaped "
+            "their trust. Finish the run with the 'hthor eval' command that began it."
+        )
+    return tuple(mine)
+
+
+def sources(folder: Path, spec: TrialSpec, agents: Sequence[str] = (), humans: str = "") -> cast.Sources:
+    """Where that lies which a trial needs.
+
+    Args:
+        folder: the run's. agents: files of its agents that are not built in. humans: where its people come from.
+
+    Raises:
+        HthorError: when an agent's file is needed and not given.
+    """
+    minds = {seat.seat: _file(seat, agents) for seat in spec.robots if seat.agent.name not in plugins.names("agent")}
+    own = folder / "houses"
+    return cast.Sources(minds=minds, people=humans, houses=str(own.resolve()) if own.is_dir() else "")
+
+
+def _file(seat: RobotSeat, agents: Sequence[str]) -> str:
+    for path in agents:
+        character = crews.introduce(path)
+        if character.ref.sha256 == seat.agent.sha256:
+            return character.path
+    raise HthorError(
+        f"the agent '{seat.agent.name}' of this run came from the file {seat.agent.source}. Give that file, unchanged, "
+        f"with --agent."
+    )

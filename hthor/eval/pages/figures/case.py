@@ -1,0 +1,157 @@
+"""The case study: a row a robot, the house from above with the ways, and what everybody saw at key moments."""
+
+from __future__ import annotations
+
+import math
+import string
+import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from matplotlib import patheffects
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from msgspec import Struct
+
+from hthor import rules
+from hthor.eval import picture, plan, trace
+from hthor.eval.pages import ink
+from hthor.eval.pages.filming import Views
+from hthor.eval.pages.moments import MANY, Moment
+from hthor.eval.record import Record
+from hthor.types import HUMAN, HouseSpec, Vec2
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MAP_WIDE, _VIEW_WIDE = 3.1, 1.62
+_HEAD, _EDGES = 0.36, 0.5
+"""Inches above each row, and above and below all."""
+_NEAR_M = 0.5
+_WORDS_MAX = 60
+_STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.0, foreground="white")]
+
+
+class Row(Struct, frozen=True, kw_only=True, eq=False):
+    """One robot's trial: what to call it, its moments, and what was seen at them."""
+
+    label: str
+    record: Record
+    moments: Sequence[Moment]
+    views: Views
+
+
+def figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
+    """Draw the case, about 8 inches wide."""
+    xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
+    deep = _MAP_WIDE * (max(ys) - min(ys) + 1.0) / (max(xs) - min(xs) + 0.7)
+    seats = [list(row.record.paths) for row in rows]
+    highs = [max(deep, 0.75 * _VIEW_WIDE * len(held) + 0.2) + _HEAD for held in seats]
+    with ink.style():
+        made = ink.sheet(sum(highs) + _EDGES, _MAP_WIDE + MANY * _VIEW_WIDE)
+        made.set_facecolor("white")
+        bands = made.subfigures(len(rows), 1, height_ratios=highs, squeeze=False)[:, 0]
+        for band, row, held in zip(bands, rows, seats, strict=True):
+            band.set_facecolor("white")
+            grid = band.add_gridspec(len(held), MANY + 1, width_ratios=[_MAP_WIDE, *[_VIEW_WIDE] * MANY])
+            _draw_map(band.add_subplot(grid[:, 0]), row, house)
+            for column, moment in enumerate(row.moments):
+                for line, seat in enumerate(held):
+                    view = row.views[moment.tick][seat]
+                    ax = band.add_subplot(grid[line, column + 1])
+                    ax.set_anchor("C" if len(held) == 1 else "S" if line == 0 else "N")
+                    _draw_view(ax, view, seat, column, moment, first=line == 0)
+            band.suptitle(_headline(row), x=0.012, ha="left", fontsize=8.5, weight="bold", color=ink.INK)
+        destined = bool(trace.destinations(rows[0].record.spec, house))
+        handles = _legend(rows, destined=destined)
+        made.legend(handles=handles, loc="outside lower left", ncols=len(handles), fontsize=7, columnspacing=1.4)
+        made.suptitle(_task(rows[0].record), x=0.012, ha="left", fontsize=9, color=ink.INK)
+    return made
+
+
+def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
+    record = row.record
+    plan.draw_house(ax, house, marked=trace.destinations(record.spec, house), small=True)
+    for seat in record.paths:
+        picture.draw_path(ax, record.log, seat)
+    for _, start in trace.targets(record.spec, house):
+        ax.scatter(*start.position[:2], s=80, marker="*", color=trace.TARGET, edgecolor="white", lw=0.6, zorder=12)
+    for seat in record.paths:
+        for place, letters in _places(row, seat):
+            _letter(ax, place, letters, seat)
+
+
+def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
+    """Where a seat was at the moments; letters of moments at which it was in one place stand together."""
+    found: list[tuple[Vec2, str]] = []
+    for letter, moment in zip(string.ascii_lowercase, row.moments, strict=False):
+        place = trace.at(row.record.log, seat, moment.tick)
+        if found and math.dist(found[-1][0], place) < _NEAR_M:
+            found[-1] = (found[-1][0], f"{found[-1][1]} {letter}")
+        else:
+            found.append((place, letter))
+    return found
+
+
+def _letter(ax: Axes, place: Vec2, letters: str, seat: str) -> None:
+    """Above a person and below a robot, as they may stand in one place."""
+    side = 1 if seat == HUMAN else -1
+    text = ax.annotate(
+        letters,
+        place,
+        (5 * side, 5 * side),
+        textcoords="offset points",
+        ha="left" if side > 0 else "right",
+        va="bottom" if side > 0 else "top",
+        fontsize=8,
+        weight="bold",
+        color=trace.colour(seat),
+        zorder=15,
+    )
+    text.set_path_effects(_STROKE)
+
+
+def _draw_view(ax: Axes, view: Any, seat: str, column: int, moment: Moment, *, first: bool) -> None:
+    """A picture in a frame of its seat's colour, what happened above the first."""
+    ax.imshow(view, interpolation="none")
+    ax.set_xticks([])
+    ax.set_yticks([])
+    for side in ax.spines.values():
+        side.set(visible=True, color=trace.colour(seat), linewidth=1.4)
+    if first:
+        when = f"{moment.tick * rules.TICK_S:.1f} s"
+        ax.set_title(f"{string.ascii_lowercase[column]}  {when}: {moment.words}", fontsize=7.5)
+
+
+def _headline(row: Row) -> str:
+    record, seconds = row.record, row.record.ticks * rules.TICK_S
+    end = f"done in {seconds:.1f} s" if record.met else f"not done in {seconds:.0f} s"
+    said = [
+        f"message {number}: “{textwrap.shorten(event.data['text'], _WORDS_MAX, placeholder=' …')}” "
+        f"({trace.fate(record.log, event.data['message'])})"
+        for number, event in enumerate(trace.messages(record.log), 1)
+        if any(moment.tick == event.tick for moment in row.moments)
+    ]
+    return "; ".join([f"{row.label}: {end}", *said[:1]])
+
+
+def _task(record: Record) -> str:
+    spec = record.spec
+    whose = f"{spec.task.id}, person {spec.participant}, trial {spec.index + 1}, T* {spec.task.t_star:.1f} s"
+    return f"“{spec.task.instruction}”  {whose}"
+
+
+def _legend(rows: Sequence[Row], *, destined: bool) -> list[Line2D]:
+    seats = dict.fromkeys(seat for row in rows for seat in row.record.paths)
+    named = {seat: "person" if seat == HUMAN else seat for seat in seats}
+    ways = [
+        Line2D([], [], color=trace.colour(seat), lw=2, label=f"{name}, way and view") for seat, name in named.items()
+    ]
+    marks = [
+        Line2D([], [], ls="", marker="o", mfc="white", mec=ink.SOFT, label="start"),
+        Line2D([], [], ls="", marker="o", mfc=ink.SOFT, mec="white", label="end"),
+        Line2D([], [], ls="", marker="*", mfc=trace.TARGET, mec="white", ms=9, label="target at the start"),
+    ]
+    if destined:
+        marks.append(Line2D([], [], ls="", marker="s", mfc=plan.MARKED, mec=plan.MARKED_EDGE, label="destination"))
+    return [*ways, *marks]

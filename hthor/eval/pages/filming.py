@@ -1,0 +1,91 @@
+"""What everybody saw at some moments of a logged trial: it is played again, a camera at every seat; draws no figure.
+
+Looking changes nothing, which is checked: the record of the trial that was played again must equal the logged one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from pathlib import Path
+from typing import Any
+
+from hthor.episode import play
+from hthor.errors import RunError
+from hthor.eval import again, cast, record
+from hthor.eval.record import Record
+from hthor.eval.session import Session
+from hthor.types import Event, TaskSpec
+
+SIZE = (320, 240)
+
+Views = dict[int, dict[str, Any]]
+"""Pictures (H, W, 3) uint8 by tick and seat."""
+
+
+class Filmed:
+    """A world that keeps what its seats see at some ticks, and is otherwise the one that it is given."""
+
+    def __init__(self, world: Any, ticks: Collection[int], profile: str) -> None:
+        self._world, self._ticks, self._profile = world, frozenset(ticks), profile
+        self._kept: dict[int, dict[str, Callable[[], Any]]] = {}
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._world, name)
+
+    def reset(self, task: TaskSpec, seed: int = 0) -> None:
+        self._kept.clear()
+        self._world.reset(task, seed=seed)
+        self._look()
+
+    def advance(self) -> tuple[Event, ...]:
+        events: tuple[Event, ...] = self._world.advance()
+        self._look()
+        return events
+
+    def views(self) -> Views:
+        """The pictures, drawn now."""
+        return {tick: {seat: draw() for seat, draw in kept.items()} for tick, kept in self._kept.items()}
+
+    def _look(self) -> None:
+        world = self._world
+        if world.tick in self._ticks:
+            self._kept[world.tick] = {seat: world.frame(seat, SIZE, self._profile) for seat in world.seats}
+
+
+def film(
+    folder: Path,
+    wanted: Record,
+    ticks: Collection[int],
+    *,
+    profile: str = "fast",
+    agents: Sequence[str] = (),
+    humans: str = "",
+) -> Views:
+    """Play a trial again and look.
+
+    Args:
+        folder: the run's. wanted: the trial. ticks: when to look.
+        profile: how pictures are drawn, fast or nice.
+        agents: files of the run's agents that are not built in. humans: where its people come from, when the name in
+            the log does not find them.
+
+    Raises:
+        RunError: when trials before it are missing, another version of hthor played them, or it goes otherwise now.
+        HthorError: when a file is needed.
+    """
+    spec = wanted.spec
+    session = Session(participant=spec.participant, trials=again.before(folder, wanted))
+    stage = cast.Stage(again.sources(folder, spec, agents, humans))
+    with stage.enter(session) as company:
+        for trial in session.trials:
+            world = Filmed(stage.world(trial), ticks if trial == spec else (), profile)
+            log = play(trial, world, company.human, company.robots())
+            for seat in dict.fromkeys(fault.seat for fault in log.faults):
+                company.dismiss(seat)
+        if record.encode(record.of(spec, log)) != record.encode(record.of(spec, wanted.log)):
+            raise RunError(
+                f"{folder}: trial {wanted.key} went otherwise than it was logged, so its views would be of another "
+                "trial. An agent that does not repeat itself, or another machine, does that; 'hthor replay' draws it "
+                "from its log alone."
+            )
+        return world.views()

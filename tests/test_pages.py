@@ -1,0 +1,231 @@
+"""The report and the case study: what they refuse, what they claim, that they need nothing else and never vary."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from xml.etree import ElementTree
+
+import eval_fakes as fakes
+import msgspec
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from hthor import houses, jsonio
+from hthor.cli import app as cli
+from hthor.errors import HthorError, RunError, UnknownName
+from hthor.eval import record, redraw
+from hthor.eval.pages import case, filming, gather, ink, moments, page, words, write
+from hthor.eval.pages.findings import Findings, Published, Share
+from hthor.eval.stats import Estimate
+
+PUBLISHED = Published(
+    name="study",
+    source="A study",
+    sha256="12" * 32,
+    suite="paper",
+    figures={"sr none": 0.638, "sr oracle": 0.914},
+    counts={"sr none": Share(k=37, n=58), "sr oracle": Share(k=53, n=58)},
+)
+
+
+def run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, count: int = 20, people: str = "") -> Path:
+    """A whole run's folder without playing it."""
+    plan, dealt = fakes.run_of(count, name=name, absent=absent, seed=seed)
+    plan = msgspec.structs.replace(plan, humans=msgspec.structs.replace(plan.humans, name=people or plan.humans.name))
+    jsonio.write(folder / "run.json", jsonio.pretty(plan))
+    made = [record.of(trial, fakes.episode(trial)) for session in dealt for trial in session.trials]
+    jsonio.write(folder / "trials.jsonl", b"".join(record.encode(one) for one in made))
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def _known_house(monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = houses.load("hazel")
+    monkeypatch.setattr(redraw, "house", lambda _: plan)
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    base = tmp_path_factory.mktemp("runs")
+    return [run(base / "alone", "silent", absent=True), run(base / "helper", "helper"), run(base / "clumsy", "clumsy")]
+
+
+@pytest.fixture
+def written(folders: list[Path], tmp_path: Path) -> tuple[Findings, Path]:
+    return write.report(folders, tmp_path / "out", PUBLISHED), tmp_path / "out"
+
+
+def _bytes(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_the_same_runs_give_the_same_bytes(written: tuple[Findings, Path], folders: list[Path], tmp_path: Path) -> None:
+    write.report(folders, tmp_path / "again", PUBLISHED)
+    first, again = _bytes(written[1]), _bytes(tmp_path / "again")
+    assert first == again
+    assert {"report.html", "report.json", "figures/scores.svg", "figures/time-spent.svg"} <= first.keys()
+    assert str(tmp_path).encode() not in b"".join(first.values())
+
+
+def test_the_page_needs_nothing_else(written: tuple[Findings, Path]) -> None:
+    text = (written[1] / "report.html").read_text()
+    for stranger in ("http", "<script", "src=", "@import", "url(h", "xlink"):
+        assert stranger not in text
+    assert set(re.findall(r"var\(--(\w+)\)", text)) <= set(ink.VARIABLES.values())
+    ids = re.findall(r' id="([^"]+)"', text)
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r"url\(#([^)]+)\)", text)) | set(re.findall(r'href="#([^"]+)"', text)) <= set(ids)
+
+
+def test_every_figure_says_what_it_shows_and_stands_alone(written: tuple[Findings, Path]) -> None:
+    text = (written[1] / "report.html").read_text()
+    files = sorted((written[1] / "figures").glob("*.svg"))
+    assert text.count("<svg ") == len(files) == len(re.findall(r'<svg role="img"[^>]*><title>[^<]+</title>', text))
+    for path in files:
+        root = ElementTree.fromstring(path.read_text())
+        title = root.find("{http://www.w3.org/2000/svg}title")
+        assert title is not None
+        assert title.text
+        assert "var(" not in path.read_text()
+        assert re.findall(r'https?://[^"]*', path.read_text()) == ["http://www.w3.org/2000/svg"]
+
+
+def test_the_numbers_are_those_of_the_trials(written: tuple[Findings, Path], folders: list[Path]) -> None:
+    found = written[0]
+    alone, helper, clumsy = gather.runs(folders)
+    assert msgspec.json.decode((written[1] / "report.json").read_bytes(), type=Findings) == found
+    assert [arm.label for arm in found.arms] == ["no robot", "helper", "clumsy"]
+    assert [arm.condition for arm in found.arms] == ["none", "", ""]
+    pairs = [(a.met, b.met) for a, b in zip(helper.records, alone.records, strict=True)]
+    gain = found.uplift[0]
+    assert gain.pairs == 20
+    assert gain.sr.mean == pytest.approx(sum(a - b for a, b in pairs) / 20)
+    assert (gain.wins, gain.losses) == (sum(a > b for a, b in pairs), sum(a < b for a, b in pairs))
+    failed = [one for one in clumsy.records if one.faults]
+    assert [(one.run, one.kind, one.trials, one.last) for one in found.failures] == [
+        ("clumsy", "raised", len(failed), "ValueError: no")
+    ]
+    shown = [one for one in found.shown if one.arm == "helper"]
+    assert [one.rank for one in shown] == ["best", "best", "worst", "worst"]
+    gains = [one.gain_s for one in shown]
+    assert min(gains[:2]) >= max(gains[2:])
+    assert len({one.key for one in shown}) == 4
+
+
+def test_what_is_put_in_is_escaped_and_uncertain_gains_are_not_claimed(written: tuple[Findings, Path]) -> None:
+    found = written[0]
+    unsure = Estimate(mean=0.1, ci95=(-0.1, 0.3), n=20)
+    for sr, said in ((unsure, "cannot tell"), (Estimate(mean=0.2, ci95=(0.1, 0.3), n=20), "more often")):
+        one = msgspec.structs.replace(found.uplift[0], arm="<b>", sr=sr)
+        text = page.render(msgspec.structs.replace(found, uplift=(one,)), {})
+        assert said in text
+        assert "<b>" not in text
+    assert "no run without a robot" in words.lead(msgspec.structs.replace(found, baseline=""))
+
+
+def test_runs_that_do_not_belong_together_are_refused(folders: list[Path], tmp_path: Path) -> None:
+    other = run(tmp_path / "other", "helper", count=30)
+    with pytest.raises(RunError, match=r"other/run\.json: suite\.sha256 is not that of .*alone/run\.json"):
+        write.report([folders[0], other], tmp_path / "out")
+    with pytest.raises(RunError, match="are the same run"):
+        write.report([folders[1], folders[1]], tmp_path / "out")
+    with pytest.raises(RunError, match=r"has no run\.json"):
+        write.report([tmp_path], tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(HthorError, match="is a file"):
+        write.report(folders, other / "run.json")
+
+
+def test_a_damaged_run_is_refused_with_file_and_field(folders: list[Path], tmp_path: Path) -> None:
+    broken = shutil.copytree(folders[1], tmp_path / "broken")
+    lines = (broken / "trials.jsonl").read_bytes().replace(b'"met":true', b'"met":null', 1)
+    (broken / "trials.jsonl").write_bytes(lines)
+    with pytest.raises(RunError, match=r"broken/trials\.jsonl, line \d+: \$\.met"):
+        write.report([broken], tmp_path / "out")
+    other = shutil.copytree(folders[1], tmp_path / "foreign")
+    (other / "trials.jsonl").write_bytes((folders[2] / "trials.jsonl").read_bytes())
+    with pytest.raises(RunError, match=r"foreign/trials\.jsonl: trial \w+: spec\.robots is not the one in run\.json"):
+        write.report([other], tmp_path / "out")
+
+
+def test_a_report_of_one_run_without_anything_to_set_it_against(folders: list[Path], tmp_path: Path) -> None:
+    found = write.report([folders[1]], tmp_path / "one")
+    assert (found.baseline, found.uplift, found.by_people) == ("", (), None)
+    assert all(one.gain_s is None for one in found.shown)
+    assert not (tmp_path / "one" / "figures" / "uplift.svg").exists()
+    lone = write.report([folders[0]], tmp_path / "lone")
+    assert (lone.shown, lone.trust) == ((), ())
+
+
+def test_several_peoples_have_a_section_of_their_own(folders: list[Path], tmp_path: Path) -> None:
+    others = [run(tmp_path / "a", "clumsy", people="slow"), run(tmp_path / "b", "silent", absent=True, people="slow")]
+    found = write.report([*folders[:2], *others], tmp_path / "out")
+    assert found.by_people is not None
+    assert [(group.name, sorted(group.sr)) for group in found.by_people.groups] == [
+        ("proxy", ["helper", "no robot"]),
+        ("slow", ["clumsy", "no robot"]),
+    ]
+    assert [arm.folder for arm in found.arms] == ["alone", "helper"]
+    assert (tmp_path / "out" / "figures" / "people.svg").exists()
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
+def test_a_browser_finds_no_error_and_asks_nobody(written: tuple[Findings, Path], tmp_path: Path) -> None:
+    bad = tmp_path / "bad.html"
+    bad.write_text('<script>nothing()</script><img src="http://example.invalid/a.png">')
+    assert _browsed(bad, tmp_path) == (1, 1)  # so that it is known to be seen
+    assert _browsed(written[1] / "report.html", tmp_path) == (0, 0)
+
+
+def _browsed(file: Path, folder: Path) -> tuple[int, int]:
+    """How many lines a page writes to the browser's console, and how many addresses it asks for."""
+    log = folder / "net.json"
+    options = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"]
+    options += [f"--log-net-log={log}", "--enable-logging=stderr", f"--user-data-dir={folder / 'browser'}"]
+    done = subprocess.run(
+        ["chromium", *options, "--dump-dom", f"file://{file}"], capture_output=True, text=True, timeout=180, check=True
+    )
+    events = [event.get("params", {}) for event in msgspec.json.decode(log.read_bytes())["events"]]
+    by_page = [one["url"] for one in events if one.get("initiator", "not an origin") != "not an origin"]  # not its own
+    return done.stderr.count(":CONSOLE"), len({url for url in by_page if url.startswith("http")})
+
+
+def test_moments_are_in_order_and_end_at_the_end(folders: list[Path]) -> None:
+    for one in gather.runs(folders):
+        for held in one.records:
+            ticks = [moment.tick for moment in moments.of(held)]
+            assert ticks == sorted(set(ticks))
+            assert 1 <= len(ticks) <= moments.MANY
+            assert ticks[-1] == held.ticks
+
+
+def test_a_case_is_drawn_the_same_twice_and_says_who_can_be_drawn(
+    folders: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def film(_: Path, wanted: record.Record, ticks: list[int], **more: object) -> filming.Views:
+        grey = np.full((24, 32, 3), 128, np.uint8)
+        return {tick: dict.fromkeys(wanted.paths, grey) for tick in ticks}
+
+    monkeypatch.setattr(filming, "film", film)
+    drawn = [case.study(folders[:2], "t003", tmp_path / name) for name in ("a", "b")]
+    assert _bytes(tmp_path / "a") == _bytes(tmp_path / "b")
+    root = ElementTree.fromstring(drawn[0][0].read_text())
+    title = root.find("{http://www.w3.org/2000/svg}title")
+    assert title is not None
+    assert "no robot, helper" in (title.text or "")
+    with pytest.raises(UnknownName, match=r"unknown task 't0003'\. Did you mean 't003'"):
+        case.study(folders[:2], "t0003", tmp_path)
+    with pytest.raises(UnknownName, match="unknown person '99'"):
+        case.study(folders[:2], "t003", tmp_path, person=99)
+
+
+def test_the_commands(folders: list[Path], tmp_path: Path) -> None:
+    out = tmp_path / "cli"
+    done = CliRunner().invoke(cli.app, ["report", *map(str, folders[:1]), "--out", str(out)])
+    assert done.exit_code == 0, done.output
+    assert done.stdout.strip() == str(out / "report.html")
+    assert "2406.06498" in (out / "report.html").read_text()
