@@ -9,12 +9,13 @@ from typing import Annotated
 import typer
 
 from hthor import __version__
-from hthor.cli import assets, boards, calibrate, homes, lists, people, priors, runs, suite, tasks
+from hthor.cli import assets, boards, calibrate, compare, homes, lists, people, priors, runs, suite, tasks
 from hthor.errors import HthorError
 
 EPILOG = (
     "Exit codes: 0 done; 1 a check failed (a house, a task, a suite, a table, a gate of a calibration), or an error of "
     "our own; 2 wrong usage or input; 3 done, but the agent failed in some trials; 4 the agent's file does not load; "
+    "6 compare --fail-if-worse found a run worse than the first; "
     "75 the run is being written by another process; 130 interrupted, the same command resumes."
 )
 
@@ -28,6 +29,8 @@ app = typer.Typer(
 )
 app.command("eval")(runs.evaluate)
 app.command("score")(runs.score)
+app.command("compare")(compare.compare)
+app.command("power")(compare.power)
 app.command("replay")(runs.replay)
 app.command("calibrate")(calibrate.calibrate)
 app.add_typer(boards.app, name="leaderboard")

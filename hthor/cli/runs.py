@@ -97,6 +97,14 @@ def evaluate(
             show_default="runs/NAME-SUITE-HASH",
         ),
     ] = None,
+    control: Annotated[
+        bool,
+        typer.Option(
+            "--control/--no-control",
+            help="The same people also do the same tasks without a robot, unless such a run lies beside; the result "
+            "has the uplift over it.",
+        ),
+    ] = True,
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
 ) -> None:
@@ -127,6 +135,7 @@ def evaluate(
         participants=participants,
         jobs=jobs,
         out=out,
+        control=control,
     )
     paper = talk if json else screen.console()
     done: list[Done] = []
