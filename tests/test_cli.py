@@ -57,7 +57,8 @@ def done(hthor, tmp_path: Path) -> Path:
 def test_help_names_every_command_and_exit_code(hthor):
     said = hthor("--help")
     assert said.code == 0
-    for word in ("eval", "score", "replay", "leaderboard", "houses", "tasks", "agents", "agent", "humans", "robots"):
+    words = "eval score compare power replay leaderboard houses tasks agents agent humans robots"
+    for word in words.split():
         assert word in said.out
     for code in (0, 1, 2, 3, 4, 75, 130):
         assert str(code) in said.out.split("Exit codes")[1]
@@ -150,6 +151,42 @@ def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.
     assert "clumsy" in said.out
     assert "trials with a fault" in said.out
     assert {path.name for path in tmp_path.iterdir()} == {"silent", "clumsy"}
+
+
+def test_the_control_is_played_too_once_and_the_uplift_is_reported(hthor, tmp_path: Path, monkeypatch):
+    real = crews.introduce
+    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "silent" else fakes.character(name))
+    words = ("eval", "--agent", "helper", "--suite", "fake", "--jobs", "1")
+    said = hthor(*words, "--out", str(tmp_path / "run"))
+    assert said.code == 0
+    assert "control, no robot" in said.err
+    assert "uplift: success rate" in said.out
+    assert json.loads((tmp_path / "run" / "control" / "result.json").read_bytes())["name"] == "silent"
+    again = hthor(*words, "--out", str(tmp_path / "run"))
+    assert "control, no robot" not in again.err
+    assert "uplift: success rate" in again.out
+    assert "uplift" not in hthor(*words, "--out", str(tmp_path / "alone" / "run"), "--no-control").out
+
+
+def test_runs_are_compared_and_a_worse_one_fails(hthor, tmp_path: Path, monkeypatch):
+    monkeypatch.setattr(cast, "player", fakes.leaning_player)
+    real = crews.introduce
+    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "silent" else fakes.character(name))
+    agents = ("--agent", "silent", "--agent", "helper")
+    hthor("eval", *agents, "--suite", "fake", "--participants", "16", "--out", str(tmp_path), "--quiet")
+    silent, helper = str(tmp_path / "silent"), str(tmp_path / "helper")
+    said = hthor("compare", silent, helper, "--fail-if-worse")
+    assert said.code == 0
+    assert "helper is better than silent by" in said.out
+    assert "could have seen" in said.out
+    assert hthor("compare", helper, silent, "--fail-if-worse").code == 6
+    document = json.loads(hthor("compare", silent, helper, "--json").out)
+    assert document["schema"] == "hthor.compare/1"
+    assert document["pairs"][0]["better"] == "helper"
+    assert "paired" in hthor("power", silent, helper).out
+    assert json.loads(hthor("power", "--rates", "0.7,0.8", "--json").out)["schema"] == "hthor.power/1"
+    assert hthor("power").code == 2
+    assert hthor("compare", silent).code == 2
 
 
 def test_an_agents_faults_are_shown_with_a_way_to_look(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

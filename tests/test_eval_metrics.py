@@ -266,3 +266,29 @@ def test_scores_have_every_seat_and_every_pair():
     assert found.work[HUMAN].n == sum(fakes.episode(trial).met for trial in trials)
     assert found.progress.n == 0
     assert found.idle_s.mean > 0.0
+
+
+# ---------------------------------------------------------------------------------------------------------- the channel
+
+
+def test_messages_as_a_channel():
+    made = log(
+        (100, "robot", "sent", {"message": 0, "off": 3.0}),
+        (110, HUMAN, "shown", {"message": 0}),
+        (120, HUMAN, "confirmed", {"message": 0}),
+        (200, "robot2", "sent", {"message": 1, "off": 0.2}),
+        (210, HUMAN, "shown", {"message": 1}),
+        (300, "robot", "sent", {"message": 2, "off": 0.0}),
+        (310, HUMAN, "shown", {"message": 2}),
+        (320, HUMAN, "confirmed", {"message": 2}),
+        (400, "robot", "sent", {"message": 3}),
+        ticks=900,
+    )
+    found = metrics.measure(TRIAL, made)
+    assert found.precision == pytest.approx(2 / 3, abs=1e-6), "of three claims one was false"
+    assert found.first_useful_s == 30.0, "true, and confirmed"
+    assert found.interruptions_per_min == 2.0
+    silent = metrics.measure(TRIAL, log())
+    assert (silent.precision, silent.first_useful_s, silent.interruptions_per_min) == (None, None, 0.0)
+    alone = metrics.measure(ALONE, log())
+    assert (alone.precision, alone.first_useful_s, alone.interruptions_per_min) == (None, None, None)

@@ -52,7 +52,8 @@ def test_a_small_log_worked_out_by_hand():
     ]
     found = score.scores(made)
     assert [getattr(found, name).mean for name in main] == [0.666667, 0.5, 0.333333, 36.666667, 4.0]
-    assert found.sr.ci95 == (0.0, 1.0)
+    assert found.sr.ci95[0] < 0.2
+    assert found.sr.ci95[1] > 0.9
     assert all(getattr(found, name).n == 3 for name in main)
     counts = ("sent", "accepted", "declined", "covered", "unanswered", "false_claims")
     assert [getattr(found, name).mean for name in counts] == [1.0, 0.333333, 0.333333, 0.0, 0.333333, 0.0]
@@ -131,7 +132,7 @@ def test_faults_are_counted_and_their_trials_too(tmp_path):
 def test_the_stored_result_says_how_it_came_about(tmp_path):
     _played(tmp_path)
     document = msgspec.json.decode((tmp_path / "result.json").read_bytes())
-    assert document["schema"] == "hthor.result/3"
+    assert document["schema"] == "hthor.result/4"
     assert set(document["versions"]) >= {"hthor", "python", "mujoco", "dm_control", "numpy"}
     assert document["effort"]["trials"] == 20
     assert (tmp_path / "result.json").read_bytes() == jsonio.pretty(document)

@@ -35,6 +35,7 @@ HOUSES = ("alder", "elder")
 FOLDER = Path(tempfile.mkdtemp(prefix="hthor-tests-"))
 SUITE = FOLDER / "brief.json"
 EVAL = ("eval", "--agent", "frontier", "--humans", "proxy", "--suite", str(SUITE), "--participants", "2", "--quiet")
+EVAL += ("--no-control",)
 TRIALS = 12
 
 
@@ -214,6 +215,7 @@ def test_not_even_what_an_agent_started_outlives_the_run(tmp_path: Path):
         "--out",
         "run",
         "--quiet",
+        "--no-control",
     )
     with started(*words, cwd=tmp_path) as process:
         until(lambda: "sleep 600 " in processes(tmp_path), "the agent never began")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from statistics import NormalDist
 
 import numpy as np
@@ -9,76 +10,120 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hthor.eval import stats
+from hthor.eval import contrast, spread, stats
 
-TRUTH = NormalDist().cdf(0.9 / (1.0 + 1.0 + 0.16) ** 0.5)
-"""Success rate of `_world`."""
+NORMAL = NormalDist()
+TASK_SD, PERSON_SD = 1.0, 0.4
+"""How much tasks and people differ, beside a single trial's noise of 1, before the threshold of success."""
 
 
 def _names(count: int) -> tuple[list[str], list[int]]:
     return [f"t{number}" for number in range(count)], [number % 6 for number in range(count)]
 
 
-@settings(max_examples=25)
-@given(st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=40))
-def test_the_mean_lies_inside_its_interval(values: list[float]):
-    found = stats.estimate(values, *_names(len(values)), name="x")
+@settings(max_examples=25, deadline=None)
+@given(st.lists(st.floats(0, 1), min_size=1, max_size=40))
+def test_the_mean_lies_inside_its_interval_and_that_inside_the_bounds(values: list[float]):
+    found = stats.estimate(values, *_names(len(values)), within=stats.SHARE)
+    assert found.ci95 is not None
     low, high = found.ci95
-    assert low <= found.mean <= high
-    assert min(values) - 1e-6 <= low
-    assert high <= max(values) + 1e-6
+    assert -1e-6 <= low <= found.mean <= high <= 1.0 + 1e-6
 
 
-def test_equal_values_leave_no_doubt():
-    assert stats.estimate([0.25] * 30, *_names(30), name="x").ci95 == (0.25, 0.25)
+@settings(max_examples=25, deadline=None)
+@given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=40))
+def test_without_bounds_too(values: list[float]):
+    found = stats.estimate(values, *_names(len(values)))
+    assert found.ci95[0] <= found.mean <= found.ci95[1]
+    assert found.mde80 >= 0.0
 
 
-def test_nothing_is_nothing():
-    assert stats.estimate([], [], [], name="x") == stats.Estimate(mean=None, ci95=None, n=0)
+def test_all_alike_at_a_bound_is_not_certain():
+    low, high = stats.estimate([1.0] * 60, *_names(60), within=stats.SHARE).ci95
+    assert high == 1.0
+    assert 0.93 < low < 0.95, "sixty of sixty are consistent with one failure in twenty"
+    assert stats.estimate([3.0] * 60, *_names(60)).ci95 == (3.0, 3.0)
 
 
-def test_the_same_numbers_give_the_same_interval():
-    values = [float(number % 3 == 0) for number in range(60)]
-    assert stats.estimate(values, *_names(60), name="x") == stats.estimate(values, *_names(60), name="x")
-    assert stats.estimate(values, *_names(60), name="x") != stats.estimate(values, *_names(60), name="y")
+def test_nothing_is_nothing_and_one_trial_is_next_to_it():
+    assert stats.estimate([], [], []) == stats.Estimate(mean=None, ci95=None, n=0)
+    assert stats.estimate([2.0], ["t"], [0]) == stats.Estimate(mean=2.0, ci95=None, n=1)
+    low, high = stats.estimate([1.0], ["t"], [0], within=stats.SHARE).ci95
+    assert low < 0.1
+    assert high == 1.0
 
 
 def test_names_do_not_matter():
     values = [float(number % 3 == 0) for number in range(60)]
     tasks, people = _names(60)
-    renamed = stats.estimate(values, [name[::-1] + "z" for name in tasks], [9 - who for who in people], name="x")
-    assert renamed == stats.estimate(values, tasks, people, name="x")
+    renamed = stats.estimate(values, [name[::-1] + "z" for name in tasks], [9 - who for who in people])
+    assert renamed == stats.estimate(values, tasks, people)
 
 
-def _world(chance: np.random.Generator, tasks: int, people: int) -> np.ndarray:
-    """Successes (tasks, people) where both the task and the person matter."""
-    hard, able = chance.normal(0, 1.0, (tasks, 1)), chance.normal(0, 0.4, (1, people))
-    return (0.9 + hard + able + chance.normal(0, 1.0, (tasks, people)) > 0).astype(float)
+def test_the_same_name_gives_the_same_bootstrap():
+    values, tasks, people = (np.arange(60) % 3 == 0).astype(float), np.arange(60), np.arange(60) % 6
+    first, again, other = (stats.bootstrap(values, tasks, people, name=name, draws=50) for name in "xxy")
+    assert (first == again).all()
+    assert (first != other).any()
 
 
-def _coverage(crossed: bool, repeats: int = 120) -> float:
-    """How often a 95 % interval holds the true rate."""
-    chance = np.random.default_rng(7)
-    tasks = np.repeat(np.arange(30), 6) if crossed else np.arange(60)
-    people = np.tile(np.arange(6), 30) if crossed else np.arange(60) % 6
-    held = 0
-    for _ in range(repeats):
-        values = _world(chance, 30 if crossed else 60, 6)[tasks, people]
-        low, high = np.quantile(stats.bootstrap(values, tasks, people, name="x", draws=300), [0.025, 0.975])
-        held += low <= TRUTH <= high
-    return held / repeats
+def test_everybody_doing_everything_is_the_textbook_analysis_of_variance():
+    chance = np.random.default_rng(3)
+    table = chance.normal(size=(12, 1)) * 2 + chance.normal(size=(1, 7)) * 3 + chance.normal(size=(12, 7))
+    by_task = 7 * table.mean(1).var(ddof=1)
+    by_person = 12 * table.mean(0).var(ddof=1)
+    rest = table - table.mean(1, keepdims=True) - table.mean(0, keepdims=True) + table.mean()
+    noise = (rest**2).sum() / (11 * 6)
+    tasks, people = np.repeat(np.arange(12), 7), np.tile(np.arange(7), 12)
+    found = spread.two_way(table.ravel()[None], tasks, people)
+    assert found.variance[0] == pytest.approx((by_task + by_person - noise) / 84)
 
 
-@pytest.mark.parametrize("crossed", [True, False], ids=["everyone-does-all", "every-task-once"])
-def test_intervals_are_honest(crossed: bool):
-    assert _coverage(crossed) >= 0.9
+def test_every_task_once_is_the_spread_of_peoples_means():
+    chance = np.random.default_rng(3)
+    table = chance.normal(size=(6, 1)) * 3 + chance.normal(size=(6, 10))
+    found = spread.two_way(table.reshape(1, -1), np.arange(60), np.repeat(np.arange(6), 10))
+    assert found.variance[0] == pytest.approx(table.mean(1).var(ddof=1) / 6)
+    assert found.freedom[0] == 5
 
 
-def test_taking_trials_for_independent_would_not_be():
-    chance = np.random.default_rng(7)
-    held = 0
-    for _ in range(120):
-        values = _world(chance, 30, 6).ravel()
-        half = 1.96 * values.std() / len(values) ** 0.5
-        held += abs(values.mean() - TRUTH) <= half
-    assert held / 120 < 0.85
+DESIGNS = {
+    "everyone does all": (np.repeat(np.arange(30), 6), np.tile(np.arange(6), 30)),
+    "every task once": (np.arange(60), np.arange(60) // 10),
+    "every task once, many people": (np.arange(300), np.arange(300) // 10),
+    "three of everyone's tasks each": (np.tile(np.arange(60), 2), np.arange(120) // 10),
+}
+
+
+def _worlds(design: str, rate: float, repeats: int, seed: int = 7, **sd: float) -> np.ndarray:
+    """Successes (repeats, trials) of a true rate, where both the task and the person matter."""
+    tasks, people = DESIGNS[design]
+    chance = np.random.default_rng(seed)
+    of_task = chance.normal(0, TASK_SD, (repeats, tasks.max() + 1))
+    of_person = chance.normal(0, PERSON_SD, (repeats, people.max() + 1))
+    level = NORMAL.inv_cdf(rate) * math.sqrt(TASK_SD**2 + PERSON_SD**2 + 1.0)
+    noise = chance.normal(0, 1.0, (repeats, len(tasks)))
+    return (level + of_task[:, tasks] + of_person[:, people] + noise > 0).astype(float)
+
+
+@pytest.mark.parametrize("design", DESIGNS)
+def test_intervals_hold_the_truth_as_often_as_they_say(design: str):
+    tasks, people = DESIGNS[design]
+    found = spread.two_way(_worlds(design, 0.75, 1000), tasks, people)
+    low, high = stats.interval(found, len(tasks), stats.SHARE)
+    assert 0.93 <= np.mean((low <= 0.75) & (high >= 0.75)) <= 0.97
+
+
+@pytest.mark.parametrize("design", DESIGNS)
+def test_two_equal_robots_are_seldom_told_apart(design: str):
+    tasks, people = DESIGNS[design]
+    one, other = _worlds(design, 0.75, 1000), _worlds(design, 0.75, 1000, seed=8)
+    found = contrast.steadied(spread.two_way(one - other, tasks, people), len(tasks))
+    low, high = stats.interval(found, len(tasks))
+    assert 0.93 <= np.mean((low <= 0.0) & (high >= 0.0)) <= 0.98
+
+
+def test_taking_trials_for_independent_would_not_be_honest():
+    values = _worlds("everyone does all", 0.75, 300)
+    half = 1.96 * values.std(axis=1) / values.shape[1] ** 0.5
+    assert np.mean(np.abs(values.mean(axis=1) - 0.75) <= half) < 0.85

@@ -9,14 +9,15 @@ from typing import Annotated
 import typer
 
 from hthor import __version__
-from hthor.cli import assets, boards, calibrate, homes, lists, people, priors, reports, runs, shards, suite, tasks
+from hthor.cli import assets, boards, calibrate, compare, homes, lists, people, priors, reports, runs, shards, suite
+from hthor.cli import tasks
 from hthor.errors import HthorError
 
 EPILOG = (
     "Exit codes: 0 done; 1 a check failed (a house, a task, a suite, a table, a gate of a calibration, a merge that "
     "lacks trials), or an error of our own; 2 wrong usage or input; 3 done, but the agent failed in some trials; 4 the "
-    "agent's file does not load; 75 the run is being written by another process; 130 interrupted, the same command "
-    "resumes."
+    "agent's file does not load; 6 compare --fail-if-worse found a run worse than the first; 75 the run is being "
+    "written by another process; 130 interrupted, the same command resumes."
 )
 
 app = typer.Typer(
@@ -30,6 +31,8 @@ app = typer.Typer(
 app.command("eval")(runs.evaluate)
 app.command("merge")(shards.merge)
 app.command("score")(runs.score)
+app.command("compare")(compare.compare)
+app.command("power")(compare.power)
 app.command("replay")(runs.replay)
 app.command("report")(reports.report)
 app.command("case")(reports.case)

@@ -114,6 +114,14 @@ def evaluate(
     address: Annotated[
         str, typer.Option(help="With --engine ray: the cluster's address.", show_default="the one that is here")
     ] = "",
+    control: Annotated[
+        bool,
+        typer.Option(
+            "--control/--no-control",
+            help="The same people also do the same tasks without a robot, unless such a run lies beside; the result "
+            "has the uplift over it.",
+        ),
+    ] = True,
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
 ) -> None:
@@ -147,6 +155,7 @@ def evaluate(
         shard=shard,
         engine=engine,
         address=address,
+        control=control,
     )
     paper = talk if json else screen.console()
     done: list[Done] = []

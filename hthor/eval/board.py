@@ -18,8 +18,8 @@ from hthor.eval.setup import PROCEDURAL, AssetsRef, KindRef, Setup, SuiteRef
 from hthor.eval.shard import whole_folder
 from hthor.types import RobotSeat
 
-ENTRY_SCHEMA = "hthor.entry/3"
-SCHEMA = "hthor.leaderboard/3"
+ENTRY_SCHEMA = "hthor.entry/4"
+SCHEMA = "hthor.leaderboard/4"
 
 
 class Entry(Struct, frozen=True, kw_only=True):

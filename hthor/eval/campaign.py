@@ -11,7 +11,7 @@ from msgspec import Struct
 
 from hthor import detectors
 from hthor.errors import HthorError
-from hthor.eval import cast, crews, engines, peoples, programme, run, setup, shard
+from hthor.eval import cast, control, crews, engines, peoples, programme, run, setup, shard
 from hthor.eval.crews import Crew
 from hthor.eval.programme import Programme
 from hthor.eval.run import Watcher
@@ -25,7 +25,10 @@ RUNS = Path("runs")
 
 
 class Options(Struct, frozen=True, kw_only=True):
-    """What the user asked for, empty where the default depends on the rest."""
+    """What the user asked for, empty where the default depends on the rest.
+
+    With ``control``, the same people also do the same tasks without a robot, unless such a run lies there already.
+    """
 
     agents: tuple[str, ...] = ()
     robots: str = ""
@@ -42,6 +45,7 @@ class Options(Struct, frozen=True, kw_only=True):
     shard: str = ""
     engine: str = engines.LOCAL
     address: str = ""
+    control: bool = False
 
 
 class ClosableWatcher(Watcher, Protocol):
@@ -86,19 +90,59 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
     pack = cast.furnish(options.assets)
     shown = setup.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
     chosen = programme.choose(options.suite, options.kind)
-    found = _crews(options, chosen, detector)
-    parts = _parts(options, chosen, found, whom, shown)
-    for part in parts:
+    parts = _parts(options, chosen, _crews(options, chosen, detector), whom, shown)
+    controls = _controls(options, chosen, parts) if options.control and not options.shard else {}
+    for part in (*parts, *controls.values()):
         setup.examine(part.folder, part.plan)
         _engine(options, part.crew)  # is there such an engine?
     told: set[str] = set()
-    for part in parts:
+
+    def perform(part: Part) -> Result:
         watch = watcher(part.title)
         try:
-            result = _perform(options, chosen, part, watch, told)
+            return _perform(options, chosen, part, watch, told)
         finally:
             watch.close()
+
+    early: dict[Path, Result] = {}
+    for part in parts:
+        first = controls.get(part.folder)
+        if first is not None and first.folder not in early:
+            early[first.folder] = perform(first)
+        result = early[part.folder] if part.folder in early else perform(part)
+        early[part.folder] = result
         yield Done(plan=part.plan, folder=part.folder, result=result)
+
+
+def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dict[Path, Part]:
+    """For the folder of each run with robots that has no control yet, the run that is its control."""
+    crew = crews.form(["scout"], ["silent"])
+    found: dict[Path, Part] = {}
+    for part in parts:
+        if not part.plan.seats or control.find(part.folder, part.plan) is not None:
+            continue
+        same = [other for other in parts if other.people.sha256 == part.people.sha256]
+        asked = next((other for other in same if not other.plan.seats), None)
+        if asked is not None:
+            found[part.folder] = asked
+            continue
+        assets = part.plan.assets if options.assets else None
+        plan = setup.settle(
+            chosen.suite,
+            crew,
+            human=part.people,
+            seed=options.seed,
+            participants=options.participants,
+            kind=chosen.kind,
+            assets=assets,
+        )
+        if options.out is None:
+            folder = RUNS / plan.folder_name
+        else:
+            folder = part.folder / control.FOLDER if len(same) == 1 else part.folder.parent / plan.name
+        title = part.title.replace(part.plan.name, "control, no robot", 1)
+        found[part.folder] = Part(crew=crew, people=part.people, plan=plan, folder=folder, title=title)
+    return found
 
 
 def _parts(

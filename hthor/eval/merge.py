@@ -183,6 +183,6 @@ def _score(out: Path, plan: Setup, folders: Sequence[Path]) -> Result:
             cpu_s=round(sum(one.cpu_s for one in efforts), 3),
             trials=sum(one.trials for one in efforts),
         )
-    result = score.summarise(plan, log.fetch(there), records, effort)
+    result = score.summarise(plan, log.fetch(there), records, effort, control.beside(out, plan, records))
     score.store(out, result)
     return result

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import msgspec
 from msgspec import Struct
 
 from hthor import rules
 from hthor.comms import claims
 from hthor.episode import EpisodeLog
-from hthor.eval import deeds, hindrance
+from hthor.eval import channel, deeds, hindrance
 from hthor.types import HUMAN, TrialSpec
 
 DIGITS = 6
@@ -37,6 +39,10 @@ class TrialMetrics(Struct, frozen=True, kw_only=True):
     ``idle_s`` [s] is how long the person's body did nothing. ``in_way`` is how often a body met another in its way,
     ``hindered_s`` [s] what the person lost by that, and ``hindered_by`` [s] what each seat lost to each other. ``work``
     holds each seat's share of what was achieved, empty when nothing was.
+
+    ``precision`` is the share of the robots' claims that were true, None where there were none. ``first_useful_s`` [s]
+    is when the first true message was sent that the person confirmed, None without one. ``interruptions_per_min`` is
+    how many messages a minute came up before the person's eyes.
     """
 
     sr: int
@@ -54,6 +60,9 @@ class TrialMetrics(Struct, frozen=True, kw_only=True):
     covered: int | None = None
     unanswered: int | None = None
     false_claims: int | None = None
+    precision: float | None = None
+    first_useful_s: float | None = None
+    interruptions_per_min: float | None = None
     work: dict[str, float] = {}
     hindered_by: dict[str, float] = {}
 
@@ -62,6 +71,13 @@ BY_SEAT = ("work", "hindered_by")
 """Metrics that have several values, by name of a seat or of a pair of seats."""
 NAMES = tuple(name for name in TrialMetrics.__struct_fields__ if name not in BY_SEAT)
 """Metrics that have one value."""
+AMOUNT = (0.0, math.inf)
+"""The range of every metric that is not in `RANGES`."""
+RANGES = {
+    **dict.fromkeys(("sr", "twsr", "adoption", "progress", "precision", "work"), (0.0, 1.0)),
+    "trust": (float(rules.TRUST_MIN), float(rules.TRUST_MAX)),
+}
+"""The least and the greatest value of the metrics that have bounds."""
 
 
 def measure(spec: TrialSpec, log: EpisodeLog) -> TrialMetrics:
@@ -78,6 +94,9 @@ def measure(spec: TrialSpec, log: EpisodeLog) -> TrialMetrics:
         in_way=None if alone else hindrance.count(log),
         hindered_s=None if alone else _rounded(hindrance.of_person(log)),
         **({} if alone else msgspec.structs.asdict(messages(log))),
+        precision=None if alone else _maybe(channel.precision(log)),
+        first_useful_s=None if alone else _maybe(channel.first_useful_s(log)),
+        interruptions_per_min=None if alone else _maybe(channel.interruptions_per_min(log)),
         work={} if alone else {seat: _rounded(part) for seat, part in (deeds.shares(spec, log) or {}).items()},
         hindered_by={} if alone else {pair: _rounded(value) for pair, value in hindrance.by_pair(log).items()},
     )
@@ -108,7 +127,7 @@ def adoption(spec: TrialSpec, log: EpisodeLog) -> int | None:
 
 def messages(log: EpisodeLog) -> Messages:
     """What became of each message: the person confirmed it, declined it, or a newer one covered it before that."""
-    sent = [event for event in log.events if event.kind == "sent" and event.seat != HUMAN]
+    sent = channel.sent(log)
     numbers = {event.data.get("message") for event in sent}
     ends = {
         kind: len({event.data.get("message") for event in log.events if event.kind == kind} & numbers)
@@ -126,3 +145,7 @@ def messages(log: EpisodeLog) -> Messages:
 
 def _rounded(value: float) -> float:
     return round(value, DIGITS)
+
+
+def _maybe(value: float | None) -> float | None:
+    return None if value is None else _rounded(value)

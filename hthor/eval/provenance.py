@@ -15,7 +15,9 @@ _ABOVE = ("cli", "__main__.py", "eval", "calibration")
 _HASHED_BY_CONTENT = (  # each trial names those of its own house, suite and people
     *("houses/data", "houses/unseen", "tasks/suites", "humans/populations"),
 )
-_COUNTED = tuple(f"eval/{name}.py" for name in ("cast", "deeds", "hindrance", "metrics"))  # these decide trials' worth
+_COUNTED = tuple(
+    f"eval/{name}.py" for name in ("cast", "channel", "deeds", "hindrance", "metrics")
+)  # these decide trials' worth
 _SUFFIXES = (".py", ".json", ".txt", ".xml", ".csv")
 
 

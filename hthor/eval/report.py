@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from hthor.eval.contrast import Difference
 from hthor.eval.score import Result, Scores
 from hthor.eval.stats import Estimate
 
@@ -36,6 +37,14 @@ _MORE = (
     ("covered", "  covered by a newer one", ""),
     ("unanswered", "  unanswered", ""),
     ("false_claims", "messages that were false", ""),
+    ("precision", "true among its claims", "%"),
+    ("first_useful_s", "first useful message after", "s"),
+    ("interruptions_per_min", "messages shown, a minute", ""),
+)
+_UPLIFT = (
+    ("sr", "success rate", "points"),
+    ("twsr", "time-weighted success", "points"),
+    ("time_s", "time spent", "s"),
 )
 _ONLY_WHERE_KNOWN = ("progress",)
 
@@ -48,10 +57,19 @@ def result_table(result: Result, *, everything: bool = False) -> RenderableType:
     """
     title = f"{result.name}: {result.suite.name}, {result.counts.trials} trials, {result.humans.name} people"
     table = _table(title)
-    for heading in ("mean", "95 % interval", "trials"):
+    for heading in ("mean", "95 % interval", *(["could have seen"] if everything else []), "trials"):
         table.add_column(heading, justify="right")
-    for title, unit, estimate in _rows(result.metrics, everything):
-        table.add_row(title, number(estimate, unit), interval(estimate, unit), str(estimate.n))
+    later = enumerate(result.trust_by_trial if everything else (), 1)
+    rated = ((f"trust after a person's trial {number}", "", estimate) for number, estimate in later)
+    for title, unit, estimate in (*_rows(result.metrics, everything), *rated):
+        seen = [detectable(estimate, unit)] if everything else []
+        table.add_row(title, number(estimate, unit), interval(estimate, unit), *seen, str(estimate.n))
+    for name, title, unit in _UPLIFT if result.uplift else ():
+        gain: Difference = getattr(result.uplift, name)
+        ends = "–" if gain.ci95 is None else " … ".join(_gain(end, unit) for end in gain.ci95)
+        least = "–" if gain.mde80 is None else _gain(gain.mde80, unit).removeprefix("+")
+        seen = [least] if everything else []
+        table.add_row(f"uplift: {title}", f"{_gain(gain.difference, unit)} {unit}", ends, *seen, str(gain.n))
     return _doubted(table, [result.humans])
 
 
@@ -78,6 +96,8 @@ def comparison_table(results: Sequence[Result]) -> RenderableType:
         estimates = [getattr(result.metrics, name) for result in results]
         if any(estimate.n for estimate in estimates) or name not in _ONLY_WHERE_KNOWN:
             table.add_row(title, *(_cell(estimate, unit) for estimate in estimates))
+    if any(result.uplift for result in results):
+        table.add_row("uplift of success", *(_uplift_cell(result) for result in results))
     if any(result.counts.faults for result in results):
         table.add_row("trials with a fault", *(str(result.counts.faults) for result in results))
     return _doubted(table, [result.humans for result in results])
@@ -136,8 +156,24 @@ def interval(estimate: Estimate, unit: str) -> str:
     return f"{_scaled(low, unit)} … {_scaled(high, unit)}"
 
 
+def detectable(estimate: Estimate, unit: str) -> str:
+    """The smallest difference from a given number that these trials could have seen."""
+    return "–" if estimate.mde80 is None else _scaled(estimate.mde80, unit)
+
+
+def _gain(value: float, unit: str) -> str:
+    return f"{100.0 * value:+.1f}" if unit == "points" else f"{value:+.1f}"
+
+
 def _cell(estimate: Estimate, unit: str) -> str:
     return "–" if estimate.mean is None else f"{number(estimate, unit)}\n{interval(estimate, unit)}"
+
+
+def _uplift_cell(result: Result) -> str:
+    if result.uplift is None or result.uplift.sr.ci95 is None:
+        return "–"
+    gain = result.uplift.sr
+    return f"{_gain(gain.difference, 'points')} points\n" + " … ".join(_gain(end, "points") for end in gain.ci95 or ())
 
 
 def _scaled(value: float, unit: str) -> str:

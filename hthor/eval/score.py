@@ -13,16 +13,17 @@ from msgspec import Struct
 
 from hthor import jsonio
 from hthor.errors import RunError
-from hthor.eval import log, metrics, setup, stats
+from hthor.eval import control, log, metrics, setup, stats
 from hthor.eval.log import Place
 from hthor.eval.metrics import TrialMetrics
 from hthor.eval.peoples import HumansRef
 from hthor.eval.record import Record
 from hthor.eval.setup import AssetsRef, KindRef, Setup, SuiteRef
 from hthor.eval.stats import Estimate
+from hthor.eval.uplift import Uplift
 from hthor.types import RobotSeat
 
-SCHEMA = "hthor.result/3"
+SCHEMA = "hthor.result/4"
 
 
 class Scores(Struct, frozen=True, kw_only=True):
@@ -46,6 +47,9 @@ class Scores(Struct, frozen=True, kw_only=True):
     covered: Estimate
     unanswered: Estimate
     false_claims: Estimate
+    precision: Estimate
+    first_useful_s: Estimate
+    interruptions_per_min: Estimate
     work: dict[str, Estimate]
     hindered_by: dict[str, Estimate]
 
@@ -86,7 +90,11 @@ class Effort(Struct, frozen=True, kw_only=True):
 
 
 class Result(Struct, frozen=True, kw_only=True):
-    """The run's `result.json`."""
+    """The run's `result.json`.
+
+    ``trust_by_trial`` is the rating after the first, second, ... trial of a person's session, empty without a robot.
+    ``uplift`` is None where no whole run without a robot lay beside this one.
+    """
 
     schema: str = SCHEMA
     name: str
@@ -98,6 +106,8 @@ class Result(Struct, frozen=True, kw_only=True):
     participants: int
     metrics: Scores
     by_kind: dict[str, Scores]
+    trust_by_trial: tuple[Estimate, ...] = ()
+    uplift: Uplift | None = None
     counts: Counts
     versions: dict[str, str]
     hashes: Hashes
@@ -159,7 +169,13 @@ def check_origin(folder: Path, record: Record, plan: Setup) -> None:
             )
 
 
-def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], effort: Effort | None = None) -> Result:
+def summarise(
+    plan: Setup,
+    lines: Iterable[bytes],
+    records: Sequence[Record],
+    effort: Effort | None = None,
+    uplift: Uplift | None = None,
+) -> Result:
     """The result of the records of a run, whole or not."""
     trials = hashlib.sha256()
     for line in lines:
@@ -180,6 +196,8 @@ def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], ef
         participants=plan.participants,
         metrics=whole,
         by_kind=by_kind,
+        trust_by_trial=_by_trial(records),
+        uplift=uplift,
         counts=Counts(
             trials=len(records),
             tasks=len({record.spec.task.id for record in records}),
@@ -210,10 +228,20 @@ def scores(records: Sequence[Record]) -> Scores:
     return Scores(**single, work=_by_name(records, "work"), hindered_by=_by_name(records, "hindered_by"))
 
 
+def _by_trial(records: Sequence[Record]) -> tuple[Estimate, ...]:
+    """Trust after each trial of a session, in their order."""
+    rated = [record for record in records if record.metrics.trust is not None]
+    last = max((record.spec.index for record in rated), default=-1)
+    return tuple(
+        _score([record for record in rated if record.spec.index == index], "trust", attrgetter("trust"))
+        for index in range(last + 1)
+    )
+
+
 def _by_name(records: Sequence[Record], metric: str) -> dict[str, Estimate]:
     """An estimate for each name that the metric has values for, in the order in which they first come."""
     names = dict.fromkeys(name for record in records for name in getattr(record.metrics, metric))
-    return {name: _score(records, f"{metric} {name}", partial(_named, metric, name)) for name in names}
+    return {name: _score(records, metric, partial(_named, metric, name)) for name in names}
 
 
 def _named(metric: str, name: str, one: TrialMetrics) -> float | None:
@@ -228,7 +256,7 @@ def _score(records: Sequence[Record], name: str, value: Callable[[TrialMetrics],
         [found for found, _ in held],
         [spec.task.id for _, spec in held],
         [spec.participant for _, spec in held],
-        name=name,
+        within=metrics.RANGES.get(name, metrics.AMOUNT),
     )
 
 
@@ -239,9 +267,19 @@ def rescore(folder: Path) -> tuple[Setup, Result, Result | None]:
     """
     plan = setup.load(folder)
     lines, kept = records(folder, plan)
-    fresh = [msgspec.structs.replace(record, metrics=metrics.measure(record.spec, record.log)) for record in kept]
-    stored = load(folder)
-    return plan, summarise(plan, lines, fresh, stored.effort if stored else None), stored
+    fresh, stored = _measured(kept), load(folder)
+    effort = stored.effort if stored else None
+    return plan, summarise(plan, lines, fresh, effort, control.beside(folder, plan, fresh)), stored
+
+
+def measured(folder: Path) -> tuple[Setup, list[Record]]:
+    """A run's configuration and its records, every trial's metrics worked out anew from its events."""
+    plan = setup.load(folder)
+    return plan, _measured(records(folder, plan)[1])
+
+
+def _measured(kept: Iterable[Record]) -> list[Record]:
+    return [msgspec.structs.replace(record, metrics=metrics.measure(record.spec, record.log)) for record in kept]
 
 
 def load(folder: Path) -> Result | None:

@@ -24,7 +24,7 @@ from hthor.types import RobotSeat
 
 SCHEMA = "hthor.run/3"
 _NAME_MAX = 100
-_MADE_FIRST = (".lock", "trials.jsonl", ".run.json.*")  # a command that was killed early leaves these alone
+_MADE_FIRST = (".lock", "trials.jsonl", ".run.json.*", "control")  # a command that was killed early leaves these alone
 
 
 class SuiteRef(Struct, frozen=True, kw_only=True):

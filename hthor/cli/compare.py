@@ -1,0 +1,82 @@
+"""`hthor compare` and `hthor power`; knows what the user types, not how any of it is worked out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hthor.cli import screen
+
+_WORSE_EXIT = 6
+Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output.")]
+
+
+def compare(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RUN RUN...", help="Folders of runs with the same suite, people and seed; baseline first"
+        ),
+    ],
+    fail_if_worse: Annotated[
+        bool, typer.Option("--fail-if-worse", help="Exit with 6 when a run is worse in success than the first one.")
+    ] = False,
+    json: Json = False,
+) -> None:
+    """Say which run is better and by how much, trial by trial, or that these data cannot tell."""
+    from hthor.eval import compare as comparing
+    from hthor.eval import versus
+
+    found = comparing.runs(runs)
+    if json:
+        screen.put_json(found)
+    else:
+        paper = screen.console()
+        for pair in found.pairs:
+            paper.print(versus.table(pair))
+            if len(found.pairs) == 1:
+                for by in pair.groups:
+                    paper.print(versus.groups_table(pair, by))
+            for line in versus.lines(pair, len(found.pairs)):
+                screen.put_line(line)
+    talk = screen.console(talk=True)
+    for party in found.runs:
+        if party.trials < party.planned:
+            lacks = f"{party.name}: {party.planned - party.trials} of {party.planned} trials are not played yet."
+            talk.print(lacks, markup=False, highlight=False, soft_wrap=True)
+    if fail_if_worse and found.worse:
+        raise typer.Exit(_WORSE_EXIT)
+
+
+def power(
+    runs: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[RUN RUN]", help="Two runs to take rates and correlation from.", show_default=False),
+    ] = None,
+    rates: Annotated[
+        str, typer.Option(help="Instead, two success rates: 0.73,0.76.", metavar="RATE,RATE", show_default=False)
+    ] = "",
+    correlation: Annotated[
+        float | None,
+        typer.Option(help="Of the outcomes of the same trial with either robot.", show_default="0.5, or as measured"),
+    ] = None,
+    difference: Annotated[
+        float | None, typer.Option(help="Another difference than the two runs have: 0.03.", show_default=False)
+    ] = None,
+    wanted: Annotated[float, typer.Option("--power", min=0.5, max=0.99, help="Probability of seeing it.")] = 0.8,
+    json: Json = False,
+) -> None:
+    """Say how many tasks and people it takes to see a difference in success, paired and not."""
+    from hthor.eval import planning
+
+    found = planning.plan(tuple(runs or ()), rates, correlation, difference, wanted)
+    if json:
+        screen.put_json(found)
+        return
+    rows = [
+        (name, need.trials, need.people) for name, need in (("paired", found.paired), ("not paired", found.unpaired))
+    ]
+    screen.put_table(("", "tasks, once each, for either robot", "people, ten tasks each"), rows)
+    screen.put_line(found.sentence)

@@ -1,0 +1,171 @@
+"""The difference of two robots in one metric over the same trials, with what chance leaves of it; reads no files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from msgspec import Struct
+
+from hthor.eval import power, spread, stats
+from hthor.eval.pairing import Pair
+
+_DIGITS = 6
+SHARES = ("sr", "twsr", "adoption", "progress")
+"""Metrics that are shares."""
+UNITS = {"sr": "points", "twsr": "points", "adoption": "points", "progress": "points", "time_s": "s", "trust": ""}
+"""The metrics that are compared, and what their differences are counted in."""
+
+
+class Difference(Struct, frozen=True, kw_only=True):
+    """How much more the second robot has of a metric than the first, over ``n`` trials that both played.
+
+    Attributes:
+        first, second: the means over these trials. difference: the second less the first.
+        ci95: for new tasks and new people. p: two-sided, of no difference, as the interval has it.
+        mde80: the smallest true difference that so many such trials would have seen in four of five cases.
+        correlation: of the two robots' values of the same trial; None where one of them never varies.
+        gain: how many times fewer trials it takes because both robots met the same occasions: the variance of a trial's
+            difference if they had not, over what it is; None where there is no difference in any trial.
+        more_tasks: about how many more tasks, done once each, would show a difference of this size with a power of
+            80 %; 0 when these were enough, None when no number would do, because there is none.
+    """
+
+    n: int
+    first: float
+    second: float
+    difference: float
+    ci95: tuple[float, float] | None
+    p: float | None
+    mde80: float | None
+    correlation: float | None
+    gain: float | None
+    more_tasks: int | None
+
+    @property
+    def separated(self) -> bool:
+        """Whether chance alone would hardly give such a difference."""
+        return self.p is not None and self.p < 1.0 - stats.LEVEL
+
+
+class McNemar(Struct, frozen=True, kw_only=True):
+    """Trials in which only the first robot's person succeeded, and only the second's; the exact two-sided p of that.
+
+    It takes trials for independent, which those of one person are not quite.
+    """
+
+    only_first: int
+    only_second: int
+    p: float
+
+
+def of(pairs: Sequence[Pair], metric: str) -> Difference | None:
+    """The difference in a metric; None where no trial has it with both."""
+    held = [
+        (getattr(pair.one.metrics, metric), getattr(pair.other.metrics, metric), pair.one.spec)
+        for pair in pairs
+        if getattr(pair.one.metrics, metric) is not None and getattr(pair.other.metrics, metric) is not None
+    ]
+    if not held:
+        return None
+    first, second = (np.array([row[k] for row in held], dtype=np.float64) for k in (0, 1))
+    tasks, people = spread.codes([row[2].task.id for row in held]), spread.codes([row[2].participant for row in held])
+    return between(first, second, tasks, people, share=metric in SHARES)
+
+
+def between(first: np.ndarray, second: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, share: bool) -> Difference:
+    """The difference of two rows of values, (N,) each, of the same trials.
+
+    Args:
+        share: whether the values are shares. Two trials are then added, one for either robot, which keeps the interval
+            honest where the robots differ in few trials or none (Agresti and Min 2005).
+    """
+    count = len(first)
+    found = steadied(spread.two_way((second - first)[None], tasks, people), count) if share else None
+    found = found or spread.two_way((second - first)[None], tasks, people)
+    raw = float((second - first).mean())
+    centre, variance, freedom = (float(part[0]) for part in (found.mean, found.variance, found.freedom))
+    known = math.isfinite(variance)
+    low, high = (float(end[0]) for end in stats.interval(found, count))
+    if share:
+        low, high = max(low, -1.0), min(high, 1.0)
+    needed = float(stats.detectable(found, count)[0])
+    return Difference(
+        n=count,
+        first=_rounded(float(first.mean())),
+        second=_rounded(float(second.mean())),
+        difference=_rounded(raw),
+        ci95=(_rounded(min(low, raw)), _rounded(max(high, raw))) if known else None,
+        p=p_value(centre, variance, freedom) if known else None,
+        mde80=_rounded(needed) if known else None,
+        correlation=_correlation(first, second),
+        gain=_gain(first, second),
+        more_tasks=_more(raw, variance * count, count) if known else None,
+    )
+
+
+def steadied(found: spread.Spread, count: int) -> spread.Spread:
+    """The spread of a difference of shares with one trial more in which only the one did well, and one for the other.
+
+    Without it, two robots that never differed in sixty trials would be said to be equal beyond doubt.
+    """
+    scale = count / (count + 2.0)
+    return spread.Spread(
+        mean=found.mean * scale,
+        variance=found.variance * scale**2 + 1.0 / (count + 2.0) ** 2,
+        freedom=found.freedom,
+    )
+
+
+def p_value(centre: float, variance: float, freedom: float) -> float:
+    """Two-sided, of a mean of 0, by Student's t."""
+    if variance <= 0.0:
+        return 1.0 if centre == 0.0 else 0.0
+    from scipy import special  # comes with the core: scikit-image needs it
+
+    return float(f"{2.0 * float(special.stdtr(freedom, -abs(centre) / math.sqrt(variance))):.6g}")
+
+
+def mcnemar(pairs: Sequence[Pair]) -> McNemar:
+    """The exact test of success."""
+    only_first = sum(pair.one.metrics.sr > pair.other.metrics.sr for pair in pairs)
+    only_second = sum(pair.one.metrics.sr < pair.other.metrics.sr for pair in pairs)
+    return McNemar(only_first=only_first, only_second=only_second, p=exact(only_first, only_second))
+
+
+def exact(one: int, other: int) -> float:
+    """Probability of a split at least as uneven as this when either side is as likely."""
+    count, least = one + other, min(one, other)
+    below = sum(math.comb(count, k) for k in range(least + 1))
+    return float(f"{min(1.0, 2 * below / 2**count):.6g}")  # whole numbers to the end: nothing underflows
+
+
+def holm(p: Sequence[float]) -> list[float]:
+    """Holm's adjusted p-values for several comparisons at once, in the order given."""
+    order = sorted(range(len(p)), key=lambda k: (p[k], k))
+    adjusted, most = [0.0] * len(p), 0.0
+    for rank, k in enumerate(order):
+        most = max(most, min(1.0, (len(p) - rank) * p[k]))
+        adjusted[k] = float(f"{most:.6g}")
+    return adjusted
+
+
+def _more(difference: float, variance: float, count: int) -> int | None:
+    needed = power.trials_for(difference, variance)
+    return None if needed is None else max(0, needed - count)
+
+
+def _correlation(first: np.ndarray, second: np.ndarray) -> float | None:
+    one, other = first - first.mean(), second - second.mean()
+    both = math.sqrt(float((one**2).sum()) * float((other**2).sum()))
+    return round(float((one * other).sum()) / both, 4) if both > 1e-12 else None
+
+
+def _gain(first: np.ndarray, second: np.ndarray) -> float | None:
+    within = float((second - first).var())
+    return round(float(first.var() + second.var()) / within, 4) if within > 1e-12 else None
+
+
+def _rounded(value: float) -> float:
+    return round(value, _DIGITS) + 0.0

@@ -1,0 +1,98 @@
+"""How many trials it takes to see a difference, and how small a difference so many can see; reads no files."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import rules
+from hthor.errors import HthorError
+from hthor.eval import stats
+
+_MOST = 10**7
+
+
+class Need(Struct, frozen=True, kw_only=True):
+    """How many it takes for each robot: trials, which are tasks done once each, and people, who do ten each."""
+
+    difference: float
+    correlation: float
+    power: float
+    trials: int
+    people: int
+
+
+def variance_of_difference(first: float, second: float, correlation: float) -> float:
+    """Of one trial's difference in success, for success rates and the correlation of the same trial's outcomes."""
+    one, other = (rate * (1.0 - rate) for rate in (first, second))
+    return one + other - 2.0 * correlation * math.sqrt(one * other)
+
+
+def correlation_range(first: float, second: float) -> tuple[float, float]:
+    """The least and the greatest correlation that outcomes with these rates can have."""
+    spread = math.sqrt(first * (1.0 - first) * second * (1.0 - second))
+    if spread <= 0.0:
+        return 0.0, 0.0
+    return (
+        (max(0.0, first + second - 1.0) - first * second) / spread,
+        (min(first, second) - first * second) / spread,
+    )
+
+
+def need(first: float, second: float, *, correlation: float = 0.0, power: float = stats.POWER) -> Need:
+    """What it takes to tell two success rates apart, two-sided at 5 %, with tasks that are done once each.
+
+    Args:
+        correlation: of the outcomes of the same trial with either robot; 0 for runs that are not paired.
+        power: the wanted probability of seeing the difference.
+
+    Raises:
+        HthorError: when a rate or the correlation is impossible.
+    """
+    for name, rate in (("first", first), ("second", second)):
+        if not 0.0 <= rate <= 1.0:
+            raise HthorError(f"the {name} rate is {rate:g}, but must be from 0 to 1.")
+    low, high = correlation_range(first, second)
+    if not low - 1e-9 <= correlation <= high + 1e-9:
+        raise HthorError(
+            f"outcomes with rates {first:g} and {second:g} cannot correlate by {correlation:g}: "
+            f"it must be from {low:.2f} to {high:.2f}."
+        )
+    variance = variance_of_difference(first, second, correlation)
+    trials = trials_for(second - first, variance, power=power)
+    if trials is None:
+        raise HthorError("the two rates are equal, and no number of trials can tell them apart. Give two rates.")
+    return Need(
+        difference=round(second - first, 6),
+        correlation=round(correlation, 6),
+        power=power,
+        trials=trials,
+        people=math.ceil(trials / rules.SESSION_TASKS),
+    )
+
+
+def trials_for(difference: float, variance: float, *, power: float = stats.POWER) -> int | None:
+    """Trials whose mean difference is told from 0 with this power; None where there is no difference or no end.
+
+    Args:
+        variance: of one trial's difference, as independent trials would have it.
+    """
+    if difference == 0.0:
+        return None
+    few, many = 2, 4
+    while not _enough(many, difference, variance, power):
+        few, many = many, 2 * many
+        if many > _MOST:
+            return None
+    while many - few > 1:
+        middle = (few + many) // 2
+        few, many = (few, middle) if _enough(middle, difference, variance, power) else (middle, many)
+    return many
+
+
+def _enough(count: int, difference: float, variance: float, power: float) -> bool:
+    freedom = np.array(count - 1.0)
+    factor = float(stats.student(freedom, (1.0 + stats.LEVEL) / 2.0) + stats.student(freedom, power))
+    return factor * math.sqrt(variance / count) <= abs(difference)

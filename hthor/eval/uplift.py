@@ -1,0 +1,32 @@
+"""What the robots of a run add to people who do the same tasks without one; reads no files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from msgspec import Struct
+
+from hthor.eval import contrast, pairing
+from hthor.eval.contrast import Difference
+from hthor.eval.record import Record
+
+
+class Uplift(Struct, frozen=True, kw_only=True):
+    """The run less its control, trial by trial: the same people, on the same days, at the same tasks.
+
+    ``control`` is the hash of the control's configuration, as its result has it in ``hashes.run``.
+    """
+
+    control: str
+    sr: Difference
+    twsr: Difference
+    time_s: Difference
+
+
+def over(control: Sequence[Record], records: Sequence[Record], *, run: str) -> Uplift | None:
+    """The uplift of ``records`` over those of a control whose hash is ``run``; None without a trial in common."""
+    pairs = pairing.join(control, records).pairs
+    sr, twsr, time_s = (contrast.of(pairs, metric) for metric in ("sr", "twsr", "time_s"))
+    if sr is None or twsr is None or time_s is None:
+        return None
+    return Uplift(control=run, sr=sr, twsr=twsr, time_s=time_s)

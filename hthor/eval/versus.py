@@ -1,0 +1,93 @@
+"""A comparison of two runs as tables and lines for people; computes nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from hthor.eval.contrast import UNITS, Difference
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from hthor.eval.compare import Comparison
+
+_TITLES = {
+    "sr": "success rate",
+    "twsr": "time-weighted success",
+    "adoption": "adoption",
+    "progress": "progress",
+    "time_s": "time spent",
+    "trust": "trust (1 to 7)",
+}
+
+
+def table(pair: Comparison) -> Table:
+    """A row a metric."""
+    made = _table(f"{pair.second} against {pair.first}: {pair.tasks} tasks, {pair.people} people")
+    for heading in (pair.first, pair.second, "difference", "95 % interval", "could have seen", "p", "trials"):
+        made.add_column(heading, justify="right")
+    for metric, found in pair.differences.items():
+        made.add_row(_TITLES[metric], *_cells(found, UNITS[metric]))
+    return made
+
+
+def groups_table(pair: Comparison, by: str) -> Table:
+    """Success by kind, split, difficulty or scene."""
+    made = _table(f"success, by {by}")
+    for heading in (pair.first, pair.second, "difference", "95 % interval", "could have seen", "p", "trials"):
+        made.add_column(heading, justify="right")
+    for name, found in pair.groups[by].items():
+        made.add_row(name.replace("_", " "), *_cells(found, "points"))
+    return made
+
+
+def lines(pair: Comparison, among: int) -> Iterator[str]:
+    """The rest in words, the verdict last."""
+    mcnemar, tally = pair.mcnemar, pair.tally
+    yield (
+        f"success in one of the two only: {mcnemar.only_second} times {pair.second}, {mcnemar.only_first} times "
+        f"{pair.first}; exact McNemar p = {mcnemar.p:.3g}"
+    )
+    yield (
+        f"{pair.second} was better in time-weighted success in {tally.wins} trials, the same in {tally.ties}, worse in "
+        f"{tally.losses}"
+    )
+    if any(pair.dropped):
+        yield f"without a partner: {pair.dropped[0]} trials of {pair.first}, {pair.dropped[1]} of {pair.second}"
+    if among > 1:
+        yield f"p among {among} comparisons (Holm): {pair.p_holm:.3g}"
+    yield pair.sentence
+
+
+def difference(found: Difference, unit: str) -> str:
+    """A difference with its interval, in one line."""
+    if found.ci95 is None:
+        return f"{_signed(found.difference, unit)} {unit}".rstrip()
+    low, high = (_signed(end, unit) for end in found.ci95)
+    return f"{_signed(found.difference, unit)} {unit} (95 % interval {low} to {high}, {found.n} trials)"
+
+
+def _cells(found: Difference, unit: str) -> Iterator[str]:
+    yield from (_plain(found.first, unit), _plain(found.second, unit), _signed(found.difference, unit))
+    yield "–" if found.ci95 is None else " … ".join(_signed(end, unit) for end in found.ci95)
+    yield "–" if found.mde80 is None else _plain(found.mde80, unit)
+    yield "–" if found.p is None else f"{found.p:.3g}"
+    yield str(found.n)
+
+
+def _plain(value: float, unit: str) -> str:
+    return f"{100.0 * value:.1f}" if unit == "points" else f"{value:.1f}"
+
+
+def _signed(value: float, unit: str) -> str:
+    return f"{100.0 * value:+.1f}" if unit == "points" else f"{value:+.1f}"
+
+
+def _table(title: str) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("")
+    return table

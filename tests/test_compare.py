@@ -1,0 +1,179 @@
+"""Comparisons: mirrors, agents against themselves, textbook tests, refusals, and verdicts that come out right."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import eval_fakes as fakes
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import stats as scipy_stats
+
+from hthor.errors import HthorError, RunError
+from hthor.eval import compare, contrast, control, pairing, planning, power, progress, run, score, setup
+
+
+def _run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, make=fakes.player, count: int = 60) -> Path:
+    plan, dealt = fakes.run_of(count, name=name, absent=absent, seed=seed)
+    run.evaluate(plan, dealt, make, folder=folder / name, jobs=1, watch=progress.Silent())
+    return folder / name
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An agent, the same under another name, and one beside which people succeed more often than alone."""
+    folder = tmp_path_factory.mktemp("runs")
+    _run(folder, "helper")
+    _run(folder, "twin")
+    leaning = folder / "leaning"
+    _run(leaning, "alone", absent=True, make=fakes.leaning_player)
+    _run(leaning, "better", make=fakes.leaning_player)
+    return folder
+
+
+def test_an_agent_cannot_be_told_from_itself_under_another_name(runs: Path):
+    pair = compare.runs([runs / "helper", runs / "twin"]).pairs[0]
+    assert pair.n == 60
+    assert pair.better == ""
+    assert pair.differences["sr"].p == 1.0
+    assert pair.differences["sr"].ci95[1] > 0.0, "sixty trials do not prove that two agents are the same"
+    assert (pair.tally.wins, pair.tally.ties, pair.tally.losses) == (0, 60, 0)
+    assert pair.sentence.startswith("These data cannot tell twin from helper: +0.0 points")
+
+
+def test_what_is_better_is_said_to_be_and_by_how_much(runs: Path):
+    found = compare.runs([runs / "leaning" / "alone", runs / "leaning" / "better"])
+    pair = found.pairs[0]
+    assert pair.better == "better"
+    assert pair.differences["sr"].p < 0.001
+    assert pair.sentence.startswith("better is better than alone by 4")
+    assert "adoption" not in pair.differences, "without a robot there is nothing to adopt"
+    assert set(pair.groups) == {"kind", "scene"}
+    assert sum(one.n for one in pair.groups["scene"].values()) == pair.n
+    assert not found.worse
+    assert compare.runs([runs / "leaning" / "better", runs / "leaning" / "alone"]).worse
+
+
+def test_a_comparison_is_the_mirror_of_its_mirror(runs: Path):
+    one, other = (runs / "leaning" / name for name in ("alone", "better"))
+    here, there = compare.runs([one, other]).pairs[0], compare.runs([other, one]).pairs[0]
+    assert here.better == there.better
+    for metric, found in here.differences.items():
+        turned = there.differences[metric]
+        assert (found.difference, found.p, found.n) == (-turned.difference, turned.p, turned.n)
+        assert found.ci95 == (-turned.ci95[1], -turned.ci95[0])
+        assert (found.mde80, found.more_tasks) == (turned.mde80, turned.more_tasks)
+    assert (here.mcnemar.only_first, here.mcnemar.p) == (there.mcnemar.only_second, there.mcnemar.p)
+    assert (here.tally.wins, here.tally.losses) == (there.tally.losses, there.tally.wins)
+
+
+@given(st.integers(0, 60), st.integers(0, 60))
+def test_mcnemar_is_the_binomial_test(one: int, other: int):
+    expected = scipy_stats.binomtest(one, one + other).pvalue if one + other else 1.0
+    assert contrast.exact(one, other) == pytest.approx(expected, rel=1e-4)
+
+
+@given(st.lists(st.floats(0, 1), min_size=1, max_size=8))
+def test_holm_is_never_bolder_than_one_test_nor_shyer_than_bonferroni(p: list[float]):
+    adjusted = contrast.holm(p)
+    for before, after in zip(p, adjusted, strict=True):
+        assert before - 1e-6 <= after <= min(1.0, before * len(p)) + 1e-6
+    assert sorted(range(len(p)), key=lambda k: (p[k], k)) == sorted(range(len(p)), key=lambda k: (adjusted[k], p[k], k))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(st.tuples(st.booleans(), st.booleans()), min_size=2, max_size=50))
+def test_the_interval_and_p_say_the_same(outcomes: list[tuple[bool, bool]]):
+    first, second = (np.array([pair[k] for pair in outcomes], dtype=float) for k in (0, 1))
+    found = contrast.between(first, second, np.arange(len(first)), np.arange(len(first)) // 10, share=True)
+    low, high = found.ci95
+    assert low <= found.difference <= high
+    assert found.separated == (low > 0.0 or high < 0.0)
+
+
+def test_several_runs_are_compared_pair_by_pair(runs: Path):
+    found = compare.runs([runs / "helper", runs / "twin", runs / "helper"])
+    assert [party.name for party in found.runs] == ["helper (helper) #1", "twin", "helper (helper) #3"]
+    assert len(found.pairs) == 3
+    assert all(pair.p_holm == 1.0 for pair in found.pairs)
+
+
+def test_other_conditions_are_refused_by_name(runs: Path, tmp_path: Path):
+    other = _run(tmp_path, "helper", seed=1, count=10)
+    with pytest.raises(RunError, match=r"suite\.sha256 is .* other tasks"):
+        compare.runs([runs / "helper", other])
+    plan = setup.load(runs / "helper")
+    changes = {
+        "seed": msgspec.structs.replace(plan, seed=9),
+        "humans.sha256": msgspec.structs.replace(plan, humans=msgspec.structs.replace(plan.humans, sha256="0" * 64)),
+        "rules_sha256": msgspec.structs.replace(plan, rules_sha256="0" * 64),
+        "code_sha256": msgspec.structs.replace(plan, code_sha256="0" * 64),
+    }
+    for field, changed in changes.items():
+        assert pairing.difference(plan, changed) == field
+
+
+def test_an_occasion_is_the_trial_without_a_robot():
+    with_robot, without = (fakes.run_of(20, absent=absent)[1][1].trials[3] for absent in (False, True))
+    assert pairing.occasion(with_robot) == pairing.occasion(without)
+    assert pairing.occasion(with_robot) != pairing.occasion(msgspec.structs.replace(with_robot, index=4))
+
+
+# ------------------------------------------------------------------------------------------------------------- uplift
+
+
+def test_uplift_is_the_comparison_with_the_run_without_a_robot_that_lies_beside(runs: Path):
+    folder = runs / "leaning"
+    result = score.load(folder / "better")
+    assert result.uplift is not None
+    assert result.uplift.control == score.load(folder / "alone").hashes.run
+    assert result.uplift.sr == compare.runs([folder / "alone", folder / "better"]).pairs[0].differences["sr"]
+    assert score.load(folder / "alone").uplift is None
+    assert score.load(runs / "helper").uplift is None, "nothing without a robot lies beside it"
+    assert score.rescore(folder / "better")[1] == result
+
+
+def test_half_a_control_is_none(tmp_path: Path):
+    folder = _run(tmp_path, "helper", count=20)
+    alone = _run(tmp_path, "alone", absent=True, count=20)
+    assert control.find(folder, setup.load(folder)) is not None
+    lines = (alone / "trials.jsonl").read_bytes().splitlines(keepends=True)
+    (alone / "trials.jsonl").write_bytes(b"".join(lines[:-1]))
+    assert control.find(folder, setup.load(folder)) is None
+
+
+# -------------------------------------------------------------------------------------------------------------- power
+
+
+def test_power_of_textbook_size():
+    found = power.need(0.73, 0.76)
+    assert 3_250 <= found.trials <= 3_350
+    assert found.people == -(-found.trials // 10)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.1, 0.9), st.floats(0.02, 0.09), st.floats(0.0, 0.6))
+def test_more_correlation_and_larger_differences_need_less(rate: float, gap: float, correlation: float):
+    plain = power.need(rate, rate + gap)
+    assert power.need(rate, rate + gap, correlation=correlation).trials <= plain.trials
+    assert power.need(rate, rate + gap / 2).trials >= plain.trials
+
+
+def test_what_cannot_be_is_refused():
+    for first, second, correlation, said in ((0.5, 1.2, 0.0, "second rate"), (0.1, 0.9, 0.9, "cannot correlate")):
+        with pytest.raises(HthorError, match=said):
+            power.need(first, second, correlation=correlation)
+    with pytest.raises(HthorError, match="equal"):
+        power.need(0.5, 0.5)
+    with pytest.raises(HthorError, match="two rates"):
+        planning.plan((), "0.5", None, None, 0.8)
+
+
+def test_a_plan_from_two_runs_has_their_rates_and_correlation(runs: Path):
+    found = planning.plan([runs / "leaning" / "alone", runs / "leaning" / "better"], "", None, None, 0.8)
+    assert found.measured
+    assert found.paired.trials < found.unpaired.trials
+    assert found.second > found.first
