@@ -10,15 +10,16 @@ from typing import Protocol
 
 from msgspec import Struct
 
-from hthor import detectors
+from hthor import detectors, guest, jsonio
 from hthor.errors import HthorError
-from hthor.eval import cast, crews, peoples, programme, run, setup
+from hthor.eval import cast, crews, guarded, peoples, programme, provenance, run, setup
 from hthor.eval.crews import Crew
 from hthor.eval.programme import Programme
 from hthor.eval.run import Watcher
 from hthor.eval.score import Result
 from hthor.eval.session import sessions
 from hthor.eval.setup import Setup
+from hthor.guest import Isolation
 from hthor.humans.people import PROXY, People
 from hthor.tasks import library
 
@@ -40,6 +41,8 @@ class Options(Struct, frozen=True, kw_only=True):
     participants: int | None = None
     jobs: int | None = None
     out: Path | None = None
+    isolation: str = "auto"
+    require_isolation: str = ""
 
 
 class ClosableWatcher(Watcher, Protocol):
@@ -79,19 +82,23 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
         raise HthorError(
             "name an agent with --agent, or robots and their agents with --robots tall:oracle,small:oracle."
         )
+    guest.confine_guests(options.isolation, _hidden(options))
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))  # for what agents import of ours
     whom = peoples.expand(options.humans)
     detector = detectors.tidy(options.detector)
     pack = cast.furnish(options.assets)
     shown = setup.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
     chosen = programme.choose(options.suite, options.kind)
     parts = _parts(options, chosen, _crews(options, chosen, detector), whom, shown)
+    held = guarded.settle(options.isolation, options.require_isolation, any(part.crew.minds for part in parts))
     for part in parts:
         setup.examine(part.folder, part.plan)
+        guarded.weakest(part.folder, held, options.require_isolation)
     told: set[str] = set()
     for part in parts:
         watch = watcher(part.title)
         try:
-            result = _perform(options, chosen, part, watch, told)
+            result = _perform(options, chosen, part, watch, told, held if part.crew.minds else None)
         finally:
             watch.close()
         yield Done(plan=part.plan, folder=part.folder, result=result)
@@ -127,7 +134,14 @@ def _parts(
     return parts
 
 
-def _perform(options: Options, chosen: Programme, part: Part, watch: ClosableWatcher, told: set[str]) -> Result:
+def _perform(
+    options: Options,
+    chosen: Programme,
+    part: Part,
+    watch: ClosableWatcher,
+    told: set[str],
+    held: Isolation | None,
+) -> Result:
     """One run. What was ``told`` of an earlier one is not told again."""
     crew, plan, folder = part.crew, part.plan, part.folder
     dealt = sessions(
@@ -156,8 +170,19 @@ def _perform(options: Options, chosen: Programme, part: Part, watch: ClosableWat
         people=part.people.word,
     )
     make = functools.partial(cast.player, sources)
+    if held is not None:
+        hidden = (*_hidden(options), str(folder.resolve()))
+        make = functools.partial(guarded.player, sources, held.level, hidden)
+        extra[guarded.NAME] = jsonio.pretty(guarded.weakest(folder, held, options.require_isolation))
     jobs = options.jobs or len(os.sched_getaffinity(0))
     return run.evaluate(plan, dealt, make, folder=folder, jobs=jobs, watch=watch, extra=extra)
+
+
+def _hidden(options: Options) -> tuple[str, ...]:
+    """What no agent may read, even if it lies in its own folder: runs, tasks and people."""
+    words = (*options.humans, options.suite, options.kind, str(options.out or ""))
+    places = [RUNS, *(Path(word.rpartition("@")[2]) for word in words if word)]
+    return tuple(str(path.resolve()) for path in places if path.exists())
 
 
 def _crews(options: Options, chosen: Programme, detector: str) -> list[Crew]:

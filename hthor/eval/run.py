@@ -13,7 +13,7 @@ from typing import Protocol
 
 from hthor import jsonio
 from hthor.errors import HthorError, RunError
-from hthor.eval import record, runner, score, setup
+from hthor.eval import guarded, record, runner, score, setup
 from hthor.eval.log import Log
 from hthor.eval.runner import Make
 from hthor.eval.score import Effort, Result
@@ -127,7 +127,8 @@ class InternalFailure(HthorError):
 def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
     lines, records = score.records(folder, plan)
     stored = score.load(folder)
-    result = score.summarise(plan, lines, records, effort or (stored.effort if stored else None))
+    spent = effort or (stored.effort if stored else None)
+    result = score.summarise(plan, lines, records, spent, guarded.load(folder))
     if result != stored:
         score.store(folder, result)
     return result

@@ -13,12 +13,13 @@ from msgspec import Struct
 
 from hthor import jsonio
 from hthor.errors import RunError
-from hthor.eval import log, metrics, setup, stats
+from hthor.eval import guarded, log, metrics, setup, stats
 from hthor.eval.metrics import TrialMetrics
 from hthor.eval.peoples import HumansRef
 from hthor.eval.record import Record
 from hthor.eval.setup import AssetsRef, KindRef, Setup, SuiteRef
 from hthor.eval.stats import Estimate
+from hthor.guest import Isolation
 from hthor.types import RobotSeat
 
 SCHEMA = "hthor.result/3"
@@ -101,6 +102,7 @@ class Result(Struct, frozen=True, kw_only=True):
     versions: dict[str, str]
     hashes: Hashes
     assets: AssetsRef
+    isolation: Isolation | None = None
     effort: Effort | None = None
 
 
@@ -139,7 +141,13 @@ def _check_origin(folder: Path, record: Record, plan: Setup) -> None:
             )
 
 
-def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], effort: Effort | None = None) -> Result:
+def summarise(
+    plan: Setup,
+    lines: Iterable[bytes],
+    records: Sequence[Record],
+    effort: Effort | None = None,
+    isolation: Isolation | None = None,
+) -> Result:
     """The result of the records of a run, whole or not."""
     kinds = sorted({record.spec.task.kind for record in records})
     whole = scores(records)
@@ -177,6 +185,7 @@ def summarise(plan: Setup, lines: Iterable[bytes], records: Sequence[Record], ef
             trials=hashlib.sha256(b"".join(lines)).hexdigest(),
         ),
         assets=plan.assets,
+        isolation=isolation,
         effort=effort,
     )
 
@@ -218,7 +227,7 @@ def rescore(folder: Path) -> tuple[Setup, Result, Result | None]:
     lines, kept = records(folder, plan)
     fresh = [msgspec.structs.replace(record, metrics=metrics.measure(record.spec, record.log)) for record in kept]
     stored = load(folder)
-    return plan, summarise(plan, lines, fresh, stored.effort if stored else None), stored
+    return plan, summarise(plan, lines, fresh, stored.effort if stored else None, guarded.load(folder)), stored
 
 
 def load(folder: Path) -> Result | None:

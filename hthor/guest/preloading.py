@@ -1,0 +1,40 @@
+"""Imports the libraries that an agent's file names, once for all its trials; never a line of the file itself.
+
+Only installed libraries and the parts of this package that minds are made with count. Whatever goes wrong here is left
+for the file's own import to meet.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import gc
+import importlib
+from pathlib import Path
+
+_OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "hthor.catalog", "hthor.rules")
+
+
+def preload(path: Path) -> None:
+    """Import what the file is going to import, and keep it out of the way of forks."""
+    for name in _named(path):
+        if name.partition(".")[0] != "hthor" or name.startswith(_OURS):
+            with contextlib.suppress(BaseException):
+                importlib.import_module(name)
+    gc.collect()
+    gc.freeze()
+
+
+def _named(path: Path) -> list[str]:
+    """Modules that a file imports by name at its top level."""
+    try:
+        tree = ast.parse(path.read_bytes())
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
+        return []
+    found: list[str] = []
+    for node in tree.body:
+        if isinstance(node, ast.Import):
+            found += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            found.append(node.module)
+    return list(dict.fromkeys(found))
