@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from hthor.errors import RunError
-from hthor.guest import Isolation, IsolationError, suffices
+from hthor.guest import Isolation, IsolationError
+from hthor.guest.confinement import known, suffices
 
 if TYPE_CHECKING:
     from hthor.eval.cast import Sources
@@ -33,6 +34,8 @@ def settle(wanted: str, required: str, minds: bool) -> Isolation | None:
     Raises:
         IsolationError: when the level cannot be had, or is less than required.
     """
+    if required:
+        known(required, auto=False)
     if not minds:
         return None
     from hthor import guest

@@ -87,6 +87,7 @@ class Guest:
         cls: the class to use when the file has several.
         start_s: seconds for loading the file, and again for every ``begin``.
         step_s: seconds for each ``act``; what the host takes to answer (rendering) does not count.
+        bank_s: seconds in a trial by which its ``act`` may take longer than that, all together.
         isolation: "L1", "L2", "L3", or "auto" for the strongest that the machine gives; by default what
             `confine_guests` has laid down for this process.
         memory_mb: memory that it may hold. disk_mb: what it may write in a trial.
@@ -99,12 +100,14 @@ class Guest:
         *,
         start_s: float = 60.0,
         step_s: float = 5.0,
+        bank_s: float = 60.0,
         isolation: str | None = None,
         memory_mb: int = 4096,
         disk_mb: int = 256,
     ) -> None:
         self._path, self._class = _parse(path, cls)
-        self._start_s, self._step_s = start_s, step_s
+        self._start_s, self._step_s, self._bank_s = start_s, step_s, bank_s
+        self._bank = bank_s
         self._isolation, self._memory_mb, self._disk_mb = isolation, memory_mb, disk_mb
         self._process: Process | None = None
         self._info: GuestInfo | None = None
@@ -156,7 +159,7 @@ class Guest:
         answer, _ = self._receive(self._start_s)
         if not isinstance(answer, wire.Done):
             raise self._wrong("begin", answer)
-        self._playing = True
+        self._playing, self._bank = True, self._bank_s
 
     def act(self, observation: Observation) -> Action:
         """The agent's action.
@@ -168,7 +171,7 @@ class Guest:
             raise GuestFault("died", "the agent has no trial: begin was not called, or it failed before")
         slim = tuple(msgspec.structs.replace(message, image=None) for message in observation.inbox)
         self._send(wire.Look(observation=msgspec.structs.replace(observation, senses=None, inbox=slim)), self._step_s)
-        left = self._step_s
+        left = granted = self._step_s + self._bank
         for _ in range(_ASKS):
             answer, left = self._receive(left)
             if isinstance(answer, wire.Ask):
@@ -177,6 +180,7 @@ class Guest:
                 wrong = wire.objection(answer.action)
                 if wrong:
                     raise self._fault(*wrong)
+                self._bank -= max(0.0, granted - left - self._step_s)
                 return answer.action
             else:
                 raise self._wrong("act", answer)
@@ -253,7 +257,7 @@ class Guest:
         try:
             keepers, body = self._running().read(wire.MOST_BYTES, end)
         except TimeIsUp:
-            raise self._fault("timeout", f"the agent gave no answer within {seconds:g} s") from None
+            raise self._fault("timeout", f"the agent gave no answer within {seconds:.3g} s") from None
         except HungUp:
             raise self._fault("died", self._running().obituary()) from None
         if isinstance(body, int):

@@ -43,7 +43,8 @@ def main(read: int, tell: int, write: int, parent: int) -> None:
     order = pipe.receive()
     if not isinstance(order, wire.Load):
         os._exit(1)
-    guard = _guard_group((read, tell, write), order.policy.scratch) if parent else 0
+    if parent:
+        _leave_guard((read, tell, write), order.policy.scratch)
     try:
         limits.renounce()
         if sys.platform == "linux":
@@ -55,7 +56,7 @@ def main(read: int, tell: int, write: int, parent: int) -> None:
     preload(Path(order.path))
     pid = _fork(pipe, tell, order, held, first=True)
     while True:
-        own.send(_watch(pid, order, guard))
+        own.send(_watch(pid, order))
         if not _called(read):
             return
         pid = _fork(pipe, tell, order, held, first=False)
@@ -69,26 +70,36 @@ def _called(read: int) -> bool:
     return bool(event & select.POLLIN)
 
 
-def _guard_group(pipes: tuple[int, ...], scratch: str) -> int:
-    """Leave a process behind that ends the whole group when this process ends: an agent may have started others."""
-    me = os.getpid()
-    if sys.platform != "linux" or os.getpgrp() != me:
-        return 0
-    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGUSR1})
-    if pid := os.fork():
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGUSR1})
-        return pid
+def _leave_guard(pipes: tuple[int, ...], scratch: str) -> None:
+    """Go on as a child of a guard, which outlives us and the host for just as long as it takes to end all we started.
+
+    Whatever loses its parent comes to the guard, even if it has left the group.
+    """
+    if sys.platform != "linux":
+        return
+    me, awaited = os.getpid(), {signal.SIGUSR1, signal.SIGCHLD}
+    signal.pthread_sigmask(signal.SIG_BLOCK, awaited)
+    pid = os.fork()
+    if not pid:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, awaited)
+        limits.die_with(me)
+        return
+    status = 0
     try:
-        kernel.prctl("outliving", kernel.PR_SET_PDEATHSIG, int(signal.SIGUSR1))
+        host = os.getppid()
+        kernel.prctl("outliving the host", kernel.PR_SET_PDEATHSIG, int(signal.SIGUSR1))
+        kernel.prctl("adopting orphans", _SUBREAPER, 1)
         for handle in (*pipes, 1, 2):  # the host takes an open end for a guest that lives
             os.close(handle)
-        if os.getppid() == me:
-            signal.sigwait({signal.SIGUSR1})
+        while os.getppid() == host and not status:
+            signal.sigwait(awaited)
+            ended, found = os.waitpid(-1, os.WNOHANG)
+            status = 1 + min(254, abs(os.waitstatus_to_exitcode(found))) if ended == pid else 0
+        end_descendants(me)
         empty(scratch)
         os.rmdir(scratch)
     finally:
-        os.killpg(me, signal.SIGKILL)
-        os._exit(0)
+        os._exit(max(0, status - 1))
 
 
 def _fork(pipe: Pipe, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool) -> int:
@@ -106,7 +117,7 @@ def _fork(pipe: Pipe, tell: int, order: wire.Load, held: Ruleset | None, *, firs
         os._exit(1)
 
 
-def _watch(pid: int, order: wire.Load, guard: int) -> wire.KeeperToHost:
+def _watch(pid: int, order: wire.Load) -> wire.KeeperToHost:
     """Wait for a child's end, which comes early if it takes too much; what to say of it."""
     policy = order.policy
     found = None
@@ -121,25 +132,12 @@ def _watch(pid: int, order: wire.Load, guard: int) -> wire.KeeperToHost:
         os.kill(pid, signal.SIGKILL)
     _, status = os.waitpid(pid, 0)
     if policy.level == "L1":
-        _end_orphans(guard)
+        end_descendants(os.getpid())
     empty(policy.scratch)
     code = os.waitstatus_to_exitcode(status)
     if found:
         return wire.Failed(kind=found[0], detail=found[1])
     return wire.Over() if code == child.ORDERLY else wire.Failed(kind="died", detail=_last_words(code))
-
-
-def _end_orphans(guard: int) -> None:
-    """End what a child has left: its processes become ours when it ends, however far it has sent them away."""
-    me = os.getpid()
-    for _ in range(100):
-        left = [pid for pid in _families().get(me, []) if pid != guard]
-        if not left:
-            return
-        for pid in left:
-            with contextlib.suppress(OSError):
-                os.kill(pid, signal.SIGKILL)
-                os.waitpid(pid, 0)
 
 
 def end_descendants(ancestor: int) -> None:

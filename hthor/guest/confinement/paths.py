@@ -64,7 +64,7 @@ def _open(root: Path, secret: Sequence[Path]) -> list[str]:
     if not below or not real.is_dir():
         return [str(root)] if root.exists() else []
     try:
-        members = sorted(root.iterdir())
+        members = [path for path in sorted(root.iterdir()) if path.resolve().is_relative_to(real)]  # no link leads out
     except OSError:
         return []
     return [path for member in members for path in _open(member, below)]
