@@ -26,7 +26,7 @@ class Pipe:
         message: wire.ToGuest = _hosts_words.decode(self._exactly(size))
         return message
 
-    def send(self, message: wire.ToHost) -> None:
+    def send(self, message: wire.ToHost | wire.KeeperToHost) -> None:
         data = memoryview(wire.frame(message))
         while data:
             data = data[os.write(self._write, data) :]
