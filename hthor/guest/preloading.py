@@ -9,8 +9,11 @@ from __future__ import annotations
 import ast
 import contextlib
 import gc
-import importlib
+import importlib.util
+import sys
 from pathlib import Path
+
+from hthor.guest.confinement import paths
 
 _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "hthor.catalog", "hthor.rules")
 
@@ -18,11 +21,20 @@ _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "h
 def preload(path: Path) -> None:
     """Import what the file is going to import, and keep it out of the way of forks."""
     for name in _named(path):
-        if name.partition(".")[0] != "hthor" or name.startswith(_OURS):
-            with contextlib.suppress(BaseException):
+        with contextlib.suppress(BaseException):
+            if name.startswith(_OURS) or _installed(name.partition(".")[0]):
                 importlib.import_module(name)
     gc.collect()
     gc.freeze()
+
+
+def _installed(name: str) -> bool:
+    """Whether a module comes with Python or from where libraries are installed."""
+    spec = importlib.util.find_spec(name)
+    if spec is None or name == "hthor":
+        return False
+    places = [Path(sys.prefix), Path(sys.base_prefix), *map(Path, paths.libraries())]
+    return spec.origin in ("built-in", "frozen") or any(Path(spec.origin or "").is_relative_to(at) for at in places)
 
 
 def _named(path: Path) -> list[str]:
