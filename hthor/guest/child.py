@@ -67,13 +67,13 @@ SPACES = spaces()
 
 
 def _tidy_numba(scratch: str) -> None:
-    """Compiled code may be read where it is, and new one is kept for this trial alone."""
-    os.environ["NUMBA_CACHE_DIR"] = scratch
+    """Read code that was compiled before from where it is, which is not ours to change; keep none of this trial's."""
     if "numba" not in sys.modules:
+        os.environ["NUMBA_CACHE_DIR"] = scratch
         return
-    from numba.core import caching, config
+    from numba.core import caching
 
-    config.CACHE_DIR = scratch
+    caching._CacheLocator.ensure_cache_path = lambda _: None  # it would try whether it may write there
     caching.Cache.save_overload = lambda *_: None
 
 

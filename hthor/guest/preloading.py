@@ -20,10 +20,13 @@ _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "h
 
 def preload(path: Path) -> None:
     """Import what the file is going to import, and keep it out of the way of forks."""
-    for name in _named(path):
+    for module, names in _named(path):
         with contextlib.suppress(BaseException):
-            if name.startswith(_OURS) or _installed(name.partition(".")[0]):
-                importlib.import_module(name)
+            for name in [module, *(f"{module}.{name}" for name in names if module == "hthor")]:
+                if name.startswith(_OURS) or _installed(name.partition(".")[0]):
+                    found = importlib.import_module(name)
+                    for wanted in names:
+                        getattr(found, wanted, None)  # some packages import their parts only then
     gc.collect()
     gc.freeze()
 
@@ -37,16 +40,16 @@ def _installed(name: str) -> bool:
     return spec.origin in ("built-in", "frozen") or any(Path(spec.origin or "").is_relative_to(at) for at in places)
 
 
-def _named(path: Path) -> list[str]:
-    """Modules that a file imports by name at its top level."""
+def _named(path: Path) -> list[tuple[str, list[str]]]:
+    """Modules that a file imports by name at its top level, and what it wants of each."""
     try:
         tree = ast.parse(path.read_bytes())
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
         return []
-    found: list[str] = []
+    found: list[tuple[str, list[str]]] = []
     for node in tree.body:
         if isinstance(node, ast.Import):
-            found += [alias.name for alias in node.names]
+            found += [(alias.name, []) for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            found.append(node.module)
-    return list(dict.fromkeys(found))
+            found.append((node.module, [alias.name for alias in node.names]))
+    return found
