@@ -14,6 +14,7 @@ from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval import board, campaign, cast, crews, find, picture, progress, record, run, score, session
 from hthor.eval.record import Record
 from hthor.eval.setup import crew_name
+from hthor.guest import choosing
 from hthor.tasks import library
 from hthor.types import HUMAN
 
@@ -115,7 +116,8 @@ def said(record_: Record, seat: str) -> list[str]:
     return [event.data["text"] for event in record_.events if event.kind == "sent" and event.seat == seat]
 
 
-def test_two_guests_and_a_built_in_agent_share_a_trial(guests: dict[str, str]):
+def test_two_guests_and_a_built_in_agent_share_a_trial(guests: dict[str, str], monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(choosing._Terms, "isolation", "L1")  # where process ids tell processes apart
     (one,) = played(f"tall:{guests['talker']},small:frontier,scout:{guests['talker']}")
     assert list(one.paths) == [HUMAN, "robot", "robot2", "robot3"]
     assert len(set(one.paths["robot2"])) > 10, "the built-in one explores"

@@ -189,7 +189,7 @@ def test_an_exception_in_begin_is_a_fault_too(write: Write) -> None:
         ("os._exit(3)", "died", "status 3"),
         ("os._exit(0)", "died", "status 0"),
         ("os.kill(os.getpid(), 11)", "died", "SIGSEGV"),
-        ("os.killpg(os.getpgid(0), 9)", "died", "SIGKILL"),
+        ("os.kill(os.getpid(), 9)", "died", "SIGKILL"),
         ("sys.exit(0)", "raised", "SystemExit"),
         ("return 'forward'", "wrong_type", "got str: 'forward'"),
         ("return None", "wrong_type", "NoneType"),
@@ -210,7 +210,7 @@ def test_every_misdeed_is_a_fault(started: Callable[..., Guest], act: str, kind:
 
 
 def test_a_hanging_agent_is_ended_at_its_deadline(started: Callable[..., Guest]) -> None:
-    guest = started(agent("print('thinking')\nwhile True: pass"), step_s=0.3)
+    guest = started(agent("print('thinking')\nwhile True: pass"), step_s=0.3, bank_s=0)
     pid = guest._process.pid if guest._process else 0
     caught = fault(guest)
     assert caught.kind == "timeout"
@@ -234,7 +234,7 @@ def living(group: int) -> list[str]:
 
 
 def test_an_agent_that_only_talks_is_ended_too(started: Callable[..., Guest]) -> None:
-    guest = started(agent("while True: print('la' * 1000)"), step_s=0.3)
+    guest = started(agent("while True: print('la' * 1000)"), step_s=0.3, bank_s=0)
     caught = fault(guest)
     assert caught.kind == "timeout"
     assert len(caught.log) <= 16 << 10
@@ -246,8 +246,15 @@ def test_the_hosts_own_time_is_not_charged(started: Callable[..., Guest]) -> Non
             time.sleep(0.4)
             return super().rgb()
 
-    guest = started(agent("observation.rgb\nreturn Action()"), step_s=0.3)
+    guest = started(agent("observation.rgb\nreturn Action()"), step_s=0.3, bank_s=0)
     assert guest.act(look(senses=Slow())) == Action()
+
+
+def test_a_slow_step_is_paid_for_from_the_bank(started: Callable[..., Guest]) -> None:
+    guest = started(agent("time.sleep(2.0 if observation.tick else 0)\nreturn Action()"), step_s=0.5, bank_s=2.5)
+    assert [guest.act(look(tick)) for tick in (0, 1, 0)] == [Action()] * 3
+    with pytest.raises(GuestFault, match="timeout"):  # what is left does not reach for another
+        guest.act(look(1))
 
 
 def test_a_failing_sensor_is_not_the_agents_fault(started: Callable[..., Guest]) -> None:

@@ -22,8 +22,8 @@ import jsonschema
 import msgspec
 import pytest
 
-from hthor import cli, guest, houses, tasks
-from hthor.eval import cast, crews, find, redraw
+from hthor import cli, guest, houses, jsonio, tasks
+from hthor.eval import cast, crews, find, guarded, redraw
 from hthor.eval.log import Log
 from hthor.eval.record import Record
 from hthor.eval.session import Session, sessions
@@ -249,6 +249,7 @@ def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(tmp_path
     mine, tired = json.loads(done.stdout)
     assert (mine["counts"]["trials"], mine["counts"]["faults"]) == (TRIALS // 2, 0)
     assert (tired["counts"]["trials"], tired["counts"]["faults"] > 2) == (TRIALS // 2, True)
+    assert mine["isolation"]["level"] == tired["isolation"]["level"] == guest.in_force().level
     assert f"failed in {tired['counts']['faults']} of {TRIALS // 2} trials" in done.stderr
     assert "after 10.0 s: raised: AssertionError: tired" in done.stderr
     assert "Traceback" not in done.stderr
@@ -333,7 +334,7 @@ def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: l
 def test_a_failing_agent_leaves_the_person_alone(
     name: str, tmp_path: Path, idle_robot: list[Record], monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr(guest, "Guest", functools.partial(guest.Guest, step_s=0.5))
+    monkeypatch.setattr(guest, "Guest", functools.partial(guest.Guest, step_s=0.5, bank_s=0.0))
     bodies, kind, told = FAULTY[name]
     records = played(written(tmp_path, **bodies))
     assert len(records) == 2, "the next trial is played all the same"
@@ -362,6 +363,36 @@ def test_an_agent_that_does_not_load(text: str, told: str, tmp_path: Path, say: 
     assert told in said.err
     assert "hthor/guest" not in said.err, "no frames of ours"
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        (
+            ("--isolation", "L1", "--require-isolation", "L2"),
+            5,
+            "isolation L2 is required, but --isolation asks for L1",
+        ),
+        (("--isolation", "L9"), 2, "unknown isolation level 'L9'"),
+        (("--require-isolation", "L9"), 2, "unknown isolation level 'L9'"),
+    ],
+)
+def test_less_isolation_than_required(
+    words: tuple[str, ...], code: int, told: str, tmp_path: Path, say: Callable[..., Said]
+):
+    agent = written(tmp_path)
+    said = say("eval", "--agent", agent, "--suite", SUITE, *words, "--out", tmp_path / "run")
+    assert (said.code, told in said.err) == (code, True), said.err
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_run_has_the_weakest_isolation_of_its_commands(tmp_path: Path):
+    held = {level: guest.Isolation(level=level) for level in ("L1", "L2", "L3")}
+    assert guarded.weakest(tmp_path, held["L2"], "L2") == held["L2"]
+    jsonio.write(tmp_path / guarded.NAME, jsonio.pretty(held["L1"]))
+    assert guarded.weakest(tmp_path, held["L3"], "") == held["L1"]
+    with pytest.raises(guest.IsolationError, match="has trials played at L1"):
+        guarded.weakest(tmp_path, held["L3"], "L2")
 
 
 def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):

@@ -122,6 +122,12 @@ def evaluate(
             "has the uplift over it.",
         ),
     ] = True,
+    isolation: Annotated[
+        str, typer.Option(help="How agents of your own are held: L1, L2, L3, or auto, the strongest that there is.")
+    ] = "auto",
+    require_isolation: Annotated[
+        str, typer.Option(help="The least level that will do; with less, exit code 5.", show_default=False)
+    ] = "",
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
 ) -> None:
@@ -156,6 +162,8 @@ def evaluate(
         engine=engine,
         address=address,
         control=control,
+        isolation=isolation,
+        require_isolation=require_isolation,
     )
     paper = talk if json else screen.console()
     done: list[Done] = []

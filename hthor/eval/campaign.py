@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import functools
+import os
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
 
 from msgspec import Struct
 
-from hthor import detectors
+from hthor import detectors, guest, jsonio
 from hthor.errors import HthorError
-from hthor.eval import cast, control, crews, engines, peoples, programme, run, setup, shard
+from hthor.eval import cast, control, crews, engines, guarded, peoples, programme, provenance, run, setup, shard
 from hthor.eval.crews import Crew
 from hthor.eval.programme import Programme
 from hthor.eval.run import Watcher
 from hthor.eval.score import Result
 from hthor.eval.session import sessions
 from hthor.eval.setup import Setup
+from hthor.guest import Isolation
 from hthor.humans.people import PROXY, People
 from hthor.tasks import library
 
@@ -46,6 +48,8 @@ class Options(Struct, frozen=True, kw_only=True):
     engine: str = engines.LOCAL
     address: str = ""
     control: bool = False
+    isolation: str = "auto"
+    require_isolation: str = ""
 
 
 class ClosableWatcher(Watcher, Protocol):
@@ -85,6 +89,8 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
         raise HthorError(
             "name an agent with --agent, or robots and their agents with --robots tall:oracle,small:oracle."
         )
+    guest.confine_guests(options.isolation, _hidden(options))
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))  # for what agents import of ours
     whom = peoples.expand(options.humans)
     detector = detectors.tidy(options.detector)
     pack = cast.furnish(options.assets)
@@ -92,15 +98,17 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
     chosen = programme.choose(options.suite, options.kind)
     parts = _parts(options, chosen, _crews(options, chosen, detector), whom, shown)
     controls = _controls(options, chosen, parts) if options.control and not options.shard else {}
+    held = guarded.settle(options.isolation, options.require_isolation, any(part.crew.minds for part in parts))
     for part in (*parts, *controls.values()):
         setup.examine(part.folder, part.plan)
         _engine(options, part.crew)  # is there such an engine?
+        guarded.weakest(part.folder, held, options.require_isolation)
     told: set[str] = set()
 
     def perform(part: Part) -> Result:
         watch = watcher(part.title)
         try:
-            return _perform(options, chosen, part, watch, told)
+            return _perform(options, chosen, part, watch, told, held if part.crew.minds else None)
         finally:
             watch.close()
 
@@ -183,7 +191,14 @@ def _engine(options: Options, crew: Crew) -> engines.Engine:
     return engines.find(options.engine, jobs=options.jobs, address=options.address, gpus=crew.gpus)
 
 
-def _perform(options: Options, chosen: Programme, part: Part, watch: ClosableWatcher, told: set[str]) -> Result:
+def _perform(
+    options: Options,
+    chosen: Programme,
+    part: Part,
+    watch: ClosableWatcher,
+    told: set[str],
+    held: Isolation | None,
+) -> Result:
     """One run. What was ``told`` of an earlier one is not told again."""
     crew, plan, folder = part.crew, part.plan, part.folder
     dealt = sessions(
@@ -212,8 +227,19 @@ def _perform(options: Options, chosen: Programme, part: Part, watch: ClosableWat
         people=part.people.word,
     )
     make = functools.partial(cast.player, sources)
+    if held is not None:
+        hidden = (*_hidden(options), str(folder.resolve()))
+        make = functools.partial(guarded.player, sources, held.level, hidden)
+        extra[guarded.NAME] = jsonio.pretty(guarded.weakest(folder, held, options.require_isolation))
     mine = plan.shard.share(dealt) if plan.shard else dealt
     return run.evaluate(plan, mine, make, folder=folder, engine=_engine(options, crew), watch=watch, extra=extra)
+
+
+def _hidden(options: Options) -> tuple[str, ...]:
+    """What no agent may read, even if it lies in its own folder: runs, tasks and people."""
+    words = (*options.humans, options.suite, options.kind, str(options.out or ""))
+    places = [RUNS, *(Path(word.rpartition("@")[2]) for word in words if word)]
+    return tuple(str(path.resolve()) for path in places if path.exists())
 
 
 def _crews(options: Options, chosen: Programme, detector: str) -> list[Crew]:

@@ -10,13 +10,14 @@ from msgspec import Struct
 
 from hthor import jsonio
 from hthor.errors import RunError
-from hthor.eval import board, log, record, score, setup
+from hthor.eval import board, control, guarded, log, record, score, setup
 from hthor.eval.log import Log, Place
 from hthor.eval.record import Record
 from hthor.eval.run import EFFORT
 from hthor.eval.score import Effort, Result
 from hthor.eval.setup import Setup
 from hthor.eval.shard import Shard, whole_folder
+from hthor.guest import Isolation
 
 _CARRIED = ("suite.json", "houses/*.json")
 """What else a run's folder may hold that others need to read it."""
@@ -183,6 +184,17 @@ def _score(out: Path, plan: Setup, folders: Sequence[Path]) -> Result:
             cpu_s=round(sum(one.cpu_s for one in efforts), 3),
             trials=sum(one.trials for one in efforts),
         )
-    result = score.summarise(plan, log.fetch(there), records, effort, control.beside(out, plan, records))
+    beside, held = control.beside(out, plan, records), _held(out, folders)
+    result = score.summarise(plan, log.fetch(there), records, effort, uplift=beside, isolation=held)
     score.store(out, result)
     return result
+
+
+def _held(out: Path, folders: Sequence[Path]) -> Isolation | None:
+    """How agents were held at the least, over all shards; kept with the whole run."""
+    held = guarded.load(out)
+    for folder in folders:
+        held = guarded.weakest(folder, held, "")
+    if held is not None:
+        jsonio.write(out / guarded.NAME, jsonio.pretty(held))
+    return held

@@ -13,7 +13,7 @@ from typing import Protocol
 
 from hthor import jsonio
 from hthor.errors import HthorError, RunError
-from hthor.eval import control, engines, log, record, score, setup
+from hthor.eval import control, engines, guarded, log, record, score, setup
 from hthor.eval.engines import Engine, Make, SessionFailed
 from hthor.eval.log import Log
 from hthor.eval.score import Effort, Result
@@ -138,8 +138,14 @@ def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
             jsonio.write(folder / EFFORT, jsonio.pretty(effort))
         return score.summarise(plan, log.fetch(there), records, effort)
     stored = score.load(folder)
-    effort = effort or (stored.effort if stored else None)
-    result = score.summarise(plan, log.fetch(there), records, effort, control.beside(folder, plan, records))
+    result = score.summarise(
+        plan,
+        log.fetch(there),
+        records,
+        effort or (stored.effort if stored else None),
+        uplift=control.beside(folder, plan, records),
+        isolation=guarded.load(folder),
+    )
     if result != stored:
         score.store(folder, result)
     return result

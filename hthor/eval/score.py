@@ -13,7 +13,7 @@ from msgspec import Struct
 
 from hthor import jsonio
 from hthor.errors import RunError
-from hthor.eval import control, log, metrics, setup, stats
+from hthor.eval import control, guarded, log, metrics, setup, stats
 from hthor.eval.log import Place
 from hthor.eval.metrics import TrialMetrics
 from hthor.eval.peoples import HumansRef
@@ -21,6 +21,7 @@ from hthor.eval.record import Record
 from hthor.eval.setup import AssetsRef, KindRef, Setup, SuiteRef
 from hthor.eval.stats import Estimate
 from hthor.eval.uplift import Uplift
+from hthor.guest import Isolation
 from hthor.types import RobotSeat
 
 SCHEMA = "hthor.result/4"
@@ -112,6 +113,7 @@ class Result(Struct, frozen=True, kw_only=True):
     versions: dict[str, str]
     hashes: Hashes
     assets: AssetsRef
+    isolation: Isolation | None = None
     effort: Effort | None = None
 
 
@@ -174,7 +176,9 @@ def summarise(
     lines: Iterable[bytes],
     records: Sequence[Record],
     effort: Effort | None = None,
+    *,
     uplift: Uplift | None = None,
+    isolation: Isolation | None = None,
 ) -> Result:
     """The result of the records of a run, whole or not."""
     trials = hashlib.sha256()
@@ -218,6 +222,7 @@ def summarise(
             trials=trials.hexdigest(),
         ),
         assets=plan.assets,
+        isolation=isolation,
         effort=effort,
     )
 
@@ -269,7 +274,8 @@ def rescore(folder: Path) -> tuple[Setup, Result, Result | None]:
     lines, kept = records(folder, plan)
     fresh, stored = _measured(kept), load(folder)
     effort = stored.effort if stored else None
-    return plan, summarise(plan, lines, fresh, effort, control.beside(folder, plan, fresh)), stored
+    beside, held = control.beside(folder, plan, fresh), guarded.load(folder)
+    return plan, summarise(plan, lines, fresh, effort, uplift=beside, isolation=held), stored
 
 
 def measured(folder: Path) -> tuple[Setup, list[Record]]:

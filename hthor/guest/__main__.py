@@ -1,10 +1,10 @@
-"""The guest's side: ``python -m hthor.guest READ WRITE PARENT``; knows only its two pipes."""
+"""The guest's side: ``python -m hthor.guest READ TELL WRITE PARENT``; knows only its pipes."""
 
 from __future__ import annotations
 
 import sys
 
-from hthor.guest.child import main
+from hthor.guest.keeper import main
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]))
+    main(*(int(word) for word in sys.argv[1:5]))

@@ -3,15 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import hashlib
-import os
-import select
-import signal
-import subprocess
-import sys
 import time
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,23 +12,24 @@ import msgspec
 from msgspec import Struct
 
 from hthor.errors import AgentError
-from hthor.guest import wire
+from hthor.guest import choosing, wire
+from hthor.guest.confinement import Isolation
+from hthor.guest.process import HungUp, Process, TimeIsUp
 from hthor.types import Action, Briefing, Observation
 
-_ROOT = Path(__file__).resolve().parents[2]
-_PASSED_ON = ("PATH", "HOME", "LANG", "LC_ALL", "TZ", "TMPDIR", "VIRTUAL_ENV", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-_LOG_BYTES = 16 << 10
-_PIPE_BYTES = 1 << 20
-_F_SETPIPE_SZ = 1031
+_ENTER_S = 120.0
+"""Seconds until a process must say what holds it: the start of an interpreter, and the libraries an agent names."""
+_ASKS = 100
+"""How often an agent may ask for something within one ``act``; what it has read once it need not ask for again."""
 _guests_words = msgspec.msgpack.Decoder(wire.ToHost)
+_keepers_words = msgspec.msgpack.Decoder(wire.KeeperToHost)
 
 
 class GuestFault(Exception):
     """A submitted agent failed; its process is gone.
 
     Attributes:
-        kind: raised, timeout, died, garbage, wrong_type, oversized or not_finite.
+        kind: raised, timeout, died, memory, disk, garbage, wrong_type, oversized or not_finite.
         detail: what happened; for "raised" the traceback of the agent's own frames.
         traceback: the same traceback, empty for the other kinds.
         log: the end of what the agent printed.
@@ -50,7 +44,8 @@ class GuestFault(Exception):
 class GuestInfo(Struct, frozen=True, kw_only=True):
     """What a file says of its agent. ``robots`` names the bodies it is made for (empty: any); ``absent`` means none.
 
-    ``sha256`` is the hash of the file alone: what it imports is not covered.
+    ``persistent`` agents keep one process for all their trials. ``sha256`` is the hash of the file alone: what it
+    imports is not covered. ``isolation`` is what held the agent while it was asked.
     """
 
     name: str
@@ -59,19 +54,23 @@ class GuestInfo(Struct, frozen=True, kw_only=True):
     privileges: tuple[str, ...] = ()
     robots: tuple[str, ...] = ()
     absent: bool = False
+    persistent: bool = False
     doc: str = ""
+    isolation: Isolation
 
 
-def load_info(path: str | Path, cls: str | None = None, *, start_s: float = 60.0) -> GuestInfo:
+def load_info(
+    path: str | Path, cls: str | None = None, *, start_s: float = 60.0, isolation: str | None = None
+) -> GuestInfo:
     """Load an agent's file in a process of its own, and say what it is.
 
     Args:
         path: of the file, or ``file.py:Class``.
 
     Raises:
-        AgentError: as `Guest.load`.
+        AgentError, IsolationError: as `Guest.load`.
     """
-    guest = Guest(path, cls, start_s=start_s)
+    guest = Guest(path, cls, start_s=start_s, isolation=isolation)
     try:
         return guest.load()
     finally:
@@ -88,30 +87,46 @@ class Guest:
         cls: the class to use when the file has several.
         start_s: seconds for loading the file, and again for every ``begin``.
         step_s: seconds for each ``act``; what the host takes to answer (rendering) does not count.
+        bank_s: seconds in a trial by which its ``act`` may take longer than that, all together.
+        isolation: "L1", "L2", "L3", or "auto" for the strongest that the machine gives; by default what
+            `confine_guests` has laid down for this process.
+        memory_mb: memory that it may hold. disk_mb: what it may write in a trial.
     """
 
-    def __init__(self, path: str | Path, cls: str | None = None, *, start_s: float = 60.0, step_s: float = 5.0) -> None:
+    def __init__(
+        self,
+        path: str | Path,
+        cls: str | None = None,
+        *,
+        start_s: float = 60.0,
+        step_s: float = 5.0,
+        bank_s: float = 60.0,
+        isolation: str | None = None,
+        memory_mb: int = 4096,
+        disk_mb: int = 256,
+    ) -> None:
         self._path, self._class = _parse(path, cls)
-        self._start_s, self._step_s = start_s, step_s
-        self._process: subprocess.Popen[bytes] | None = None
+        self._start_s, self._step_s, self._bank_s = start_s, step_s, bank_s
+        self._bank = bank_s
+        self._isolation, self._memory_mb, self._disk_mb = isolation, memory_mb, disk_mb
+        self._process: Process | None = None
         self._info: GuestInfo | None = None
-        self._in = self._out = self._err = -1
         self._playing = False
-        self._buffer, self._log = b"", b""
+        self._log = ""
 
     def load(self) -> GuestInfo:
         """Start the process and load the file, unless that is done.
 
         Raises:
             AgentError: when the file is missing, does not compile, cannot be imported in time, or has no agent class.
+            IsolationError: when the level that was asked for cannot be had.
         """
         if self._process is not None and self._info is not None:
             return self._info
         digest = _digest(self._path)
-        self._spawn()
+        held = choosing.start(self._path, self._isolation, self._enter, self._memory_mb, self._disk_mb)
         try:
-            self._send(wire.Load(path=str(self._path), cls=self._class), self._start_s)
-            ready, _ = self._receive(self._start_s)
+            ready = self._receive(self._start_s)[0]
         except GuestFault as fault:
             raise AgentError(f"{self._path}: loading it failed ({fault}).\n{fault.log}".rstrip()) from None
         if not isinstance(ready, wire.Ready):
@@ -125,7 +140,9 @@ class Guest:
             privileges=ready.privileges,
             robots=ready.robots,
             absent=ready.absent,
+            persistent=ready.persistent,
             doc=ready.doc,
+            isolation=held,
         )
         return self._info
 
@@ -136,14 +153,13 @@ class Guest:
             GuestFault: when the agent fails. AgentError: when its file cannot be loaded.
         """
         if self._playing:
-            self._send(wire.End(), self._step_s)
-            self._playing = False
+            self._end()
         self.load()
         self._send(wire.Begin(briefing=briefing), self._start_s)
         answer, _ = self._receive(self._start_s)
         if not isinstance(answer, wire.Done):
-            raise self._fault("garbage", f"begin was answered by {type(answer).__name__}")
-        self._playing = True
+            raise self._wrong("begin", answer)
+        self._playing, self._bank = True, self._bank_s
 
     def act(self, observation: Observation) -> Action:
         """The agent's action.
@@ -155,8 +171,8 @@ class Guest:
             raise GuestFault("died", "the agent has no trial: begin was not called, or it failed before")
         slim = tuple(msgspec.structs.replace(message, image=None) for message in observation.inbox)
         self._send(wire.Look(observation=msgspec.structs.replace(observation, senses=None, inbox=slim)), self._step_s)
-        left = self._step_s
-        while True:
+        left = granted = self._step_s + self._bank
+        for _ in range(_ASKS):
             answer, left = self._receive(left)
             if isinstance(answer, wire.Ask):
                 self._send(wire.Given(value=msgspec.Raw(wire.encode(self._sense(observation, answer)))), self._step_s)
@@ -164,9 +180,11 @@ class Guest:
                 wrong = wire.objection(answer.action)
                 if wrong:
                     raise self._fault(*wrong)
+                self._bank -= max(0.0, granted - left - self._step_s)
                 return answer.action
             else:
-                raise self._fault("garbage", f"act was answered by {type(answer).__name__}")
+                raise self._wrong("act", answer)
+        raise self._fault("garbage", f"asked for more than {_ASKS} things within one act")
 
     def close(self) -> None:
         """End the process; a later ``begin`` starts another."""
@@ -175,8 +193,7 @@ class Guest:
     @property
     def log(self) -> str:
         """The end of what the agent printed, 16 KiB at most."""
-        self._drain()
-        return self._log.decode(errors="replace")
+        return self._log if self._process is None else self._process.log
 
     def __enter__(self) -> Guest:
         return self
@@ -188,6 +205,30 @@ class Guest:
         if getattr(self, "_process", None) is not None:
             with contextlib.suppress(Exception):  # the interpreter may be half gone
                 self._kill()
+
+    def _enter(self, process: Process) -> wire.Confined | str:
+        """What a process that has just started says of its confinement, or why it has none."""
+        self._process, self._info = process, None
+        load = wire.Load(path=str(self._path), cls=self._class, policy=process.policy)
+        try:
+            self._send(load, _ENTER_S)
+            said, _ = self._receive(_ENTER_S)
+        except GuestFault as fault:
+            return fault.log.strip() or str(fault)
+        if isinstance(said, wire.Confined):
+            return said
+        self._kill()
+        return said.detail if isinstance(said, wire.Failed) else f"unexpected {type(said).__name__}"
+
+    def _end(self) -> None:
+        """Let the trial's process come to its end; whoever will not is ended with its keeper."""
+        self._playing = False
+        with contextlib.suppress(GuestFault):
+            self._send(wire.End(), self._step_s)
+            if self._info is not None and not self._info.persistent:
+                answer, _ = self._receive(self._step_s)
+                if not isinstance(answer, wire.Over):
+                    self._kill()
 
     def _sense(self, observation: Observation, ask: wire.Ask) -> Any:
         """What was asked for. A failure to sense is ours, so the guest is let go and the error passed on."""
@@ -202,105 +243,43 @@ class Guest:
             raise
         raise self._fault("garbage", f"asked for '{ask.what[:80]}', which there is not")
 
-    def _spawn(self) -> None:
-        """A fresh interpreter with two pipes, one more for what it prints, a small environment and its own group."""
-        guest_in, self._out = os.pipe()
-        self._in, guest_out = os.pipe()
-        self._err, printed = os.pipe()
-        for handle in (self._in, self._out, self._err):
-            os.set_blocking(handle, False)
-        with contextlib.suppress(OSError):  # only speed depends on it
-            fcntl.fcntl(self._out, _F_SETPIPE_SZ, _PIPE_BYTES)
-        try:
-            self._process = subprocess.Popen(
-                [sys.executable, "-u", "-m", "hthor.guest", str(guest_in), str(guest_out), str(os.getpid())],
-                stdin=subprocess.DEVNULL,
-                stdout=printed,
-                stderr=printed,
-                pass_fds=(guest_in, guest_out),
-                cwd=self._path.parent,
-                env=_environment(os.environ),
-                start_new_session=True,
-            )
-        finally:
-            for handle in (guest_in, guest_out, printed):
-                os.close(handle)
-        self._buffer, self._log = b"", b""
-
     def _send(self, message: wire.ToGuest, seconds: float) -> None:
-        data, end = memoryview(wire.frame(message)), time.monotonic() + seconds
-        while data:
-            try:
-                data = data[os.write(self._out, data) :]
-            except BlockingIOError:
-                if not self._wait(self._out, select.POLLOUT, end):
-                    raise self._fault("timeout", f"the agent read nothing for {seconds:g} s") from None
-            except OSError:
-                raise self._fault("died", self._obituary()) from None
-
-    def _receive(self, seconds: float) -> tuple[wire.ToHost, float]:
-        """The guest's next message, and what is left of the time."""
-        end = time.monotonic() + seconds
-        while (body := self._next()) is None:
-            if not self._wait(self._in, select.POLLIN, end):
-                raise self._fault("timeout", f"the agent gave no answer within {seconds:g} s")
-            chunk = os.read(self._in, 1 << 16)
-            if not chunk:
-                raise self._fault("died", self._obituary())
-            self._buffer += chunk
         try:
-            message: wire.ToHost = _guests_words.decode(body)
+            self._running().write(wire.frame(message), time.monotonic() + seconds)
+        except TimeIsUp:
+            raise self._fault("timeout", f"the agent read nothing for {seconds:g} s") from None
+        except HungUp:
+            raise self._fault("died", self._running().obituary()) from None
+
+    def _receive(self, seconds: float) -> tuple[wire.ToHost | wire.Over, float]:
+        """The next message of the guest or its keeper, and what is left of the time."""
+        end = time.monotonic() + seconds
+        try:
+            keepers, body = self._running().read(wire.MOST_BYTES, end)
+        except TimeIsUp:
+            raise self._fault("timeout", f"the agent gave no answer within {seconds:.3g} s") from None
+        except HungUp:
+            raise self._fault("died", self._running().obituary()) from None
+        if isinstance(body, int):
+            raise self._fault("oversized", f"a message of {body} bytes, at most {wire.MOST_BYTES} are taken")
+        message: wire.ToHost | wire.Over
+        try:
+            message = _keepers_words.decode(body) if keepers else _guests_words.decode(body)
         except (msgspec.DecodeError, UnicodeDecodeError) as error:
             raise self._fault("garbage", f"what came is no message: {error}") from None
-        if isinstance(message, wire.Failed) and self._info is not None:
+        if isinstance(message, wire.Failed) and (self._info is not None or keepers):
             raise self._fault(message.kind, message.detail, message.traceback)
         return message, max(0.0, end - time.monotonic())
 
-    def _next(self) -> bytes | None:
-        """The next whole frame of the buffer."""
-        if len(self._buffer) < 4:
-            return None
-        size = int.from_bytes(self._buffer[:4], "little")
-        if size > wire.MOST_BYTES:
-            raise self._fault("oversized", f"a message of {size} bytes, at most {wire.MOST_BYTES} are taken")
-        if len(self._buffer) < 4 + size:
-            return None
-        body, self._buffer = self._buffer[4 : 4 + size], self._buffer[4 + size :]
-        return body
+    def _wrong(self, what: str, answer: object) -> GuestFault:
+        if isinstance(answer, wire.Over):
+            return self._fault("died", f"its process ended before it had answered {what}")
+        return self._fault("garbage", f"{what} was answered by {type(answer).__name__}")
 
-    def _wait(self, handle: int, event: int, end: float) -> bool:
-        """Wait until a pipe is ready, reading along what the agent prints; false when time is up."""
-        while True:
-            poll = select.poll()
-            poll.register(handle, event)
-            poll.register(self._err, select.POLLIN)
-            ready = dict(poll.poll(max(0.0, end - time.monotonic()) * 1000.0))
-            if handle in ready:
-                return True
-            if not ready:
-                return False
-            if not self._drain():
-                time.sleep(0.001)  # the log was closed; do not spin on it
-
-    def _drain(self) -> bool:
-        """Take in what the agent printed; false when nothing more can come."""
-        try:
-            while self._err >= 0 and (chunk := os.read(self._err, 1 << 16)):
-                self._log = (self._log + chunk)[-_LOG_BYTES:]
-        except BlockingIOError:
-            return True
-        return False
-
-    def _obituary(self) -> str:
-        process = self._process
-        if process is None:
-            return "the agent's process is gone"
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(0.5)
-        code = process.returncode
-        if code is None:
-            return "the agent closed its pipe"
-        return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exited with status {code}"
+    def _running(self) -> Process:
+        if self._process is None:
+            raise GuestFault("died", "the agent's process is gone")
+        return self._process
 
     def _fault(self, kind: str, detail: str, traceback: str = "") -> GuestFault:
         """End the process, and say why."""
@@ -309,16 +288,10 @@ class Guest:
         return GuestFault(kind, detail[:8000], traceback, log)
 
     def _kill(self) -> None:
-        """End the whole process group and close the pipes."""
         process, self._process, self._playing = self._process, None, False
-        if process is None:
-            return
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-        for handle in (self._in, self._out, self._err):
-            os.close(handle)
-        self._in = self._out = self._err = -1
+        if process is not None:
+            self._log = process.log
+            process.kill()
 
 
 def _parse(path: str | Path, cls: str | None) -> tuple[Path, str]:
@@ -335,12 +308,3 @@ def _digest(path: Path) -> str:
     except OSError as error:
         hint = "Write one to start from: hthor agent new my_agent.py"
         raise AgentError(f"cannot read the agent's file {path}: {error.strerror}. {hint}") from None
-
-
-def _environment(ours: Mapping[str, str]) -> dict[str, str]:
-    """Nothing of ours but what an interpreter needs; one thread, and the same hash seed every time."""
-    env = {name: ours[name] for name in _PASSED_ON if name in ours}
-    env.update(dict.fromkeys(_THREADS, "1"))
-    env["PYTHONHASHSEED"] = "0"
-    env["PYTHONPATH"] = str(_ROOT)
-    return env

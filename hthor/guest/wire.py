@@ -13,6 +13,7 @@ import msgspec
 import numpy as np
 from msgspec import Struct
 
+from hthor.guest.confinement import Policy
 from hthor.types import Action, Briefing, Observation
 
 MOST_BYTES = 64 << 10
@@ -26,10 +27,11 @@ class Unfit(ValueError):
 
 
 class Load(Struct, tag="load", frozen=True, kw_only=True):
-    """Host: import this file; ``cls`` picks a class, empty for the only one."""
+    """Host: import this file on these terms; ``cls`` picks a class, empty for the only one."""
 
     path: str
     cls: str
+    policy: Policy
 
 
 class Begin(Struct, tag="begin", frozen=True, kw_only=True):
@@ -54,6 +56,14 @@ class End(Struct, tag="end", frozen=True, kw_only=True):
     """Host: the trial is over."""
 
 
+class Confined(Struct, tag="confined", frozen=True, kw_only=True):
+    """Guest: held, and about to import the file. ``spaces`` are its namespaces, as /proc names them."""
+
+    landlock_abi: int
+    seccomp: bool
+    spaces: dict[str, str]
+
+
 class Ready(Struct, tag="ready", frozen=True, kw_only=True):
     """Guest: loaded; what the class says of itself."""
 
@@ -61,6 +71,7 @@ class Ready(Struct, tag="ready", frozen=True, kw_only=True):
     privileges: tuple[str, ...]
     robots: tuple[str, ...]
     absent: bool
+    persistent: bool
     doc: str
 
 
@@ -81,8 +92,12 @@ class Acted(Struct, tag="acted", frozen=True, kw_only=True):
     action: Action
 
 
+class Over(Struct, tag="over", frozen=True, kw_only=True):
+    """Keeper: the trial's process has come to its end, and all that it left is gone."""
+
+
 class Failed(Struct, tag="failed", frozen=True, kw_only=True):
-    """Guest: something went wrong; ``kind`` as in `GuestFault`."""
+    """Guest or keeper: something went wrong; ``kind`` as in `GuestFault`."""
 
     kind: str
     detail: str
@@ -90,7 +105,8 @@ class Failed(Struct, tag="failed", frozen=True, kw_only=True):
 
 
 ToGuest = Load | Begin | Look | Given | End
-ToHost = Ready | Done | Ask | Acted | Failed
+ToHost = Confined | Ready | Done | Ask | Acted | Failed
+KeeperToHost = Over | Failed
 
 
 def _encode_array(value: object) -> object:
@@ -136,7 +152,7 @@ def encode(message: object) -> bytes:
     return _encoder.encode(message)
 
 
-def frame(message: ToGuest | ToHost) -> bytes:
+def frame(message: ToGuest | ToHost | KeeperToHost) -> bytes:
     """One message with its length in front."""
     body = encode(message)
     return len(body).to_bytes(4, "little") + body

@@ -21,18 +21,17 @@ def uplift(alone: Run, helped: Run) -> Uplift:
     return Uplift(
         arm=helped.label,
         pairs=len(both),
-        sr=_difference(both, "sr", lambda one: float(one.metrics.sr)),
-        twsr=_difference(both, "twsr", lambda one: one.metrics.twsr),
-        saved_s=_difference(both, "saved", lambda one: -one.metrics.time_s),
+        sr=_difference(both, lambda one: float(one.metrics.sr)),
+        twsr=_difference(both, lambda one: one.metrics.twsr),
+        saved_s=_difference(both, lambda one: -one.metrics.time_s),
         wins=sum(a.met and not b.met for a, b in both),
         losses=sum(b.met and not a.met for a, b in both),
     )
 
 
-def _difference(both: list[Both], name: str, value: Callable[[Record], float]) -> Estimate:
+def _difference(both: list[Both], value: Callable[[Record], float]) -> Estimate:
     return stats.estimate(
         [value(a) - value(b) for a, b in both],
         [a.spec.task.id for a, _ in both],
         [a.spec.participant for a, _ in both],
-        name=f"uplift {name}",
     )

@@ -29,7 +29,7 @@ def by_people(runs: Sequence[Run]) -> Split | None:
     """Success with each people, in the order in which they come; None where there is only one."""
     names = list(dict.fromkeys(run.plan.humans.name for run in runs))
     groups = tuple(
-        Group(name=name, sr={run.label: rate(run.records, name) for run in runs if run.plan.humans.name == name})
+        Group(name=name, sr={run.label: rate(run.records) for run in runs if run.plan.humans.name == name})
         for name in names
     )
     return Split(word="kind of person", groups=groups) if len(groups) > 1 else None
@@ -41,18 +41,18 @@ def _split(word: str, runs: Sequence[Run], part: Callable[[Record], str], order:
     groups = (
         Group(
             name=name,
-            sr={run.label: rate([one for one in run.records if part(one) == name], f"{word} {name}") for run in runs},
+            sr={run.label: rate([one for one in run.records if part(one) == name]) for run in runs},
         )
         for name in names
     )
     return Split(word=word, groups=tuple(groups))
 
 
-def rate(records: Sequence[Record], name: str) -> Estimate:
-    """Success rate with its interval; ``name`` of the chance stream."""
+def rate(records: Sequence[Record]) -> Estimate:
+    """Success rate with its interval."""
     return stats.estimate(
         [float(one.metrics.sr) for one in records],
         [one.spec.task.id for one in records],
         [one.spec.participant for one in records],
-        name=f"sr {name}",
+        within=stats.SHARE,
     )

@@ -1,0 +1,90 @@
+"""How a run's agents are held: settled before the first trial, kept beside the log, told in the result.
+
+A run may be played by several commands, on several levels. What counts is the weakest of them, so the run's folder
+keeps it in `isolation.json`. It decides no record and is no part of the run's configuration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from hthor.errors import RunError
+from hthor.guest import Isolation, IsolationError
+from hthor.guest.confinement import known, suffices
+
+if TYPE_CHECKING:
+    from hthor.eval.cast import Sources
+    from hthor.eval.record import Record
+    from hthor.eval.session import Session
+
+NAME = "isolation.json"
+
+
+def settle(wanted: str, required: str, minds: bool) -> Isolation | None:
+    """What will hold a run's agents; None when all of them are built in.
+
+    Args:
+        wanted: a level, or "auto". required: the least level, empty for any.
+        minds: whether there are submitted agents.
+
+    Raises:
+        IsolationError: when the level cannot be had, or is less than required.
+    """
+    if required:
+        known(required, auto=False)
+    if not minds:
+        return None
+    from hthor import guest
+
+    held = guest.in_force(wanted)
+    _demand(held, required, "this machine gives" if wanted == "auto" else "--isolation asks for")
+    return held
+
+
+def weakest(folder: Path, held: Isolation | None, required: str) -> Isolation | None:
+    """The weaker of what holds the agents now and what held them when an earlier command played a part of the run.
+
+    Raises:
+        IsolationError: when the earlier command had less than is required now.
+    """
+    before = load(folder)
+    if before is None:
+        return held
+    _demand(before, required, f"{folder} has trials played at")
+    return before if held is None or suffices(held.level, before.level) else held
+
+
+def load(folder: Path) -> Isolation | None:
+    """What held a run's agents at the least; None when all were built in.
+
+    Raises:
+        RunError: when it cannot be read.
+    """
+    path = folder / NAME
+    if not path.is_file():
+        return None
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=Isolation)
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise RunError(f"{path}: {error}. It says how the agents were held; evaluate the run anew.") from None
+
+
+def player(sources: Sources | None, level: str, hidden: tuple[str, ...]) -> Callable[[Session], Iterator[Record]]:
+    """`cast.player`, whose agents are held at this level and cannot read what is hidden."""
+    from hthor import guest
+    from hthor.eval import cast
+
+    guest.confine_guests(level, hidden)
+    return cast.player(sources)
+
+
+def _demand(held: Isolation, required: str, whose: str) -> None:
+    if required and not suffices(held.level, required):
+        why = f" ({held.reason_not_higher})" if held.reason_not_higher else ""
+        raise IsolationError(
+            f"isolation {required} is required, but {whose} {held.level}{why}. See docs/isolation.md for what it takes."
+        )

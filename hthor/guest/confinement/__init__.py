@@ -1,0 +1,12 @@
+"""What keeps a guest from all that is not its business; knows nothing of agents, trials or the wire.
+
+Three levels, each with what the one before has: L1, a process with limits; L2, with Landlock and seccomp; L3, in
+namespaces of its own. See `Isolation` for what a result says of it.
+"""
+
+from __future__ import annotations
+
+from hthor.guest.confinement.isolation import AUTO, LEVELS, Isolation, IsolationError, known, suffices
+from hthor.guest.confinement.policy import Policy
+
+__all__ = ["AUTO", "LEVELS", "Isolation", "IsolationError", "Policy", "known", "suffices"]

@@ -1,0 +1,71 @@
+"""Puts one process under a policy, before it runs a line of anybody's code; knows nothing of agents.
+
+Each layer is tried out once it is on: a filter that lets something through must not be taken for one that holds.
+"""
+
+from __future__ import annotations
+
+import os
+import resource
+import socket
+
+from hthor.guest.confinement import landlock, limits, paths, seccomp
+from hthor.guest.confinement.kernel import Refused
+from hthor.guest.confinement.landlock import Ruleset
+from hthor.guest.confinement.policy import Policy
+
+__all__ = ["Refused", "confine", "rules"]
+
+
+def rules(policy: Policy) -> Ruleset | None:
+    """What a guest may do to files, for all its trials; None at the lowest level.
+
+    Raises:
+        Refused: when the kernel has no such thing.
+    """
+    if policy.level == "L1":
+        return None
+    if reason := seccomp.unavailable():
+        raise Refused(reason)
+    return landlock.Ruleset(policy.read, listed=policy.listed, write=[policy.scratch], devices=paths.DEVICES)
+
+
+def confine(policy: Policy, held: Ruleset | None) -> None:
+    """Hold this process, which has given up its privileges, to a policy for good.
+
+    Raises:
+        Refused: when a layer cannot be put on, or does not hold.
+    """
+    limits.bound(policy.memory_mb, policy.disk_mb, processes=held is None)
+    if held is None:
+        return
+    held.put_on()
+    held.close()
+    seccomp.put_on(os.getpid())
+    _prove()
+
+
+def _prove() -> None:
+    try:
+        os.listdir("/")
+    except PermissionError:
+        pass
+    else:
+        raise Refused("Landlock is on, but the root folder can still be read")
+    try:
+        socket.socket().close()
+    except PermissionError:
+        pass
+    else:
+        raise Refused("the system call filter is on, but a socket can still be made")
+    try:
+        child = os.fork()
+    except PermissionError:
+        pass
+    else:
+        if child == 0:
+            os._exit(0)
+        os.waitpid(child, 0)
+        raise Refused("the system call filter is on, but a process can still be started")
+    if resource.getrlimit(resource.RLIMIT_CORE) != (0, 0):
+        raise Refused("core files are not off")

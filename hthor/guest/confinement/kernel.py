@@ -1,0 +1,49 @@
+"""Calls to the kernel that Python has no names for; knows nothing of what they are good for."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from typing import Any
+
+_libc: Any = None
+
+PR_SET_PDEATHSIG = 1
+PR_SET_DUMPABLE = 4
+PR_SET_SECCOMP = 22
+PR_SET_NO_NEW_PRIVS = 38
+
+
+class Refused(Exception):
+    """The kernel does not give what was asked for; the message says what and why."""
+
+
+def syscall(what: str, number: int, *values: Any) -> int:
+    """The result of a system call.
+
+    Raises:
+        Refused: when it fails; ``what`` says what it was to do.
+    """
+    result: int = _library().syscall(ctypes.c_long(number), *(_wide(value) for value in values))
+    if result < 0:
+        raise Refused(f"{what}: {os.strerror(ctypes.get_errno())}")
+    return result
+
+
+def prctl(what: str, option: int, *values: Any) -> None:
+    """Change something of this process; like `syscall`."""
+    padded = (*values, 0, 0, 0, 0)[:4]
+    if _library().prctl(ctypes.c_int(option), *(_wide(value) for value in padded)) < 0:
+        raise Refused(f"{what}: {os.strerror(ctypes.get_errno())}")
+
+
+def _library() -> Any:
+    global _libc
+    if _libc is None:
+        _libc = ctypes.CDLL(None, use_errno=True)
+    return _libc
+
+
+def _wide(value: Any) -> Any:
+    """Numbers as wide as a register: a bare Python int would be passed as 32 bits."""
+    return ctypes.c_ulong(value) if isinstance(value, int) else value

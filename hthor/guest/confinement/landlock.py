@@ -1,0 +1,93 @@
+"""Which files a process may open, by the kernel's Landlock; knows nothing of which files those should be.
+
+Rules only add: what no rule allows is refused, for this process and all that it starts, and nothing lifts that again.
+From version 4 of the kernel's interface TCP is refused too, from version 6 signals and abstract sockets to processes
+outside. Whether a file exists, and its size, can still be asked.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import stat
+import struct
+from collections.abc import Iterable
+
+from hthor.guest.confinement import kernel
+from hthor.guest.confinement.kernel import Refused
+
+_CREATE, _ADD, _RESTRICT = 444, 445, 446
+_ASK_VERSION = 1
+_BENEATH = 1
+_READ_FILE, _READ_DIR, _WRITE_FILE = 1 << 2, 1 << 3, 1 << 1
+_TRUNCATE, _IOCTL = 1 << 14, 1 << 15
+_DEVICES_AND_SOCKETS = 1 << 6 | 1 << 9 | 1 << 11
+_OF_FILES = 1 | _WRITE_FILE | _READ_FILE | _TRUNCATE | _IOCTL
+_PORTS = 1 | 2
+_SCOPES = 1 | 2
+
+
+def abi() -> int:
+    """Version of the kernel's interface, 0 where there is none."""
+    try:
+        return kernel.syscall("asking for Landlock", _CREATE, None, 0, _ASK_VERSION)
+    except Refused:
+        return 0
+
+
+class Ruleset:
+    """A set of rules, made once and put on by any number of forks.
+
+    Args:
+        read: files and folders that may be read, folders with all that is in them.
+        listed: folders of which only the names may be read.
+        write: folders that may be changed at will. devices: files that may be read and written.
+
+    What does not exist is passed over.
+    """
+
+    def __init__(
+        self, read: Iterable[str], *, listed: Iterable[str] = (), write: Iterable[str] = (), devices: Iterable[str] = ()
+    ) -> None:
+        self.abi = abi()
+        if not self.abi:
+            raise Refused("the kernel has no Landlock (Linux 5.13 or newer, with landlock in CONFIG_LSM)")
+        self._handled = _handled(self.abi)
+        words = (self._handled, _PORTS if self.abi >= 4 else 0, _SCOPES if self.abi >= 6 else 0)
+        size = 24 if self.abi >= 6 else 16 if self.abi >= 4 else 8
+        attributes = ctypes.create_string_buffer(struct.pack("<QQQ", *words)[:size], size)
+        self._handle = kernel.syscall("making Landlock rules", _CREATE, attributes, size, 0)
+        for path in read:
+            self._allow(path, _READ_FILE | _READ_DIR)
+        for path in listed:
+            self._allow(path, _READ_DIR)
+        for path in write:
+            self._allow(path, self._handled & ~1 & ~_DEVICES_AND_SOCKETS)
+        for path in devices:
+            self._allow(path, _READ_FILE | _WRITE_FILE)
+
+    def put_on(self) -> None:
+        """Hold this process, which must have a single thread, to the rules for good."""
+        kernel.syscall("putting on Landlock rules", _RESTRICT, self._handle, 0)
+
+    def close(self) -> None:
+        """Let the rules go; whoever has put them on keeps them."""
+        os.close(self._handle)
+
+    def _allow(self, path: str, rights: int) -> None:
+        try:
+            place = os.open(path, os.O_PATH | os.O_CLOEXEC)
+        except OSError:
+            return
+        try:
+            if not stat.S_ISDIR(os.fstat(place).st_mode):
+                rights &= _OF_FILES
+            rule = ctypes.create_string_buffer(struct.pack("<Qi", rights & self._handled, place), 12)
+            kernel.syscall(f"allowing {path}", _ADD, self._handle, _BENEATH, rule, 0)
+        finally:
+            os.close(place)
+
+
+def _handled(version: int) -> int:
+    """Every right to files that this version knows."""
+    return (1 << (13 if version == 1 else 14 if version == 2 else 15 if version < 5 else 16)) - 1

@@ -1,0 +1,123 @@
+"""What a process may use up, and what it loses for good; knows nothing of files and calls."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import resource
+import signal
+import struct
+import sys
+from pathlib import Path
+
+from hthor.guest.confinement import kernel
+
+_MOST_FILES = 10_000
+_OPEN_FILES = 256
+_MORE_PROCESSES = 1024
+_CAPSET, _CAPBSET_DROP = 126, 24
+_PAGE = os.sysconf("SC_PAGE_SIZE")
+
+
+def die_with(parent: int) -> None:
+    """End when the parent ends; 0 says that somebody else sees to that."""
+    if sys.platform == "linux":
+        kernel.prctl("dying with the parent", kernel.PR_SET_PDEATHSIG, int(signal.SIGKILL))
+    if parent and os.getppid() != parent:
+        os._exit(0)
+
+
+def undumpable() -> None:
+    """Keep this process's memory and environment from others of the same user."""
+    if sys.platform == "linux":
+        kernel.prctl("hiding memory", kernel.PR_SET_DUMPABLE, 0)
+
+
+def renounce() -> None:
+    """Give up every privilege, root's too, and all hope of any; leave no core, and be the first to go for memory."""
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    if sys.platform != "linux":
+        return
+    with contextlib.suppress(OSError):
+        Path("/proc/self/oom_score_adj").write_text("1000")
+    kernel.prctl("renouncing privileges", kernel.PR_SET_NO_NEW_PRIVS, 1)
+    with contextlib.suppress(kernel.Refused):  # who has none cannot drop any
+        for capability in range(41):
+            kernel.prctl("dropping a privilege", _CAPBSET_DROP, capability)
+    if os.uname().machine == "x86_64":
+        head = ctypes.create_string_buffer(struct.pack("<Ii", 0x20080522, 0), 8)
+        kernel.syscall("dropping privileges", _CAPSET, head, ctypes.create_string_buffer(bytes(24), 24))
+
+
+def bound(memory_mb: int, disk_mb: int, *, processes: bool) -> None:
+    """Bound memory, the size of a file, open files and, where it may start any, processes."""
+    _lower(resource.RLIMIT_DATA, memory_mb << 20)
+    _lower(resource.RLIMIT_FSIZE, disk_mb << 20)
+    _lower(resource.RLIMIT_NOFILE, _OPEN_FILES)
+    if processes and sys.platform == "linux":
+        _lower(resource.RLIMIT_NPROC, _threads_of_user() + _MORE_PROCESSES)
+
+
+def resident_mb(pid: int) -> float:
+    """Memory that a process holds, shared memory included [MB]; 0 when it is gone."""
+    try:
+        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * _PAGE / (1 << 20)
+    except (OSError, IndexError):
+        return 0.0
+
+
+def written_mb(pid: int) -> float:
+    """What a process has written to disks so far [MB], files included that have no name any more."""
+    try:
+        words = Path(f"/proc/{pid}/io").read_text().split()
+        return int(words[words.index("write_bytes:") + 1]) / (1 << 20)
+    except (OSError, ValueError):
+        return 0.0
+
+
+def crowd(folder: str) -> tuple[float, int]:
+    """Size of all files in a folder [MB] and their number; stops counting at `_MOST_FILES`."""
+    size = count = 0
+    left = [folder]
+    while left and count <= _MOST_FILES:
+        with contextlib.suppress(OSError), os.scandir(left.pop()) as entries:
+            for entry in entries:
+                count += 1
+                with contextlib.suppress(OSError):
+                    size += entry.stat(follow_symlinks=False).st_blocks * 512
+                    if entry.is_dir(follow_symlinks=False):
+                        left.append(entry.path)
+                if count > _MOST_FILES:
+                    break
+    return size / (1 << 20), count
+
+
+def excess(pid: int, scratch: str, memory_mb: int, disk_mb: int) -> tuple[str, str] | None:
+    """What a process has too much of, as a fault's kind and detail; None while it keeps within its bounds."""
+    held = resident_mb(pid)
+    if held > memory_mb:
+        return "memory", f"the agent held {held:.0f} MB of memory, {memory_mb} MB are allowed"
+    size, count = crowd(scratch)
+    size = max(size, written_mb(pid))
+    if size > disk_mb:
+        return "disk", f"the agent wrote {size:.0f} MB in a trial, {disk_mb} MB are allowed"
+    if count > _MOST_FILES:
+        return "disk", f"the agent made more than {_MOST_FILES} files in a trial"
+    return None
+
+
+def _lower(which: int, most: int) -> None:
+    _, hard = resource.getrlimit(which)
+    value = most if hard == resource.RLIM_INFINITY else min(most, hard)
+    resource.setrlimit(which, (value, value))
+
+
+def _threads_of_user() -> int:
+    """How many threads this user has; the kernel counts them all against the bound."""
+    count, me = 0, os.getuid()
+    for status in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if status.stat().st_uid == me:
+                count += len(os.listdir(status / "task"))
+    return count

@@ -1,0 +1,51 @@
+"""The command that gives a guest a world of its own, by bubblewrap; knows nothing of what runs in it.
+
+In there it sees no process but its own, no network, not even the machine's loopback, and no file but those that it may
+read. What it writes goes to memory of a fixed size and is gone with it.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+
+from hthor.guest.confinement.policy import Policy
+
+_HELP = "Install it: apt-get install bubblewrap"
+_APART = ("--unshare-user", "--unshare-ipc", "--unshare-pid", "--unshare-net", "--unshare-uts", "--unshare-cgroup-try")
+_NOBODY = ("--uid", "65534", "--gid", "65534")
+_OWN = ("/proc/", "/dev/")
+
+
+def unavailable() -> str:
+    """Why there is no such command, empty when there is."""
+    return "" if shutil.which("bwrap") else f"bubblewrap is not installed. {_HELP}"
+
+
+def command(policy: Policy, inner: Sequence[str], writable: Sequence[str] = ()) -> list[str]:
+    """The command that runs another one inside.
+
+    Args:
+        writable: folders for the trusted part of the guest alone, which Landlock keeps from the rest.
+    """
+    words = [shutil.which("bwrap") or "bwrap", *_APART, *_NOBODY, "--hostname", "guest"]
+    words += ["--die-with-parent", "--cap-drop", "ALL", "--proc", "/proc", "--dev", "/dev"]
+    words += ["--size", str(policy.disk_mb << 20), "--tmpfs", policy.scratch]
+    for path in policy.read:  # after the scratch folder: what comes later lies on top
+        if not path.startswith(_OWN):
+            words += ["--ro-bind-try", path, path]
+    for path in writable:
+        words += ["--bind-try", path, path]
+    return [*words, "--remount-ro", "/", "--chdir", "/", "--", *inner]
+
+
+def excuse(said: str) -> str:
+    """Why it did not start, from what it said, and what to do about it."""
+    lines = [line for line in said.splitlines() if line.strip()]
+    reason = lines[-1] if lines else "bubblewrap ended without a word"
+    if "uid map" in reason or "namespace" in reason:
+        reason += (
+            ". This machine does not let users make namespaces: on Ubuntu, sysctl -w "
+            "kernel.apparmor_restrict_unprivileged_userns=0; in Docker, another seccomp profile"
+        )
+    return reason

@@ -1,0 +1,79 @@
+"""What a guest may read of the machine, as a list; knows nothing of who enforces it.
+
+Both enforcers only know rules that allow. So a folder that holds something to be hidden is not named itself; its other
+members are, one by one.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[2]
+_OURS = ("types", "guest", "agents", "navigation", "comms", "catalog")
+"""Parts of this package that minds are made with. Houses, tasks, people and worlds are no business of theirs."""
+_LIBRARIES = ("site-packages", "dist-packages")
+_SYSTEM = ("/usr", "/lib", "/lib64", "/lib32", "/etc/ld.so.cache", "/etc/localtime", "/etc/ssl")
+_FACTS = ("/sys/devices/system/cpu", "/proc/cpuinfo", "/proc/meminfo")
+DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
+_NEVER = (".git", "runs")
+
+
+def libraries() -> list[str]:
+    """Folders of installed libraries."""
+    return [path for path in sys.path if Path(path).name in _LIBRARIES and Path(path).is_dir()]
+
+
+def readable(agent: Path, hidden: Sequence[str]) -> tuple[str, ...]:
+    """Files and folders that a guest may read, folders with everything in them.
+
+    Args:
+        agent: the agent's file; it may read its folder.
+        hidden: files and folders that it may not read, wherever they lie.
+    """
+    secret = [PACKAGE, *(Path(path).resolve() for path in hidden)]
+    found = [str(path) for path in _ours()]
+    roots = [sys.prefix, sys.base_prefix, sys.exec_prefix, os.path.realpath(sys.executable), *libraries()]
+    for root in (*_SYSTEM, *_FACTS, *roots):
+        found += _open(Path(root), secret)
+    folder = agent.parent
+    found += _open(folder, [*secret, *(folder / name for name in _NEVER if (folder / name).exists())])
+    found.append(str(agent))
+    return _tops(found)
+
+
+def listed(agent: Path) -> tuple[str, ...]:
+    """Folders whose names a guest may read, since Python looks for modules by name there."""
+    return (str(PACKAGE), *libraries(), str(agent.parent))
+
+
+def _ours() -> Iterable[Path]:
+    yield from (path for path in sorted(PACKAGE.glob("*.py")))
+    yield from (PACKAGE / name for name in _OURS)
+    yield from (path for path in sorted((PACKAGE / "houses").glob("*.py")))  # maps are made with these; no house is
+
+
+def _open(root: Path, secret: Sequence[Path]) -> list[str]:
+    """The folder, or as much of it as can be named without naming what is secret."""
+    real = root.resolve()
+    if any(real.is_relative_to(hidden) for hidden in secret):
+        return []
+    below = [hidden for hidden in secret if hidden.is_relative_to(real)]
+    if not below or not real.is_dir():
+        return [str(root)] if root.exists() else []
+    try:
+        members = [path for path in sorted(root.iterdir()) if path.resolve().is_relative_to(real)]  # no link leads out
+    except OSError:
+        return []
+    return [path for member in members for path in _open(member, below)]
+
+
+def _tops(found: Iterable[str]) -> tuple[str, ...]:
+    """Each path once, without those that lie in another one."""
+    tops: list[str] = []
+    for path in sorted(set(found)):
+        if not tops or not Path(path).is_relative_to(tops[-1]):
+            tops.append(path)
+    return tuple(tops)

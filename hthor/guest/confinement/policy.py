@@ -1,0 +1,23 @@
+"""What holds one guest and what it may use, as one record that travels to its process; knows nothing of processes."""
+
+from __future__ import annotations
+
+from msgspec import Struct
+
+
+class Policy(Struct, frozen=True, kw_only=True):
+    """The terms of a guest.
+
+    Attributes:
+        level: one of `LEVELS`.
+        read: files and folders that it may read. listed: folders of which it may read the names only.
+        scratch: the folder that it may write to; emptied after each trial.
+        memory_mb: memory that it may hold. disk_mb: what it may write in a trial.
+    """
+
+    level: str
+    read: tuple[str, ...]
+    listed: tuple[str, ...]
+    scratch: str
+    memory_mb: int
+    disk_mb: int

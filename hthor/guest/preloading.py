@@ -1,0 +1,55 @@
+"""Imports the libraries that an agent's file names, once for all its trials; never a line of the file itself.
+
+Only installed libraries and the parts of this package that minds are made with count. Whatever goes wrong here is left
+for the file's own import to meet.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import gc
+import importlib.util
+import sys
+from pathlib import Path
+
+from hthor.guest.confinement import paths
+
+_OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "hthor.catalog", "hthor.rules")
+
+
+def preload(path: Path) -> None:
+    """Import what the file is going to import, and keep it out of the way of forks."""
+    for module, names in _named(path):
+        with contextlib.suppress(BaseException):
+            for name in [module, *(f"{module}.{name}" for name in names if module == "hthor")]:
+                if name.startswith(_OURS) or _installed(name.partition(".")[0]):
+                    found = importlib.import_module(name)
+                    for wanted in names:
+                        getattr(found, wanted, None)  # some packages import their parts only then
+    gc.collect()
+    gc.freeze()
+
+
+def _installed(name: str) -> bool:
+    """Whether a module comes with Python or from where libraries are installed."""
+    spec = importlib.util.find_spec(name)
+    if spec is None or name == "hthor":
+        return False
+    places = [Path(sys.prefix), Path(sys.base_prefix), *map(Path, paths.libraries())]
+    return spec.origin in ("built-in", "frozen") or any(Path(spec.origin or "").is_relative_to(at) for at in places)
+
+
+def _named(path: Path) -> list[tuple[str, list[str]]]:
+    """Modules that a file imports by name at its top level, and what it wants of each."""
+    try:
+        tree = ast.parse(path.read_bytes())
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
+        return []
+    found: list[tuple[str, list[str]]] = []
+    for node in tree.body:
+        if isinstance(node, ast.Import):
+            found += [(alias.name, []) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            found.append((node.module, [alias.name for alias in node.names]))
+    return found

@@ -1,0 +1,110 @@
+"""The guest's end of the wire, and what it reads over it; knows nothing of agents."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import msgspec
+
+from hthor.errors import StaleObservation
+from hthor.guest import wire
+from hthor.types import Camera, Detection, Scan
+
+_hosts_words = msgspec.msgpack.Decoder(wire.ToGuest)
+
+
+class Pipe:
+    """The guest's end of the wire. Reads exactly one frame at a time, so that a fork shares nothing half read."""
+
+    def __init__(self, read: int, write: int) -> None:
+        self._read, self._write = read, write
+
+    def receive(self) -> wire.ToGuest:
+        """The host's next message; ends the process when the host is gone."""
+        size = int.from_bytes(self._exactly(4), "little")
+        message: wire.ToGuest = _hosts_words.decode(self._exactly(size))
+        return message
+
+    def send(self, message: wire.ToHost | wire.KeeperToHost) -> None:
+        data = memoryview(wire.frame(message))
+        while data:
+            data = data[os.write(self._write, data) :]
+
+    def ask(self, what: str, which: int = -1) -> bytes:
+        """The encoded answer of the host."""
+        self.send(wire.Ask(what=what, which=which))
+        answer = self.receive()
+        if not isinstance(answer, wire.Given):
+            os._exit(1)
+        return bytes(answer.value)
+
+    def _exactly(self, size: int) -> bytes:
+        chunks = []
+        while size:
+            chunk = os.read(self._read, min(size, 1 << 20))
+            if not chunk:
+                os._exit(0)
+            chunks.append(chunk)
+            size -= len(chunk)
+        return b"".join(chunks)
+
+
+class RemoteSenses:
+    """Asks the host for what the agent reads, each thing once; useless after `expire`."""
+
+    def __init__(self, pipe: Pipe) -> None:
+        self._pipe, self._known, self._fresh = pipe, dict[tuple[str, int], Any](), True
+
+    def expire(self) -> None:
+        """The tick is over."""
+        self._fresh = False
+
+    def detections(self) -> tuple[Detection, ...]:
+        return self._get("detections", lambda data: msgspec.msgpack.decode(data, type=tuple[Detection, ...]))  # type: ignore[no-any-return]
+
+    def scan(self) -> Scan:
+        return self._get("scan", _scan)  # type: ignore[no-any-return]
+
+    def rgb(self) -> Any:
+        return self._get("rgb", _array)
+
+    def depth(self) -> Any:
+        return self._get("depth", _array)
+
+    def segmentation(self) -> Any:
+        return self._get("segmentation", _array)
+
+    def camera(self) -> Camera:
+        return self._get("camera", _camera)  # type: ignore[no-any-return]
+
+    def image(self, number: int) -> Any:
+        """The picture of message ``number``."""
+        return self._get("image", _array, number)
+
+    def _get(self, what: str, decode: Any, which: int = -1) -> Any:
+        if not self._fresh:
+            raise StaleObservation("this observation is of an earlier tick: read what you need during act")
+        key = (what, which)
+        if key not in self._known:
+            self._known[key] = decode(self._pipe.ask(what, which))
+        return self._known[key]
+
+
+def _scan(data: bytes) -> Scan:
+    scan = msgspec.msgpack.decode(data, type=Scan)
+    return msgspec.structs.replace(
+        scan,
+        bearings=wire.decode_array(scan.bearings),
+        ranges=wire.decode_array(scan.ranges),
+        tops=scan.tops if scan.tops is None else wire.decode_array(scan.tops),
+    )
+
+
+def _camera(data: bytes) -> Camera:
+    camera = msgspec.msgpack.decode(data, type=Camera)
+    return msgspec.structs.replace(camera, matrix=wire.decode_array(camera.matrix), pose=wire.decode_array(camera.pose))
+
+
+def _array(data: bytes) -> Any:
+    return wire.decode_array(msgspec.msgpack.decode(data))

@@ -1,0 +1,105 @@
+"""What a guest may read is listed so that nothing secret is on the list; the filter is sound for its one machine."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import pytest
+
+from hthor.errors import UnknownName
+from hthor.guest.confinement import LEVELS, known, paths, seccomp, suffices
+
+
+def covered(path: Path, allowed: tuple[str, ...]) -> bool:
+    """Whether a rule for one of these reaches a file."""
+    return any(path.resolve().is_relative_to(Path(one).resolve()) for one in allowed)
+
+
+@pytest.fixture
+def agent(tmp_path: Path) -> Path:
+    for name in ("home/agent.py", "home/weights/w.npz", "home/runs/x/trials.jsonl", "home/suite.json", "else/salt.txt"):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("")
+    (tmp_path / "home" / "way_out").symlink_to(tmp_path / "else")
+    (tmp_path / "home" / "way_in").symlink_to(tmp_path / "home" / "weights")
+    return tmp_path / "home" / "agent.py"
+
+
+def test_an_agent_reads_its_folder_but_for_what_is_hidden(agent: Path) -> None:
+    home = agent.parent
+    allowed = paths.readable(agent, [str(home / "suite.json")])
+    assert covered(agent, allowed)
+    assert covered(home / "weights" / "w.npz", allowed)
+    for secret in (home / "runs" / "x" / "trials.jsonl", home / "suite.json", home.parent / "else" / "salt.txt"):
+        assert not covered(secret, allowed), secret
+
+
+def test_of_this_package_only_what_minds_are_made_with_is_read(agent: Path) -> None:
+    allowed = paths.readable(agent, [])
+    for name in ("types/acting.py", "navigation/map.py", "errors.py", "houses/freespace.py"):
+        assert covered(paths.PACKAGE / name, allowed), name
+    secrets = [path for path in paths.PACKAGE.rglob("*.json") if "catalog" not in path.parts]
+    assert len(secrets) > 10
+    for path in [*secrets, paths.PACKAGE / "world" / "__init__.py", paths.PACKAGE / "houses" / "generator"]:
+        assert not covered(path, allowed), path
+
+
+def test_levels_are_ordered_and_named() -> None:
+    assert [suffices(level, "L2") for level in LEVELS] == [False, True, True]
+    with pytest.raises(UnknownName, match=r"unknown isolation level 'l2'\. Did you mean 'L2'"):
+        known("l2")
+
+
+def verdict(code: bytes, number: int, *values: int, machine: int = 0xC000003E) -> int:
+    """What the filter's instructions come to for a call, worked out as the kernel does."""
+    data = struct.pack("<IIQ6Q", number, machine, 0, *(*values, 0, 0, 0, 0, 0, 0)[:6])
+    lines = list(struct.iter_unpack("<HBBI", code))
+    at = word = 0
+    while True:
+        operation, then, otherwise, value = lines[at]
+        at += 1
+        if operation == 0x06:
+            return int(value)
+        if operation == 0x20:
+            (word,) = struct.unpack_from("<I", data, value)
+            continue
+        holds = {0x15: word == value, 0x35: word >= value, 0x45: bool(word & value)}[operation]
+        at += then if holds else otherwise
+
+
+def test_the_filter_does_what_it_says() -> None:
+    code = seccomp.program(77)
+    allow, refuse, absent, kill = 0x7FFF0000, 0x50001, 0x50026, 0x80000000
+    assert {verdict(code, number) for number in seccomp.DENIED.values()} == {refuse}
+    expected = {
+        allow: [
+            (0,),
+            (1,),
+            (9,),
+            (53,),
+            (56, 0x3D0F00),
+            (62, 77, 9),
+            (234, 77, 78, 6),
+            (302, 0),
+            (302, 77),
+            (72, 3, 4),
+        ],
+        refuse: [
+            (56, 0x1200011),
+            (62, 76),
+            (62, 2**32 - 1),
+            (234, 76),
+            (302, 5),
+            (72, 3, 8),
+            (72, 3, 10),
+            (16, 0, 0x5412),
+        ],
+        absent: [(435,), (319,)],
+        kill: [(0x40000000 | 39,)],
+    }
+    for what, calls in expected.items():
+        for call in calls:
+            assert verdict(code, *call) == what, call
+    assert verdict(code, 0, machine=0x40000003) == kill

@@ -1,0 +1,200 @@
+"""Agents that break rules come to nothing where they are held, and each leaves a fault of a known name."""
+
+from __future__ import annotations
+
+import functools
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from hthor import guest
+from hthor.guest import Guest, IsolationError, keeper
+from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, Case
+from tests.test_guest import BRIEFING, look
+
+NOBODY = 65534
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@functools.cache
+def runner() -> tuple[list[str], dict[str, Any]]:
+    """An interpreter, and as whom: an unprivileged user where one can start it."""
+    libraries = [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
+    env = {"PATH": os.environ["PATH"], "PYTHONPATH": os.pathsep.join([str(ROOT), *libraries])}
+    if os.getuid() == 0:
+        as_nobody = {"user": NOBODY, "group": NOBODY, "extra_groups": [], "env": env, "cwd": "/"}
+        for python in (sys.executable, f"/usr/bin/python{sys.version_info.major}.{sys.version_info.minor}"):
+            words = [python, "-P", "-c", "import numpy, msgspec, hthor.guest"]
+            try:
+                if subprocess.run(words, capture_output=True, **as_nobody).returncode == 0:
+                    return [python], as_nobody
+            except OSError:
+                continue
+    return [sys.executable], {"env": env, "cwd": "/"}
+
+
+@functools.cache
+def played(level: str) -> dict[str, Any]:
+    """What became of all agents at a level."""
+    try:
+        guest.in_force(level)
+    except IsolationError as error:
+        pytest.skip(str(error))
+    python, how = runner()
+    done = subprocess.run([*python, "-P", "-m", "tests.redteam.play", level], capture_output=True, text=True, **how)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)  # type: ignore[no-any-return]
+
+
+def of(level: str, case: Case) -> dict[str, Any]:
+    return next(one for one in played(level)["agents"] if one["name"] == case.name)  # type: ignore[no-any-return]
+
+
+@pytest.mark.parametrize("case", HOSTILE, ids=lambda case: case.name)
+@pytest.mark.parametrize("level", ["L2", "L3"])
+def test_a_hostile_agent_comes_to_nothing(level: str, case: Case) -> None:
+    one = of(level, case)
+    assert one["level"] == level
+    assert "BREACH" not in one["fault"]["detail"] + one["log"], one
+    assert (one["fault"]["kind"] or NO_FAULT) in case.kinds, one
+    assert case.told in one["fault"]["detail"], one
+    assert not one["changed"], "its own folder is as it was"
+    assert one["again"] == "", "the next trial is played"
+    assert played(level)["intact"]
+
+
+@pytest.mark.parametrize("case", HONEST, ids=lambda case: case.name)
+@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+def test_an_honest_agent_passes(level: str, case: Case, tmp_path: Path) -> None:
+    one = of(level, case) if level != "L1" else _alone(case, tmp_path)
+    assert one["fault"]["kind"] == "", one
+
+
+def _alone(case: Case, folder: Path) -> dict[str, Any]:
+    python, how = runner()
+    words = [*python, "-P", "-m", "tests.redteam.play", "L1", case.name]
+    done = subprocess.run(words, capture_output=True, text=True, **how)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)["agents"][0]  # type: ignore[no-any-return]
+
+
+def test_these_were_played_by_an_unprivileged_user() -> None:
+    uid = played("L2")["uid"]
+    if uid == 0:
+        pytest.skip("the tests run as root, and no other user can start this interpreter: they were played by root")
+    assert uid > 0
+
+
+HOST = """
+import sys
+import time
+from pathlib import Path
+from hthor.guest import Guest
+from tests.test_guest import BRIEFING
+guest = Guest(sys.argv[1], isolation=sys.argv[2])
+guest.load()
+print(guest._process.policy.scratch, flush=True)
+guest.begin(BRIEFING)
+"""
+DAEMON = """
+import os, time
+class Agent:
+    def begin(self, briefing):
+        try:
+            if os.fork() == 0:
+                os.setsid()
+        except OSError:
+            pass
+        while True:
+            time.sleep(1)
+    def act(self, observation):
+        pass
+"""
+
+
+@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+def test_nothing_outlives_a_killed_host(level: str, tmp_path: Path) -> None:
+    try:
+        guest.in_force(level)
+    except IsolationError as error:
+        pytest.skip(str(error))
+    path = tmp_path / "daemon.py"
+    path.write_text(DAEMON)
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    host = subprocess.Popen([sys.executable, "-c", HOST, str(path), level], stdout=subprocess.PIPE, text=True, env=env)
+    assert host.stdout is not None
+    scratch = host.stdout.readline().strip()
+    for _ in range(200):
+        if len(below := _descendants(host.pid)) > 2:
+            break
+        time.sleep(0.05)
+    host.kill()
+    host.communicate()
+    assert below
+    for _ in range(200):
+        left = [pid for pid in below if _lives(pid)]
+        if not left and not Path(scratch).exists():
+            break
+        time.sleep(0.05)
+    assert not left
+    assert not Path(scratch).exists()
+
+
+def _descendants(pid: int) -> list[int]:
+    families = keeper._families()
+    line, found = [pid], []
+    while line:
+        found += families.get(line[-1], [])
+        line += families.get(line.pop(), [])
+    return found
+
+
+def _lives(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+LEAK = """
+from pathlib import Path
+import os, sys, tempfile
+import numpy as np
+from hthor.guest import wire
+from hthor.types import *
+FOLDER = Path(tempfile.gettempdir())
+SEEN = [str(path) for path in FOLDER.iterdir()] + [name for name in vars(np) if name == "leak"]
+class Agent:
+    def begin(self, briefing):
+        pass
+    def act(self, observation):
+        print(SEEN, os.getpid(), hasattr(wire, "leak"))
+        (FOLDER / "deep" / "deeper").mkdir(parents=True)
+        (FOLDER / "deep" / "deeper" / "note").write_text("x")
+        os.chmod(FOLDER / "deep", 0)
+        np.leak = wire.leak = 1
+        return Action()
+"""
+
+
+@pytest.mark.parametrize("level", ["L2", "L3"])
+def test_a_trial_leaves_nothing_to_the_next(level: str, tmp_path: Path) -> None:
+    try:
+        guest.in_force(level)
+    except IsolationError as error:
+        pytest.skip(str(error))
+    path = tmp_path / "leaky.py"
+    path.write_text(LEAK)
+    with Guest(path, isolation=level) as mind:
+        for _ in range(3):
+            mind.begin(BRIEFING)
+            mind.act(look())
+        lines = [line.split() for line in mind.log.splitlines()]
+    assert [(line[0], line[-1]) for line in lines] == [("[]", "False")] * 3, lines
+    assert len({line[1] for line in lines}) == 3, "each trial has a process of its own"
