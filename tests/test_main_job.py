@@ -216,6 +216,8 @@ def test_not_even_what_an_agent_started_outlives_the_run(tmp_path: Path):
         "run",
         "--quiet",
         "--no-control",
+        "--isolation",
+        "L1",  # stronger ones let no agent start anything
     )
     with started(*words, cwd=tmp_path) as process:
         until(lambda: "sleep 600 " in processes(tmp_path), "the agent never began")
