@@ -26,13 +26,15 @@ def rays(model, data, view, size, groups=6):
     x, y = np.meshgrid(xs, ys)
     along = view[3:6] - x[..., None] * view[6:9] + y[..., None] * view[9:12]
     length = np.linalg.norm(along, axis=-1)
-    geom, far = np.zeros(width * height, np.int32), np.zeros(width * height)
+    geom, far, one = np.zeros((height, width), np.int32), np.zeros((height, width)), np.zeros(1, np.int32)
     shown = np.array([index < groups for index in range(6)], np.uint8)
-    unit = (along / length[..., None]).reshape(-1)
-    mujoco.mj_multiRay(model, data, view[:3], unit, shown, 1, -1, geom, far, None, width * height, mujoco.mjMAXVAL)
-    depth = far.reshape(height, width) / length
-    missed = (geom.reshape(height, width) < 0) | (depth > view[15])
-    return np.where(missed, -1, geom.reshape(height, width)), np.where(missed, view[15], depth)
+    eye, unit = view[:3].copy(), along / length[..., None]
+    for pixel in np.ndindex(height, width):  # one by one: `mj_multiRay` overlooks what is close to the eye
+        far[pixel] = mujoco.mj_ray(model, data, eye, unit[pixel], shown, 1, -1, one, None)
+        geom[pixel] = one[0]
+    depth = far / length
+    missed = (geom < 0) | (depth > view[15])
+    return np.where(missed, -1, geom), np.where(missed, view[15], depth)
 
 
 def agree(model, data, view, hit, w, groups=6):
