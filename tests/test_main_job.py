@@ -153,12 +153,13 @@ def until(true: Callable[[], object], what: str) -> None:
 
 
 def processes(tmpdir: Path) -> list[str]:
-    """Command lines of living processes with this TMPDIR."""
+    """Command lines of living processes with this TMPDIR, or, as guests have, with a folder in it."""
     mark, found = f"TMPDIR={tmpdir}".encode(), []
     for folder in Path("/proc").glob("[0-9]*"):
         try:
             state = (folder / "stat").read_text().rpartition(")")[2].split()[0]
-            if state not in "ZX" and mark in (folder / "environ").read_bytes().split(b"\0"):
+            words = (folder / "environ").read_bytes().split(b"\0")
+            if state not in "ZX" and any(word == mark or word.startswith(mark + b"/") for word in words):
                 found.append((folder / "cmdline").read_bytes().replace(b"\0", b" ").decode())
         except OSError:
             continue  # it ended while we looked, or is not ours
