@@ -71,6 +71,16 @@ class AgentError(HthorError):
     exit_code = 4
 
 
+KILLED = "killed"
+"""The fault of an agent whose process was ended from outside, which is not its failure until it happens again."""
+
+
+class AgentKilled(AgentError):
+    """An agent's process was ended from outside before the agent could say what it is."""
+
+    kind = KILLED
+
+
 class RunError(HthorError):
     """A run folder that cannot be used: damaged, or of another evaluation."""
 

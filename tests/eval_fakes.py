@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import functools
 import hashlib
 import os
@@ -18,12 +19,13 @@ import msgspec
 
 from hthor import seeds
 from hthor.episode import EpisodeLog, Fault
+from hthor.errors import KILLED
 from hthor.eval import cast, crews, engines, provenance, record, session, setup, worker
 from hthor.eval.engines import SessionFailed
+from hthor.eval.news import Failed, News
 from hthor.eval.record import Record
 from hthor.eval.session import Session
 from hthor.eval.setup import Setup
-from hthor.eval.worker import News
 from hthor.humans import people
 from hthor.humans.people import People
 from hthor.humans.population import Population, Validity
@@ -183,12 +185,34 @@ def dying_player(folder: str, deaths: int = 1) -> Callable[[Session], Iterator[R
     return perform
 
 
+def hopeless_player() -> Callable[[Session], Iterator[Record]]:
+    raise ModuleNotFoundError("no module named 'mujoco'")
+
+
 def failing_player(error: str) -> Callable[[Session], Iterator[Record]]:
     def perform(session_: Session) -> Iterator[Record]:
         yield from list(player()(session_))[:2]
         from hthor.errors import AgentError
 
         raise AgentError("the agent is no good") if error == "user" else ZeroDivisionError("our own")
+
+    return perform
+
+
+def sick_player(folder: str, *ills: str) -> Callable[[Session], Iterator[Record]]:
+    """The fourth trial of participant 1 ends the worker, of participant 3 hangs once, of participant 5 has a bug."""
+
+    def perform(session_: Session) -> Iterator[Record]:
+        for number, played in enumerate(player()(session_)):
+            ill = {1: "crash", 3: "hang", 5: "bug"}.get(session_.participant) if number == 3 else None
+            if ill == "crash" and ill in ills:
+                ctypes.string_at(0)
+            if ill == "bug" and ill in ills:
+                raise ZeroDivisionError("our own")
+            if ill == "hang" and ill in ills and not Path(folder, "hung").exists():
+                Path(folder, "hung").touch()
+                time.sleep(1e6)
+            yield played
 
     return perform
 
@@ -221,7 +245,7 @@ def guarded_player(seconds: float = 0.004) -> Callable[[Session], Iterator[Recor
                     except BrokenPipeError:
                         answer = b""
                     if not answer:
-                        fault = Fault(seat="robot", kind="died", tick=1, detail="killed by SIGKILL")
+                        fault = Fault(seat="robot", kind=KILLED, tick=1, detail="killed by SIGKILL")
                         log = msgspec.structs.replace(log, faults=(fault,))
                     yield record.of(trial, log)
             finally:
@@ -239,7 +263,7 @@ def killing_player(times: int) -> Callable[[Session], Iterator[Record]]:
         for memory, trial in enumerate(session_.trials):
             log = episode(trial, memory)
             if memory == 2 and plays[session_.participant] <= times:
-                fault = Fault(seat="robot", kind="died", tick=1, detail="killed by SIGKILL")
+                fault = Fault(seat="robot", kind=KILLED, tick=1, detail="killed by SIGKILL")
                 log = msgspec.structs.replace(log, faults=(fault,))
             yield record.of(trial, log)
 
@@ -249,14 +273,17 @@ def killing_player(times: int) -> Callable[[Session], Iterator[Record]]:
 class Here:
     """An engine that plays in this process, which saves starting others."""
 
-    def __init__(self, *, jobs: int | None = None, address: str = "", gpus: float = 0.0) -> None:
+    def __init__(self, *, jobs: int | None = None, address: str = "", gpus: float = 0.0, limit_s: float = 0.0) -> None:
+        pass
+
+    def drain(self) -> None:
         pass
 
     def perform(self, sessions, make) -> Generator[News | None, None, None]:
         player = worker.Player(make)
         for one in sessions:
             for news in player.play(one):
-                if isinstance(news, worker.Failed):
+                if isinstance(news, Failed):
                     raise SessionFailed(news)
                 yield news
 
@@ -294,7 +321,7 @@ if __name__ == "__main__":
         if sys.argv[1] in ("guarded", "clustered"):
             getattr(eval_fakes, sys.argv[1])(*sys.argv[2:])
         else:
-            eval_fakes.run_in(Path(sys.argv[1]))
+            eval_fakes.run_in(Path(sys.argv[1]), seconds=float(sys.argv[2]) if sys.argv[2:] else 0.02)
     except HthorError as error:
         sys.stderr.write(f"{error}\n")
         sys.exit(error.exit_code)

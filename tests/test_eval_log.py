@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -9,8 +10,9 @@ from pathlib import Path
 import eval_fakes as fakes
 import pytest
 
+from hthor import jsonio
 from hthor.errors import RunError, RunLocked
-from hthor.eval import log, record
+from hthor.eval import log, record, waiting
 
 
 def _lines(count: int = 4) -> list[tuple[str, bytes]]:
@@ -88,3 +90,38 @@ def test_a_second_writer_is_refused_with_the_first_ones_number(tmp_path: Path):
         assert caught.value.exit_code == 75
         other.communicate()
     log.Log(tmp_path).close()
+
+
+def test_what_is_written_is_on_the_disk_within_a_quarter_of_a_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    now, synced = [100.0], []
+    monkeypatch.setattr(log.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(log.os, "fdatasync", lambda _: synced.append(now[0]))
+    with log.Log(tmp_path) as book:
+        book.append(*_lines()[0])
+        while not synced:
+            now[0] += waiting.BEAT_S  # how often whoever writes looks whether it is time
+            book.sync(due=True)
+        assert now[0] - 100.0 <= log.SYNC_S + 1e-9
+        now[0] += 9.0
+        book.sync(due=True)
+        assert len(synced) == 1
+
+
+def test_folders_are_known_to_the_disk_before_what_is_in_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    known: list[tuple[str, set[str]]] = []
+
+    def fsync(handle: int) -> None:
+        path = Path(os.readlink(f"/proc/self/fd/{handle}"))
+        if path.is_dir():
+            known.append((path.name, {entry.name for entry in path.iterdir()}))
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    with log.Log(tmp_path / "runs" / "mine") as book:
+        jsonio.write(book.path.with_name("run.json"), b"{}")
+    steps = [
+        (tmp_path.name, {"runs"}),
+        ("runs", {"mine"}),
+        ("mine", {".lock", "trials.jsonl"}),
+        ("mine", {".lock", "trials.jsonl", "run.json"}),
+    ]
+    assert known == steps

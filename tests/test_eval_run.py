@@ -15,8 +15,9 @@ from pathlib import Path
 import eval_fakes as fakes
 import pytest
 
+from hthor import rules
 from hthor.errors import RunError
-from hthor.eval import log, progress, run, runner, score
+from hthor.eval import course, engines, log, progress, run, runner, score, waiting
 from hthor.eval.score import Result
 
 
@@ -91,23 +92,61 @@ def test_a_killed_worker_costs_nothing(tmp_path: Path, reference: Path, deaths: 
     assert _lines(tmp_path / "run") == _lines(reference)
 
 
-def test_a_session_that_always_kills_its_worker_ends_the_run_with_a_reason(tmp_path: Path):
+def test_sessions_that_cannot_be_played_do_not_stop_the_others(tmp_path: Path, reference: Path):
+    watch, make = Notes(), functools.partial(fakes.sick_player, str(tmp_path), "crash", "bug")
+    with pytest.raises(course.InternalFailure) as caught:
+        _run(tmp_path / "run", make, count=60, watch=watch)
+    told = str(caught.value)
+    assert "participant 1: it ended 3 workers, the last by signal SIGSEGV" in told
+    assert "participant 5: ZeroDivisionError: our own" in told
+    assert "14 of 60 trials are missing, all others are kept." in told
+    assert caught.value.exit_code == 1
+    assert "eval_fakes.py" in (tmp_path / "run" / "error.txt").read_text()
+    assert (
+        sum("participant 1 begins again: its worker was ended by signal SIGSEGV" in note for note in watch.notes) == 2
+    )
+    assert sum("is given up" in note for note in watch.notes) == 2
+    assert len(_lines(tmp_path / "run")) == 46
+    assert _run(tmp_path / "run", count=60).counts.trials == 60
+    assert _lines(tmp_path / "run") == _lines(reference)
+
+
+def test_a_worker_that_hangs_is_ended_and_its_session_played_again(tmp_path: Path, reference: Path):
+    plan, dealt = fakes.run_of(60)
+    engine = engines.find("local", jobs=2, limit_s=6.0)
+    make, watch = functools.partial(fakes.sick_player, str(tmp_path), "hang"), Notes()
+    result = run.evaluate(plan, dealt, make, folder=tmp_path / "run", engine=engine, watch=watch)
+    assert "participant 3 begins again: its worker was ended by the limit of 6 s for a trial" in watch.notes[0]
+    assert result.effort.replays == 1
+    assert _lines(tmp_path / "run") == _lines(reference)
+
+
+def test_a_session_that_always_ends_its_worker_has_its_own_exit_code(tmp_path: Path):
     make = functools.partial(fakes.dying_player, str(tmp_path), 9)
-    with pytest.raises(RunError, match="participant 0 ended 3 workers, the last by signal SIGKILL"):
+    with pytest.raises(
+        course.Unfinished, match=r"participant 0: .*SIGKILL.*The same command tries them again"
+    ) as caught:
         _run(tmp_path / "run", make, count=10)
+    assert caught.value.exit_code == 1
+
+
+def test_a_run_of_which_nothing_can_be_played_ends_soon(tmp_path: Path):
+    watch = Notes()
+    with pytest.raises(course.InternalFailure, match="30 of 30 trials are missing"):
+        _run(tmp_path, fakes.hopeless_player, watch=watch)
+    assert sum("is given up" in note for note in watch.notes) == 3
+
+
+def test_a_worker_has_as_long_as_its_agents_deadlines_allow():
+    tasks = [fakes.task()]
+    assert waiting.limit(tasks, 0) == waiting.LIMIT_S
+    assert waiting.limit(tasks, 2) > 2 * (60 + 60 + 60 + 5 * tasks[0].time_limit / rules.TICK_S)
 
 
 def test_a_users_error_in_a_worker_keeps_its_exit_code(tmp_path: Path):
     with pytest.raises(runner.SessionFailed, match="the agent is no good") as caught:
         _run(tmp_path, functools.partial(fakes.failing_player, "user"))
     assert caught.value.exit_code == 4
-
-
-def test_our_own_error_in_a_worker_leaves_its_traceback(tmp_path: Path):
-    with pytest.raises(run.InternalFailure, match=r"ZeroDivisionError: our own.*error\.txt") as caught:
-        _run(tmp_path, functools.partial(fakes.failing_player, "own"))
-    assert caught.value.exit_code == 1
-    assert "eval_fakes.py" in (tmp_path / "error.txt").read_text()
 
 
 @pytest.mark.parametrize(("times", "faults"), [(1, 0), (2, 0), (3, 3)])
@@ -166,9 +205,10 @@ def test_what_does_not_repeat_itself_is_told(tmp_path: Path):
     assert "9 trials went otherwise" in watch.notes[0]
 
 
-def _start(folder: Path) -> subprocess.Popen[str]:
+def _start(folder: Path, seconds: float = 0.02) -> subprocess.Popen[str]:
     script = str(Path(fakes.__file__).resolve())
-    return subprocess.Popen([sys.executable, script, str(folder)], stderr=subprocess.PIPE, text=True)
+    words = [sys.executable, script, str(folder), str(seconds)]
+    return subprocess.Popen(words, stderr=subprocess.PIPE, text=True, start_new_session=True)
 
 
 def _played(folder: Path) -> int:
@@ -215,12 +255,27 @@ def test_a_run_that_is_killed_again_and_again_ends_up_the_same(tmp_path: Path, r
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_ctrl_c_keeps_what_was_played_and_says_how_to_go_on(tmp_path: Path, number: int):
-    with _start(tmp_path) as process:
-        _wait_for(tmp_path, 3)
-        os.kill(process.pid, number)
+def test_the_first_signal_lets_trials_come_to_their_end(tmp_path: Path, number: int):
+    with _start(tmp_path, 0.5) as process:
+        _wait_for(tmp_path, 2)
+        before = _played(tmp_path)
+        os.killpg(process.pid, number)  # as a terminal and Slurm do: to the workers as well
         _, words = process.communicate(timeout=30)
     assert process.returncode == 130
     assert "resume with the same command" in words
     assert "Traceback" not in words
-    assert 3 <= _played(tmp_path) < 60
+    assert before < _played(tmp_path) <= before + 2
+
+
+def test_the_second_signal_ends_at_once(tmp_path: Path):
+    with _start(tmp_path, 1.5) as process:
+        _wait_for(tmp_path, 2)
+        before, began = _played(tmp_path), time.monotonic()
+        os.killpg(process.pid, signal.SIGINT)
+        time.sleep(0.2)
+        os.killpg(process.pid, signal.SIGINT)
+        _, words = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert "interrupted at once; resume with the same command" in words
+    assert "Traceback" not in words
+    assert _played(tmp_path) == before or time.monotonic() - began > 1.0  # a machine too busy to tell

@@ -189,7 +189,7 @@ def test_an_exception_in_begin_is_a_fault_too(write: Write) -> None:
         ("os._exit(3)", "died", "status 3"),
         ("os._exit(0)", "died", "status 0"),
         ("os.kill(os.getpid(), 11)", "died", "SIGSEGV"),
-        ("os.kill(os.getpid(), 9)", "died", "SIGKILL"),
+        ("os.kill(os.getpid(), 9)", "killed", "SIGKILL"),
         ("sys.exit(0)", "raised", "SystemExit"),
         ("return 'forward'", "wrong_type", "got str: 'forward'"),
         ("return None", "wrong_type", "NoneType"),

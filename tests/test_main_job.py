@@ -301,7 +301,7 @@ FAULTY = {
     "raises in act": ({"act": "raise KeyError('x')"}, "raised", "KeyError: 'x'"),
     "hangs": ({"act": "while True: pass"}, "timeout", "gave no answer within 0.5 s"),
     "exits": ({"act": "sys.exit(3)"}, "raised", "SystemExit: 3"),
-    "is killed": ({"act": "os.kill(os.getpid(), 9)"}, "died", "SIGKILL"),
+    "is killed": ({"act": "os.kill(os.getpid(), 9)"}, "killed", "SIGKILL"),
     "gives nothing": ({"act": "return None"}, "wrong_type", "act must return an hthor.types.Action, got NoneType"),
     "gives a text as motion": ({"act": "return Action(motion='forward')"}, "garbage", "motion: Expected `object`"),
     "gives a short position": (

@@ -21,9 +21,11 @@ from hthor.calibration.ledger import Ledger
 from hthor.calibration.sitting import OUTCOMES, Sat, Sitting
 from hthor.calibration.table import AGENTS, CONDITIONS, Table
 from hthor.errors import RunError
-from hthor.eval import crews, run, runner, session
-from hthor.eval.run import InternalFailure, Interrupted, Watcher
-from hthor.eval.worker import Played
+from hthor.eval import crews, runner, session
+from hthor.eval.course import InternalFailure
+from hthor.eval.news import Played
+from hthor.eval.run import Watcher
+from hthor.eval.stopping import Interrupted, stoppable
 from hthor.humans import registry
 from hthor.tasks import Suite
 from hthor.types import RobotSeat
@@ -134,7 +136,7 @@ def robots() -> tuple[tuple[RobotSeat, ...], ...]:
 def _play(suite: Suite, left: Sequence[Sitting], ledger: Ledger, jobs: int, watch: Watcher) -> None:
     make: Any = functools.partial(sitting.player, suite, robots())  # what it plays and gives is ours to choose
     some: Any = left
-    with run.stoppable() as stop, closing(runner.perform(some, make, jobs=jobs)) as stream:
+    with stoppable() as stop, closing(runner.perform(some, make, jobs=jobs)) as stream:
         try:
             for news in stream:
                 if isinstance(news, Played):
@@ -144,7 +146,7 @@ def _play(suite: Suite, left: Sequence[Sitting], ledger: Ledger, jobs: int, watc
                 watch.beat()
                 if stop.is_set():
                     raise Interrupted(f"interrupted after {len(ledger.held)} sessions; the same command resumes.")
-        except runner.SessionFailed as failure:
+        except runner.SessionLost as failure:
             if failure.detail:
                 jsonio.write(ledger.path.with_name("error.txt"), failure.detail.encode())
                 raise InternalFailure(f"{failure}. The traceback is in {ledger.path.with_name('error.txt')}.") from None

@@ -114,6 +114,14 @@ def evaluate(
     address: Annotated[
         str, typer.Option(help="With --engine ray: the cluster's address.", show_default="the one that is here")
     ] = "",
+    trial_limit: Annotated[
+        float | None,
+        typer.Option(
+            min=1.0,
+            help="Seconds that a worker may play a trial; one that takes longer is ended, its session played again.",
+            show_default="600, and with agents of your own as long as their deadlines allow",
+        ),
+    ] = None,
     control: Annotated[
         bool,
         typer.Option(
@@ -164,6 +172,7 @@ def evaluate(
         control=control,
         isolation=isolation,
         require_isolation=require_isolation,
+        trial_limit=trial_limit,
     )
     paper = talk if json else screen.console()
     done: list[Done] = []

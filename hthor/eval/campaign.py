@@ -12,7 +12,20 @@ from msgspec import Struct
 
 from hthor import detectors, guest, jsonio
 from hthor.errors import HthorError
-from hthor.eval import cast, control, crews, engines, guarded, peoples, programme, provenance, run, setup, shard
+from hthor.eval import (
+    cast,
+    control,
+    crews,
+    engines,
+    guarded,
+    peoples,
+    programme,
+    provenance,
+    run,
+    setup,
+    shard,
+    waiting,
+)
 from hthor.eval.crews import Crew
 from hthor.eval.programme import Programme
 from hthor.eval.run import Watcher
@@ -50,6 +63,7 @@ class Options(Struct, frozen=True, kw_only=True):
     control: bool = False
     isolation: str = "auto"
     require_isolation: str = ""
+    trial_limit: float | None = None
 
 
 class ClosableWatcher(Watcher, Protocol):
@@ -101,7 +115,7 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
     held = guarded.settle(options.isolation, options.require_isolation, any(part.crew.minds for part in parts))
     for part in (*parts, *controls.values()):
         setup.examine(part.folder, part.plan)
-        _engine(options, part.crew)  # is there such an engine?
+        _engine(options, chosen, part.crew)  # is there such an engine?
         guarded.weakest(part.folder, held, options.require_isolation)
     told: set[str] = set()
 
@@ -187,8 +201,9 @@ def _parts(
     return parts
 
 
-def _engine(options: Options, crew: Crew) -> engines.Engine:
-    return engines.find(options.engine, jobs=options.jobs, address=options.address, gpus=crew.gpus)
+def _engine(options: Options, chosen: Programme, crew: Crew) -> engines.Engine:
+    limit_s = options.trial_limit or waiting.limit(chosen.suite.tasks, len(crew.minds))
+    return engines.find(options.engine, jobs=options.jobs, address=options.address, gpus=crew.gpus, limit_s=limit_s)
 
 
 def _perform(
@@ -232,7 +247,8 @@ def _perform(
         make = functools.partial(guarded.player, sources, held.level, hidden)
         extra[guarded.NAME] = jsonio.pretty(guarded.weakest(folder, held, options.require_isolation))
     mine = plan.shard.share(dealt) if plan.shard else dealt
-    return run.evaluate(plan, mine, make, folder=folder, engine=_engine(options, crew), watch=watch, extra=extra)
+    engine = _engine(options, chosen, crew)
+    return run.evaluate(plan, mine, make, folder=folder, engine=engine, watch=watch, extra=extra)
 
 
 def _hidden(options: Options) -> tuple[str, ...]:

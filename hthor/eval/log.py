@@ -12,12 +12,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple
 
+from hthor import jsonio
 from hthor.errors import RunError, RunLocked
 from hthor.eval import record
 from hthor.eval.record import Record
+from hthor.eval.waiting import BEAT_S
 
 SYNC_S = 0.25
-"""Longest time that a written record may wait for the disk."""
+"""Longest time that a written record may wait for the disk, if `Log.sync` is called with every beat."""
 _BLOCK = 1 << 16
 
 
@@ -84,13 +86,13 @@ class Log:
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / "trials.jsonl"
-        folder.mkdir(parents=True, exist_ok=True)
+        jsonio.make_folder(folder)
         self._lock = lock(folder)
         try:
             self._checks = {found.key: record.checksum(line) for line, found in read(self.path)}
             self.torn = cut_torn_line(self.path)
             self._file = os.open(self.path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC, 0o644)
-            sync_folder(folder)
+            jsonio.sync_folder(folder)
         except BaseException:
             os.close(self._lock)
             raise
@@ -135,8 +137,8 @@ class Log:
         return True
 
     def sync(self, *, due: bool = False) -> None:
-        """Put what was written on the disk; with ``due`` only what has waited for `SYNC_S`."""
-        if self._dirty_since is None or (due and time.monotonic() - self._dirty_since < SYNC_S):
+        """Put what was written on the disk; with ``due`` only what could else wait for more than `SYNC_S`."""
+        if self._dirty_since is None or (due and time.monotonic() - self._dirty_since < SYNC_S - BEAT_S):
             return
         try:
             os.fdatasync(self._file)
@@ -171,16 +173,6 @@ def lock(folder: Path) -> int:
         os.ftruncate(handle, 0)
         os.pwrite(handle, f"process {os.getpid()} on {socket.gethostname()}".encode(), 0)
     return handle
-
-
-def sync_folder(folder: Path) -> None:
-    """Have the disk know the folder's files by name, without which their content is lost with the power."""
-    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
-    try:
-        with contextlib.suppress(OSError):  # some network file systems do not know the word
-            os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 def cut_torn_line(path: Path) -> int:

@@ -183,6 +183,7 @@ def _score(out: Path, plan: Setup, folders: Sequence[Path]) -> Result:
             wall_s=max(one.wall_s for one in efforts),
             cpu_s=round(sum(one.cpu_s for one in efforts), 3),
             trials=sum(one.trials for one in efforts),
+            replays=sum(one.replays for one in efforts),
         )
     beside, held = control.beside(out, plan, records), _held(out, folders)
     result = score.summarise(plan, log.fetch(there), records, effort, uplift=beside, isolation=held)

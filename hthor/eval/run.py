@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import signal
 import threading
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import FrameType
 from typing import Protocol
 
 from hthor import jsonio
-from hthor.errors import HthorError, RunError
-from hthor.eval import control, engines, guarded, log, record, score, setup
-from hthor.eval.engines import Engine, Make, SessionFailed
+from hthor.eval import control, course, engines, guarded, log, record, score, setup
+from hthor.eval.engines import Engine, Make
 from hthor.eval.log import Log
 from hthor.eval.score import Effort, Result
 from hthor.eval.session import Session
 from hthor.eval.setup import Setup
-from hthor.eval.worker import Finished, Played
+from hthor.eval.stopping import Interrupted, stoppable
 
 EFFORT = "effort.json"
 """What a shard took. A result it has none, as that is of whole runs."""
@@ -39,12 +35,6 @@ class Watcher(Protocol):
 
     def note(self, text: str) -> None:
         """Something that the user should read."""
-
-
-class Interrupted(HthorError):
-    """The user stopped the run; what was played is kept."""
-
-    exit_code = 130
 
 
 def evaluate(
@@ -70,9 +60,28 @@ def evaluate(
 
     Raises:
         RunLocked: when another process writes this run.
-        RunError: when the folder holds another run or is damaged, or a worker died again and again.
+        RunError: when the folder holds another run or is damaged.
+        Unfinished, InternalFailure: when sessions had to be given up. All others are played first.
         Interrupted: on Ctrl-C or SIGTERM.
     """
+    with stoppable() as stop:
+        where = engine or engines.find(engines.LOCAL, jobs=jobs)
+        result = _evaluate(plan, sessions, make, folder, where, watch, extra, stop)
+        if stop.is_set():
+            raise Interrupted("interrupted; resume with the same command.")
+        return result
+
+
+def _evaluate(
+    plan: Setup,
+    sessions: Sequence[Session],
+    make: Make,
+    folder: Path,
+    engine: Engine,
+    watch: Watcher,
+    extra: Mapping[str, bytes] | None,
+    stop: threading.Event,
+) -> Result:
     began = time.monotonic()
     setup.examine(folder, plan)
     with Log(folder) as book:
@@ -85,49 +94,21 @@ def evaluate(
         watch.begin(len(wanted), sum(key in book for key in wanted))
         if book.torn:
             watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")
-        cost = _play(book, engine or engines.find(engines.LOCAL, jobs=jobs), left, make, watch) if left else None
+        came = course.play(book, engine, left, make, watch, stop) if left else None
+        if stop.is_set():
+            raise Interrupted(f"interrupted after {len(book)} trials; resume with the same command.")
         missing = [key for key in wanted if key not in book]
         if missing:
-            raise RunError(f"{folder}: {len(missing)} trials were not played, {missing[0]} is one. Run it again.")
-    if cost is None:
+            raise course.unfinished(folder, came.lost if came else [], len(missing), len(wanted))
+    if came is None:
         return _finish(folder, plan, None)
-    cpu_s, trials = cost
-    wall_s = time.monotonic() - began
-    return _finish(folder, plan, Effort(wall_s=round(wall_s, 3), cpu_s=round(cpu_s, 3), trials=trials))
-
-
-def _play(book: Log, engine: Engine, sessions: Sequence[Session], make: Make, watch: Watcher) -> tuple[float, int]:
-    """Play sessions and write down what is new; CPU time [s] and the number of new trials."""
-    cpu_s, new, other = 0.0, 0, 0
-    with stoppable() as stop, closing(engine.perform(sessions, make)) as stream:
-        try:
-            for news in stream:
-                if isinstance(news, Played):
-                    if book.append(news.key, news.line):
-                        new += 1
-                        watch.played(news.met, news.faulty)
-                    else:
-                        other += not book.agrees(news.key, news.line)
-                elif isinstance(news, Finished):
-                    cpu_s += news.cpu_s
-                book.sync(due=True)
-                watch.beat()
-                if stop.is_set():
-                    raise Interrupted(f"interrupted after {len(book)} trials; resume with the same command.")
-        except SessionFailed as failure:
-            if failure.detail:
-                jsonio.write(book.path.with_name("error.txt"), failure.detail.encode())
-                raise InternalFailure(f"{failure}. The traceback is in {book.path.with_name('error.txt')}.") from None
-            raise
-    if other:
-        watch.note(f"{other} trials went otherwise when they were played again: something here does not repeat itself")
-    return cpu_s, new
-
-
-class InternalFailure(HthorError):
-    """A trial failed by our own fault."""
-
-    exit_code = 1
+    effort = Effort(
+        wall_s=round(time.monotonic() - began, 3),
+        cpu_s=round(came.cpu_s, 3),
+        trials=came.new,
+        replays=came.replays,
+    )
+    return _finish(folder, plan, effort)
 
 
 def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
@@ -149,24 +130,3 @@ def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
     if result != stored:
         score.store(folder, result)
     return result
-
-
-@contextmanager
-def stoppable() -> Iterator[threading.Event]:
-    """Turn the first Ctrl-C or SIGTERM into a flag; a second one ends at once."""
-    flag = threading.Event()
-    if threading.current_thread() is not threading.main_thread():
-        yield flag
-        return
-
-    def stop(_number: int, _frame: FrameType | None) -> None:
-        if flag.is_set():
-            raise KeyboardInterrupt
-        flag.set()
-
-    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield flag
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

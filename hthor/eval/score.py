@@ -83,11 +83,15 @@ class Hashes(Struct, frozen=True, kw_only=True):
 
 
 class Effort(Struct, frozen=True, kw_only=True):
-    """What it took the command that finished the run: time on the wall, CPU time, and how many trials it played."""
+    """What it took the command that finished the run: time on the wall, CPU time, and how many trials it played.
+
+    ``replays`` counts sessions that began again, as a worker or an agent's process was ended from outside.
+    """
 
     wall_s: float
     cpu_s: float
     trials: int
+    replays: int = 0
 
 
 class Result(Struct, frozen=True, kw_only=True):

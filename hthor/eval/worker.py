@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import errno
 import os
 import signal
 import sys
@@ -11,9 +12,8 @@ from collections.abc import Callable, Iterator
 from contextlib import closing
 from typing import TYPE_CHECKING, cast
 
-from msgspec import Struct
-
-from hthor.errors import AgentError, HthorError
+from hthor.errors import KILLED, AgentKilled, HthorError
+from hthor.eval.news import Again, Failed, Finished, Lost, News, Played
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -26,33 +26,7 @@ ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_
 """One thread a worker: more would only fight over the cores, and sums of floats would depend on their number."""
 REPEATS = 2
 """How often a session begins again because an agent's process was killed."""
-_KILLED = "SIGKILL"
-
-
-class Played(Struct, frozen=True, kw_only=True):
-    """A trial is over. ``line`` is its whole record."""
-
-    key: str
-    line: bytes
-    met: bool
-    faulty: bool
-
-
-class Finished(Struct, frozen=True, kw_only=True):
-    """A session is over; ``cpu_s`` [s] is what it cost, with its agents' processes."""
-
-    cpu_s: float
-
-
-class Failed(Struct, frozen=True, kw_only=True):
-    """A session cannot be played: ``exit_code`` and ``message`` for the user, ``detail`` a traceback of a bug."""
-
-    exit_code: int
-    message: str
-    detail: str
-
-
-News = Played | Finished | Failed
+_MENDABLE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 
 
 def work(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Record]]], parent: int) -> None:
@@ -64,6 +38,7 @@ def work(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Recor
     """
     end_with(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides what it means
+    signal.signal(signal.SIGTERM, lambda *_: None)  # likewise; not ignored, as those whom it starts would ignore it too
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     try:
         _serve(pipe, make)
@@ -87,47 +62,56 @@ class Player:
         self._cpu_s = _cpu_s()
 
     def play(self, session: Session) -> Iterator[News]:
-        """Tell of each trial when it is over; the last piece of news is that the session is over, or failed."""
+        """Tell of each trial when it is over; the last piece of news is that the session is over, lost, or failed."""
         from hthor.eval import record
 
         try:
             if self._perform is None:
                 self._perform = self._make()
             for done in _steadily(self._perform, session):
+                if isinstance(done, Again):
+                    yield done
+                    continue
                 line = record.encode(done)
                 yield Played(key=done.key, line=line, met=done.met, faulty=bool(done.faults))
         except Exception as error:
-            yield _failure(error)
+            yield _failure(session.participant, error)
             return
         before, self._cpu_s = self._cpu_s, _cpu_s()
         yield Finished(cpu_s=self._cpu_s - before)
 
 
-def _steadily(perform: Callable[[Session], Iterator[Record]], session: Session) -> Iterator[Record]:
+def _steadily(perform: Callable[[Session], Iterator[Record]], session: Session) -> Iterator[Record | Again]:
     """A session's trials. One in which an agent's process was killed is not told of: the session begins again.
 
-    SIGKILL mostly comes from outside, from a kernel that ran out of memory or a machine that goes down, and then the
+    That mostly comes from outside, from a kernel that ran out of memory or a machine that goes down, and then the
     trial is not the agent's failure. An agent that ends itself that way does so again, and the fault stands.
     """
     for left in reversed(range(REPEATS + 1)):
         try:
             with closing(cast("Generator[Record, None, None]", perform(session))) as trials:
                 for done in trials:
-                    if left and any(fault.kind == "died" and _KILLED in fault.detail for fault in done.faults):
+                    if left and any(fault.kind == KILLED for fault in done.faults):
                         break
                     yield done
                 else:
                     return
-        except AgentError as error:  # it was killed before it could say what it is
-            if not left or _KILLED not in str(error):
+        except AgentKilled:  # before it could say what it is
+            if not left:
                 raise
+        yield Again(participant=session.participant, cause="an agent's process was killed")
 
 
-def _failure(error: Exception) -> Failed:
+def _failure(participant: int, error: Exception) -> Failed | Lost:
+    """What the user can mend ends the run; a bug, or a machine that kills agents, costs the session alone."""
+    if isinstance(error, AgentKilled):
+        return Lost(participant=participant, cause=str(error))
     if isinstance(error, HthorError):
-        return Failed(exit_code=error.exit_code, message=str(error), detail="")
+        return Failed(exit_code=error.exit_code, message=str(error))
+    if isinstance(error, OSError) and error.errno in _MENDABLE:
+        return Failed(exit_code=HthorError.exit_code, message=f"{error.filename or 'a file'}: {error.strerror}.")
     summary = "".join(traceback.format_exception_only(error)).strip()
-    return Failed(exit_code=1, message=summary, detail="".join(traceback.format_exception(error)))
+    return Lost(participant=participant, cause=summary, detail="".join(traceback.format_exception(error)))
 
 
 def end_with(parent: int) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 from msgspec import Struct
 
-from hthor.errors import AgentError
+from hthor.errors import KILLED, AgentError, AgentKilled
 from hthor.guest import choosing, wire
 from hthor.guest.confinement import Isolation
 from hthor.guest.process import HungUp, Process, TimeIsUp
@@ -29,7 +29,8 @@ class GuestFault(Exception):
     """A submitted agent failed; its process is gone.
 
     Attributes:
-        kind: raised, timeout, died, memory, disk, garbage, wrong_type, oversized or not_finite.
+        kind: raised, timeout, died, killed (from outside, as it seems), memory, disk, garbage, wrong_type, oversized
+            or not_finite.
         detail: what happened; for "raised" the traceback of the agent's own frames.
         traceback: the same traceback, empty for the other kinds.
         log: the end of what the agent printed.
@@ -128,7 +129,8 @@ class Guest:
         try:
             ready = self._receive(self._start_s)[0]
         except GuestFault as fault:
-            raise AgentError(f"{self._path}: loading it failed ({fault}).\n{fault.log}".rstrip()) from None
+            kind = AgentKilled if fault.kind == KILLED else AgentError
+            raise kind(f"{self._path}: loading it failed ({fault}).\n{fault.log}".rstrip()) from None
         if not isinstance(ready, wire.Ready):
             self._kill()
             detail = ready.detail if isinstance(ready, wire.Failed) else f"unexpected {type(ready).__name__}"
@@ -214,6 +216,8 @@ class Guest:
             self._send(load, _ENTER_S)
             said, _ = self._receive(_ENTER_S)
         except GuestFault as fault:
+            if fault.kind == KILLED:  # which says nothing about what this machine can do
+                raise AgentKilled(f"{self._path}: its process was {fault.detail} while it started.") from None
             return fault.log.strip() or str(fault)
         if isinstance(said, wire.Confined):
             return said
@@ -249,7 +253,7 @@ class Guest:
         except TimeIsUp:
             raise self._fault("timeout", f"the agent read nothing for {seconds:g} s") from None
         except HungUp:
-            raise self._fault("died", self._running().obituary()) from None
+            raise self._fault(*self._running().obituary()) from None
 
     def _receive(self, seconds: float) -> tuple[wire.ToHost | wire.Over, float]:
         """The next message of the guest or its keeper, and what is left of the time."""
@@ -259,7 +263,7 @@ class Guest:
         except TimeIsUp:
             raise self._fault("timeout", f"the agent gave no answer within {seconds:.3g} s") from None
         except HungUp:
-            raise self._fault("died", self._running().obituary()) from None
+            raise self._fault(*self._running().obituary()) from None
         if isinstance(body, int):
             raise self._fault("oversized", f"a message of {body} bytes, at most {wire.MOST_BYTES} are taken")
         message: wire.ToHost | wire.Over

@@ -16,7 +16,7 @@ import sys
 import time
 from pathlib import Path
 
-from hthor.guest import child, wire
+from hthor.guest import child, ending, wire
 from hthor.guest.confinement import holding, kernel, limits
 from hthor.guest.confinement.holding import Refused
 from hthor.guest.confinement.landlock import Ruleset
@@ -84,22 +84,24 @@ def _leave_guard(pipes: tuple[int, ...], scratch: str) -> None:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, awaited)
         limits.die_with(me)
         return
-    status = 0
+    code: int | None = None
     try:
         host = os.getppid()
         kernel.prctl("outliving the host", kernel.PR_SET_PDEATHSIG, int(signal.SIGUSR1))
         kernel.prctl("adopting orphans", _SUBREAPER, 1)
         for handle in (*pipes, 1, 2):  # the host takes an open end for a guest that lives
             os.close(handle)
-        while os.getppid() == host and not status:
+        while os.getppid() == host and code is None:
             signal.sigwait(awaited)
             ended, found = os.waitpid(-1, os.WNOHANG)
-            status = 1 + min(254, abs(os.waitstatus_to_exitcode(found))) if ended == pid else 0
+            code = os.waitstatus_to_exitcode(found) if ended == pid else None
         end_descendants(me)
         empty(scratch)
         os.rmdir(scratch)
     finally:
-        os._exit(max(0, status - 1))
+        if code is not None and code < 0:  # so that the host hears how the keeper ended
+            os.kill(me, -code)
+        os._exit(code or 0)
 
 
 def _fork(pipe: Pipe, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool) -> int:
@@ -137,7 +139,10 @@ def _watch(pid: int, order: wire.Load) -> wire.KeeperToHost:
     code = os.waitstatus_to_exitcode(status)
     if found:
         return wire.Failed(kind=found[0], detail=found[1])
-    return wire.Over() if code == child.ORDERLY else wire.Failed(kind="died", detail=_last_words(code))
+    if code == child.ORDERLY:
+        return wire.Over()
+    kind, words = ending.told(code)
+    return wire.Failed(kind=kind, detail=f"the agent's process {'was ' * (code < 0)}{words}")
 
 
 def end_descendants(ancestor: int) -> None:
@@ -180,11 +185,3 @@ def empty(folder: str) -> None:
             if os.path.lexists(entry.path):  # too deep for Python, or locked by its owner
                 for words in (["chmod", "-R", "u+rwX"], ["rm", "-rf"]):
                     subprocess.run([*words, "--", entry.path], stderr=subprocess.DEVNULL, check=False)
-
-
-def _last_words(code: int) -> str:
-    return f"the agent's process was killed by {signal.Signals(-code).name}" if code < 0 else _exited(code)
-
-
-def _exited(code: int) -> str:
-    return f"the agent's process exited with status {code}"

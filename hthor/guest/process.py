@@ -15,7 +15,7 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 
-from hthor.guest import keeper
+from hthor.guest import ending, keeper
 from hthor.guest.confinement import Policy, limits, namespaces, paths
 
 _PASSED_ON = ("PATH", "LANG", "LC_ALL", "TZ", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
@@ -23,6 +23,8 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA
 _LOG_BYTES = 16 << 10
 _PIPE_BYTES = 1 << 20
 _F_SETPIPE_SZ = 1031
+_LAST_S = 10.0
+"""Longest wait for a process whose pipes are closed. On a busy machine it takes a while to clear up behind it."""
 _INSIDE = "/tmp/hthor-guest"
 """The scratch folder where the guest has a file system of its own."""
 
@@ -154,14 +156,14 @@ class Process:
             return True
         return True
 
-    def obituary(self) -> str:
-        """How the process ended."""
+    def obituary(self) -> tuple[str, str]:
+        """How the process ended: a fault's kind and its words."""
         with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(0.5)
+            self._process.wait(_LAST_S)
         code = self._process.returncode
         if code is None:
-            return "the agent closed its pipe"
-        return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exited with status {code}"
+            return "died", "the agent closed its pipe"
+        return ending.told(ending.unwrapped(code) if self.policy.level == "L3" else code)
 
     def kill(self) -> None:
         """End everything that the guest has started, close the pipes, and remove what it wrote."""

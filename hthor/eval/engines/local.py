@@ -12,11 +12,14 @@ from typing import TYPE_CHECKING
 
 from hthor.errors import HthorError
 from hthor.eval import provenance, worker
-from hthor.eval.engines import BEAT_S, Make, Queue, SessionFailed
-from hthor.eval.worker import Failed, Finished, News
+from hthor.eval.engines import Make, SessionFailed
+from hthor.eval.news import Failed, Finished, Lost, News, Played
+from hthor.eval.waiting import BEAT_S, LIMIT_S, Clock, Queue
 
 if TYPE_CHECKING:
     from hthor.eval.session import Session
+
+_FAREWELL_S = 10.0
 
 
 class Engine:
@@ -25,13 +28,17 @@ class Engine:
     Args:
         jobs: how many workers; None is one a CPU.
         address: must be empty.
+        limit_s: how long [s] a worker may play a trial before it counts as stuck.
     """
 
-    def __init__(self, *, jobs: int | None = None, address: str = "", gpus: float = 0.0) -> None:
+    def __init__(
+        self, *, jobs: int | None = None, address: str = "", gpus: float = 0.0, limit_s: float = LIMIT_S
+    ) -> None:
         del gpus  # whoever shares a machine's GPU shares it among the jobs
         if address:
             raise HthorError(f"--address {address}: the engine 'local' has none. Leave it out, or add --engine ray.")
         self._jobs = jobs or len(os.sched_getaffinity(0))
+        self._limit_s, self._clock, self._draining = limit_s, Clock(), False
 
     def perform(self, sessions: Sequence[Session], make: Make) -> Generator[News | None, None, None]:
         """See `hthor.eval.engines.Engine`."""
@@ -44,28 +51,37 @@ class Engine:
                     hands.append(_Hand(make))
                 for hand in hands:
                     if queue and not hand.task:
-                        hand.give(*queue.take())
-                yield from _listen(hands, queue)
+                        hand.give(*queue.take(), self._clock.now())
+                yield from self._listen(hands, queue)
+                if self._draining:
+                    queue.clear()
         finally:
             for hand in hands:
                 hand.end()
 
+    def drain(self) -> None:
+        """See `hthor.eval.engines.Engine`."""
+        self._draining = True
 
-def _listen(hands: list[_Hand], queue: Queue) -> Iterator[News | None]:
-    ready = wait([hand.pipe for hand in hands], timeout=BEAT_S)
-    if not ready:
-        yield None
-    for hand in hands:
-        if hand.pipe not in ready:
-            continue
-        news = hand.hear()
-        if isinstance(news, Failed):
-            raise SessionFailed(news)
-        if news is not None:
-            yield news
-        elif hand.task:
-            queue.again(*hand.task, _cause(hand.process.exitcode))
-            hand.task = None
+    def _listen(self, hands: list[_Hand], queue: Queue) -> Iterator[News | None]:
+        ready, now = wait([hand.pipe for hand in hands], timeout=BEAT_S), self._clock.now()
+        if not ready:
+            yield None
+        for hand in hands:
+            if hand.pipe not in ready:
+                if hand.task and now - hand.since > self._limit_s:
+                    hand.give_up(self._limit_s)
+                continue
+            news, hand.since = hand.hear(), now
+            if isinstance(news, Failed):
+                raise SessionFailed(news)
+            if news is not None:
+                yield news
+            elif hand.task:
+                yield queue.again(*hand.task, hand.cause)
+                hand.task = None
+            if self._draining and isinstance(news, Played):
+                hand.end()
 
 
 class _Hand:
@@ -80,11 +96,13 @@ class _Hand:
             self.process.start()
         far.close()  # so that the worker's end closes with the worker
         self.task: tuple[Session, int] | None = None
+        self.since = 0.0
         self.dead = False
+        self._stuck = ""
 
-    def give(self, session: Session, attempt: int) -> None:
+    def give(self, session: Session, attempt: int, now: float) -> None:
         """Hand over a session; a worker that is already dead is noticed by `hear`."""
-        self.task = (session, attempt)
+        self.task, self.since = (session, attempt), now
         try:
             self.pipe.send(session)
         except OSError:
@@ -99,9 +117,22 @@ class _Hand:
             self.pipe.close()
             self.process.join()
             return None
-        if isinstance(news, Finished):
+        if isinstance(news, (Finished, Lost)):
             self.task = None
         return news
+
+    def give_up(self, after_s: float) -> None:
+        """End a worker that is stuck; `hear` notices."""
+        self._stuck = f"the limit of {after_s:.0f} s for a trial"
+        self.process.kill()
+
+    @property
+    def cause(self) -> str:
+        """What ended a dead worker."""
+        code = self.process.exitcode
+        if self._stuck:
+            return self._stuck
+        return f"signal {signal.Signals(-code).name}" if code is not None and code < 0 else f"exit status {code}"
 
     def end(self) -> None:
         """End the worker, kindly when it has nothing to do."""
@@ -109,14 +140,11 @@ class _Hand:
             return
         if self.task is not None:
             self.process.kill()
+        self.task, self.dead = None, True
         self.pipe.close()
+        self.process.join(_FAREWELL_S)
+        self.process.kill()
         self.process.join()
-
-
-def _cause(code: int | None) -> str:
-    if code is not None and code < 0:
-        return f"signal {signal.Signals(-code).name}"
-    return f"exit status {code}"
 
 
 @contextmanager

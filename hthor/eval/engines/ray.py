@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 from hthor.errors import HthorError, MissingExtra
 from hthor.eval import provenance
-from hthor.eval.engines import ATTEMPTS, BEAT_S, Make, Queue, SessionFailed
-from hthor.eval.worker import ONE_THREAD, Failed, Finished, News, Player
+from hthor.eval.engines import Make, SessionFailed
+from hthor.eval.news import Failed, Finished, Lost, News, Played
+from hthor.eval.waiting import ATTEMPTS, BEAT_S, LIMIT_S, Clock, Queue
+from hthor.eval.worker import ONE_THREAD, Player
 
 if TYPE_CHECKING:
     from hthor.eval.session import Session
@@ -31,13 +33,16 @@ class Engine:
         address: of the cluster that this machine belongs to, such as ``10.0.0.1:6379``; empty for the one that is
             here, or a new one of this machine alone.
         gpus: how much of a GPU each actor needs, such as 0.25.
+        limit_s: how long [s] an actor may play a trial before it counts as stuck.
 
     Raises:
         MissingExtra: when Ray is not installed.
         HthorError: for the address of a Ray client, which cannot hear of trials one by one.
     """
 
-    def __init__(self, *, jobs: int | None = None, address: str = "", gpus: float = 0.0) -> None:
+    def __init__(
+        self, *, jobs: int | None = None, address: str = "", gpus: float = 0.0, limit_s: float = LIMIT_S
+    ) -> None:
         try:
             import ray
         except ImportError:
@@ -46,6 +51,7 @@ class Engine:
             raise HthorError(f"--address {address}: expected HOST:PORT. Give the command on a machine of the cluster.")
         self._ray: Any = ray
         self._jobs, self._address, self._gpus = jobs, address, gpus
+        self._limit_s, self._clock, self._draining = limit_s, Clock(), False
         self._stillborn = 0
 
     def perform(self, sessions: Sequence[Session], make: Make) -> Generator[News | None, None, None]:
@@ -60,26 +66,40 @@ class Engine:
                         hands.append(_Hand(self._ray, cast.remote(make)))
                     for hand in hands:
                         if queue and hand.ready and not hand.task:
-                            hand.give(*queue.take())
+                            hand.give(*queue.take(), self._clock.now())
                     yield from self._listen(hands, queue)
+                    if self._draining:
+                        queue.clear()
             finally:
                 for hand in hands:
                     hand.end()
 
+    def drain(self) -> None:
+        """See `hthor.eval.engines.Engine`."""
+        self._draining = True
+
     def _listen(self, hands: list[_Hand], queue: Queue) -> Iterator[News | None]:
         awaited = {hand.awaited: hand for hand in hands if hand.awaited is not None}
         ready, _ = self._ray.wait(list(awaited), num_returns=1, timeout=BEAT_S, fetch_local=False)
+        now = self._clock.now()
         if not ready:
             yield None
+        for hand in hands:
+            if hand.task and hand.awaited not in ready and now - hand.since > self._limit_s:
+                hand.give_up(self._limit_s)
         for one in ready:
             hand = awaited[one]
-            news = hand.hear()
+            news, hand.since = hand.hear(), now
             if isinstance(news, Failed):
                 raise SessionFailed(news)
             if news is not None:
                 yield news
             elif hand.dead and hand.task:
-                queue.again(*hand.task, hand.cause)
+                yield queue.again(*hand.task, hand.cause)
+                hand.task = None
+            if self._draining and isinstance(news, Played):
+                hand.task, hand.dead = None, True
+                hand.end()
             self._stillborn = self._stillborn + 1 if hand.dead and not hand.ready else 0
             if self._stillborn >= ATTEMPTS:
                 raise HthorError(f"workers do not start on the Ray cluster: {hand.cause}. Is hthor installed there?")
@@ -146,11 +166,12 @@ class _Hand:
         self.awaited: Any = self._actor.greet.remote()
         self.ready = self.dead = False
         self.task: tuple[Session, int] | None = None
+        self.since = 0.0
         self.cause = ""
 
-    def give(self, session: Session, attempt: int) -> None:
+    def give(self, session: Session, attempt: int, now: float) -> None:
         """Hand over a session."""
-        self.task = (session, attempt)
+        self.task, self.since = (session, attempt), now
         self.awaited = self._actor.play.options(num_returns="streaming").remote(session)
 
     def hear(self) -> News | None:
@@ -167,12 +188,18 @@ class _Hand:
             news: News = self._ray.get(next(self.awaited))
         except (self._ray.exceptions.RayError, StopIteration) as error:
             told = str(error).strip().splitlines() or [""]
-            self.dead, self.cause = True, f"{type(error).__name__} of Ray: {told[0][:200]}".rstrip(": ")
+            self.dead = True
+            self.cause = self.cause or f"{type(error).__name__} of Ray: {told[0][:200]}".rstrip(": ")
             self.end()
             return None
-        if isinstance(news, Finished):
+        if isinstance(news, (Finished, Lost)):
             self.task = self.awaited = None
         return news
+
+    def give_up(self, after_s: float) -> None:
+        """End an actor that is stuck; `hear` notices."""
+        self.cause = f"the limit of {after_s:.0f} s for a trial"
+        self.end()
 
     def end(self) -> None:
         """End the actor, and with it the agents that it started."""

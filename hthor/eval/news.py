@@ -1,0 +1,45 @@
+"""What engines and workers tell of sessions; knows nothing of who plays them or who listens."""
+
+from __future__ import annotations
+
+from msgspec import Struct
+
+
+class Played(Struct, frozen=True, kw_only=True):
+    """A trial is over. ``line`` is its whole record."""
+
+    key: str
+    line: bytes
+    met: bool
+    faulty: bool
+
+
+class Finished(Struct, frozen=True, kw_only=True):
+    """A session is over; ``cpu_s`` [s] is what it cost, with its agents' processes."""
+
+    cpu_s: float
+
+
+class Again(Struct, frozen=True, kw_only=True):
+    """A session begins again, as its worker or an agent's process was lost."""
+
+    participant: int
+    cause: str
+
+
+class Lost(Struct, frozen=True, kw_only=True):
+    """A session was given up; the others go on. ``detail`` is the traceback of a bug, empty when there is none."""
+
+    participant: int
+    cause: str
+    detail: str = ""
+
+
+class Failed(Struct, frozen=True, kw_only=True):
+    """No session can be played, for a reason that is the user's to mend: ``exit_code`` and ``message``."""
+
+    exit_code: int
+    message: str
+
+
+News = Played | Finished | Again | Lost | Failed

@@ -1,0 +1,109 @@
+"""Whichever process of a guest is killed from outside, at every level, the fault says that, and not that it failed."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from test_guest import BRIEFING, HEAD, agent, look
+
+from hthor.errors import KILLED, AgentKilled
+from hthor.guest import Guest, GuestFault, choosing, ending, host
+from hthor.guest.process import Process
+
+needs_bwrap = pytest.mark.skipif(not shutil.which("bwrap"), reason="needs bubblewrap")
+FAMILIES = [("L1", 3), ("L2", 3), pytest.param("L3", 4, marks=needs_bwrap)]
+"""How many processes a guest is at each level: guard or bubblewrap's two, keeper, and the trial's own."""
+
+
+def _line(pid: int) -> list[int]:
+    """A process and its descendants, of which each has one child at most."""
+    found = [pid]
+    while children := Path(f"/proc/{found[-1]}/task/{found[-1]}/children").read_text().split():
+        found.append(int(children[0]))
+    return found
+
+
+def _playing(path: Path, level: str) -> Guest:
+    path.write_text(HEAD + agent("time.sleep(0.05); return Action()"))
+    guest = Guest(path, isolation=level)
+    guest.begin(BRIEFING)
+    guest.act(look())
+    return guest
+
+
+@pytest.mark.parametrize(("level", "size"), FAMILIES)
+def test_a_process_killed_from_outside_is_told_as_such(level: str, size: int, tmp_path: Path):
+    for place in range(size):
+        with _playing(tmp_path / "agent.py", level) as guest:
+            assert guest._process is not None
+            line = _line(guest._process.pid)
+            assert len(line) == size
+            os.kill(line[place], signal.SIGKILL)
+            with pytest.raises(GuestFault, match="killed by SIGKILL") as caught:
+                guest.act(look())
+            assert caught.value.kind == KILLED
+            _expect_gone(line)
+
+
+def _expect_gone(pids: list[int]) -> None:
+    end = time.monotonic() + 10
+    while any(_alive(pid) for pid in pids) and time.monotonic() < end:
+        time.sleep(0.005)
+    assert not any(_alive(pid) for pid in pids)
+
+
+def _alive(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+@pytest.mark.parametrize("level", [level for level, _ in FAMILIES[:2]] + [pytest.param("L3", marks=needs_bwrap)])
+def test_one_killed_while_it_starts_costs_no_level(level: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    real: Callable[..., Process] = choosing.process.start
+
+    def start(*words: object, **more: object) -> Process:
+        one = real(*words, **more)
+        os.kill(one.pid, signal.SIGKILL)
+        return one
+
+    (tmp_path / "agent.py").write_text(HEAD + agent("return Action()"))
+    with monkeypatch.context() as patch:
+        patch.setattr(choosing.process, "start", start)
+        with pytest.raises(AgentKilled, match=r"agent\.py: its process was killed by SIGKILL while it started"):
+            Guest(tmp_path / "agent.py", isolation=level).load()
+    with Guest(tmp_path / "agent.py", isolation=level) as guest:
+        assert guest.load().isolation.level == level
+
+
+def test_one_killed_while_it_loads_its_file_is_told_as_such(tmp_path: Path):
+    path = tmp_path / "agent.py"
+    path.write_text("import os\nos.kill(os.getpid(), 9)\n")
+    with pytest.raises(AgentKilled, match=r"loading it failed \(killed: the agent's process was killed by SIGKILL\)"):
+        host.load_info(path, isolation="L1")
+
+
+@pytest.mark.parametrize(
+    ("code", "kind", "words"),
+    [
+        (0, "died", "exited with status 0"),
+        (9, "died", "exited with status 9"),
+        (-signal.SIGTERM, KILLED, "killed by SIGTERM"),
+        (-signal.SIGSEGV, "died", "killed by SIGSEGV"),
+        (-40, "died", "killed by signal 40"),
+    ],
+)
+def test_what_an_agent_does_to_itself_is_its_own(code: int, kind: str, words: str):
+    assert ending.told(code) == (kind, words)
+
+
+def test_bubblewraps_words_for_a_signal_are_understood():
+    assert ending.told(ending.unwrapped(137)) == (KILLED, "killed by SIGKILL")
+    assert ending.unwrapped(3) == 3
