@@ -1,7 +1,8 @@
 """``python -m benchmarks.chaos``: a run whose processes are killed, whose log is torn and whose disk fills.
 
-What is left must be every record once, each as in a run that nobody disturbed, and no process. Trials are made up, so
-that only the keeping of records is tried.
+What is left must be every record once, each as in a run that nobody disturbed, and no process. By default trials and
+agents are made up, so that only the keeping of records is tried. With ``--agents held`` agents are real guests, with
+``--agents whole`` all of 'hthor eval' is real.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-FAKES = Path(__file__).resolve().parents[1] / "tests" / "eval_fakes.py"
+ROOT = Path(__file__).resolve().parents[1]
+FAKES = ROOT / "tests" / "eval_fakes.py"
 MARK = "HTHOR_CHAOS"
 _PATIENCE_S = 300.0
 
@@ -43,6 +45,17 @@ def fake(folder: Path, trials: int) -> list[str]:
     return [sys.executable, str(FAKES), "guarded", str(folder), str(trials)]
 
 
+def held(folder: Path, trials: int, agent: Path, level: str) -> list[str]:
+    """The command that plays trials of a made-up world with real guests."""
+    return [sys.executable, str(FAKES), "hosted", str(folder), str(trials), str(agent), level]
+
+
+def whole(folder: Path, trials: int, agent: Path, level: str) -> list[str]:
+    """The command that plays real trials with a submitted agent."""
+    words = f"--suite smoke --participants {trials // 10} --no-control --quiet --jobs 2 --isolation {level}"
+    return [sys.executable, "-m", "hthor", "eval", "--agent", str(agent), "--out", str(folder), *words.split()]
+
+
 class Chaos:
     """Disturbs the runs of one folder.
 
@@ -54,7 +67,16 @@ class Chaos:
     def __init__(self, command: Sequence[str], folder: Path, *, seed: int = 0) -> None:
         self.report = Report()
         self._command, self._folder, self._chance = list(command), folder, random.Random(seed)
-        self._environment = {**os.environ, MARK: uuid.uuid4().hex, "TMPDIR": str(folder.parent)}
+        self._mark = uuid.uuid4().hex
+        libraries = os.pathsep.join(filter(None, [os.environ.get("LD_LIBRARY_PATH"), f"/nowhere/{self._mark}"]))
+        self._environment = {  # of all this, guests get to see the last
+            **os.environ,
+            MARK: self._mark,
+            "TMPDIR": str(folder.parent),
+            "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests")]),
+            "LD_LIBRARY_PATH": libraries,
+        }
+        self._known: set[tuple[int, str]] = set()
         self._log = folder / "trials.jsonl"
 
     def kill(self, kills: int, total: int) -> None:
@@ -66,6 +88,7 @@ class Chaos:
         for kind, aim in zip(kinds, aims, strict=True):
             process = self._until(process, int(aim))
             time.sleep(self._chance.uniform(0.0, 0.1))
+            self._known |= {(pid, _born(pid)) for pid in _family(process.pid)}
             if kind == "runner":
                 process.kill()
                 process.communicate()
@@ -127,7 +150,7 @@ class Chaos:
         end = time.monotonic() + 5.0
         while time.monotonic() < end and process.poll() is None:
             workers = [pid for pid in _children(process.pid) if "spawn_main" in _words(pid)]
-            found = workers if kind == "worker" else [pid for worker in workers for pid in _children(worker)]
+            found = workers if kind == "worker" else [pid for one in workers for pid in _family(one)[1:]]
             if found:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(self._chance.choice(found), 9)
@@ -149,7 +172,7 @@ class Chaos:
 
     def _expect_nobody(self) -> None:
         end = time.monotonic() + 10.0
-        while found := list(_marked(self._environment[MARK])):
+        while found := [*_marked(self._mark), *(f"process {pid}" for pid, born in self._known if _born(pid) == born)]:
             if time.monotonic() > end:
                 self.report.orphans += found
                 return
@@ -161,6 +184,23 @@ def _children(pid: int) -> list[int]:
         return [int(text) for text in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
     except OSError:
         return []
+
+
+def _family(pid: int) -> list[int]:
+    """A process and all that it and they have started."""
+    found = [pid]
+    for one in found:
+        found += _children(one)
+    return found
+
+
+def _born(pid: int) -> str:
+    """When a living process was started, which tells it from a later one of its number; empty when there is none."""
+    try:
+        words = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return ""
+    return "" if words[0] in "ZX" else words[19]
 
 
 def _words(pid: int) -> str:
@@ -175,7 +215,7 @@ def _marked(mark: str) -> Iterator[str]:
     for folder in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):
             state = (folder / "stat").read_text().rpartition(")")[2].split()[0]
-            if state not in "ZX" and f"{MARK}={mark}".encode() in (folder / "environ").read_bytes().split(b"\0"):
+            if state not in "ZX" and mark.encode() in (folder / "environ").read_bytes():
                 yield _words(int(folder.name))
 
 
@@ -204,18 +244,33 @@ def main() -> None:
     options.add_argument("--trials", type=int, default=2000)
     options.add_argument("--kills", type=int, default=15)
     options.add_argument("--seed", type=int, default=0)
+    options.add_argument("--agents", choices=("made-up", "held", "whole"), default="made-up")
+    options.add_argument("--isolation", default="L3", help="level of agents that are not made up")
+    options.add_argument("--room", type=int, default=30_000, help="bytes that a full disk has left")
     given = options.parse_args()
     with tempfile.TemporaryDirectory(prefix="hthor-chaos-") as name:
         reference, folder = Path(name, "undisturbed"), Path(name, "disturbed")
+        sys.path.insert(0, str(ROOT / "tests"))
+        import guest_fakes
+
+        agent = guest_fakes.write(Path(name, "agent"))
+
+        def command(where: Path) -> list[str]:
+            if given.agents == "made-up":
+                return fake(where, given.trials)
+            make = held if given.agents == "held" else whole
+            return make(where, given.trials, agent, given.isolation)
+
         began = time.monotonic()
-        subprocess.run(fake(reference, given.trials), check=True)
+        Chaos(command(reference), reference).finish()
         middle = time.monotonic()
-        chaos = Chaos(fake(folder, given.trials), folder, seed=given.seed)
-        chaos.fill(100_000)
+        chaos = Chaos(command(folder), folder, seed=given.seed)
+        chaos.fill(3 * given.room)
         chaos.kill(given.kills, given.trials)
-        chaos.fill(30_000)
+        chaos.fill(given.room)
         chaos.finish()
         told, report = differences(folder, reference), chaos.report
+        print(f"agents: {given.agents}{'' if given.agents == 'made-up' else ', held at ' + given.isolation}")
         print(f"undisturbed {middle - began:.1f} s, disturbed {time.monotonic() - middle:.1f} s")
         print(f"killed: {report.killed}; torn tails: {report.torn}; full disks: {report.full}")
         print(f"commands: {report.commands}; ended with: {report.ended}")

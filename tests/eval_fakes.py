@@ -298,6 +298,14 @@ def guarded(folder: str, count: str) -> None:
     _evaluate(Path(folder), int(count), guarded_player, engines.find("local", jobs=2))
 
 
+def hosted(folder: str, count: str, agent: str, level: str) -> None:
+    """A whole run with real guests."""
+    import guest_fakes
+
+    make = functools.partial(guest_fakes.player, agent, level)
+    _evaluate(Path(folder), int(count), make, engines.find("local", jobs=2))
+
+
 def clustered(folder: str, count: str, address: str) -> None:
     """A whole run on a Ray cluster."""
     make = functools.partial(slow_player, 0.01)
@@ -318,7 +326,7 @@ if __name__ == "__main__":
     try:
         import eval_fakes  # workers must find its functions under this name, not under __main__
 
-        if sys.argv[1] in ("guarded", "clustered"):
+        if sys.argv[1] in ("guarded", "hosted", "clustered"):
             getattr(eval_fakes, sys.argv[1])(*sys.argv[2:])
         else:
             eval_fakes.run_in(Path(sys.argv[1]), seconds=float(sys.argv[2]) if sys.argv[2:] else 0.02)

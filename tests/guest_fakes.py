@@ -1,0 +1,69 @@
+"""Sessions with real guests, umpire and records in a world without an engine, where trials cost next to nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import eval_fakes as fakes
+import msgspec
+import test_episode
+
+from hthor import guest
+from hthor.episode import play
+from hthor.eval import cast, record
+from hthor.eval.record import Record
+from hthor.eval.session import Session
+from hthor.types import HUMAN, RobotSeat, Snapshot
+
+AGENT = """
+from hthor.types import Action, Send
+
+
+class Agent:
+    def begin(self, briefing):
+        self.acts = 0
+
+    def act(self, observation):
+        self.acts += 1
+        if self.acts % 7 == 0:
+            return Action(say=Send(text=f"act {self.acts} at {observation.tick}", object="apple", position=(1, 2, 3)))
+        return Action()
+"""
+"""Says how often it acted, so that a record tells of every act."""
+
+
+class Stage(test_episode.Stage):
+    """The apple comes into view at tick ``seen``."""
+
+    def snapshot(self) -> Snapshot:
+        view = ("apple",) if self.tick >= self.seen else ()
+        return Snapshot(tick=self.tick, poses={}, things=self.things, in_view={HUMAN: view}, holding={HUMAN: ""})
+
+
+def player(agent: str, level: str) -> Callable[[Session], Iterator[Record]]:
+    """Plays sessions of some dozen ticks a trial with the agent of this file, held at this level."""
+    guest.confine_guests(level)
+
+    def mind(_: RobotSeat) -> guest.Guest:
+        return guest.Guest(agent)
+
+    def perform(session: Session) -> Iterator[Record]:
+        with cast.Company(test_episode.Mind(), session.trials[0].robots, mind) as company:
+            for memory, trial in enumerate(session.trials):
+                task = msgspec.structs.replace(trial.task, kind="object_goal_navigation")
+                stage = Stage(seen=fakes.episode(trial, memory).ticks // 10)
+                log = play(msgspec.structs.replace(trial, task=task), stage, company.human, company.robots())
+                for seat in dict.fromkeys(fault.seat for fault in log.faults):
+                    company.dismiss(seat)
+                yield record.of(trial, log)
+
+    return perform
+
+
+def write(folder: Path) -> Path:
+    """The agent's file, in a folder of its own."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "counting.py"
+    path.write_text(AGENT)
+    return path
