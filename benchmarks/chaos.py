@@ -79,8 +79,11 @@ class Chaos:
         self._known: set[tuple[int, str]] = set()
         self._log = folder / "trials.jsonl"
 
-    def kill(self, kills: int, total: int) -> None:
-        """Kill so many processes at random moments over a run of ``total`` trials, each kind as often."""
+    def kill(self, kills: int, total: int, room: int) -> None:
+        """Kill so many processes at random moments over a run of ``total`` trials, each kind as often.
+
+        After the first two deaths of the runner the disk has ``room`` for so many more bytes.
+        """
         kinds = [("runner", "worker", "guest")[number % 3] for number in range(kills)]
         self._chance.shuffle(kinds)
         aims = sorted(self._chance.uniform(0.02, 0.85) * total for _ in kinds)
@@ -97,6 +100,8 @@ class Chaos:
                 self._expect_nobody()
                 if self.report.torn < 3:
                     self._tear()
+                if self.report.full < 2:
+                    self.fill(room)
             else:
                 self.report.killed[kind] += self._kill_one(process, kind)
         if process is not None:
@@ -265,9 +270,7 @@ def main() -> None:
         Chaos(command(reference), reference).finish()
         middle = time.monotonic()
         chaos = Chaos(command(folder), folder, seed=given.seed)
-        chaos.fill(3 * given.room)
-        chaos.kill(given.kills, given.trials)
-        chaos.fill(given.room)
+        chaos.kill(given.kills, given.trials, given.room)
         chaos.finish()
         told, report = differences(folder, reference), chaos.report
         print(f"agents: {given.agents}{'' if given.agents == 'made-up' else ', held at ' + given.isolation}")

@@ -306,9 +306,11 @@ def hosted(folder: str, count: str, agent: str, level: str) -> None:
     _evaluate(Path(folder), int(count), make, engines.find("local", jobs=2))
 
 
-def clustered(folder: str, count: str, address: str) -> None:
-    """A whole run on a Ray cluster."""
-    make = functools.partial(slow_player, 0.01)
+def clustered(folder: str, count: str, address: str, agent: str = "") -> None:
+    """A whole run on a Ray cluster, with real guests of this file or none."""
+    import guest_fakes
+
+    make = functools.partial(guest_fakes.player, agent, "auto") if agent else functools.partial(slow_player, 0.01)
     _evaluate(Path(folder), int(count), make, engines.find("ray", address=address))
     sys.stdout.write(f"{resource.getrusage(resource.RUSAGE_SELF).ru_maxrss}\n")
 

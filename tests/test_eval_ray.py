@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import importlib.util
+import json
 import os
 import signal
 import subprocess
@@ -12,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import eval_fakes as fakes
+import guest_fakes
 import pytest
 
 from hthor.errors import AgentError, HthorError, MissingExtra
@@ -23,9 +26,12 @@ NODES = """
 import sys
 from ray.cluster_utils import Cluster
 cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
-cluster.add_node(num_cpus=1)
+second = cluster.add_node(num_cpus=1)
 print(cluster.address, flush=True)
-sys.stdin.read()
+for line in sys.stdin:
+    cluster.remove_node(second, allow_graceful=False)
+    second = cluster.add_node(num_cpus=1)
+    print("killed", flush=True)
 cluster.shutdown()
 """
 
@@ -64,8 +70,8 @@ def test_a_wish_that_is_no_number_is_refused(tmp_path: Path):
 
 
 @pytest.fixture(scope="module")
-def address() -> Iterator[str]:
-    """A cluster of two nodes on this machine."""
+def nodes() -> Iterator[subprocess.Popen[str]]:
+    """A cluster of two nodes on this machine. A line on its input has the second one killed, and another one begun."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), *sys.path])}
     with subprocess.Popen(
         [sys.executable, "-c", NODES],
@@ -76,12 +82,18 @@ def address() -> Iterator[str]:
         env=environment,
     ) as nodes:
         assert nodes.stdout is not None
-        yield nodes.stdout.readline().strip()
+        yield nodes
         nodes.communicate()
 
 
-def _start(folder: Path, count: int, address: str) -> subprocess.Popen[str]:
-    words = [sys.executable, fakes.__file__, "clustered", str(folder), str(count), address]
+@pytest.fixture(scope="module")
+def address(nodes: subprocess.Popen[str]) -> str:
+    assert nodes.stdout is not None
+    return nodes.stdout.readline().strip()
+
+
+def _start(folder: Path, count: int, address: str, *more: str) -> subprocess.Popen[str]:
+    words = [sys.executable, fakes.__file__, "clustered", str(folder), str(count), address, *more]
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
@@ -119,6 +131,29 @@ def test_two_nodes_give_the_local_records_though_actors_are_killed(address: str,
     assert _lines(tmp_path / "ray") == _lines(tmp_path / "local")
     assert local.counts.trials == 200
     assert not _actors()
+
+
+@needs_ray
+def test_a_node_that_is_lost_costs_guests_nothing(nodes: subprocess.Popen[str], address: str, tmp_path: Path):
+    agent = guest_fakes.write(tmp_path / "agent")
+    plan, dealt = fakes.run_of(60)
+    make = functools.partial(guest_fakes.player, str(agent), "auto")
+    local = engines.find("local", jobs=2)
+    run.evaluate(plan, dealt, make, folder=tmp_path / "local", engine=local, watch=progress.Silent())
+    with _start(tmp_path / "ray", 60, address, str(agent)) as process:
+        end = time.monotonic() + 120
+        while len(_lines(tmp_path / "ray")) < 15 and time.monotonic() < end and process.poll() is None:
+            time.sleep(0.01)
+        assert nodes.stdin is not None
+        assert nodes.stdout is not None
+        nodes.stdin.write("kill\n")
+        nodes.stdin.flush()
+        assert nodes.stdout.readline() == "killed\n"
+        _, words = process.communicate(timeout=240)
+    assert process.returncode == 0, words
+    assert _lines(tmp_path / "ray") == _lines(tmp_path / "local")
+    replays = json.loads((tmp_path / "ray" / "result.json").read_bytes())["effort"]["replays"]
+    assert replays >= 1
 
 
 @needs_ray

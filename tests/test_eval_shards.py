@@ -127,12 +127,21 @@ def test_a_part_that_was_merged_is_finished_as_a_run(undivided: Path, shards: Se
     assert _result(tmp_path) == _result(undivided)
 
 
-def test_shards_of_other_runs_and_divisions_are_told_apart(undivided: Path, shards: Sequence[Path], tmp_path: Path):
+def test_shards_of_several_divisions_are_merged(undivided: Path, shards: Sequence[Path], tmp_path: Path):
+    half = _play(tmp_path / "run", "2/2")
+    part = merge.merge([shards[0], shards[1], half], tmp_path / "whole")
+    (gap,) = part.gaps
+    assert (gap.number, gap.of, gap.trials) == (1, 1, COUNT - part.trials)
+    assert "--shard" not in gap.command
+    assert shlex.split(gap.command)[-2:] == ["--out", str(tmp_path / "whole")]
+    assert merge.merge([half, shards[2]], tmp_path / "whole").gaps == ()
+    assert _result(tmp_path / "whole") == _result(undivided)
+
+
+def test_shards_of_other_runs_are_told_apart(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     other = _play(tmp_path / "other", "2/4", seed=1)
     with pytest.raises(RunError, match=r"other-shard-2-of-4 is a shard of another run than .*: seed is 0 there and 1"):
         merge.merge([shards[0], other], tmp_path / "whole")
-    with pytest.raises(RunError, match=r"one of 2 shards and .* one of 4"):
-        merge.merge([shards[0], _play(tmp_path / "halves", "2/2")], tmp_path / "whole")
     with pytest.raises(RunError, match="not divided"):
         merge.merge([undivided], tmp_path / "whole")
     assert not (tmp_path / "whole").exists()

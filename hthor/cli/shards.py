@@ -45,6 +45,7 @@ def merge(
         return
     for gap in done.gaps:
         lacks = "is missing" if gap.trials is None else f"lacks {gap.trials} trials"
-        say(f"shard {gap.number}/{gap.of} {lacks}: {gap.command}")
-    say("Then merge again.")
+        say(f"{f'shard {gap.number}/{gap.of}' if gap.of > 1 else 'the run'} {lacks}: {gap.command}")
+    if any(gap.of > 1 for gap in done.gaps):
+        say("Then merge again.")
     raise typer.Exit(_MISSING_EXIT)

@@ -24,7 +24,10 @@ _CARRIED = ("suite.json", "houses/*.json")
 
 
 class Gap(Struct, frozen=True, kw_only=True):
-    """What a run lacks of one shard, and the command that plays it. ``trials`` is None when all of it is missing."""
+    """What a run lacks of one shard, and the command that plays it. ``trials`` is None when all of it is missing.
+
+    Shards of several divisions have one gap, of the whole run, as if it were shard 1 of 1.
+    """
 
     number: int
     of: int
@@ -55,7 +58,8 @@ class _Part(Struct, frozen=True, kw_only=True):
 def merge(folders: Sequence[Path], out: Path) -> Merged:
     """Join shards, all of them or those that there are so far, in a folder that is then like an undivided run's.
 
-    Records lie there in the order of people and their trials. What is there already stays; merging again adds.
+    They may overlap, and be of several divisions: thirds with a half. Records lie there in the order of people and
+    their trials. What is there already stays; merging again adds.
 
     Raises:
         RunError: when a folder is no shard, they are not of one run, or a record is damaged or there twice and unlike.
@@ -81,7 +85,7 @@ def merge(folders: Sequence[Path], out: Path) -> Merged:
                 )
         trials = len(book)
     result = _score(out, plan, [part.folder for part in parts]) if trials == plan.trials else None
-    gaps = () if result else _gaps(parts)
+    gaps = () if result else _gaps(parts, out, plan.trials - trials)
     return Merged(folder=str(out), plan=plan, trials=trials, new=new, gaps=gaps, result=result)
 
 
@@ -117,11 +121,6 @@ def _same_run(first: _Part, part: _Part) -> None:
     if there.whole != here.whole:
         told = "; ".join(setup.differences(there.whole, here.whole))
         raise RunError(f"{part.folder} is a shard of another run than {first.folder}: {told}.")
-    if first.shard.of != part.shard.of:
-        raise RunError(
-            f"{part.folder} is one of {part.shard.of} shards and {first.folder} one of {first.shard.of}. "
-            "Merge those of one division."
-        )
 
 
 def _join(parts: Sequence[_Part]) -> dict[tuple[int, int], tuple[Place, str, int]]:
@@ -148,10 +147,12 @@ def _carried(folders: Sequence[Path]) -> dict[str, bytes]:
     return {name: path.read_bytes() for name, path in paths.items()}
 
 
-def _gaps(parts: Sequence[_Part]) -> tuple[Gap, ...]:
+def _gaps(parts: Sequence[_Part], out: Path, missing: int) -> tuple[Gap, ...]:
     """What each shard lacks. The fullest folder of a shard is the one to go on with."""
     first = parts[0]
     of, base = first.shard.of, whole_folder(first.folder)
+    if any(part.shard.of != of for part in parts):  # the undivided command plays just what is missing
+        return (Gap(number=1, of=1, trials=missing, command=board.command(out, first.plan.whole)),)
     gaps = []
     for number in range(1, of + 1):
         mine = [part for part in parts if part.shard.number == number]
