@@ -282,7 +282,7 @@ def test_a_new_agent_is_not_written_over(hthor, tmp_path: Path):
     path = tmp_path / "mine.py"
     assert hthor("agent", "new", str(path)).code == 0
     text = path.read_text()
-    assert hthor("agent", "new", str(path)).code == 4
+    assert hthor("agent", "new", str(path)).code == 2
     path.write_text("changed")
     assert hthor("agent", "new", str(path), "--force").code == 0
     assert path.read_text() == text

@@ -14,6 +14,7 @@ from hthor.cli import (
     boards,
     calibrate,
     compare,
+    ending,
     homes,
     lists,
     people,
@@ -24,21 +25,12 @@ from hthor.cli import (
     suite,
     tasks,
 )
-from hthor.errors import HthorError
-
-EPILOG = (
-    "Exit codes: 0 done; 1 a check failed (a house, a task, a suite, a table, a gate of a calibration, a merge that "
-    "lacks trials), or an error of our own; 2 wrong usage or input; 3 done, but the agent failed in some trials; 4 the "
-    "agent's file does not load; 5 less isolation than is required; 6 compare --fail-if-worse found a run worse than "
-    "the first; 75 the run is being written by another process; 130 interrupted, the same command resumes."
-)
 
 app = typer.Typer(
     name="hthor",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
-    epilog=EPILOG,
+    epilog=ending.words(),
     rich_markup_mode=None if os.environ.get("TERM") == "dumb" else "rich",
 )
 app.command("eval")(runs.evaluate)
@@ -92,17 +84,4 @@ def run() -> None:
     _open_streams()
     if "FORCE_COLOR" not in os.environ and not sys.stdout.isatty():
         os.environ["_TYPER_FORCE_DISABLE_TERMINAL"] = "1"  # typer would also colour for GITHUB_ACTIONS and PY_COLORS
-    try:
-        app(prog_name="hthor")
-    except HthorError as error:
-        sys.stderr.write(f"error: {error}\n")
-        sys.exit(error.exit_code)
-    except BrokenPipeError:
-        # Whoever read our output has gone, as `head` does. Python would complain once more at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(0)
-    except OSError as error:
-        # A place that cannot be read or written, a full disk: the user's to mend, like any wrong input.
-        place = f"{error.filename}: " if error.filename else ""
-        sys.stderr.write(f"error: {place}{error.strerror or error}.\n")
-        sys.exit(2)
+    ending.conclude(app)

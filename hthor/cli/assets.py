@@ -81,19 +81,19 @@ def list_packs(json: Json = False) -> None:
 
 
 @app.command("path")
-def path(name: Name) -> None:
+def path(name: Name, json: Json = False) -> None:
     """Where a pack lies."""
     from hthor.looks import pack as packs
 
-    sys.stdout.write(f"{packs.find(name)}\n")
+    screen.put_files([packs.find(name)], json)
 
 
 @app.command("remove")
-def remove(name: Name) -> None:
+def remove(name: Name, json: Json = False) -> None:
     """Delete a pack from the user's cache."""
     from hthor.looks import pack as packs
 
-    sys.stdout.write(f"{packs.remove(name)}\n")
+    screen.put_files([packs.remove(name)], json, removed=True)
 
 
 def _row(pack: Pack) -> dict[str, Any]:

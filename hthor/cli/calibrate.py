@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from hthor.cli import screen
+from hthor.cli.runs import Json
 
 
 def calibrate(
@@ -38,7 +39,7 @@ def calibrate(
         str, typer.Option(help="Stop after this stage, such as training or studies.", show_default="the last")
     ] = "",
     prior: Annotated[str, typer.Option(help="With logs: the population that they add to.")] = "proxy",
-    json: Annotated[bool, typer.Option("--json", help="Write JSON to standard output.")] = False,
+    json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
 ) -> None:
     """Fit the human proxies to published results, or to logs of sessions.
@@ -72,6 +73,8 @@ def calibrate(
     teller = telling.Silent() if quiet else telling.Aloud(talk, live=screen.live())
     found = run.conduct(options, teller)
     if found is None:
+        if json:
+            screen.put_json({"folder": str(run.settle(options).folder), "until": until})
         return
     if json:
         screen.put_json(found)

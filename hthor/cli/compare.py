@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from hthor.cli import screen
+from hthor.cli.runs import Json
 
 _WORSE_EXIT = 6
-Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output.")]
 
 
 def compare(

@@ -121,6 +121,7 @@ def show(
     house: House,
     out: Annotated[Path | None, typer.Option(help="The PNG file to write; left out: HOUSE.png.")] = None,
     scale: Annotated[float, typer.Option(min=5.0, max=200.0, help="Pixels a metre.")] = 60.0,
+    json: Json = False,
 ) -> None:
     """Draw a house from above, its ceilings off."""
     import cv2
@@ -134,7 +135,7 @@ def show(
         raise typer.BadParameter(f"'{path}' does not end in .png", param_hint="--out")
     picture = World(spec).top_view(scale)
     jsonio.write(path, cv2.imencode(".png", picture[:, :, ::-1])[1].tobytes())
-    sys.stdout.write(f"{path}\n")
+    screen.put_files([path], json, house=spec.id)
 
 
 @app.command("census")

@@ -40,12 +40,17 @@ def list_agents(json: Json = False) -> None:
 def new_agent(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The file to write, such as my_agent.py.")],
     force: Annotated[bool, typer.Option("--force", help="Write over a file that is there.")] = False,
+    json: Json = False,
 ) -> None:
     """Write a small complete mind to start from."""
     from hthor import agents as minds
+    from hthor.errors import AgentError, HthorError
 
-    minds.write_template(file, force)
-    sys.stdout.write(f"{file}\n")
+    try:
+        minds.write_template(file, force)
+    except AgentError as error:  # exit code 4 is for agents that do not load
+        raise HthorError(str(error)) from None
+    screen.put_files([file], json)
     sys.stderr.write(f"next:  hthor eval --agent {file} --humans proxy\n")
 
 

@@ -56,7 +56,7 @@ def build(
             show_default=False,
         ),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="With --check: the verdict as JSON.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="The verdict of --check as JSON, or what was written.")] = False,
 ) -> None:
     """Compute the table anew from scenes and a sentence encoder (needs the extra 'priors'; fetches nothing)."""
     from hthor import jsonio
@@ -68,6 +68,8 @@ def build(
     if out is not None:
         jsonio.write(out, making.encoded(table))
         screen.console(talk=True).print(f"wrote {out}", markup=False, highlight=False, soft_wrap=True)
+        if json and not check:
+            screen.put_files([out], json, triplets=len(table.triplets))
     elif not check:
         sys.stdout.write(making.encoded(table).decode())
     if check:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from hthor.cli import screen
+from hthor.cli.runs import Json
 
 Runs = Annotated[list[Path], typer.Argument(metavar="RUN...", help="Runs' folders, such as runs/demo/frontier.")]
 
@@ -16,6 +18,7 @@ _PAPER = "paper"
 def report(
     runs: Runs,
     out: Annotated[Path, typer.Option(help="The report's folder.")] = Path("report"),
+    json: Json = False,
 ) -> None:
     """Tell of runs of one suite on one page: results against no robot and the paper, figures, best and worst trials.
 
@@ -40,7 +43,8 @@ def report(
             counts={name: Share(k=one.k, n=one.n, inferred=one.inferred) for name, one in counts.items()},
         ),
     )
-    sys.stdout.write(f"{out / 'report.html'}\n")
+    page = out / "report.html"
+    screen.put_files([page, out / "report.json", out / "figures"] if json else [page], json)
 
 
 def case(
@@ -59,6 +63,7 @@ def case(
         typer.Option(help="The file of an agent that is not built in; repeat it for several.", show_default=False),
     ] = None,
     humans: Annotated[str, typer.Option(help="The people's file, if any.", show_default=False)] = "",
+    json: Json = False,
 ) -> None:
     """Draw one task under several robots: the ways from above, and what person and robot saw at key moments.
 
@@ -68,4 +73,4 @@ def case(
 
     profile = "nice" if nice else "fast"
     paths = cases.study(runs, task, out, person=person, profile=profile, agents=agent or (), humans=humans)
-    sys.stdout.write("".join(f"{path}\n" for path in paths))
+    screen.put_files(paths, json, task=task)

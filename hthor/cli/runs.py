@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -250,7 +249,9 @@ def replay(
         typer.Option(help="With --mind: the file of an agent that is not built in.", show_default=False),
     ] = None,
     humans: Annotated[str, typer.Option(help="With --mind: the people's file, if any.", show_default=False)] = "",
-    json: Annotated[bool, typer.Option("--json", help="With --mind: print the thoughts instead of a picture.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="What was written as JSON; with --mind: the thoughts, and no picture.")
+    ] = False,
 ) -> None:
     """Draw one trial from above: the paths, the messages and what came of them."""
     if mind:
@@ -265,7 +266,7 @@ def replay(
     record = find.trial(run, trial)
     path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'mp4' if video else 'png'}"
     redraw.draw(record, path, video=video)
-    sys.stdout.write(f"{path}\n")
+    screen.put_files([path], json, key=record.key, task=record.spec.task.id)
 
 
 def _show(console: Console, one: Done) -> None:

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 _PIPE_COLUMNS = 120
+documents: list[int] = []
+"""Sizes of the documents that were written: there is one a command, so that a program can read it."""
 
 
 def console(*, talk: bool = False) -> Console:
@@ -34,8 +36,18 @@ def put_json(document: Any) -> None:
     """Write a document to standard output as JSON for people and programs alike."""
     from hthor import jsonio
 
-    sys.stdout.write(jsonio.pretty(document).decode())
+    text = jsonio.pretty(document).decode()
+    documents.append(len(text))
+    sys.stdout.write(text)
     sys.stdout.flush()
+
+
+def put_files(paths: Sequence[object], json: bool, **more: Any) -> None:
+    """Tell which files were written: a line each, or as a document with whatever ``more`` there is to tell."""
+    if json:
+        put_json({"files": [str(path) for path in paths], **more})
+    else:
+        sys.stdout.write("".join(f"{path}\n" for path in paths))
 
 
 def put_line(text: str) -> None:

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from hthor.cli import screen
+from hthor.cli.runs import Json
 
 _MISSING_EXIT, _FAULTS_EXIT = 1, 3
 
@@ -15,9 +16,7 @@ _MISSING_EXIT, _FAULTS_EXIT = 1, 3
 def merge(
     folders: Annotated[list[Path], typer.Argument(metavar="FOLDER...", help="The shards' folders.")],
     out: Annotated[Path, typer.Option(help="The whole run's folder.")],
-    json: Annotated[
-        bool, typer.Option("--json", help="Write JSON to standard output; words go to standard error.")
-    ] = False,
+    json: Json = False,
 ) -> None:
     """Join the shards of a run that 'hthor eval --shard i/N' played on several machines.
 

@@ -28,12 +28,15 @@ SaltFile = Annotated[Path, typer.Option("--salt-file", help=_SALT)]
 
 
 @app.command("salt")
-def salt(out: Annotated[Path, typer.Option(help="The file to write; only you will be able to read it.")]) -> None:
+def salt(
+    out: Annotated[Path, typer.Option(help="The file to write; only you will be able to read it.")],
+    json: Json = False,
+) -> None:
     """Make a secret salt of 256 bits. Keep it: without it no suite can be revealed."""
     from hthor.tasks import salt as salts
 
     salts.fresh(out)
-    sys.stdout.write(f"{out}\n")
+    screen.put_files([out], json)
     sys.stderr.write(f"next:  hthor suite make NAME --salt-file {out}\n")
 
 
@@ -72,12 +75,12 @@ def make(
 
 
 @app.command("reveal")
-def reveal(folder: Folder, salt_file: SaltFile) -> None:
+def reveal(folder: Folder, salt_file: SaltFile, json: Json = False) -> None:
     """Publish a suite's salt: from now on everybody can make the suite again, and nobody is tested by it."""
     from hthor.tasks import commitment
 
     path = commitment.reveal(folder, _salt(salt_file, folder))
-    sys.stdout.write(f"{path}\n")
+    screen.put_files([path], json)
     sys.stderr.write(f"next:  hthor suite verify {folder}\n")
 
 
