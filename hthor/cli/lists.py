@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from hthor.cli import agents as agents_of_mine
 from hthor.cli import screen
 from hthor.cli.runs import Json
 
@@ -47,6 +48,9 @@ def new_agent(
     minds.write_template(file, force)
     sys.stdout.write(f"{file}\n")
     sys.stderr.write(f"next:  hthor eval --agent {file} --humans proxy\n")
+
+
+agent.command("run")(agents_of_mine.run)
 
 
 @robots.command("list")

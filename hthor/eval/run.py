@@ -16,6 +16,7 @@ from hthor.errors import HthorError, RunError
 from hthor.eval import control, engines, guarded, log, record, score, setup
 from hthor.eval.engines import Engine, Make, SessionFailed
 from hthor.eval.log import Log
+from hthor.eval.remains import Keeper
 from hthor.eval.score import Effort, Result
 from hthor.eval.session import Session
 from hthor.eval.setup import Setup
@@ -57,6 +58,7 @@ def evaluate(
     engine: Engine | None = None,
     watch: Watcher,
     extra: Mapping[str, bytes] | None = None,
+    again: str = "",
 ) -> Result:
     """Play what a run still lacks, and score it.
 
@@ -67,6 +69,7 @@ def evaluate(
         jobs: number of worker processes, when no ``engine`` is given.
         engine: where sessions are played; on this machine when not given.
         extra: other files to leave in the folder, by name, such as a suite that was made for this run.
+        again: the command that plays one of its trials once more, but for the trial's key.
 
     Raises:
         RunLocked: when another process writes this run.
@@ -85,7 +88,8 @@ def evaluate(
         watch.begin(len(wanted), sum(key in book for key in wanted))
         if book.torn:
             watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")
-        cost = _play(book, engine or engines.find(engines.LOCAL, jobs=jobs), left, make, watch) if left else None
+        where, keeper = engine or engines.find(engines.LOCAL, jobs=jobs), Keeper(folder, again)
+        cost = _play(book, where, left, make, watch, keeper) if left else None
         missing = [key for key in wanted if key not in book]
         if missing:
             raise RunError(f"{folder}: {len(missing)} trials were not played, {missing[0]} is one. Run it again.")
@@ -96,7 +100,9 @@ def evaluate(
     return _finish(folder, plan, Effort(wall_s=round(wall_s, 3), cpu_s=round(cpu_s, 3), trials=trials))
 
 
-def _play(book: Log, engine: Engine, sessions: Sequence[Session], make: Make, watch: Watcher) -> tuple[float, int]:
+def _play(
+    book: Log, engine: Engine, sessions: Sequence[Session], make: Make, watch: Watcher, keeper: Keeper
+) -> tuple[float, int]:
     """Play sessions and write down what is new; CPU time [s] and the number of new trials."""
     cpu_s, new, other = 0.0, 0, 0
     with stoppable() as stop, closing(engine.perform(sessions, make)) as stream:
@@ -106,6 +112,8 @@ def _play(book: Log, engine: Engine, sessions: Sequence[Session], make: Make, wa
                     if book.append(news.key, news.line):
                         new += 1
                         watch.played(news.met, news.faulty)
+                        if news.left is not None:
+                            keeper.keep(news.left)
                     else:
                         other += not book.agrees(news.key, news.line)
                 elif isinstance(news, Finished):

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
     from hthor.eval.record import Record
+    from hthor.eval.remains import Remains
     from hthor.eval.session import Session
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
@@ -30,12 +31,13 @@ _KILLED = "SIGKILL"
 
 
 class Played(Struct, frozen=True, kw_only=True):
-    """A trial is over. ``line`` is its whole record."""
+    """A trial is over. ``line`` is its whole record, ``left`` what is left of agents that failed in it."""
 
     key: str
     line: bytes
     met: bool
     faulty: bool
+    left: Remains | None = None
 
 
 class Finished(Struct, frozen=True, kw_only=True):
@@ -88,14 +90,15 @@ class Player:
 
     def play(self, session: Session) -> Iterator[News]:
         """Tell of each trial when it is over; the last piece of news is that the session is over, or failed."""
-        from hthor.eval import record
+        from hthor.eval import record, remains
 
         try:
             if self._perform is None:
                 self._perform = self._make()
             for done in _steadily(self._perform, session):
                 line = record.encode(done)
-                yield Played(key=done.key, line=line, met=done.met, faulty=bool(done.faults))
+                left = remains.take(done.key)
+                yield Played(key=done.key, line=line, met=done.met, faulty=bool(done.faults), left=left)
         except Exception as error:
             yield _failure(error)
             return
