@@ -194,7 +194,11 @@ def test_an_agents_faults_are_shown_with_a_way_to_look(hthor, tmp_path: Path, mo
     said = hthor("eval", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path / "run"))
     assert said.code == 3
     assert "failed in 2 of 20 trials" in said.out
+    assert "Faults by kind: 2 raised." in said.out
     assert "after 7.0 s: raised: ValueError: no" in said.out
+    assert "    Traceback\n" in said.out
+    words = ("eval", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path / "run"), "--quiet", "--max-faults")
+    assert [hthor(*words, most).code for most in ("1", "2", "9%", "10%", "x")] == [3, 0, 3, 0, 2]
 
 
 def test_faults_of_several_robots_are_told_apart(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

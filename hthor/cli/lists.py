@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from hthor.cli import agents as agents_of_mine
 from hthor.cli import screen
 from hthor.cli.runs import Json
 
@@ -52,6 +53,9 @@ def new_agent(
         raise HthorError(str(error)) from None
     screen.put_files([file], json)
     sys.stderr.write(f"next:  hthor eval --agent {file} --humans proxy\n")
+
+
+agent.command("run")(agents_of_mine.run)
 
 
 @robots.command("list")

@@ -135,6 +135,13 @@ def evaluate(
     require_isolation: Annotated[
         str, typer.Option(help="The least level that will do; with less, exit code 5.", show_default=False)
     ] = "",
+    max_faults: Annotated[
+        str,
+        typer.Option(
+            metavar="N|P%",
+            help="How many trials an agent may fail in, or what share of them; with more, exit code 3.",
+        ),
+    ] = "0",
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
 ) -> None:
@@ -143,8 +150,9 @@ def evaluate(
     The same command resumes an interrupted run, and only scores a finished one. The same seed gives the same records,
     byte for byte, with any number of jobs.
     """
-    from hthor.eval import campaign, matrix, peoples, progress, report
+    from hthor.eval import campaign, matrix, peoples, progress, remains, report
 
+    allowed = remains.allowance(max_faults)
     talk = screen.console(talk=True)
 
     def watcher(name: str) -> ClosableWatcher:
@@ -193,7 +201,7 @@ def evaluate(
             _say(paper, f"{one.plan.name}{whose}: {one.folder}/")
     if json:
         screen.put_json(whole or (results[0] if len(results) == 1 else results))
-    if any(one.result.counts.faults for one in done):
+    if any(one.result.counts.faults > allowed(one.result.counts.trials) for one in done):
         raise typer.Exit(_FAULTS_EXIT)
 
 
@@ -271,7 +279,7 @@ def replay(
 
 def _show(console: Console, one: Done) -> None:
     """A run's table, its first fault, where its files are, and what to do with them."""
-    from hthor.eval import find, report
+    from hthor.eval import find, remains, report
     from hthor.eval.shard import whole_folder
 
     result, folder = one.result, one.folder
@@ -282,7 +290,13 @@ def _show(console: Console, one: Done) -> None:
         failed = [f"{seat} in {count}" for seat, count in result.counts.faults_by_seat.items() if count]
         whose = f" ({', '.join(failed)})" if len(one.plan.seats) > 1 else ""
         _say(console, f"{'An' if whose else 'The'} agent failed in {many} trials{whose}; {alone}.")
+        kinds = ", ".join(f"{count} {kind}" for kind, count in result.counts.faults_by_kind.items())
+        _say(console, f"Faults by kind: {kinds}.")
         _say(console, f"First in trial {faulty.key} ({faulty.spec.task.id}), {find.fault_words(faulty)}")
+        for line in find.fault_lines(faulty):
+            _say(console, f"    {line}")
+        if again := remains.command(folder, faulty.key):
+            _say(console, f"look:  {again}")
     more = ", suite.json" if (folder / "suite.json").exists() else ""
     if one.plan.shard:
         base, of = whole_folder(folder), one.plan.shard.of

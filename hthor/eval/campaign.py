@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
+import shlex
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
@@ -247,8 +248,37 @@ def _perform(
         make = functools.partial(guarded.player, sources, held.level, hidden)
         extra[guarded.NAME] = jsonio.pretty(guarded.weakest(folder, held, options.require_isolation))
     mine = plan.shard.share(dealt) if plan.shard else dealt
-    engine = _engine(options, chosen, crew)
-    return run.evaluate(plan, mine, make, folder=folder, engine=engine, watch=watch, extra=extra)
+    return run.evaluate(
+        plan,
+        mine,
+        make,
+        folder=folder,
+        engine=_engine(options, chosen, crew),
+        watch=watch,
+        extra=extra,
+        again=_again(options, chosen, part),
+    )
+
+
+def _again(options: Options, chosen: Programme, part: Part) -> str:
+    """The command that plays a trial of a run once more, but for the trial's key, with its author looking on."""
+    words = ["hthor", "agent", "run"]
+    files = [("--agent", path) for path in dict.fromkeys(part.crew.minds.values())]
+    files += [("--robot", path) for path in dict.fromkeys(part.crew.bodies.values())]
+    files += [("--kind", chosen.path)] if chosen.path else []
+    for option, path in files:
+        words += [option, _near(path)]
+    if part.people.word != part.people.name:
+        words += ["--humans", part.people.word]
+    if options.isolation != "auto" and part.crew.minds:
+        words += ["--isolation", options.isolation]
+    return shlex.join([*words, _near(str(part.folder))])
+
+
+def _near(path: str) -> str:
+    """A path as short as it can be said from here."""
+    near = os.path.relpath(path)
+    return path if near.startswith("..") else near
 
 
 def _hidden(options: Options) -> tuple[str, ...]:

@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 from msgspec import Struct
 
 from hthor import garbage, plugins
 from hthor.errors import AgentError, HthorError
+from hthor.eval.watched import Watched
 from hthor.types import Mind, RobotSeat, TrialSpec
 
 if TYPE_CHECKING:
@@ -103,6 +105,21 @@ class Stage:
             garbage.keep()
         return self._worlds[key]
 
+    def play(self, company: Company, trial: TrialSpec) -> Record:
+        """The company's next trial. A mind that failed is let go, and what is left of it laid down."""
+        from hthor.eval import impersonal, record, remains
+
+        log = _play(self, company, trial)
+        if not log.faults:
+            return record.of(trial, log)
+        files = self._sources.minds.values()
+        told = (msgspec.structs.replace(one, detail=impersonal.words(one.detail, files)) for one in log.faults)
+        done = record.of(trial, msgspec.structs.replace(log, faults=tuple(told)))
+        remains.leave(remains.of(done.key, trial, done.faults, company.minds))
+        for seat in dict.fromkeys(fault.seat for fault in log.faults):
+            company.dismiss(seat)
+        return done
+
     def _persons(self, trial: TrialSpec) -> People:
         """Whom the person of a trial is drawn from; kept, as all trials of a run have the same."""
         from hthor.humans import people
@@ -131,7 +148,7 @@ class Stage:
         if guest.load().sha256 != seat.agent.sha256:
             guest.close()
             raise AgentError(_changed(path))
-        return guest
+        return Watched(guest)
 
 
 def _unchanged(path: str, sha256: str) -> None:
@@ -170,6 +187,11 @@ class Company:
                 self._minds[robot.seat] = self._make(robot)
         return dict(self._minds)
 
+    @property
+    def minds(self) -> Mapping[str, Mind]:
+        """The minds of the trial that was played, by seat."""
+        return self._minds
+
     def dismiss(self, seat: str) -> None:
         """Let a mind go; the next trial gets a fresh one."""
         mind: Any = self._minds.pop(seat)
@@ -179,17 +201,12 @@ class Company:
 
 def player(sources: Sources | None = None) -> Callable[[Session], Iterator[Record]]:
     """What a worker does with each session: play its trials in order. Called in the worker; imports what is heavy."""
-    from hthor.eval import record
-
     stage = Stage(sources)
 
     def perform(session: Session) -> Iterator[Record]:
         with stage.enter(session) as company:
             for trial in session.trials:
-                log = _play(stage, company, trial)
-                for seat in dict.fromkeys(fault.seat for fault in log.faults):
-                    company.dismiss(seat)
-                yield record.of(trial, log)
+                yield stage.play(company, trial)
 
     return perform
 

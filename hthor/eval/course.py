@@ -16,6 +16,7 @@ from hthor.eval.news import Again, Finished, Lost, Played
 if TYPE_CHECKING:
     from hthor.eval.engines import Engine, Make
     from hthor.eval.log import Log
+    from hthor.eval.remains import Keeper
     from hthor.eval.run import Watcher
     from hthor.eval.session import Session
 
@@ -54,9 +55,15 @@ class Course:
 
 
 def play(
-    book: Log, engine: Engine, sessions: Sequence[Session], make: Make, watch: Watcher, stop: threading.Event
+    book: Log,
+    engine: Engine,
+    sessions: Sequence[Session],
+    make: Make,
+    watch: Watcher,
+    keeper: Keeper,
+    stop: threading.Event,
 ) -> Course:
-    """Play sessions and write down what is new."""
+    """Play sessions and write down what is new, and beside the log what is left of agents that failed."""
     came, draining = Course(), False
     with closing(engine.perform(sessions, make)) as stream:
         for news in stream:
@@ -65,6 +72,8 @@ def play(
                 if book.append(news.key, news.line):
                     came.new += 1
                     watch.played(news.met, news.faulty)
+                    if news.left is not None:
+                        keeper.keep(news.left)
                 else:
                     came.other += not book.agrees(news.key, news.line)
             elif isinstance(news, Finished):

@@ -12,6 +12,7 @@ from hthor.eval import score, setup
 from hthor.eval.record import Record
 
 _SHOWN = 10
+_TRACED = 12
 
 
 def trial(folder: Path, name: str) -> Record:
@@ -56,6 +57,12 @@ def first_fault(folder: Path) -> Record:
     """
     _, records = score.digest(folder, setup.load(folder))
     return next(record for record in records if record.faults)
+
+
+def fault_lines(record: Record) -> list[str]:
+    """The end of the traceback of a trial's first fault; none where it was no exception."""
+    lines = record.faults[0].detail.strip().splitlines()
+    return lines[-_TRACED:] if len(lines) > 1 else []
 
 
 def fault_words(record: Record) -> str:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from msgspec import Struct
+
+if TYPE_CHECKING:
+    from hthor.eval.remains import Remains
 
 
 class Played(Struct, frozen=True, kw_only=True):
-    """A trial is over. ``line`` is its whole record."""
+    """A trial is over. ``line`` is its whole record, ``left`` what is left of agents that failed in it."""
 
     key: str
     line: bytes
     met: bool
     faulty: bool
+    left: Remains | None = None
 
 
 class Finished(Struct, frozen=True, kw_only=True):

@@ -12,6 +12,7 @@ from hthor import jsonio
 from hthor.eval import control, course, engines, guarded, log, record, score, setup
 from hthor.eval.engines import Engine, Make
 from hthor.eval.log import Log
+from hthor.eval.remains import Keeper
 from hthor.eval.score import Effort, Result
 from hthor.eval.session import Session
 from hthor.eval.setup import Setup
@@ -47,6 +48,7 @@ def evaluate(
     engine: Engine | None = None,
     watch: Watcher,
     extra: Mapping[str, bytes] | None = None,
+    again: str = "",
 ) -> Result:
     """Play what a run still lacks, and score it.
 
@@ -57,6 +59,7 @@ def evaluate(
         jobs: number of worker processes, when no ``engine`` is given.
         engine: where sessions are played; on this machine when not given.
         extra: other files to leave in the folder, by name, such as a suite that was made for this run.
+        again: the command that plays one of its trials once more, but for the trial's key.
 
     Raises:
         RunLocked: when another process writes this run.
@@ -66,7 +69,7 @@ def evaluate(
     """
     with stoppable() as stop:
         where = engine or engines.find(engines.LOCAL, jobs=jobs)
-        result = _evaluate(plan, sessions, make, folder, where, watch, extra, stop)
+        result = _evaluate(plan, sessions, make, folder, where, watch, extra, again, stop)
         if stop.is_set():
             raise Interrupted("interrupted; resume with the same command.")
         return result
@@ -80,6 +83,7 @@ def _evaluate(
     engine: Engine,
     watch: Watcher,
     extra: Mapping[str, bytes] | None,
+    again: str,
     stop: threading.Event,
 ) -> Result:
     began = time.monotonic()
@@ -94,7 +98,8 @@ def _evaluate(
         watch.begin(len(wanted), sum(key in book for key in wanted))
         if book.torn:
             watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")
-        came = course.play(book, engine, left, make, watch, stop) if left else None
+        keeper = Keeper(folder, again)
+        came = course.play(book, engine, left, make, watch, keeper, stop) if left else None
         if stop.is_set():
             raise Interrupted(f"interrupted after {len(book)} trials; resume with the same command.")
         missing = [key for key in wanted if key not in book]

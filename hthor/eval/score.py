@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from operator import attrgetter
@@ -58,7 +59,8 @@ class Scores(Struct, frozen=True, kw_only=True):
 class Counts(Struct, frozen=True, kw_only=True):
     """How much there is: trials, distinct tasks, successes, messages sent by robots, and trials with a fault.
 
-    ``faults_by_seat`` counts the trials in which the robot of each seat failed.
+    ``faults_by_seat`` counts the trials in which the robot of each seat failed, ``faults_by_kind`` all faults by what
+    they were.
     """
 
     trials: int
@@ -67,6 +69,7 @@ class Counts(Struct, frozen=True, kw_only=True):
     messages: int
     faults: int
     faults_by_seat: dict[str, int]
+    faults_by_kind: dict[str, int] = {}
 
 
 class Hashes(Struct, frozen=True, kw_only=True):
@@ -216,6 +219,7 @@ def summarise(
                 robot.seat: sum(any(fault.seat == robot.seat for fault in record.faults) for record in records)
                 for robot in plan.seats
             },
+            faults_by_kind=dict(sorted(Counter(fault.kind for one in records for fault in one.faults).items())),
         ),
         versions=plan.versions,
         hashes=Hashes(

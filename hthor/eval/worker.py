@@ -63,7 +63,7 @@ class Player:
 
     def play(self, session: Session) -> Iterator[News]:
         """Tell of each trial when it is over; the last piece of news is that the session is over, lost, or failed."""
-        from hthor.eval import record
+        from hthor.eval import record, remains
 
         try:
             if self._perform is None:
@@ -73,7 +73,8 @@ class Player:
                     yield done
                     continue
                 line = record.encode(done)
-                yield Played(key=done.key, line=line, met=done.met, faulty=bool(done.faults))
+                left, faulty = remains.take(done.key), bool(done.faults)  # what is left may be of a start before this
+                yield Played(key=done.key, line=line, met=done.met, faulty=faulty, left=left if faulty else None)
         except Exception as error:
             yield _failure(session.participant, error)
             return

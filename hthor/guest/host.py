@@ -21,6 +21,9 @@ _ENTER_S = 120.0
 """Seconds until a process must say what holds it: the start of an interpreter, and the libraries an agent names."""
 _ASKS = 100
 """How often an agent may ask for something within one ``act``; what it has read once it need not ask for again."""
+_GUESTS_FAULTS = ("raised", "wrong_type", "garbage", "oversized", "contract", "confinement")
+"""Kinds of fault that a guest may report of itself; the others are for its keeper and the host to find."""
+_WORDS = 8000
 _guests_words = msgspec.msgpack.Decoder(wire.ToHost)
 _keepers_words = msgspec.msgpack.Decoder(wire.KeeperToHost)
 
@@ -272,7 +275,8 @@ class Guest:
         except (msgspec.DecodeError, UnicodeDecodeError) as error:
             raise self._fault("garbage", f"what came is no message: {error}") from None
         if isinstance(message, wire.Failed) and (self._info is not None or keepers):
-            raise self._fault(message.kind, message.detail, message.traceback)
+            kind = message.kind if keepers or message.kind in _GUESTS_FAULTS else "garbage"
+            raise self._fault(kind, message.detail, message.traceback)
         return message, max(0.0, end - time.monotonic())
 
     def _wrong(self, what: str, answer: object) -> GuestFault:
@@ -289,7 +293,7 @@ class Guest:
         """End the process, and say why."""
         log = self.log
         self._kill()
-        return GuestFault(kind, detail[:8000], traceback, log)
+        return GuestFault(kind, detail[:_WORDS], traceback[-_WORDS:], log)
 
     def _kill(self) -> None:
         process, self._process, self._playing = self._process, None, False

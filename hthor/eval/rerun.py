@@ -1,0 +1,108 @@
+"""One trial of a run played once more with its agents, as they are now; prints and writes nothing.
+
+What the person does depends on their trials before, so these are played too. An agent's file may have been mended
+meanwhile: then it is the mended one that plays, and the trial may go otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from hthor import guest, plugins
+from hthor.errors import HthorError
+from hthor.eval import again, crews, guarded, record, remains, setup
+from hthor.eval.cast import Sources
+from hthor.eval.crews import Character
+from hthor.eval.record import Record
+from hthor.eval.remains import Remains
+from hthor.eval.session import Session
+from hthor.types import RobotSeat, TrialSpec
+
+
+class Files(Struct, frozen=True, kw_only=True):
+    """Where that lies which a trial needs and a run's folder does not hold, as the user typed it."""
+
+    agents: tuple[str, ...] = ()
+    robots: tuple[str, ...] = ()
+    kind: str = ""
+    humans: str = ""
+
+
+class Rerun(Struct, frozen=True, kw_only=True):
+    """A trial played once more. ``changed`` says that an agent's file is another than in the run, ``same`` that the
+    record came out equal, byte for byte; ``left`` is there when an agent failed.
+    """
+
+    record: Record
+    before: int
+    changed: bool
+    same: bool
+    left: Remains | None
+
+
+def play(folder: Path, wanted: Record, files: Files, isolation: str = "auto") -> Rerun:
+    """Play a trial of a run once more.
+
+    Raises:
+        RunError: when trials before it are missing, or another version of hthor played them.
+        HthorError: when a file is needed and not given.
+    """
+    guest.confine_guests(isolation, (str(folder.resolve()),))
+    specs = again.before(folder, wanted)
+    minds = _minds(wanted.spec, files.agents)
+    robots = tuple(_seated(seat, minds) for seat in wanted.spec.robots)
+    trials = tuple(msgspec.structs.replace(spec, robots=robots) for spec in specs)
+    session = Session(participant=wanted.spec.participant, trials=trials)
+    perform = guarded.player(_sources(folder, wanted.spec, files, minds), isolation, (str(folder.resolve()),))
+    done = list(perform(session))[-1]
+    left = [remains.take(record.key(trial)) for trial in trials][-1]
+    changed = robots != wanted.spec.robots
+    same = record.encode(done) == record.encode(wanted)
+    return Rerun(record=done, before=len(trials) - 1, changed=changed, same=same, left=left)
+
+
+def _minds(spec: TrialSpec, paths: Sequence[str]) -> dict[str, Character]:
+    """For each seat whose agent is not built in, the file that is meant: the very same one, or one of its name."""
+    given = [crews.introduce(path) for path in paths]
+    found: dict[str, Character] = {}
+    for seat in spec.robots:
+        if seat.agent.name in plugins.names("agent"):
+            continue
+        same = [one for one in given if one.ref.sha256 == seat.agent.sha256 and one.ref.source == seat.agent.source]
+        named = [one for one in given if one.ref.name == seat.agent.name]
+        if not (fits := same or named or (given if len(given) == 1 else [])):
+            came = f"the agent '{seat.agent.name}' of this run came from the file {seat.agent.source}"
+            raise HthorError(f"{came}. Give that file with --agent.")
+        found[seat.seat] = fits[0]
+    return found
+
+
+def _seated(seat: RobotSeat, minds: dict[str, Character]) -> RobotSeat:
+    return msgspec.structs.replace(seat, agent=minds[seat.seat].ref) if seat.seat in minds else seat
+
+
+def _sources(folder: Path, spec: TrialSpec, files: Files, minds: dict[str, Character]) -> Sources:
+    """Where everything lies, looked for before anything is played."""
+    if spec.kind_sha256 and not files.kind:
+        raise HthorError(f"the kind '{spec.task.kind}' of this trial came from a file of its own. Give it with --kind.")
+    bodies: dict[str, str] = {}
+    for seat in spec.robots:
+        fits = [path for path in files.robots if seat.robot_sha256 and plugins.sha256(path) == seat.robot_sha256]
+        if seat.robot_sha256 and not fits:
+            raise HthorError(
+                f"the body '{seat.robot}' of this run came from a file of its own. Give it, unchanged, with --robot."
+            )
+        bodies |= {seat.seat: str(Path(fits[0]).resolve())} if fits else {}
+    own, shown = folder / "houses", setup.load(folder).assets.name
+    return Sources(
+        minds={seat: one.path for seat, one in minds.items()},
+        bodies=bodies,
+        kind=str(Path(files.kind).resolve()) if files.kind else "",
+        assets="" if shown == setup.PROCEDURAL else shown,
+        houses=str(own.resolve()) if own.is_dir() else "",
+        people=files.humans,
+    )
