@@ -18,15 +18,21 @@ from hthor.guest.confinement import paths
 _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "hthor.catalog", "hthor.rules")
 
 
-def preload(path: Path) -> None:
-    """Import what the file is going to import, and keep it out of the way of forks."""
-    for module, names in _named(path):
+def preload(path: Path, module: str = "") -> None:
+    """Import what the file is going to import, and keep it out of the way of forks.
+
+    Args:
+        module: its name where it is imported by name; nothing of its own package is imported here.
+    """
+    own = module.partition(".")[0]
+    wanted = [one for one in _named(path) if one[0].partition(".")[0] != own or own == "hthor"]
+    for module, names in wanted:
         with contextlib.suppress(BaseException):
             for name in [module, *(f"{module}.{name}" for name in names if module == "hthor")]:
                 if name.startswith(_OURS) or _installed(name.partition(".")[0]):
                     found = importlib.import_module(name)
-                    for wanted in names:
-                        getattr(found, wanted, None)  # some packages import their parts only then
+                    for part in names:
+                        getattr(found, part, None)  # some packages import their parts only then
     gc.collect()
     gc.freeze()
 
