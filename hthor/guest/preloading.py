@@ -15,6 +15,7 @@ from pathlib import Path
 
 from hthor.guest.confinement import paths
 
+_MINDS = "hthor.agents"
 _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "hthor.catalog", "hthor.rules")
 
 
@@ -26,6 +27,8 @@ def preload(path: Path, module: str = "") -> None:
     """
     own = module.partition(".")[0]
     wanted = [one for one in _named(path) if one[0].partition(".")[0] != own or own == "hthor"]
+    if any(name.startswith(_MINDS) for name in (module, *(one[0] for one in wanted))):
+        wanted += [(name, []) for name in _behind()]
     for module, names in wanted:
         with contextlib.suppress(BaseException):
             for name in [module, *(f"{module}.{name}" for name in names if module == "hthor")]:
@@ -35,6 +38,14 @@ def preload(path: Path, module: str = "") -> None:
                         getattr(found, part, None)  # some packages import their parts only then
     gc.collect()
     gc.freeze()
+
+
+def _behind() -> list[str]:
+    """What our own minds import only once they begin, which would cost every trial anew."""
+    files = [path for part in ("agents", "navigation") for path in sorted((paths.PACKAGE / part).glob("*.py"))]
+    return [
+        f"hthor.{path.parent.name}.{path.stem}" for path in files if path.parent.name != "agents" or path.stem[0] == "_"
+    ]
 
 
 def _installed(name: str) -> bool:

@@ -152,9 +152,10 @@ def _guess(text: str) -> str:
     head, colon, tail = text.partition(":")
     meant = ""
     if "://" in text:
-        rest = text.partition("://")[2]
-        port = "" if re.search(r":\d+", rest) else ":PORT"
-        meant = f"{'wss' if head in ('wss', 'https') else 'ws'}://{rest.partition('/')[0]}{port}"
+        address = tail.lstrip("/").partition("/")[0]
+        numbered = re.search(r":\d+$", address)
+        scheme = "wss" if head in ("wss", "https") else "ws"
+        meant = f"{scheme}://{address if numbered else address.partition(':')[0] + ':PORT'}"
     elif ".py::" in text:
         meant = text.replace("::", ":")
     elif colon and difflib.get_close_matches(head.lower(), _COMMANDS, n=1, cutoff=0.7):

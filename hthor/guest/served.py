@@ -77,7 +77,7 @@ class Served:
     log = ""
 
     def __init__(self, connection: ClientConnection) -> None:
-        self._connection = connection
+        self._connection = connection.__enter__()
         self._late = False
         self._end = ""
 
@@ -115,7 +115,7 @@ class Served:
     def kill(self) -> None:
         """As `Line` says; the server goes on."""
         with contextlib.suppress(Exception):
-            self._connection.close()
+            self._connection.__exit__(None, None, None)
 
     def _hang_up(self) -> None:
         self._late = True

@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import logging
 import sys
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import msgspec
@@ -56,12 +55,11 @@ class Socket:
         raise Gone("not what was asked for")
 
 
-def serve(text: str, host: str, port: int, told: Callable[[str, wire.Ready], object]) -> Server:
+def serve(text: str, host: str, port: int) -> Server:
     """A server that is ready to serve an agent; call its ``serve_forever``.
 
     Args:
         text: the agent, a Python file or module. port: 0 for any that is free.
-        told: hears the address and what the agent says of itself.
 
     Raises:
         UnknownName, AgentError: when it is no such agent, or cannot be loaded.
@@ -91,8 +89,13 @@ def serve(text: str, host: str, port: int, told: Callable[[str, wire.Ready], obj
     server: Server = sockets.sync.server.serve(
         talk, host, port, compression=None, ping_interval=None, max_size=None, logger=quiet
     )
-    told(f"ws://{host}:{server.socket.getsockname()[1]}", ready)
     return server
+
+
+def address(server: Server) -> str:
+    """Where a server can be reached."""
+    host, port = server.socket.getsockname()[:2]
+    return f"ws://{host}:{port}"
 
 
 def _converse(socket: Socket, cls: type[Any], ready: wire.Ready) -> None:
