@@ -10,11 +10,11 @@ import argparse
 import sys
 from collections.abc import Callable, Iterator
 
-from benchmarks import environment, rendering, scaling, scenes, table, trials
+from benchmarks import environment, guests, rendering, scaling, scenes, table, trials
 from hthor import tasks
 from hthor.eval import provenance
 
-PARTS = ("trials", "environment", "rendering", "processes")
+PARTS = ("trials", "environment", "rendering", "processes", "guests")
 
 
 def main() -> None:
@@ -43,6 +43,7 @@ def _measures(given: argparse.Namespace) -> dict[str, Callable[[], Iterator[tabl
         "environment": lambda: environment.rows(scenes.scenes(suite), suite, 1 if quick else 5),
         "rendering": lambda: rendering.rows(scenes.scenes(suite), profiles, sizes),
         "processes": lambda: scaling.rows(suite, 5 if quick else 30),
+        "guests": lambda: guests.rows(suite, 300 if quick else 2000, 1 if quick else 3),
     }
 
 

@@ -6,9 +6,12 @@ import struct
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from hthor.errors import UnknownName
-from hthor.guest.confinement import LEVELS, known, paths, seccomp, suffices
+from hthor.guest.confinement import LEVELS, SERVED, Policy, devices, known, namespaces, paths, seccomp, suffices
 
 
 def covered(path: Path, allowed: tuple[str, ...]) -> bool:
@@ -29,7 +32,7 @@ def agent(tmp_path: Path) -> Path:
 
 def test_an_agent_reads_its_folder_but_for_what_is_hidden(agent: Path) -> None:
     home = agent.parent
-    allowed = paths.readable(agent, [str(home / "suite.json")])
+    allowed = paths.readable(str(agent), str(home), [str(home / "suite.json")])
     assert covered(agent, allowed)
     assert covered(home / "weights" / "w.npz", allowed)
     for secret in (home / "runs" / "x" / "trials.jsonl", home / "suite.json", home.parent / "else" / "salt.txt"):
@@ -37,7 +40,7 @@ def test_an_agent_reads_its_folder_but_for_what_is_hidden(agent: Path) -> None:
 
 
 def test_of_this_package_only_what_minds_are_made_with_is_read(agent: Path) -> None:
-    allowed = paths.readable(agent, [])
+    allowed = paths.readable(str(agent), str(agent.parent), [])
     for name in ("types/acting.py", "navigation/map.py", "errors.py", "houses/freespace.py"):
         assert covered(paths.PACKAGE / name, allowed), name
     secrets = [path for path in paths.PACKAGE.rglob("*.json") if "catalog" not in path.parts]
@@ -48,6 +51,7 @@ def test_of_this_package_only_what_minds_are_made_with_is_read(agent: Path) -> N
 
 def test_levels_are_ordered_and_named() -> None:
     assert [suffices(level, "L2") for level in LEVELS] == [False, True, True]
+    assert not suffices(SERVED, "L1")
     with pytest.raises(UnknownName, match=r"unknown isolation level 'l2'\. Did you mean 'L2'"):
         known("l2")
 
@@ -103,3 +107,26 @@ def test_the_filter_does_what_it_says() -> None:
         for call in calls:
             assert verdict(code, *call) == what, call
     assert verdict(code, 0, machine=0x40000003) == kill
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.binary(min_size=24, max_size=24), st.integers(0, 191))
+def test_a_program_is_started_by_a_word_and_by_no_other(word: bytes, bit: int) -> None:
+    spoken = struct.unpack("<3Q", word)
+    wrong = struct.unpack("<3Q", (int.from_bytes(word, "little") ^ 1 << bit).to_bytes(24, "little"))
+    code = seccomp.program(77, word)
+    assert verdict(code, 59, 1, 2, 3, *spoken) == 0x7FFF0000
+    assert verdict(code, 59, 1, 2, 3, *wrong) == 0x50001
+    assert verdict(code, 322, 1, 2, 3, *spoken) == 0x50001, "execveat has no word"
+    assert verdict(seccomp.program(77), 59, 1, 2, 3, *spoken) == 0x50001, "without a word nothing is started"
+
+
+def test_gpus_are_let_through_where_they_are_asked_for(tmp_path: Path) -> None:
+    for name in ("nvidia0", "nvidiactl", "nvidia-uvm", "sda"):
+        (tmp_path / name).touch()
+    found = devices.gpus(str(tmp_path))
+    assert [Path(path).name for path in found] == ["nvidia-uvm", "nvidia0", "nvidiactl"]
+    policy = Policy(level="L3", read=(), listed=(), scratch="/tmp/x", memory_mb=1, disk_mb=1)
+    assert "--dev-bind-try" not in namespaces.command(policy, ["true"])
+    words = namespaces.command(replace(policy, devices=found), ["true"])
+    assert [words[at + 1] for at, word in enumerate(words) if word == "--dev-bind-try"] == list(found)

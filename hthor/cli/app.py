@@ -21,6 +21,7 @@ from hthor.cli import (
     priors,
     reports,
     runs,
+    serving,
     shards,
     suite,
     tasks,
@@ -49,6 +50,7 @@ app.add_typer(tasks.app, name="tasks")
 app.add_typer(suite.app, name="suite")
 app.add_typer(priors.app, name="priors")
 app.add_typer(people.app, name="humans")
+lists.agent.command("serve")(serving.serve)
 for _name, _group in lists.GROUPS.items():
     app.add_typer(_group, name=_name)
 

@@ -25,8 +25,9 @@ def evaluate(
     agent: Annotated[
         list[str] | None,
         typer.Option(
-            help="Who is evaluated: a built-in agent's name ('hthor agents list'), or a Python file, my_agent.py or "
-            "my_agent.py:MyClass. Repeat it to compare several.",
+            help="Who is evaluated: a built-in agent's name ('hthor agents list'); a Python file or module, "
+            "my_agent.py, my_agent.py:MyClass, package.module:MyClass; a program, 'cmd:node my_agent.js'; or a served "
+            "agent, ws://host:port. Repeat it to compare several.",
             show_default=False,
         ),
     ] = None,

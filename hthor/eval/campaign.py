@@ -113,17 +113,17 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
     chosen = programme.choose(options.suite, options.kind)
     parts = _parts(options, chosen, _crews(options, chosen, detector), whom, shown)
     controls = _controls(options, chosen, parts) if options.control and not options.shard else {}
-    held = guarded.settle(options.isolation, options.require_isolation, any(part.crew.minds for part in parts))
+    held = guarded.settle(options.isolation, options.require_isolation, _minds(parts))
     for part in (*parts, *controls.values()):
         setup.examine(part.folder, part.plan)
         _engine(options, chosen, part.crew)  # is there such an engine?
-        guarded.weakest(part.folder, held, options.require_isolation)
+        guarded.weakest(part.folder, guarded.of(held, part.crew.minds.values()), options.require_isolation)
     told: set[str] = set()
 
     def perform(part: Part) -> Result:
         watch = watcher(part.title)
         try:
-            return _perform(options, chosen, part, watch, told, held if part.crew.minds else None)
+            return _perform(options, chosen, part, watch, told, guarded.of(held, part.crew.minds.values()))
         finally:
             watch.close()
 
@@ -200,6 +200,11 @@ def _parts(
     if twice:
         raise HthorError(f"two agents are called '{twice[0]}'. Rename one of the files, or evaluate them one by one.")
     return parts
+
+
+def _minds(parts: Sequence[Part]) -> list[str]:
+    """Every submitted agent, once."""
+    return sorted({mind for part in parts for mind in part.crew.minds.values()})
 
 
 def _engine(options: Options, chosen: Programme, crew: Crew) -> engines.Engine:

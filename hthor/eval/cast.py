@@ -142,10 +142,14 @@ class Stage:
         if not path:
             mind: Mind = plugins.load("agent", seat.agent.name)()
             return mind
-        from hthor.guest import Guest
+        from hthor.guest import Guest, Unreachable
 
         guest = Guest(path)
-        if guest.load().sha256 != seat.agent.sha256:
+        try:
+            changed = guest.load().sha256 != seat.agent.sha256
+        except Unreachable:  # a server that is gone for a while costs its trials, not the run
+            return guest
+        if changed:
             guest.close()
             raise AgentError(_changed(path))
         return Watched(guest)

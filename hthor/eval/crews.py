@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import hashlib
 import re
 from collections.abc import Sequence
@@ -13,7 +12,7 @@ from msgspec import Struct
 
 from hthor import plugins
 from hthor.detectors import OWN
-from hthor.errors import AgentError, HthorError, UnknownName
+from hthor.errors import HthorError, UnknownName
 from hthor.types import AgentRef, RobotSeat
 
 ALIASES = {"tall": "tender", "small": "puck"}
@@ -24,10 +23,10 @@ _EXAMPLE = "--robots tall:oracle,small:frontier"
 class Character(Struct, frozen=True, kw_only=True):
     """A robot's mind before the curtain: who it is, and the file it comes from when it is not one of ours.
 
-    ``path`` is ``file.py`` or ``file.py:Class``, empty for a built-in agent. It stays out of ``ref``, which is part of
-    every trial's key, so that a run reads the same wherever the file lies. ``bodies`` names the robots that it is made
-    for (empty: any); ``absent`` means that there is no robot in the world at all; ``gpus`` is how much of a GPU it
-    asks for, which only an engine cares about.
+    ``path`` names it as `hthor.guest.reference` reads it, empty for a built-in agent. It stays out of ``ref``, which is
+    part of every trial's key, so that a run reads the same wherever the file lies. ``bodies`` names the robots that
+    it is made for (empty: any); ``absent`` means that there is no robot in the world at all; ``gpus`` is how much of a
+    GPU it asks for, which engines and isolation care about.
     """
 
     ref: AgentRef
@@ -176,18 +175,13 @@ def introduce(agent: str) -> Character:
     """Find out who an agent is.
 
     Args:
-        agent: a built-in agent's name, or the path of a Python file, ``my_agent.py`` or ``my_agent.py:MyClass``.
+        agent: a built-in agent's name, or an agent of the user's in one of the forms of `hthor.guest.reference`.
 
     Raises:
         UnknownName: when it is neither.
-        AgentError: when the file does not load.
+        AgentError: when it does not load.
     """
-    known = plugins.names("agent")
-    if agent in known:
-        return _own(agent)
-    if agent.endswith(".py") or ".py:" in agent:
-        return _guest(agent)
-    raise UnknownName("agent", agent, known, "Or give the path of a Python file, such as my_agent.py.")
+    return _own(agent) if agent in plugins.names("agent") else _guest(agent)
 
 
 def _own(name: str) -> Character:
@@ -207,46 +201,19 @@ def _own(name: str) -> Character:
     )
 
 
-def _guest(path: str) -> Character:
-    from hthor.guest import load_info
+def _guest(text: str) -> Character:
+    from hthor.guest import Guest
 
-    info = load_info(path)
-    file, colon, class_name = path.rpartition(":") if ".py:" in path else (path, "", "")
-    ref = AgentRef(
-        name=_tidy(info.name),
-        source=Path(file).name + colon + class_name,
-        sha256=info.sha256,
-        privileges=tuple(info.privileges),
-    )
-    return Character(
-        ref=ref,
-        path=str(Path(file).resolve()) + colon + class_name,
-        bodies=tuple(info.robots),
-        absent=info.absent,
-        gpus=_gpus(Path(file), class_name),
-    )
-
-
-def _gpus(file: Path, class_name: str) -> float:
-    """What ``gpus = 0.25`` in an agent's class says; read, not run, as only its own process may run it.
-
-    Raises:
-        AgentError: when it is no number from 0 on.
-    """
-    if file.suffix != ".py" or not file.is_file():
-        return 0.0
-    found = 0.0
-    for node in ast.parse(file.read_bytes()).body:
-        if not isinstance(node, ast.ClassDef) or (class_name and node.name != class_name):
-            continue
-        for line in node.body:
-            names = [line.target] if isinstance(line, ast.AnnAssign) else getattr(line, "targets", [])
-            if any(isinstance(name, ast.Name) and name.id == "gpus" for name in names):
-                value = getattr(getattr(line, "value", None), "value", None)
-                if isinstance(value, bool) or not isinstance(value, (int, float)) or value < 0:
-                    raise AgentError(f"{file}:{line.lineno}: {node.name}.gpus must be a number, such as 0.25 or 1.")
-                found = max(found, float(value))
-    return found
+    with Guest(text) as guest:
+        info = guest.load()
+        ref = AgentRef(name=_tidy(info.name), source=info.source, sha256=info.sha256, privileges=tuple(info.privileges))
+        return Character(
+            ref=ref,
+            path=guest.reference.text,
+            bodies=tuple(info.robots),
+            absent=info.absent,
+            gpus=info.gpus,
+        )
 
 
 def _tidy(name: str) -> str:

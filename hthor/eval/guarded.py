@@ -6,7 +6,7 @@ keeps it in `isolation.json`. It decides no record and is no part of the run's c
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 NAME = "isolation.json"
 
 
-def settle(wanted: str, required: str, minds: bool) -> Isolation | None:
+def settle(wanted: str, required: str, minds: Collection[str]) -> Isolation | None:
     """What will hold a run's agents; None when all of them are built in.
 
     Args:
         wanted: a level, or "auto". required: the least level, empty for any.
-        minds: whether there are submitted agents.
+        minds: the submitted agents; one that is served elsewhere is held by nothing.
 
     Raises:
         IsolationError: when the level cannot be had, or is less than required.
@@ -41,6 +41,8 @@ def settle(wanted: str, required: str, minds: bool) -> Isolation | None:
     from hthor import guest
 
     held = guest.in_force(wanted)
+    if served := [mind for mind in minds if guest.is_served(mind)]:
+        _demand(guest.served.ISOLATION, required, f"{served[0]} is")
     _demand(held, required, "this machine gives" if wanted == "auto" else "--isolation asks for")
     return held
 
@@ -56,6 +58,15 @@ def weakest(folder: Path, held: Isolation | None, required: str) -> Isolation | 
         return held
     _demand(before, required, f"{folder} has trials played at")
     return before if held is None or suffices(held.level, before.level) else held
+
+
+def of(held: Isolation | None, minds: Collection[str]) -> Isolation | None:
+    """What holds the agents of one of several runs: nothing where one is served; None when all are built in."""
+    from hthor import guest
+
+    if any(guest.is_served(mind) for mind in minds):
+        return guest.served.ISOLATION
+    return held if minds else None
 
 
 def load(folder: Path) -> Isolation | None:
@@ -78,7 +89,7 @@ def player(sources: Sources | None, level: str, hidden: tuple[str, ...]) -> Call
     from hthor import guest
     from hthor.eval import cast
 
-    guest.confine_guests(level, hidden)
+    guest.confine_guests("auto" if level == guest.SERVED else level, hidden)  # of what else there is, beside a server
     return cast.player(sources)
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from hthor.guest import process, wire
 from hthor.guest.confinement import AUTO, LEVELS, Isolation, IsolationError, known, namespaces
 from hthor.guest.process import Process
+from hthor.guest.reference import Reference
 
 _IDLE = Path(__file__).with_name("idle.py")
 _missing: dict[str, str] = {}
@@ -40,11 +41,12 @@ def confine_guests(isolation: str = AUTO, hidden: tuple[str, ...] = ()) -> None:
 
 
 def start(
-    agent: Path,
+    agent: Reference,
     wanted: str | None,
     enter: Callable[[Process], wire.Confined | str],
     memory_mb: int,
     disk_mb: int,
+    gpus: bool = False,
 ) -> Isolation:
     """Start a guest's process at the level that is wanted, and say what holds it.
 
@@ -60,7 +62,7 @@ def start(
     for rung in ladder:
         missing = _missing.get(rung) or (namespaces.unavailable() if rung == "L3" else "")
         if not missing:
-            one = process.start(agent, rung, hidden=_Terms.hidden, memory_mb=memory_mb, disk_mb=disk_mb)
+            one = process.start(agent, rung, hidden=_Terms.hidden, memory_mb=memory_mb, disk_mb=disk_mb, gpus=gpus)
             said = enter(one)
             if isinstance(said, wire.Confined):
                 return _described(rung, said, memory_mb, reason)

@@ -16,7 +16,7 @@ import sys
 import time
 from pathlib import Path
 
-from hthor.guest import child, ending, wire
+from hthor.guest import child, ending, frames, wire
 from hthor.guest.confinement import holding, kernel, limits
 from hthor.guest.confinement.holding import Refused
 from hthor.guest.confinement.landlock import Ruleset
@@ -39,7 +39,10 @@ def main(read: int, tell: int, write: int, parent: int) -> None:
         os.set_inheritable(handle, False)
     os.dup2(2, 1)
     sys.stdout = sys.stderr
-    pipe, own = Pipe(read, write), Pipe(-1, tell)
+    shared = int(os.environ.get(frames.VARIABLE, "-1"))
+    if shared >= 0:
+        os.set_inheritable(shared, False)
+    pipe, own = Pipe(read, write, shared), Pipe(-1, tell)
     order = pipe.receive()
     if not isinstance(order, wire.Load):
         os._exit(1)
@@ -53,7 +56,8 @@ def main(read: int, tell: int, write: int, parent: int) -> None:
     except Refused as error:
         own.send(wire.Failed(kind="confinement", detail=str(error)))
         return
-    preload(Path(order.path))
+    if not order.words:
+        preload(Path(order.path), order.module)
     pid = _fork(pipe, tell, order, held, first=True)
     while True:
         own.send(_watch(pid, order))
@@ -139,7 +143,7 @@ def _watch(pid: int, order: wire.Load) -> wire.KeeperToHost:
     code = os.waitstatus_to_exitcode(status)
     if found:
         return wire.Failed(kind=found[0], detail=found[1])
-    if code == child.ORDERLY:
+    if code == child.ORDERLY or (bool(order.words) and code == 0):
         return wire.Over()
     kind, words = ending.told(code)
     return wire.Failed(kind=kind, detail=f"the agent's process {'was ' * (code < 0)}{words}")

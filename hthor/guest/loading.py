@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
 import sys
 import traceback
@@ -11,53 +12,67 @@ from typing import Any
 
 from hthor.guest import wire
 
-_PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
 _MODULE = "hthor_guest_agent"  # not the file's name, which could hide a module of the standard library
-TEXT_MAX = 8000
-"""Longest text that is passed on, in characters."""
 
 
 class Refusal(Exception):
     """The file does not follow the contract; the message goes to its author."""
 
 
-def load(path: Path, wanted: str) -> tuple[type[Any], wire.Ready]:
-    """The class of an agent's file, and what it says of itself.
+def load(order: wire.Load) -> tuple[type[Any], wire.Ready]:
+    """The class of an agent's file or module, and what it says of itself.
 
     Raises:
-        Refusal: when there is none, or the file cannot be imported.
+        Refusal: when there is none, or it cannot be imported.
     """
-    module = _import(path)
-    cls = _pick(module, path, wanted)
+    path = Path(order.path)
+    module = _import(path, order)
+    cls = _pick(module, path, order.cls)
     privileges = _names(cls, "privileges", path)
-    unknown = [name for name in privileges if name not in _PRIVILEGES]
+    unknown = [name for name in privileges if name not in wire.PRIVILEGES]
     if unknown:
-        raise Refusal(f"{path}: {cls.__name__}.privileges names '{unknown[0]}'. Valid: {', '.join(_PRIVILEGES)}.")
+        raise Refusal(f"{path}: {cls.__name__}.privileges names '{unknown[0]}'. Valid: {', '.join(wire.PRIVILEGES)}.")
     ready = wire.Ready(
         name=path.stem,
         privileges=privileges,
         robots=_names(cls, "robots", path),
         absent=bool(getattr(cls, "absent", False)),
         persistent=bool(getattr(cls, "persistent", False)),
-        doc=(cls.__doc__ or module.__doc__ or "").strip()[:TEXT_MAX],
+        doc=(cls.__doc__ or module.__doc__ or "").strip()[: wire.TEXT_MAX],
+        gpus=_gpus(cls, path),
     )
     return cls, ready
 
 
-def _import(path: Path) -> ModuleType:
-    sys.path.insert(0, str(path.parent))
+def _import(path: Path, order: wire.Load) -> ModuleType:
+    if order.root not in sys.path or not order.module:
+        sys.path.insert(0, order.root)
+    try:
+        return _by_name(path, order.module) if order.module else _by_file(path)
+    except SyntaxError as error:
+        line = f":{error.lineno}" if error.lineno else ""
+        raise Refusal(f"{error.filename or path}{line}: {error.msg}") from None
+    except Refusal:
+        raise
+    except BaseException as error:
+        raise Refusal(f"{path}: importing it failed.\n{shown(error)}") from None
+
+
+def _by_name(path: Path, name: str) -> ModuleType:
+    module = importlib.import_module(name)
+    file = Path(module.__file__ or "").resolve()
+    if file != path:
+        raise Refusal(f"{name}: another file of this name was imported than the one that was asked for: {file}")
+    return module
+
+
+def _by_file(path: Path) -> ModuleType:
     spec = importlib.util.spec_from_file_location(_MODULE, path)
     if spec is None or spec.loader is None:
         raise Refusal(f"{path}: not a Python file; an agent is one file that ends in .py")
     module = importlib.util.module_from_spec(spec)
     sys.modules[_MODULE] = module
-    try:
-        spec.loader.exec_module(module)
-    except SyntaxError as error:
-        line = f":{error.lineno}" if error.lineno else ""
-        raise Refusal(f"{error.filename or path}{line}: {error.msg}") from None
-    except BaseException as error:
-        raise Refusal(f"{path}: importing it failed.\n{shown(error)}") from None
+    spec.loader.exec_module(module)
     return module
 
 
@@ -90,10 +105,17 @@ def _names(cls: type[Any], attribute: str, path: Path) -> tuple[str, ...]:
     return tuple(value)
 
 
+def _gpus(cls: type[Any], path: Path) -> float:
+    value = getattr(cls, "gpus", 0.0)
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or value < 0:
+        raise Refusal(f"{path}: {cls.__name__}.gpus must be a number from 0 on, such as 0.25 or 1, got {value!r}.")
+    return float(value)
+
+
 def shown(error: BaseException) -> str:
     """The traceback without our own frames in front, its end kept when it is long."""
-    ours = (str(Path(__file__).parent), "<frozen importlib")
+    ours = (str(Path(__file__).parent), importlib.__file__ or "", "<frozen importlib")
     trace = error.__traceback__
     while trace is not None and trace.tb_frame.f_code.co_filename.startswith(ours):
         trace = trace.tb_next
-    return "".join(traceback.format_exception(type(error), error, trace))[-TEXT_MAX:]
+    return "".join(traceback.format_exception(type(error), error, trace))[-wire.TEXT_MAX :]

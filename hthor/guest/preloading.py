@@ -15,20 +15,37 @@ from pathlib import Path
 
 from hthor.guest.confinement import paths
 
+_MINDS = "hthor.agents"
 _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "hthor.catalog", "hthor.rules")
 
 
-def preload(path: Path) -> None:
-    """Import what the file is going to import, and keep it out of the way of forks."""
-    for module, names in _named(path):
+def preload(path: Path, module: str = "") -> None:
+    """Import what the file is going to import, and keep it out of the way of forks.
+
+    Args:
+        module: its name where it is imported by name; nothing of its own package is imported here.
+    """
+    own = module.partition(".")[0]
+    wanted = [one for one in _named(path) if one[0].partition(".")[0] != own or own == "hthor"]
+    if any(name.startswith(_MINDS) for name in (module, *(one[0] for one in wanted))):
+        wanted += [(name, []) for name in _behind()]
+    for module, names in wanted:
         with contextlib.suppress(BaseException):
             for name in [module, *(f"{module}.{name}" for name in names if module == "hthor")]:
                 if name.startswith(_OURS) or _installed(name.partition(".")[0]):
                     found = importlib.import_module(name)
-                    for wanted in names:
-                        getattr(found, wanted, None)  # some packages import their parts only then
+                    for part in names:
+                        getattr(found, part, None)  # some packages import their parts only then
     gc.collect()
     gc.freeze()
+
+
+def _behind() -> list[str]:
+    """What our own minds import only once they begin, which would cost every trial anew."""
+    files = [path for part in ("agents", "navigation") for path in sorted((paths.PACKAGE / part).glob("*.py"))]
+    return [
+        f"hthor.{path.parent.name}.{path.stem}" for path in files if path.parent.name != "agents" or path.stem[0] == "_"
+    ]
 
 
 def _installed(name: str) -> bool:

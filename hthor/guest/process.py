@@ -13,10 +13,11 @@ import sys
 import tempfile
 import time
 from collections.abc import Mapping
-from pathlib import Path
 
-from hthor.guest import ending, keeper
-from hthor.guest.confinement import Policy, limits, namespaces, paths
+from hthor.guest import ending, frames, keeper, wire
+from hthor.guest.confinement import Policy, devices, limits, namespaces, paths
+from hthor.guest.lines import HungUp, TimeIsUp
+from hthor.guest.reference import Reference
 
 _PASSED_ON = ("PATH", "LANG", "LC_ALL", "TZ", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -29,16 +30,8 @@ _INSIDE = "/tmp/hthor-guest"
 """The scratch folder where the guest has a file system of its own."""
 
 
-class TimeIsUp(Exception):
-    """A pipe was not ready in time."""
-
-
-class HungUp(Exception):
-    """The other end of a pipe is closed."""
-
-
 class Process:
-    """A running guest. Three pipes: to it, from its trials, from its keeper; and one for what it prints."""
+    """A running guest. Three pipes: to it, from its trials, from its keeper; one for what it prints; shared frames."""
 
     def __init__(self, policy: Policy, scratch: str) -> None:
         self.policy, self._scratch = policy, scratch
@@ -48,11 +41,16 @@ class Process:
         self._words, guest_out = os.pipe()
         self._keeper, tell = os.pipe()
         self._err, printed = os.pipe()
+        self.frames = frames.window()
         for handle in (self._out, self._words, self._keeper, self._err):
             os.set_blocking(handle, False)
         with contextlib.suppress(OSError):  # only speed depends on it
             fcntl.fcntl(self._out, _F_SETPIPE_SZ, _PIPE_BYTES)
-        env = _environment(os.environ, policy.scratch)
+        env = _environment(os.environ, policy)
+        passed: tuple[int, ...] = (guest_in, tell, guest_out)
+        if self.frames is not None:
+            env[frames.VARIABLE] = str(self.frames.handle)
+            passed += (self.frames.handle,)
         spaces = policy.level == "L3"
         words = [sys.executable, "-P", "-u", "-m", "hthor.guest", str(guest_in), str(tell), str(guest_out)]
         words.append("0" if spaces else str(os.getpid()))
@@ -64,7 +62,7 @@ class Process:
                 stdin=subprocess.DEVNULL,
                 stdout=printed,
                 stderr=printed,
-                pass_fds=(guest_in, tell, guest_out),
+                pass_fds=passed,
                 cwd="/",
                 env=env,
                 start_new_session=True,
@@ -78,13 +76,9 @@ class Process:
     def pid(self) -> int:
         return self._process.pid
 
-    def write(self, data: bytes, end: float) -> None:
-        """Send bytes before a moment of the monotonic clock.
-
-        Raises:
-            TimeIsUp, HungUp: when it cannot.
-        """
-        left = memoryview(data)
+    def write(self, body: bytes, end: float) -> None:
+        """As `Line` says."""
+        left = memoryview(wire.frame(body))
         while left:
             try:
                 left = left[os.write(self._out, left) :]
@@ -94,13 +88,7 @@ class Process:
                 raise HungUp from None
 
     def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
-        """The next whole message of a trial, or else of the keeper: whether it is the keeper's, and its bytes.
-
-        For a message of more than ``most`` bytes its size is given instead.
-
-        Raises:
-            TimeIsUp, HungUp: when there is none.
-        """
+        """As `Line` says; a message of a trial comes before one of the keeper."""
         while True:
             for handle in (self._words, self._keeper):
                 if (found := self._next(handle, most)) is not None:
@@ -174,33 +162,41 @@ class Process:
         self._process.wait()
         for handle in (self._out, self._words, self._keeper, self._err):
             os.close(handle)
+        if self.frames is not None:
+            self.frames.close()
         if self._scratch:
             keeper.empty(self._scratch)
             shutil.rmtree(self._scratch, ignore_errors=True)
 
 
-def start(agent: Path, level: str, *, hidden: tuple[str, ...], memory_mb: int, disk_mb: int) -> Process:
+def start(
+    agent: Reference, level: str, *, hidden: tuple[str, ...], memory_mb: int, disk_mb: int, gpus: bool = False
+) -> Process:
     """A fresh guest on this level; what it says first tells whether the level is in force."""
     scratch = "" if level == "L3" else tempfile.mkdtemp(prefix="hthor-guest-")
     compiled = os.environ.get("NUMBA_CACHE_DIR", "")
     if compiled:
         os.makedirs(compiled, exist_ok=True)
+    more = ([compiled] if compiled else []) + (list(devices.FACTS) if gpus else [])
     policy = Policy(
         level=level,
-        read=(*paths.readable(agent, hidden), *([compiled] if compiled else [])),
-        listed=paths.listed(agent),
+        read=(*paths.readable(agent.path, agent.root, hidden), *more),
+        listed=paths.listed(agent.root),
         scratch=scratch or _INSIDE,
         memory_mb=memory_mb,
         disk_mb=disk_mb,
+        execute=bool(agent.words),
+        devices=devices.gpus() if gpus else (),
     )
     return Process(policy, scratch)
 
 
-def _environment(ours: Mapping[str, str], scratch: str) -> dict[str, str]:
+def _environment(ours: Mapping[str, str], policy: Policy) -> dict[str, str]:
     """Nothing of ours but what an interpreter needs; one thread, and the same hash seed every time."""
-    env = {name: ours[name] for name in _PASSED_ON if name in ours}
+    passed_on = (*_PASSED_ON, *(devices.VARIABLES if policy.devices else ()))
+    env = {name: ours[name] for name in passed_on if name in ours}
     env.update(dict.fromkeys(_THREADS, "1"))
-    env.update(dict.fromkeys(("HOME", "TMPDIR"), scratch))
+    env.update(dict.fromkeys(("HOME", "TMPDIR"), policy.scratch))
     env.update(PYTHONHASHSEED="0", PYTHONDONTWRITEBYTECODE="1", USER="agent", LOGNAME="agent")
     env["PYTHONPATH"] = os.pathsep.join([str(paths.PACKAGE.parent), *paths.libraries()])
     return env

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import Any, NoReturn, Protocol
 
 import msgspec
 
 from hthor.errors import StaleObservation
-from hthor.guest import wire
+from hthor.guest import frames, wire
 from hthor.types import Camera, Detection, Scan
 
+_PICTURES = ("rgb", "depth", "segmentation", "image")
 _hosts_words = msgspec.msgpack.Decoder(wire.ToGuest)
 
 
 class Pipe:
     """The guest's end of the wire. Reads exactly one frame at a time, so that a fork shares nothing half read."""
 
-    def __init__(self, read: int, write: int) -> None:
+    def __init__(self, read: int, write: int, shared: int = -1) -> None:
         self._read, self._write = read, write
+        self.handles, self.shared = (read, write), shared
+        self.view = frames.View(shared) if shared >= 0 else None
 
     def receive(self) -> wire.ToGuest:
         """The host's next message; ends the process when the host is gone."""
@@ -27,17 +30,13 @@ class Pipe:
         return message
 
     def send(self, message: wire.ToHost | wire.KeeperToHost) -> None:
-        data = memoryview(wire.frame(message))
+        data = memoryview(wire.frame(wire.encode(message)))
         while data:
             data = data[os.write(self._write, data) :]
 
-    def ask(self, what: str, which: int = -1) -> bytes:
-        """The encoded answer of the host."""
-        self.send(wire.Ask(what=what, which=which))
-        answer = self.receive()
-        if not isinstance(answer, wire.Given):
-            os._exit(1)
-        return bytes(answer.value)
+    def fail(self) -> NoReturn:
+        """The host does not keep to the wire; there is nobody to tell."""
+        os._exit(1)
 
     def _exactly(self, size: int) -> bytes:
         chunks = []
@@ -50,10 +49,24 @@ class Pipe:
         return b"".join(chunks)
 
 
+class Gone(BaseException):
+    """There is nobody to talk to any more; no agent is to catch this."""
+
+
+class Wire(Protocol):
+    """A guest's end of whatever carries messages; ``view`` are the shared frames, if any."""
+
+    view: frames.View | None
+
+    def receive(self) -> wire.ToGuest: ...
+    def send(self, message: wire.ToHost) -> None: ...
+    def fail(self) -> NoReturn: ...
+
+
 class RemoteSenses:
     """Asks the host for what the agent reads, each thing once; useless after `expire`."""
 
-    def __init__(self, pipe: Pipe) -> None:
+    def __init__(self, pipe: Wire) -> None:
         self._pipe, self._known, self._fresh = pipe, dict[tuple[str, int], Any](), True
 
     def expire(self) -> None:
@@ -67,28 +80,37 @@ class RemoteSenses:
         return self._get("scan", _scan)  # type: ignore[no-any-return]
 
     def rgb(self) -> Any:
-        return self._get("rgb", _array)
+        return self._get("rgb", self._array)
 
     def depth(self) -> Any:
-        return self._get("depth", _array)
+        return self._get("depth", self._array)
 
     def segmentation(self) -> Any:
-        return self._get("segmentation", _array)
+        return self._get("segmentation", self._array)
 
     def camera(self) -> Camera:
         return self._get("camera", _camera)  # type: ignore[no-any-return]
 
     def image(self, number: int) -> Any:
         """The picture of message ``number``."""
-        return self._get("image", _array, number)
+        return self._get("image", self._array, number)
 
     def _get(self, what: str, decode: Any, which: int = -1) -> Any:
         if not self._fresh:
             raise StaleObservation("this observation is of an earlier tick: read what you need during act")
         key = (what, which)
         if key not in self._known:
-            self._known[key] = decode(self._pipe.ask(what, which))
+            self._pipe.send(wire.Ask(what=what, which=which, shared=what in _PICTURES and self._pipe.view is not None))
+            answer = self._pipe.receive()
+            if not isinstance(answer, wire.Given):
+                self._pipe.fail()
+            self._known[key] = decode(answer.value)
         return self._known[key]
+
+    def _array(self, data: bytes) -> Any:
+        value = msgspec.msgpack.decode(data)
+        view = self._pipe.view
+        return view.take(value) if view is not None and "at" in value else wire.decode_array(value)
 
 
 def _scan(data: bytes) -> Scan:
@@ -104,7 +126,3 @@ def _scan(data: bytes) -> Scan:
 def _camera(data: bytes) -> Camera:
     camera = msgspec.msgpack.decode(data, type=Camera)
     return msgspec.structs.replace(camera, matrix=wire.decode_array(camera.matrix), pose=wire.decode_array(camera.pose))
-
-
-def _array(data: bytes) -> Any:
-    return wire.decode_array(msgspec.msgpack.decode(data))

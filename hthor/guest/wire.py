@@ -1,7 +1,7 @@
-"""What host and guest say to one another, as length-prefixed msgpack; knows nothing of processes.
+"""What host and guest say to one another, as msgpack; knows nothing of processes. docs/wire.md tells it all.
 
-A frame is a little-endian 32-bit length and as many bytes. Arrays travel as ``{"__nd__": dtype, "s": shape, "d":
-bytes}``, from host to guest only.
+Arrays travel from host to guest only: as ``{"__nd__": dtype, "s": shape, "d": bytes}``, or, for a guest that has shared
+memory and asks for it, with ``"at"``, the place in there, instead of the bytes.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import msgspec
 import numpy as np
 from msgspec import Struct
 
+from hthor.errors import KILLED
 from hthor.guest.confinement import Policy
 from hthor.types import Action, Briefing, Observation
 
@@ -20,6 +21,16 @@ MOST_BYTES = 64 << 10
 """Longest frame that a guest may send."""
 NAME_MAX = 200
 """Longest id, seat or thing's name in an action, in characters."""
+TEXT_MAX = 8000
+"""Longest text that a guest may say of itself or of a failure, in characters."""
+PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
+"""What an agent may declare, to be given more than its robot sees."""
+VERSION = 1
+"""Of all this. A guest that speaks another one is refused."""
+FAULTS = ("raised", "timeout", "died", KILLED, "memory", "disk", "garbage", "wrong_type", "oversized", "not_finite")
+"""Kinds of failure during a trial."""
+OWN_FAULTS = ("raised", "wrong_type", "garbage", "oversized")
+"""Those that a guest may report of itself; the others are for its keeper and the host to find."""
 
 
 class Unfit(ValueError):
@@ -27,11 +38,20 @@ class Unfit(ValueError):
 
 
 class Load(Struct, tag="load", frozen=True, kw_only=True):
-    """Host: import this file on these terms; ``cls`` picks a class, empty for the only one."""
+    """Host, to our own part of a guest: bring up this agent on these terms.
+
+    Attributes:
+        path: its file, which is imported. cls: the class to take, empty for the only one.
+        module: the name to import it by, from the folder ``root``; empty for a file that has none.
+        words: a program and its arguments, started in ``root`` instead of importing anything.
+    """
 
     path: str
     cls: str
     policy: Policy
+    module: str = ""
+    words: tuple[str, ...] = ()
+    root: str = ""
 
 
 class Begin(Struct, tag="begin", frozen=True, kw_only=True):
@@ -65,14 +85,20 @@ class Confined(Struct, tag="confined", frozen=True, kw_only=True):
 
 
 class Ready(Struct, tag="ready", frozen=True, kw_only=True):
-    """Guest: loaded; what the class says of itself."""
+    """Guest: loaded; what the agent says of itself.
 
-    name: str
-    privileges: tuple[str, ...]
-    robots: tuple[str, ...]
-    absent: bool
-    persistent: bool
-    doc: str
+    ``version`` is whatever tells one version of a served agent from another; ``gpus`` is how much of a GPU it asks for.
+    """
+
+    name: str = ""
+    privileges: tuple[str, ...] = ()
+    robots: tuple[str, ...] = ()
+    absent: bool = False
+    persistent: bool = False
+    doc: str = ""
+    version: str = ""
+    gpus: float = 0.0
+    wire: int = VERSION
 
 
 class Done(Struct, tag="done", frozen=True, kw_only=True):
@@ -80,10 +106,14 @@ class Done(Struct, tag="done", frozen=True, kw_only=True):
 
 
 class Ask(Struct, tag="ask", frozen=True, kw_only=True):
-    """Guest: needs one of rgb, depth, segmentation, camera, scan, detections, or the image of message ``which``."""
+    """Guest: needs one of rgb, depth, segmentation, camera, scan, detections, or the image of message ``which``.
+
+    With ``shared`` a picture is to be put in shared memory, if there is any and it fits.
+    """
 
     what: str
     which: int = -1
+    shared: bool = False
 
 
 class Acted(Struct, tag="acted", frozen=True, kw_only=True):
@@ -138,7 +168,7 @@ def plain(action: Action) -> Action:
 
 
 def decode_array(value: dict[str, Any]) -> Any:
-    """The array that a plain dictionary stands for."""
+    """The array that a plain dictionary with its bytes stands for."""
     return np.frombuffer(value["d"], dtype=np.dtype(value["__nd__"])).reshape(value["s"])
 
 
@@ -152,9 +182,8 @@ def encode(message: object) -> bytes:
     return _encoder.encode(message)
 
 
-def frame(message: ToGuest | ToHost | KeeperToHost) -> bytes:
-    """One message with its length in front."""
-    body = encode(message)
+def frame(body: bytes) -> bytes:
+    """A message with its length in front, as it goes through a pipe."""
     return len(body).to_bytes(4, "little") + body
 
 

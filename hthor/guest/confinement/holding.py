@@ -27,21 +27,31 @@ def rules(policy: Policy) -> Ruleset | None:
         return None
     if reason := seccomp.unavailable():
         raise Refused(reason)
-    return landlock.Ruleset(policy.read, listed=policy.listed, write=[policy.scratch], devices=paths.DEVICES)
+    return landlock.Ruleset(
+        policy.read,
+        listed=policy.listed,
+        write=[policy.scratch],
+        devices=paths.DEVICES,
+        driven=policy.devices,
+        execute=policy.execute,
+    )
 
 
-def confine(policy: Policy, held: Ruleset | None) -> None:
+def confine(policy: Policy, held: Ruleset | None, word: bytes = b"") -> None:
     """Hold this process, which has given up its privileges, to a policy for good.
+
+    Args:
+        word: what lets it start a program, once; see `seccomp`. Empty when it may start none.
 
     Raises:
         Refused: when a layer cannot be put on, or does not hold.
     """
-    limits.bound(policy.memory_mb, policy.disk_mb, processes=held is None)
+    limits.bound(0 if policy.devices else policy.memory_mb, policy.disk_mb, processes=held is None)
     if held is None:
         return
     held.put_on()
     held.close()
-    seccomp.put_on(os.getpid())
+    seccomp.put_on(os.getpid(), word)
     _prove()
 
 

@@ -8,6 +8,8 @@ from hthor.errors import HthorError, UnknownName
 
 LEVELS = ("L1", "L2", "L3")
 """From weak to strong: a process; plus Landlock and seccomp; plus namespaces."""
+SERVED = "served"
+"""In place of a level: the agent runs elsewhere, and what holds it there is not known here."""
 AUTO = "auto"
 """The strongest level that the machine gives."""
 
@@ -22,7 +24,7 @@ class Isolation(Struct, frozen=True, kw_only=True):
     """What holds a guest.
 
     Attributes:
-        level: one of `LEVELS`.
+        level: one of `LEVELS`, or "served" for an agent that runs elsewhere and is held by nothing of ours.
         landlock_abi: version of Landlock in force, 0 for none.
         seccomp: whether system calls are filtered.
         netns: whether it has a network of its own, an empty one.
@@ -54,4 +56,5 @@ def known(level: str, *, auto: bool = True) -> str:
 
 def suffices(level: str, required: str) -> bool:
     """Whether a level is at least the required one."""
-    return LEVELS.index(level) >= LEVELS.index(required)
+    ladder = (SERVED, *LEVELS)
+    return ladder.index(level) >= ladder.index(required)

@@ -19,10 +19,11 @@ from hthor.guest.confinement.kernel import Refused
 _CREATE, _ADD, _RESTRICT = 444, 445, 446
 _ASK_VERSION = 1
 _BENEATH = 1
+_EXECUTE = 1
 _READ_FILE, _READ_DIR, _WRITE_FILE = 1 << 2, 1 << 3, 1 << 1
 _TRUNCATE, _IOCTL = 1 << 14, 1 << 15
 _DEVICES_AND_SOCKETS = 1 << 6 | 1 << 9 | 1 << 11
-_OF_FILES = 1 | _WRITE_FILE | _READ_FILE | _TRUNCATE | _IOCTL
+_OF_FILES = _EXECUTE | _WRITE_FILE | _READ_FILE | _TRUNCATE | _IOCTL
 _PORTS = 1 | 2
 _SCOPES = 1 | 2
 
@@ -42,12 +43,20 @@ class Ruleset:
         read: files and folders that may be read, folders with all that is in them.
         listed: folders of which only the names may be read.
         write: folders that may be changed at will. devices: files that may be read and written.
+        driven: devices that may be told what to do as well. execute: whether what may be read may be executed.
 
     What does not exist is passed over.
     """
 
     def __init__(
-        self, read: Iterable[str], *, listed: Iterable[str] = (), write: Iterable[str] = (), devices: Iterable[str] = ()
+        self,
+        read: Iterable[str],
+        *,
+        listed: Iterable[str] = (),
+        write: Iterable[str] = (),
+        devices: Iterable[str] = (),
+        driven: Iterable[str] = (),
+        execute: bool = False,
     ) -> None:
         self.abi = abi()
         if not self.abi:
@@ -58,13 +67,15 @@ class Ruleset:
         attributes = ctypes.create_string_buffer(struct.pack("<QQQ", *words)[:size], size)
         self._handle = kernel.syscall("making Landlock rules", _CREATE, attributes, size, 0)
         for path in read:
-            self._allow(path, _READ_FILE | _READ_DIR)
+            self._allow(path, _READ_FILE | _READ_DIR | (_EXECUTE if execute else 0))
         for path in listed:
             self._allow(path, _READ_DIR)
         for path in write:
-            self._allow(path, self._handled & ~1 & ~_DEVICES_AND_SOCKETS)
+            self._allow(path, self._handled & ~_EXECUTE & ~_DEVICES_AND_SOCKETS)
         for path in devices:
             self._allow(path, _READ_FILE | _WRITE_FILE)
+        for path in driven:
+            self._allow(path, _READ_FILE | _WRITE_FILE | _READ_DIR | _IOCTL)
 
     def put_on(self) -> None:
         """Hold this process, which must have a single thread, to the rules for good."""

@@ -51,8 +51,9 @@ def renounce() -> None:
 
 
 def bound(memory_mb: int, disk_mb: int, *, processes: bool) -> None:
-    """Bound memory, the size of a file, open files and, where it may start any, processes."""
-    _lower(resource.RLIMIT_DATA, memory_mb << 20)
+    """Bound memory (0: not by a limit, as a GPU's does not fit one), files and, where it may start any, processes."""
+    if memory_mb:
+        _lower(resource.RLIMIT_DATA, memory_mb << 20)
     _lower(resource.RLIMIT_FSIZE, disk_mb << 20)
     _lower(resource.RLIMIT_NOFILE, _OPEN_FILES)
     if processes and sys.platform == "linux":

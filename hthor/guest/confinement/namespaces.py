@@ -36,6 +36,8 @@ def command(policy: Policy, inner: Sequence[str], writable: Sequence[str] = ()) 
             words += ["--ro-bind-try", path, path]
     for path in writable:
         words += ["--bind-try", path, path]
+    for path in policy.devices:
+        words += ["--dev-bind-try", path, path]
     return [*words, "--remount-ro", "/", "--chdir", "/", "--", *inner]
 
 

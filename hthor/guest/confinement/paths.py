@@ -26,27 +26,28 @@ def libraries() -> list[str]:
     return [path for path in sys.path if Path(path).name in _LIBRARIES and Path(path).is_dir()]
 
 
-def readable(agent: Path, hidden: Sequence[str]) -> tuple[str, ...]:
+def readable(agent: str, root: str, hidden: Sequence[str]) -> tuple[str, ...]:
     """Files and folders that a guest may read, folders with everything in them.
 
     Args:
-        agent: the agent's file; it may read its folder.
+        agent: the agent's file. root: the folder that it lives in, empty for none.
         hidden: files and folders that it may not read, wherever they lie.
     """
     secret = [PACKAGE, *(Path(path).resolve() for path in hidden)]
     found = [str(path) for path in _ours()]
     roots = [sys.prefix, sys.base_prefix, sys.exec_prefix, os.path.realpath(sys.executable), *libraries()]
-    for root in (*_SYSTEM, *_FACTS, *roots):
-        found += _open(Path(root), secret)
-    folder = agent.parent
-    found += _open(folder, [*secret, *(folder / name for name in _NEVER if (folder / name).exists())])
-    found.append(str(agent))
+    for place in (*_SYSTEM, *_FACTS, *roots):
+        found += _open(Path(place), secret)
+    if root:
+        folder = Path(root)
+        found += _open(folder, [*secret, *(folder / name for name in _NEVER if (folder / name).exists())])
+    found.append(agent)
     return _tops(found)
 
 
-def listed(agent: Path) -> tuple[str, ...]:
+def listed(root: str) -> tuple[str, ...]:
     """Folders whose names a guest may read, since Python looks for modules by name there."""
-    return (str(PACKAGE), *libraries(), str(agent.parent))
+    return (str(PACKAGE), *libraries(), *([root] if root else []))
 
 
 def _ours() -> Iterable[Path]:

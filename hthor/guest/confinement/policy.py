@@ -13,6 +13,8 @@ class Policy(Struct, frozen=True, kw_only=True):
         read: files and folders that it may read. listed: folders of which it may read the names only.
         scratch: the folder that it may write to; emptied after each trial.
         memory_mb: memory that it may hold. disk_mb: what it may write in a trial.
+        execute: whether it is a program, which is started once it is held; what may be read may then be executed.
+        devices: what it may use beyond what everybody may, such as GPUs.
     """
 
     level: str
@@ -21,3 +23,5 @@ class Policy(Struct, frozen=True, kw_only=True):
     scratch: str
     memory_mb: int
     disk_mb: int
+    execute: bool = False
+    devices: tuple[str, ...] = ()

@@ -2,14 +2,20 @@
 
 What is not named is allowed, so this is a fence and no wall: a new kernel may have new calls. The numbers are those of
 x86_64; on another machine the filter refuses to be put on.
+
+A process can be let start one program, which stays held: `start` says a word that the filter waits for, in places that
+the kernel itself does not read. The word is random, and gone with the memory of whoever said it.
 """
 
 from __future__ import annotations
 
 import ctypes
 import errno
+import os
 import platform
 import struct
+from collections.abc import Mapping, Sequence
+from typing import NoReturn
 
 from hthor.guest.confinement import kernel
 from hthor.guest.confinement.kernel import Refused
@@ -33,7 +39,6 @@ DENIED = {
     # other processes: starting, leaving the group, signalling, looking into, slowing down
     "fork": 57,
     "vfork": 58,
-    "execve": 59,
     "execveat": 322,
     "setsid": 112,
     "setpgid": 109,
@@ -125,6 +130,8 @@ DENIED = {
 }
 _ABSENT = {"clone3": 435, "memfd_create": 319}
 """Said not to exist, so that libraries take the older way: clone3 hides what it does behind a pointer."""
+_EXECVE, _UNREAD = 59, 3
+_WORD = struct.Struct("<3Q")
 _CLONE, _KILL_CALL, _TGKILL, _PRLIMIT, _FCNTL, _IOCTL = 56, 62, 234, 302, 72, 16
 _OWNED = (8, 10, 15)  # F_SETOWN, F_SETSIG, F_SETOWN_EX: they make the kernel send signals
 _IOCTLS = (0x5412, 0x8901, 0x8902)  # TIOCSTI types into a terminal; FIOSETOWN, SIOCSPGRP are F_SETOWN again
@@ -136,24 +143,41 @@ def unavailable() -> str:
     return "" if machine == "x86_64" else f"the system call filter is written for x86_64, this machine is {machine}"
 
 
-def put_on(me: int) -> None:
+def new_word() -> bytes:
+    """What is to be said to start a program."""
+    return os.urandom(_WORD.size)
+
+
+def start(words: Sequence[str], env: Mapping[str, str], word: bytes) -> NoReturn:
+    """Become another program.
+
+    Raises:
+        Refused: when it cannot be started.
+    """
+    argv = (ctypes.c_char_p * (len(words) + 1))(*map(os.fsencode, words), None)
+    envp = (ctypes.c_char_p * (len(env) + 1))(*(os.fsencode(f"{name}={value}") for name, value in env.items()), None)
+    kernel.syscall(f"starting {words[0]}", _EXECVE, os.fsencode(words[0]), argv, envp, *_WORD.unpack(word))
+    raise Refused(f"starting {words[0]}: nothing came of it")
+
+
+def put_on(me: int, word: bytes = b"") -> None:
     """Filter this process's system calls for good. It needs no_new_privs, and a single thread.
 
     Args:
-        me: its process id, the only one that it may signal.
+        me: its process id, the only one that it may signal. word: what lets it start a program, empty for nothing.
 
     Raises:
         Refused: when it cannot be.
     """
     if reason := unavailable():
         raise Refused(reason)
-    code = program(me)
+    code = program(me, word)
     text = ctypes.create_string_buffer(code, len(code))
     head = ctypes.create_string_buffer(struct.pack("<HxxxxxxQ", len(code) // 8, ctypes.addressof(text)), 16)
     kernel.prctl("filtering system calls", kernel.PR_SET_SECCOMP, _FILTER, ctypes.cast(head, ctypes.c_void_p))
 
 
-def program(me: int) -> bytes:
+def program(me: int, word: bytes = b"") -> bytes:
     """The filter's instructions."""
     refuse, absent = _no(errno.EPERM), _no(errno.ENOSYS)
     lines = [(_LOAD, 0, 0, _MACHINE), (_EQUAL, 1, 0, _ARCH), (_RETURN, 0, 0, _KILL)]
@@ -162,6 +186,7 @@ def program(me: int) -> bytes:
         lines += _on(number, [refuse])
     for number in _ABSENT.values():
         lines += _on(number, [absent])
+    lines += _on(_EXECVE, _spoken(word, refuse) if word else [refuse])
     lines += _on(_CLONE, [_argument(0), (_ANY_BIT, 1, 0, _CLONE_THREAD), refuse, _YES])
     for number in (_KILL_CALL, _TGKILL):
         lines += _on(number, [_argument(0), (_EQUAL, 1, 0, me), refuse, _YES])
@@ -169,6 +194,14 @@ def program(me: int) -> bytes:
     for number, words in ((_FCNTL, _OWNED), (_IOCTL, _IOCTLS)):
         lines += _on(number, [_argument(1), *(line for word in words for line in _on(word, [refuse])), _YES])
     return b"".join(struct.pack("<HBBI", *line) for line in [*lines, _YES])
+
+
+def _spoken(word: bytes, refuse: tuple[int, int, int, int]) -> list[tuple[int, int, int, int]]:
+    """Allow a call whose last three arguments are this word."""
+    lines: list[tuple[int, int, int, int]] = []
+    for index, (half,) in enumerate(struct.iter_unpack("<I", word)):
+        lines += [(_LOAD, 0, 0, 16 + 8 * _UNREAD + 4 * index), (_EQUAL, 1, 0, half), refuse]
+    return [*lines, _YES]
 
 
 _YES = (_RETURN, 0, 0, _ALLOW)

@@ -1,0 +1,30 @@
+"""`hthor agent serve`; knows what the user types, not how an agent is served."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+
+def serve(
+    agent: Annotated[
+        str,
+        typer.Argument(metavar="AGENT", help="A Python agent: my_agent.py, my_agent.py:Class, package.module:Class."),
+    ],
+    port: Annotated[int, typer.Option(min=0, max=65535, help="The port to listen at; 0 takes any free one.")] = 8765,
+    host: Annotated[str, typer.Option(help="The address to listen at; 0.0.0.0 lets other machines in.")] = "127.0.0.1",
+) -> None:
+    """Serve an agent for evaluations elsewhere, until interrupted: hthor eval --agent ws://HOST:PORT.
+
+    It runs in this process, with everything that this machine has, and nothing holds it.
+    """
+    from hthor.guest import serving
+
+    server = serving.serve(agent, host, port)
+    with server:
+        sys.stdout.write(f"{serving.address(server)}\n")
+        sys.stdout.flush()
+        sys.stderr.write(f"serves {agent}; stop it with Ctrl-C\n")
+        server.serve_forever()

@@ -1,0 +1,21 @@
+"""Hashes of agents' files; knows nothing of what is in them."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+from hthor.errors import AgentError
+
+
+def of_file(path: Path) -> str:
+    """The hash of a file's bytes.
+
+    Raises:
+        AgentError: when it cannot be read.
+    """
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        hint = "Write one to start from: hthor agent new my_agent.py"
+        raise AgentError(f"cannot read the agent's file {path}: {error.strerror}. {hint}") from None

@@ -1,0 +1,47 @@
+"""How a held process becomes an agent's program, in any language; knows nothing of trials.
+
+The program finds the wire at its standard input and output, and what it writes to standard error is its log.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Sequence
+from typing import NoReturn
+
+from hthor.guest import frames
+from hthor.guest.confinement import seccomp
+from hthor.guest.confinement.kernel import Refused
+
+_OURS = ("PYTHONPATH", "PYTHONHASHSEED", "PYTHONDONTWRITEBYTECODE", "NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
+_FRAMES = 3
+
+
+def become(words: Sequence[str], folder: str, pipes: tuple[int, int], shared: int, word: bytes) -> NoReturn:
+    """Start it in this process's place.
+
+    Args:
+        folder: where. pipes: from the host and to it. shared: the frames' memory, -1 for none.
+        word: what the filter of system calls waits for, empty where there is none.
+
+    Raises:
+        Refused: when it cannot be started.
+    """
+    env = {name: value for name, value in os.environ.items() if name not in (*_OURS, frames.VARIABLE)}
+    read, write = (os.dup(handle) for handle in pipes)
+    held = os.dup(shared) if shared >= 0 else -1
+    try:
+        os.chdir(folder or env["TMPDIR"])
+        os.dup2(read, 0)
+        os.dup2(write, 1)
+        if held >= 0:
+            os.dup2(held, _FRAMES)
+            env[frames.VARIABLE] = str(_FRAMES)
+        for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores them, and a program would inherit that
+            signal.signal(number, signal.SIG_DFL)
+        if word:
+            seccomp.start(words, env, word)
+        os.execve(words[0], list(words), env)
+    except OSError as error:
+        raise Refused(f"starting {words[0]}: {error.strerror}") from None

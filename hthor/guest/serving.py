@@ -1,0 +1,105 @@
+"""A Python agent served over WebSocket, for evaluations elsewhere; knows nothing of what they play.
+
+Every connection gets agents of its own, but all of them share this process. Nothing is held here: whoever serves an
+agent trusts it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import sys
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import msgspec
+
+from hthor.errors import AgentError, UnknownName
+from hthor.guest import loading, reference, served, wire
+from hthor.guest.confinement import Policy
+from hthor.guest.frames import View
+from hthor.guest.playing import play
+from hthor.guest.senses import Gone
+
+if TYPE_CHECKING:
+    from websockets.sync.server import Server, ServerConnection
+
+_hosts_words = msgspec.msgpack.Decoder(wire.ToGuest)
+_NO_POLICY = Policy(level="", read=(), listed=(), scratch="", memory_mb=0, disk_mb=0)
+
+
+class Socket:
+    """The guest's end of a connection."""
+
+    view: View | None = None
+
+    def __init__(self, connection: ServerConnection) -> None:
+        self._connection = connection
+
+    def receive(self) -> wire.ToGuest:
+        """The host's next message."""
+        try:
+            message: wire.ToGuest = _hosts_words.decode(self._connection.recv(decode=False))
+        except msgspec.DecodeError as error:
+            raise Gone(str(error)) from None
+        except served.library().exceptions.ConnectionClosed:
+            raise Gone("the connection was closed") from None
+        return message
+
+    def send(self, message: wire.ToHost) -> None:
+        """Say something to the host, unless it is gone."""
+        with contextlib.suppress(served.library().exceptions.ConnectionClosed):
+            self._connection.send(wire.encode(message))
+
+    def fail(self) -> NoReturn:
+        """The host does not keep to the wire."""
+        raise Gone("not what was asked for")
+
+
+def serve(text: str, host: str, port: int) -> Server:
+    """A server that is ready to serve an agent; call its ``serve_forever``.
+
+    Args:
+        text: the agent, a Python file or module. port: 0 for any that is free.
+
+    Raises:
+        UnknownName, AgentError: when it is no such agent, or cannot be loaded.
+        OSError: when the port cannot be had.
+    """
+    agent = reference.read(text)
+    if agent.form not in ("file", "module"):
+        raise UnknownName(
+            "agent to serve", text, (), "Only Python agents are served: my_agent.py, package.module:Class."
+        )
+    sockets = served.library()
+    version = agent.sha256
+    sys.path.insert(0, agent.root)
+    try:
+        order = wire.Load(path=agent.path, cls=agent.cls, policy=_NO_POLICY, module=agent.module, root=agent.root)
+        cls, ready = loading.load(order)
+    except loading.Refusal as error:
+        raise AgentError(str(error)) from None
+    ready = msgspec.structs.replace(ready, name=agent.name, version=version, persistent=True)
+
+    def talk(connection: ServerConnection) -> None:
+        _converse(Socket(connection), cls, ready)
+
+    quiet = logging.getLogger("hthor.guest.serving")
+    quiet.addHandler(logging.NullHandler())
+    quiet.propagate = False
+    server: Server = sockets.sync.server.serve(
+        talk, host, port, compression=None, ping_interval=None, max_size=None, logger=quiet
+    )
+    return server
+
+
+def address(server: Server) -> str:
+    """Where a server can be reached."""
+    host, port = server.socket.getsockname()[:2]
+    return f"ws://{host}:{port}"
+
+
+def _converse(socket: Socket, cls: type[Any], ready: wire.Ready) -> None:
+    socket.send(ready)
+    with contextlib.suppress(Gone):
+        while isinstance(begin := socket.receive(), wire.Begin):
+            play(socket, cls, begin)

@@ -1,0 +1,101 @@
+"""Messages to and from a guest, each with a deadline; whatever goes wrong ends the guest and is a fault.
+
+Knows nothing of trials.
+"""
+
+from __future__ import annotations
+
+import time
+
+import msgspec
+
+from hthor.guest import wire
+from hthor.guest.faults import GuestFault
+from hthor.guest.lines import HungUp, Line, TimeIsUp
+
+_guests_words = msgspec.msgpack.Decoder(wire.ToHost)
+_keepers_words = msgspec.msgpack.Decoder(wire.KeeperToHost)
+
+
+class Talk:
+    """A conversation over a line, or over none once the guest is gone.
+
+    ``loaded`` says that the guest is up: from then on a message that it failed is a fault.
+    """
+
+    def __init__(self) -> None:
+        self.line: Line | None = None
+        self.loaded = False
+        self._log = ""
+
+    def open(self, line: Line) -> None:
+        """Talk to this guest from now on."""
+        self.line, self.loaded = line, False
+
+    def send(self, message: wire.ToGuest, seconds: float) -> None:
+        """Say something.
+
+        Raises:
+            GuestFault: when it is not taken in time.
+        """
+        try:
+            self._running().write(wire.encode(message), time.monotonic() + seconds)
+        except TimeIsUp:
+            raise self.fault("timeout", f"the agent read nothing for {seconds:g} s") from None
+        except HungUp:
+            raise self.fault(*self._running().obituary()) from None
+
+    def receive(self, seconds: float) -> tuple[wire.ToHost | wire.Over, float]:
+        """The next message of the guest or its keeper, and what is left of the time.
+
+        Raises:
+            GuestFault: when there is none, or it is none.
+        """
+        end = time.monotonic() + seconds
+        try:
+            keepers, body = self._running().read(wire.MOST_BYTES, end)
+        except TimeIsUp:
+            raise self.fault("timeout", f"the agent gave no answer within {seconds:.3g} s") from None
+        except HungUp:
+            raise self.fault(*self._running().obituary()) from None
+        if isinstance(body, int):
+            raise self.fault("oversized", f"a message of {body} bytes, at most {wire.MOST_BYTES} are taken")
+        message: wire.ToHost | wire.Over
+        try:
+            message = _keepers_words.decode(body) if keepers else _guests_words.decode(body)
+        except (msgspec.DecodeError, UnicodeDecodeError) as error:
+            raise self.fault("garbage", f"what came is no message: {error}") from None
+        if isinstance(message, wire.Failed) and (self.loaded or keepers):
+            kind = message.kind if keepers or message.kind in wire.OWN_FAULTS else "garbage"
+            raise self.fault(kind, message.detail, message.traceback)
+        return message, max(0.0, end - time.monotonic())
+
+    def wrong(self, what: str, answer: object) -> GuestFault:
+        """The fault of a message that does not belong here; the guest is gone."""
+        if isinstance(answer, wire.Over):
+            return self.fault("died", f"its process ended before it had answered {what}")
+        return self.fault("garbage", f"{what} was answered by {type(answer).__name__}")
+
+    def fault(self, kind: str, detail: str, traceback: str = "") -> GuestFault:
+        """End the guest, and say why."""
+        log = self.log
+        self.close()
+        kind = kind if kind in wire.FAULTS else "garbage"
+        return GuestFault(kind, detail[: wire.TEXT_MAX], traceback[-wire.TEXT_MAX :], log)
+
+    @property
+    def log(self) -> str:
+        """The end of what the guest printed."""
+        return self._log if self.line is None else self.line.log
+
+    def close(self) -> None:
+        """End the guest."""
+        line, self.line = self.line, None
+        if line is not None:
+            self._log = line.log
+            line.kill()
+
+    def _running(self) -> Line:
+        if self.line is None:
+            raise GuestFault("died", "the agent's process is gone")
+        return self.line
