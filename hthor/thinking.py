@@ -46,7 +46,7 @@ class Thinking:
 
     def ask(self, seat: str, mind: Mind, observation: Observation) -> Action:
         """The mind's action; how long it took is kept in mind."""
-        senses = _Timed(observation.senses, self._clock)
+        senses = Timed(observation.senses, self._clock)
         began = self._clock()
         action = mind.act(msgspec.structs.replace(observation, senses=senses))
         spent = self._clock() - began - senses.spent
@@ -72,16 +72,15 @@ class Thinking:
         return ripe
 
 
-class _Timed:
-    """A body's senses, and how long they took to work."""
+class Timed:
+    """A body's senses, and how long they took to work: ``spent`` [s]."""
 
     def __init__(self, senses: Any, clock: Callable[[], float]) -> None:
         self._senses, self._clock, self.spent = senses, clock, 0.0
 
-    def __getattr__(self, name: str) -> Any:
+    def timed(self, name: str) -> Callable[..., Any]:
+        """The sense of this name, on the clock."""
         sense = getattr(self._senses, name)
-        if not callable(sense):
-            return sense
 
         def timed(*given: Any) -> Any:
             began = self._clock()
@@ -91,3 +90,6 @@ class _Timed:
                 self.spent += self._clock() - began
 
         return timed
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        return self.timed(name)

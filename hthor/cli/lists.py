@@ -47,9 +47,10 @@ def new_agent(
 
     minds.write_template(file, force)
     sys.stdout.write(f"{file}\n")
-    sys.stderr.write(f"next:  hthor eval --agent {file} --humans proxy\n")
+    sys.stderr.write(f"next:  hthor agent check {file}    hthor eval --agent {file} --humans proxy\n")
 
 
+agent.command("check")(agents_of_mine.check)
 agent.command("run")(agents_of_mine.run)
 
 

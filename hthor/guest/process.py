@@ -15,7 +15,7 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 
-from hthor.guest import keeper
+from hthor.guest import cost, keeper
 from hthor.guest.confinement import Policy, limits, namespaces, paths
 
 _PASSED_ON = ("PATH", "LANG", "LC_ALL", "TZ", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
@@ -165,11 +165,12 @@ class Process:
 
     def kill(self) -> None:
         """End everything that the guest has started, close the pipes, and remove what it wrote."""
-        if self.policy.level == "L1":
-            keeper.end_descendants(self._process.pid)
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.wait()
+        with cost.ending(self._process.pid):
+            if self.policy.level == "L1":
+                keeper.end_descendants(self._process.pid)
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+            self._process.wait()
         for handle in (self._out, self._words, self._keeper, self._err):
             os.close(handle)
         if self._scratch:
