@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -16,6 +17,7 @@ from hthor.comms.mailbox import Mailbox
 from hthor.humans.journal import Recorder
 from hthor.humans.model import HumanModel
 from hthor.tasks.kind import TaskKind
+from hthor.thinking import Decision, Thinking
 from hthor.types import (
     HUMAN,
     Action,
@@ -97,7 +99,14 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
     journal: tuple[Event, ...] = ()
 
 
-def play(trial: TrialSpec, world: Stage, human: HumanModel, robots: Mapping[str, Mind]) -> EpisodeLog:
+def play(
+    trial: TrialSpec,
+    world: Stage,
+    human: HumanModel,
+    robots: Mapping[str, Mind],
+    *,
+    clock: Callable[[], float] = time.perf_counter,
+) -> EpisodeLog:
     """Run one trial from reset to its end.
 
     Args:
@@ -105,12 +114,21 @@ def play(trial: TrialSpec, world: Stage, human: HumanModel, robots: Mapping[str,
         world: built for the task's house, with a body for every seat of ``robots``.
         human: the person, who may remember earlier trials of the session.
         robots: a mind for each robot's seat.
+        clock: what thinking time is measured by [s] in a trial in real time; in lock-step nobody looks at it.
     """
-    return _Episode(trial, world, human, robots).run()
+    return _Episode(trial, world, human, robots, Thinking(clock) if trial.realtime else None).run()
 
 
 class _Episode:
-    def __init__(self, trial: TrialSpec, world: Stage, human: HumanModel, robots: Mapping[str, Mind]) -> None:
+    def __init__(
+        self,
+        trial: TrialSpec,
+        world: Stage,
+        human: HumanModel,
+        robots: Mapping[str, Mind],
+        thinking: Thinking | None,
+    ) -> None:
+        self.thinking = thinking
         self.task, self.world, self.human = trial.task, world, human
         self.seed = seeds.derive(trial.seed, "world", trial.participant, trial.index, trial.task.id)
         self.minds: dict[str, Mind] = {HUMAN: human, **robots}
@@ -163,11 +181,12 @@ class _Episode:
     def _tick(self) -> None:
         """Every seat that is asked sees the same moment; only then do their actions take effect."""
         world, mailbox = self.world, self.mailbox
-        asked = {seat: self._observe(seat) for seat in self.minds if world.idle(seat) or mailbox.changed(seat)}
+        wanted = [seat for seat in self.minds if world.idle(seat) or mailbox.changed(seat)]
+        asked = {seat: self._observe(seat) for seat in wanted if self.thinking is None or not self.thinking.busy(seat)}
         if HUMAN in asked and asked[HUMAN].inbox:
             self.events.extend(mailbox.shown(world.tick))
         actions = [(seat, self._ask(seat, observation)) for seat, observation in asked.items()]
-        for seat, action in actions:
+        for seat, action in actions if self.thinking is None else self._timely(self.thinking, actions):
             if action is None:
                 continue
             if action.say is not None:
@@ -180,12 +199,34 @@ class _Episode:
         self.events.extend(world.advance())
         self._trace()
 
+    def _timely(
+        self, thinking: Thinking, actions: Sequence[tuple[str, Action | None]]
+    ) -> Sequence[tuple[str, Action | None]]:
+        """In real time: what is decided by now. The rest comes later, and the bodies that wait for it stand still."""
+        tick = self.world.tick
+        for seat, action in actions:
+            late = thinking.late(seat)
+            if action is None:
+                continue
+            free = self.world.idle(seat)
+            thinking.hold(Decision(seat=seat, action=action, moves=free), until=tick + late)
+            if late:
+                self.events.append(Event(tick=tick, seat=seat, kind="thought", data={"ticks": late}))
+                if free:
+                    self._rest(seat, True)
+        due = thinking.due(tick, self.minds)
+        for one in due:
+            if not one.moves and one.action.say is not None:  # who was asked while busy was asked for words alone
+                self._say(one.seat, one.action)
+        return [(one.seat, one.action) for one in due if one.moves]
+
     def _ask(self, seat: str, observation: Observation) -> Action | None:
         """A robot's failure ends its part in the trial, not the trial; a human model's failure is ours to see."""
         mind = self.minds[seat]
         if seat == HUMAN:
             return _checked(mind.act(observation))
-        return self._guarded(seat, lambda: _checked(mind.act(observation)))
+        act = mind.act if self.thinking is None else partial(self.thinking.ask, seat, mind)
+        return self._guarded(seat, lambda: _checked(act(observation)))
 
     def _observe(self, seat: str) -> Observation:
         world, tick = self.world, self.world.tick

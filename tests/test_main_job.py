@@ -23,7 +23,7 @@ import jsonschema
 import msgspec
 import pytest
 
-from hthor import cli, guest, houses, jsonio, tasks
+from hthor import cli, guest, houses, jsonio, rules, tasks
 from hthor.eval import cast, crews, find, guarded, redraw
 from hthor.eval.log import Log
 from hthor.eval.record import Record
@@ -340,6 +340,19 @@ def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: l
     records = played(written(tmp_path, **HARMLESS[name]))
     assert not any(record.faults for record in records)
     assert [record.paths[HUMAN] for record in records] == [record.paths[HUMAN] for record in idle_robot]
+
+
+def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(idle_robot: list[Record]):
+    _, session = dealt("silent")
+    alone = list(cast.player()(session))
+    assert [one.spec.task for one in alone] == [one.spec.task for one in idle_robot]
+    for none, idle in zip(alone, idle_robot, strict=True):
+        met = [event.tick for event in idle.events if event.kind == "in_way"]
+        until = min(met, default=idle.ticks) // rules.LOG_EVERY_TICKS
+        assert until > 10
+        assert none.paths[HUMAN][:until] == idle.paths[HUMAN][:until]
+        assert met or none.ticks == idle.ticks
+        assert not any(event.kind in ("sent", "fault") for event in idle.events)
 
 
 @pytest.mark.parametrize("name", FAULTY)

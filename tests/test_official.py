@@ -188,6 +188,15 @@ def test_nothing_that_is_written_tells_the_salt_or_a_root(folder: Path):
         assert json.loads(path.read_bytes())["metadata"]["generator"] == {"version": 1}
 
 
+def test_what_is_learned_of_public_suites_by_heart_finds_nothing_in_it(folder: Path):
+    def marks(task):
+        return task.instruction, task.robot_starts[0]
+
+    public = [task for name in ("smoke", "paper", "standard") for task in tasks.suite(name).tasks]
+    assert len({marks(task) for task in tasks.suite("standard").tasks}) == 2000, "there a table would find everything"
+    assert {marks(task) for task in public}.isdisjoint(marks(task) for task in tasks.suite(folder).tasks)
+
+
 def test_starts_lie_on_the_grid_so_that_no_digit_tells_how_they_were_drawn(folder: Path):
     for task in tasks.suite(folder).tasks:
         for pose in (task.human_start, *task.robot_starts):

@@ -15,28 +15,10 @@ import pytest
 
 from hthor import guest
 from hthor.guest import Guest, IsolationError, keeper
+from tests.redteam import nobody
 from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, Case
+from tests.redteam.nobody import ROOT, runner
 from tests.test_guest import BRIEFING, look
-
-NOBODY = 65534
-ROOT = Path(__file__).resolve().parents[1]
-
-
-@functools.cache
-def runner() -> tuple[list[str], dict[str, Any]]:
-    """An interpreter, and as whom: an unprivileged user where one can start it."""
-    libraries = [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
-    env = {"PATH": os.environ["PATH"], "PYTHONPATH": os.pathsep.join([str(ROOT), *libraries])}
-    if os.getuid() == 0:
-        as_nobody = {"user": NOBODY, "group": NOBODY, "extra_groups": [], "env": env, "cwd": "/"}
-        for python in (sys.executable, f"/usr/bin/python{sys.version_info.major}.{sys.version_info.minor}"):
-            words = [python, "-P", "-c", "import numpy, msgspec, hthor.guest"]
-            try:
-                if subprocess.run(words, capture_output=True, **as_nobody).returncode == 0:
-                    return [python], as_nobody
-            except OSError:
-                continue
-    return [sys.executable], {"env": env, "cwd": "/"}
 
 
 @functools.cache
@@ -82,6 +64,35 @@ def _alone(case: Case, folder: Path) -> dict[str, Any]:
     done = subprocess.run(words, capture_output=True, text=True, **how)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)["agents"][0]  # type: ignore[no-any-return]
+
+
+SCORED = ("houses", "salt_in_the_environment", "tcp", "kill_the_harness", "daemon", "memory", "processor", "malformed")
+"""A few of them in scored trials; `python -m benchmarks.redteam` plays all."""
+
+
+@functools.cache
+def scored() -> dict[str, Any]:
+    done = nobody.scored("L2,L3", *SCORED)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)  # type: ignore[no-any-return]
+
+
+@pytest.mark.parametrize("level", ["L2", "L3"])
+def test_a_hostile_agents_trial_is_scored_with_a_named_fault(level: str) -> None:
+    found = scored()
+    if level in found["missing"]:
+        pytest.skip(found["missing"][level])
+    idle, *agents = [one for one in found["agents"] if one["level"] == level]
+    assert (idle["name"], idle["kind"], len(agents)) == ("nop", "", len(SCORED))
+    cases = {case.name: case for case in HOSTILE}
+    for one in agents:
+        assert one["kind"] in cases[one["name"]].kinds, one
+        assert one["counted"] == {one["kind"]: 1}, one
+        assert one["scored"] == idle["scored"], "a trial like any other"
+        assert one["person"] == idle["person"], "the person did as if the robot had stood still"
+        assert "BREACH" not in one["detail"] + one["output"], one
+        assert not one["changed"]
+    assert found["intact"]
 
 
 def test_these_were_played_by_an_unprivileged_user() -> None:

@@ -12,10 +12,11 @@ from hthor.cli.runs import Json, Run
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from hthor.eval.contract import Report
     from hthor.eval.remains import Failure
     from hthor.eval.rerun import Rerun
 
-_FAULTS_EXIT = 3
+_FAULTS_EXIT, _BROKEN_EXIT = 3, 4
 _LOOKS = 5
 Isolation = Annotated[
     str, typer.Option(help="How the agent is held: L1, L2, L3, or auto, the strongest that there is.")
@@ -56,6 +57,43 @@ def run(
         _tell(screen.console(), done)
     if done.record.faults:
         raise typer.Exit(_FAULTS_EXIT)
+
+
+def check(
+    agent: Annotated[str, typer.Argument(metavar="FILE", help="The agent: my_agent.py, or my_agent.py:MyClass.")],
+    robot: Annotated[
+        str, typer.Option(help="The body it is tried in.", show_default="the first that it is made for, or scout")
+    ] = "",
+    isolation: Isolation = "auto",
+    json: Json = False,
+) -> None:
+    """Check that your agent keeps to the contract, in a few short trials: loads, acts, repeats itself, keeps nothing.
+
+    Exit code 4 when something is broken; warnings cost nothing.
+    """
+    from hthor.eval import contract
+
+    report = contract.check(agent, robot=robot, isolation=isolation)
+    if json:
+        screen.put_json(report)
+    else:
+        _show_check(report)
+    if not report.sound:
+        raise typer.Exit(_BROKEN_EXIT)
+
+
+def _show_check(report: Report) -> None:
+    rows: list[tuple[str, str, str]] = []
+    for one in report.findings:
+        rows.append((one.check, one.status, one.told))
+        if one.advice:
+            rows.append(("", "", f"-> {one.advice}"))
+    screen.put_table(("check", "", "found"), rows)
+    broken = sum(one.status == "broken" for one in report.findings)
+    if broken:
+        screen.put_line(f"{report.agent}: {broken} broken")
+    else:
+        screen.put_line(f"{report.agent}: sound    next:  hthor eval --agent {report.agent} --humans proxy")
 
 
 def _tell(paper: Console, done: Rerun) -> None:

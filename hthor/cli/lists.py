@@ -52,9 +52,10 @@ def new_agent(
     except AgentError as error:  # exit code 4 is for agents that do not load
         raise HthorError(str(error)) from None
     screen.put_files([file], json)
-    sys.stderr.write(f"next:  hthor eval --agent {file} --humans proxy\n")
+    sys.stderr.write(f"next:  hthor agent check {file}    hthor eval --agent {file} --humans proxy\n")
 
 
+agent.command("check")(agents_of_mine.check)
 agent.command("run")(agents_of_mine.run)
 
 

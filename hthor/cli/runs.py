@@ -130,6 +130,14 @@ def evaluate(
             "has the uplift over it.",
         ),
     ] = True,
+    realtime: Annotated[
+        bool,
+        typer.Option(
+            "--realtime",
+            help="Thinking takes time: an action comes as late as it was decided on, and the person goes on meanwhile. "
+            "Such trials do not repeat themselves to the byte.",
+        ),
+    ] = False,
     isolation: Annotated[
         str, typer.Option(help="How agents of your own are held: L1, L2, L3, or auto, the strongest that there is.")
     ] = "auto",
@@ -178,6 +186,7 @@ def evaluate(
         engine=engine,
         address=address,
         control=control,
+        realtime=realtime,
         isolation=isolation,
         require_isolation=require_isolation,
         trial_limit=trial_limit,

@@ -62,6 +62,7 @@ class Options(Struct, frozen=True, kw_only=True):
     engine: str = engines.LOCAL
     address: str = ""
     control: bool = False
+    realtime: bool = False
     isolation: str = "auto"
     require_isolation: str = ""
     trial_limit: float | None = None
@@ -187,6 +188,7 @@ def _parts(
                 participants=options.participants,
                 kind=chosen.kind,
                 assets=shown,
+                realtime=options.realtime,
             )
             title = plan.name if len(whom) == 1 else f"{plan.name}, {people.name} people"
             folder = _folder(options, plan, len(found), len(whom))
@@ -230,6 +232,7 @@ def _perform(
         participants=plan.participants,
         kind_sha256=plan.kind.sha256 if plan.kind else "",
         assets_sha256=plan.assets.sha256 if options.assets else "",
+        realtime=bool(plan.realtime),
     )
     for note in (*chosen.notes, *(f"{note}." for note in plan.humans.notes)):
         if note not in told:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from hthor.eval.contrast import Difference
 from hthor.eval.score import Result, Scores
+from hthor.eval.setup import REALTIME
 from hthor.eval.stats import Estimate
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def result_table(result: Result, *, everything: bool = False) -> RenderableType:
         everything: with all that is counted, not only the main metrics.
     """
     title = f"{result.name}: {result.suite.name}, {result.counts.trials} trials, {result.humans.name} people"
-    table = _table(title)
+    table = _table(title + (", in real time" if result.mode == REALTIME else ""))
     for heading in ("mean", "95 % interval", *(["could have seen"] if everything else []), "trials"):
         table.add_column(heading, justify="right")
     later = enumerate(result.trust_by_trial if everything else (), 1)

@@ -101,7 +101,8 @@ class Result(Struct, frozen=True, kw_only=True):
     """The run's `result.json`.
 
     ``trust_by_trial`` is the rating after the first, second, ... trial of a person's session, empty without a robot.
-    ``uplift`` is None where no whole run without a robot lay beside this one.
+    ``uplift`` is None where no whole run without a robot lay beside this one. ``mode`` is "realtime" where thinking
+    took time of the trials, which no second run repeats byte for byte, else "lockstep".
     """
 
     schema: str = SCHEMA
@@ -111,6 +112,7 @@ class Result(Struct, frozen=True, kw_only=True):
     suite: SuiteRef
     kind: KindRef | None = None
     seed: int
+    mode: str = setup.LOCKSTEP
     participants: int
     metrics: Scores
     by_kind: dict[str, Scores]
@@ -169,6 +171,7 @@ def check_origin(folder: Path, record: Record, plan: Setup) -> None:
         "code_sha256": (spec.code_sha256, plan.code_sha256),
         "robots": (spec.robots, plan.seats),
         "kind_sha256": (spec.kind_sha256, plan.kind.sha256 if plan.kind else ""),
+        "realtime": (bool(spec.realtime), bool(plan.realtime)),
     }
     for field, (here, there) in pairs.items():
         if here != there:
@@ -204,6 +207,7 @@ def summarise(
         suite=plan.suite,
         kind=plan.kind,
         seed=plan.seed,
+        mode=plan.mode,
         participants=plan.participants,
         metrics=whole,
         by_kind=by_kind,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import msgspec
 from msgspec import Struct
 
 from hthor import rules, seeds
@@ -40,6 +41,7 @@ def sessions(
     detector: str = OWN,
     kind_sha256: str = "",
     assets_sha256: str = "",
+    realtime: bool = False,
 ) -> tuple[Session, ...]:
     """The sessions of a run.
 
@@ -53,6 +55,7 @@ def sessions(
         participants: how many people; by default as many as let every task be done exactly once.
         kind_sha256: hash of the file of the tasks' kind, for a kind that is not one of ours.
         assets_sha256: hash of the furniture pack that pictures show, if any.
+        realtime: whether robots' thinking takes time of the trial.
     """
     crew = crews.form([robot], [agent], detector) if isinstance(agent, str) else agent
     who = people.find(human) if isinstance(human, str) else human
@@ -72,6 +75,7 @@ def sessions(
             code_sha256=code_hash,
             assets_sha256=assets_sha256,
             kind_sha256=kind_sha256,
+            realtime=realtime or msgspec.UNSET,
         )
 
     hands = people_for(len(suite.tasks))

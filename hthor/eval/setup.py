@@ -23,6 +23,7 @@ from hthor.tasks import Suite
 from hthor.types import RobotSeat
 
 SCHEMA = "hthor.run/3"
+LOCKSTEP, REALTIME = "lockstep", "realtime"
 _NAME_MAX = 100
 _MADE_FIRST = (".lock", "trials.jsonl", ".run.json.*", "control")  # a command that was killed early leaves these alone
 
@@ -58,7 +59,8 @@ class Setup(Struct, frozen=True, kw_only=True):
 
     ``robots`` lists every robot with its body, mind and detector; a mind that wants no robot stands there without a
     seat. ``kind`` is None when every task of the suite is played. ``trials`` is how many there are in a whole run.
-    ``shard`` is there only in a run that was divided among machines.
+    ``shard`` is there only in a run that was divided among machines, ``realtime`` only where robots' thinking took time
+    of the trials.
     """
 
     schema: str = SCHEMA
@@ -73,6 +75,7 @@ class Setup(Struct, frozen=True, kw_only=True):
     code_sha256: str
     versions: dict[str, str]
     assets: AssetsRef
+    realtime: bool | msgspec.UnsetType = msgspec.UNSET
     shard: Shard | msgspec.UnsetType = msgspec.UNSET
 
     @property
@@ -91,6 +94,11 @@ class Setup(Struct, frozen=True, kw_only=True):
         return tuple(robot for robot in self.robots if robot.seat)
 
     @property
+    def mode(self) -> str:
+        """ "lockstep", where the trial waits for its minds, or "realtime", where it does not."""
+        return REALTIME if self.realtime else LOCKSTEP
+
+    @property
     def name(self) -> str:
         """What to call the run among others."""
         return crew_name(self.robots)
@@ -102,6 +110,7 @@ class Setup(Struct, frozen=True, kw_only=True):
         if self.kind is not None and self.kind.name != played:
             played = f"{played}-{self.kind.name}"
         whose = "" if self.humans.name == PROXY else f"-{self.humans.name}"
+        whose += f"-{REALTIME}" if self.realtime else ""
         return f"{self.name}-{played}{whose}-{self.whole.sha256[:10]}"
 
 
@@ -122,8 +131,12 @@ def settle(
     participants: int | None,
     kind: KindRef | None = None,
     assets: AssetsRef | None = None,
+    realtime: bool = False,
 ) -> Setup:
-    """The configuration of a run, every default resolved; ``human`` as `hthor.humans.people` reads it."""
+    """The configuration of a run, every default resolved; ``human`` as `hthor.humans.people` reads it.
+
+    ``realtime`` says whether robots' thinking takes time of the trials; without a robot it makes no difference.
+    """
     hands = people_for(len(suite.tasks))
     count = hands if participants is None else participants
     whole, rest = divmod(count, hands)
@@ -140,6 +153,7 @@ def settle(
         code_sha256=provenance.code_sha256(),
         versions=provenance.versions(),
         assets=assets or AssetsRef(sha256=provenance.code_sha256()),
+        realtime=(realtime and bool(crew.seats)) or msgspec.UNSET,
     )
 
 

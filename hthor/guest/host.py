@@ -173,6 +173,11 @@ class Guest:
         return self._process.pid if self._process is not None else 0
 
     @property
+    def pid(self) -> int:
+        """The first of its processes, 0 when there is none."""
+        return self._process.pid if self._process is not None else 0
+
+    @property
     def log(self) -> str:
         """The end of what the agent printed, 16 KiB at most."""
         return self._talk.log

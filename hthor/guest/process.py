@@ -14,7 +14,7 @@ import tempfile
 import time
 from collections.abc import Mapping
 
-from hthor.guest import ending, frames, keeper, wire
+from hthor.guest import cost, ending, frames, keeper, wire
 from hthor.guest.confinement import Policy, devices, limits, namespaces, paths
 from hthor.guest.lines import HungUp, TimeIsUp
 from hthor.guest.reference import Reference
@@ -155,11 +155,12 @@ class Process:
 
     def kill(self) -> None:
         """End everything that the guest has started, close the pipes, and remove what it wrote."""
-        if self.policy.level == "L1":
-            keeper.end_descendants(self._process.pid)
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.wait()
+        with cost.ending(self._process.pid):
+            if self.policy.level == "L1":
+                keeper.end_descendants(self._process.pid)
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+            self._process.wait()
         for handle in (self._out, self._words, self._keeper, self._err):
             os.close(handle)
         if self.frames is not None:

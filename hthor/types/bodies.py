@@ -154,7 +154,8 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
     """Everything that decides a trial's course; its content hash is the trial's key.
 
     ``assets_sha256`` is the hash of the furniture pack that the robots' pictures show, empty for our own furniture;
-    ``kind_sha256`` that of a user's own file of the task's kind, empty for a kind that ships with hthor.
+    ``kind_sha256`` that of a user's own file of the task's kind, empty for a kind that ships with hthor. ``realtime``
+    is there only where robots' thinking took time of the trial.
     """
 
     task: TaskSpec
@@ -169,3 +170,4 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
     code_sha256: str
     assets_sha256: str = ""
     kind_sha256: str = ""
+    realtime: bool | msgspec.UnsetType = msgspec.UNSET

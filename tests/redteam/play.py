@@ -24,7 +24,7 @@ SECRET = "pepper and salt"
 def main(level: str, wanted: list[str]) -> None:
     """Play the agents of these names, or all."""
     os.environ["HTHOR_SALT"] = SECRET
-    with tempfile.TemporaryDirectory() as folder, _listening() as port:
+    with tempfile.TemporaryDirectory() as folder, listening() as port:
         secret = Path(folder) / "salt.txt"
         secret.write_text(SECRET)
         jobs = [one for one in (*HOSTILE, *HONEST) if not wanted or one.name in wanted]
@@ -43,13 +43,7 @@ def main(level: str, wanted: list[str]) -> None:
 
 
 def _play(home: Path, case: Case, text: str, level: str) -> dict[str, Any]:
-    (home / "runs").mkdir(parents=True)
-    (home / "runs" / "trials.jsonl").write_text(SECRET)
-    (home / "official.json").write_text(SECRET)
-    (home / "weights.txt").write_text("w")
-    (home / "helper.py").write_text("VALUE = 3\n")
-    path = home / "agent.py"
-    path.write_text(text)
+    path = lay_out(home, text)
     before = sorted(home.rglob("*"))
     fault, log, held = {"kind": "", "detail": ""}, "", {}
     with Guest(
@@ -72,8 +66,20 @@ def _play(home: Path, case: Case, text: str, level: str) -> dict[str, Any]:
     return {"name": case.name, **held, "fault": fault, "log": log[-2000:], "again": again, "changed": changed}
 
 
+def lay_out(home: Path, text: str) -> Path:
+    """An agent's file, with helpers of its own and secrets of others beside it."""
+    (home / "runs").mkdir(parents=True)
+    (home / "runs" / "trials.jsonl").write_text(SECRET)
+    (home / "official.json").write_text(SECRET)
+    (home / "weights.txt").write_text("w")
+    (home / "helper.py").write_text("VALUE = 3\n")
+    path = home / "agent.py"
+    path.write_text(text)
+    return path
+
+
 @contextlib.contextmanager
-def _listening() -> Iterator[int]:
+def listening() -> Iterator[int]:
     with socket.create_server(("127.0.0.1", 0)) as server:
         yield server.getsockname()[1]
 

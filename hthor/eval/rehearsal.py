@@ -1,0 +1,149 @@
+"""Short real trials with one submitted agent, closely watched: what it did, saw and took; judges nothing of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import msgspec
+from msgspec import Struct
+
+from hthor import tasks
+from hthor.episode import Fault, play
+from hthor.eval import cast, crews, record
+from hthor.eval.crews import Character
+from hthor.eval.session import Session, sessions
+from hthor.eval.watched import Watched
+from hthor.guest import Guest, cost
+from hthor.tasks import library
+from hthor.thinking import Timed
+from hthor.types import Action, Briefing, Detection, Observation, Send, TrialSpec, Wait
+
+_TASKS = ("smoke/alder/manipulation-01", "smoke/elder/manipulation-02")
+_LIMIT_S = 30.0
+_LOOK_EVERY = 16
+
+
+class Notes(Struct, frozen=True, kw_only=True):
+    """What came of one trial.
+
+    Attributes:
+        line: the record as it would be written.
+        actions: what was done, with the tick at which it was asked for.
+        thought_s: seconds of each ``act``, without what its pictures and scans took; ``begin_s`` of ``begin``.
+        wall_s: seconds of the whole trial but for ``begin``.
+        memory_mb: the most memory that was seen in use.
+        motions, refused: how many motions there were, and how many of them did not come to a good end.
+        claims, unseen: messages about an object, and how many of these it had not detected before.
+        output: the end of what was printed.
+    """
+
+    line: bytes
+    faults: tuple[Fault, ...]
+    actions: tuple[tuple[int, Action], ...]
+    thought_s: tuple[float, ...]
+    begin_s: float
+    wall_s: float
+    memory_mb: float
+    motions: int
+    refused: int
+    sent: int
+    claims: int
+    unseen: int
+    output: str
+
+
+class Rehearsal:
+    """Two short trials, A and B, for one agent, to be played as often as wanted.
+
+    Args:
+        character: the agent, from a file.
+        robot: the body it is in.
+    """
+
+    def __init__(self, character: Character, robot: str) -> None:
+        self._stage = cast.Stage()
+        crew = crews.form([robot], [character])
+        known = {task.id: task for task in tasks.suite("smoke").tasks}
+        short = [msgspec.structs.replace(known[name], time_limit=_LIMIT_S) for name in _TASKS]
+        dealt = sessions(library.frozen("rehearsal", 1, tuple(short)), agent=crew, participants=1)[0]
+        by_task = {trial.task.id: trial for trial in dealt.trials}
+        self.a, self.b = (by_task[name] for name in _TASKS)
+
+    def play(self, guest: Guest, trials: Sequence[TrialSpec]) -> list[Notes]:
+        """Play trials one after the other with the same guest, each with a person who knows of no other."""
+        return [self._play(guest, trial) for trial in trials]
+
+    def _play(self, guest: Guest, trial: TrialSpec) -> Notes:
+        human = self._stage.enter(Session(participant=trial.participant, trials=(trial,))).human
+        noted, world = _Noted(guest), self._stage.world(trial)
+        seat = trial.robots[0].seat
+        began = time.perf_counter()
+        log = play(trial, world, human, {seat: noted})
+        wall_s = time.perf_counter() - began - noted.begin_s
+        done = [(look.tick, action) for look, action in noted.looks if action is not None]
+        says = [(action.say, seen) for (_, action), seen in zip(done, noted.seen, strict=False)]
+        about = [(say.object, seen) for say, seen in says if isinstance(say, Send) and say.object]
+        ended = [look.outcome for look, _ in noted.looks if look.idle and look.outcome is not None]
+        return Notes(
+            line=record.encode(record.of(trial, log)),
+            faults=log.faults,
+            actions=tuple(done),
+            thought_s=tuple(noted.thought_s),
+            begin_s=noted.begin_s,
+            wall_s=wall_s,
+            memory_mb=noted.memory_mb,
+            motions=sum(not isinstance(action.motion, Wait) for _, action in done),
+            refused=sum(not outcome.ok for outcome in ended),
+            sent=sum(isinstance(say, Send) for say, _ in says),
+            claims=len(about),
+            unseen=0 if noted.looked else sum(name not in seen for name, seen in about),
+            output=noted.output,
+        )
+
+
+class _Senses(Timed):
+    """Tells what a mind has detected, and whether it looked at pictures, in which it may have seen more."""
+
+    ids: tuple[str, ...] = ()
+    looked = False
+
+    def detections(self) -> tuple[Detection, ...]:
+        found: tuple[Detection, ...] = self.timed("detections")()
+        self.ids = tuple(one.id for one in found)
+        return found
+
+    def rgb(self) -> object:
+        self.looked = True
+        return self.timed("rgb")()
+
+
+class _Noted(Watched):
+    """A guest with a stopwatch beside it."""
+
+    def __init__(self, guest: Guest) -> None:
+        super().__init__(guest, last=None)
+        self.thought_s: list[float] = []
+        self.seen: list[frozenset[str]] = []
+        self.begin_s = self.memory_mb = 0.0
+        self.looked = False
+        self._known: frozenset[str] = frozenset()
+
+    def begin(self, briefing: Briefing) -> None:
+        began = time.perf_counter()
+        try:
+            super().begin(briefing)
+        finally:
+            self.begin_s = time.perf_counter() - began
+
+    def act(self, observation: Observation) -> Action:
+        senses = _Senses(observation.senses, time.perf_counter)
+        began = time.perf_counter()
+        action = super().act(msgspec.structs.replace(observation, senses=senses))
+        self.thought_s.append(time.perf_counter() - began - senses.spent)
+        self._known |= frozenset(senses.ids)
+        self.seen.append(self._known)
+        self.looked = self.looked or senses.looked
+        if len(self.seen) % _LOOK_EVERY == 1 and (pid := self.mind.pid):
+            self.memory_mb = max(self.memory_mb, cost.resident_mb(pid))
+        return action

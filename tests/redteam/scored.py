@@ -1,0 +1,117 @@
+"""Plays agents in real trials as `hthor eval` does, each in a run of its own, and prints what became of each, as JSON.
+
+The world, the person, the task and the scoring are real; the task is cut short. Run as whoever is to be attacked.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Generator
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from hthor import guest, jsonio, tasks
+from hthor.eval import cast, crews, guarded, progress, remains, run, session, setup, worker
+from hthor.eval.log import read
+from hthor.eval.worker import News
+from hthor.guest import Guest, IsolationError
+from hthor.tasks import library
+from hthor.types import HUMAN, AgentRef
+from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, Case, source
+from tests.redteam.play import SECRET, lay_out, listening
+
+NOP = Case("nop", "pass", (NO_FAULT,), "")
+_TASK, _LIMIT_S = "smoke/alder/manipulation-01", 3.0
+_WORLDS: dict[object, Any] = {}
+
+
+class _Stage(cast.Stage):
+    """Keeps its world for the next run too, which saves building it for every agent."""
+
+    def __init__(self, sources: cast.Sources | None = None) -> None:
+        super().__init__(sources)
+        self._worlds = _WORLDS
+
+
+class _Here:
+    """An engine that plays in this process."""
+
+    def perform(self, sessions: Any, make: Any) -> Generator[News | None, None, None]:
+        player = worker.Player(make)
+        for one in sessions:
+            yield from player.play(one)
+
+
+def main(levels: list[str], wanted: list[str]) -> None:
+    """Play the agents of these names, or all, at each level, with one that does nothing first."""
+    os.environ["HTHOR_SALT"] = SECRET
+    cast.Stage = _Stage  # type: ignore[misc]
+    cases = [one for one in (*HOSTILE, *HONEST) if not wanted or one.name in wanted]
+    told: list[dict[str, Any]] = []
+    missing: dict[str, str] = {}
+    with tempfile.TemporaryDirectory() as name, listening() as port:
+        folder = Path(name)
+        secret = folder / "salt.txt"
+        secret.write_text(SECRET)
+        for level in levels:
+            try:
+                held = guest.in_force(level)
+            except IsolationError as error:
+                missing[level] = str(error)
+                continue
+            for case in (NOP, *cases):
+                text = source(case.attack, secret=str(secret), harness=os.getpid(), port=port)
+                told.append(_play(folder / level / case.name, case, text, held))
+        intact = secret.read_text() == SECRET
+    json.dump({"uid": os.getuid(), "intact": intact, "missing": missing, "agents": told}, sys.stdout)
+
+
+def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str, Any]:
+    """One agent's run: one person, one task; what its log, its result and its remains say."""
+    path, runs = lay_out(home, text), home / "runs" / "mine"
+    before = sorted(one for one in home.rglob("*"))
+    step_s = 1.0 if "timeout" in case.kinds and len(case.kinds) == 1 else 20.0
+    guest.Guest = functools.partial(Guest, step_s=step_s, bank_s=0.0, memory_mb=512, disk_mb=64)  # type: ignore[misc]
+    task = next(task for task in tasks.suite("smoke").tasks if task.id == _TASK)
+    suite = library.frozen("short", 1, (msgspec.structs.replace(task, time_limit=_LIMIT_S),))
+    ref = AgentRef(name="agent", source="agent.py", sha256=hashlib.sha256(text.encode()).hexdigest())
+    crew = crews.form(["scout"], [crews.Character(ref=ref, path=str(path))])
+    plan = setup.settle(suite, crew, human="proxy", seed=0, participants=None)
+    hidden = (str(home / "runs"), str(home / "official.json"))
+    make = functools.partial(guarded.player, cast.Sources(minds=crew.minds), held.level, hidden)
+    result = run.evaluate(
+        plan,
+        session.sessions(suite, agent=crew),
+        make,
+        folder=runs,
+        engine=_Here(),
+        watch=progress.Silent(),
+        extra={guarded.NAME: jsonio.pretty(held)},
+    )
+    ((_, record),) = read(runs / "trials.jsonl")
+    left = runs / remains.FOLDER / f"{record.key}.json"
+    fault = record.faults[0] if record.faults else None
+    after = sorted(one for one in home.rglob("*") if runs not in (one, *one.parents))
+    return {
+        "name": case.name,
+        "level": result.isolation.level if result.isolation else "",
+        "kind": fault.kind if fault else "",
+        "detail": fault.detail if fault else "",
+        "output": remains.load(left).failures[0].output if left.exists() else "",
+        "counted": result.counts.faults_by_kind,
+        "scored": [result.counts.trials, result.metrics.sr.n, result.metrics.time_s.mean],
+        "ticks": record.ticks,
+        "person": hashlib.sha256(repr(record.paths[HUMAN]).encode()).hexdigest()[:16],
+        "changed": after != before or path.read_text() != text,
+    }
+
+
+if __name__ == "__main__":
+    main(sys.argv[1].split(","), sys.argv[2:])

@@ -1,0 +1,48 @@
+"""What guests spend is counted, though no parent collects what they took."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from test_guest import BRIEFING, look
+
+from hthor import guest
+from hthor.guest import Guest, IsolationError, cost
+
+BURNS = """
+import time
+from hthor.types import Action
+class Agent:
+    def begin(self, briefing):
+        pass
+    def act(self, observation):
+        end = time.process_time() + 0.3
+        while time.process_time() < end:
+            pass
+        return Action()
+"""
+
+
+def spent() -> float:
+    times = os.times()
+    return times.children_user + times.children_system + cost.uncollected_cpu_s()
+
+
+@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+def test_the_processor_time_of_guests_is_counted_once(level: str, tmp_path: Path) -> None:
+    try:
+        guest.in_force(level)
+    except IsolationError as error:
+        pytest.skip(str(error))
+    path = tmp_path / "burns.py"
+    path.write_text(BURNS)
+    with Guest(path, isolation=level) as mind:
+        mind.begin(BRIEFING)
+        before = spent()
+        for tick in range(2):
+            mind.act(look(tick))
+        taken = cost.cpu_s(mind.pid)
+        assert cost.resident_mb(mind.pid) > 5
+    assert 0.55 <= spent() - before <= taken + 0.3
