@@ -60,13 +60,6 @@ def test_names_do_not_matter():
     assert renamed == stats.estimate(values, tasks, people)
 
 
-def test_the_same_name_gives_the_same_bootstrap():
-    values, tasks, people = (np.arange(60) % 3 == 0).astype(float), np.arange(60), np.arange(60) % 6
-    first, again, other = (stats.bootstrap(values, tasks, people, name=name, draws=50) for name in "xxy")
-    assert (first == again).all()
-    assert (first != other).any()
-
-
 def test_everybody_doing_everything_is_the_textbook_analysis_of_variance():
     chance = np.random.default_rng(3)
     table = chance.normal(size=(12, 1)) * 2 + chance.normal(size=(1, 7)) * 3 + chance.normal(size=(12, 7))

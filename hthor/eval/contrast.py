@@ -10,6 +10,7 @@ from msgspec import Struct
 
 from hthor.eval import power, spread, stats
 from hthor.eval.pairing import Pair
+from hthor.eval.spread import Spread
 
 _DIGITS = 6
 SHARES = ("sr", "twsr", "adoption", "progress")
@@ -82,8 +83,7 @@ def between(first: np.ndarray, second: np.ndarray, tasks: np.ndarray, people: np
             honest where the robots differ in few trials or none (Agresti and Min 2005).
     """
     count = len(first)
-    found = steadied(spread.two_way((second - first)[None], tasks, people), count) if share else None
-    found = found or spread.two_way((second - first)[None], tasks, people)
+    found = spread_of((second - first)[None], tasks, people, share=share)
     raw = float((second - first).mean())
     centre, variance, freedom = (float(part[0]) for part in (found.mean, found.variance, found.freedom))
     known = math.isfinite(variance)
@@ -105,13 +105,19 @@ def between(first: np.ndarray, second: np.ndarray, tasks: np.ndarray, people: np
     )
 
 
-def steadied(found: spread.Spread, count: int) -> spread.Spread:
+def spread_of(gaps: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, share: bool) -> Spread:
+    """The spread of the mean of differences, (..., N), as all comparisons take it."""
+    found = spread.two_way(gaps, tasks, people)
+    return steadied(found, gaps.shape[-1]) if share else found
+
+
+def steadied(found: Spread, count: int) -> Spread:
     """The spread of a difference of shares with one trial more in which only the one did well, and one for the other.
 
     Without it, two robots that never differed in sixty trials would be said to be equal beyond doubt.
     """
     scale = count / (count + 2.0)
-    return spread.Spread(
+    return Spread(
         mean=found.mean * scale,
         variance=found.variance * scale**2 + 1.0 / (count + 2.0) ** 2,
         freedom=found.freedom,

@@ -8,12 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 from msgspec import Struct
 
-from hthor import seeds
 from hthor.eval import spread
 
-DRAWS = 2000
-"""Bootstrap draws."""
 LEVEL = 0.95
+NORMAL = 1.959964
+"""The quantile of the normal distribution that goes with it."""
 POWER = 0.8
 _DIGITS = 6
 Range = tuple[float, float]
@@ -105,33 +104,3 @@ def student(freedom: np.ndarray, level: float) -> np.ndarray:
 
     found: np.ndarray = special.stdtrit(freedom, level)
     return found
-
-
-def bootstrap(
-    values: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, name: str, draws: int = DRAWS
-) -> np.ndarray:
-    """Means (at most ``draws``,) of "pigeonhole" samples: tasks and people drawn with replacement, each on its own.
-
-    For what has no formula, such as a rank. Where every task was done once, it takes the noise of single trials for
-    three times what it is, and so is cautious.
-
-    Args:
-        values: (N,) float64. tasks: (N,) indices from 0. people: (N,) indices from 0.
-        name: of the chance stream; equal names give equal draws.
-    """
-    chance = np.random.Generator(np.random.Philox(key=seeds.derive(0, "bootstrap", name)))
-    of_task = _counts(chance, int(tasks.max()) + 1, draws)
-    of_person = _counts(chance, int(people.max()) + 1, draws)
-    sums, weights = np.zeros(draws), np.zeros(draws)
-    for value, task, person in zip(values.tolist(), tasks.tolist(), people.tolist(), strict=True):
-        weight = of_task[task] * of_person[person]
-        weights += weight
-        sums += weight * value
-    held = weights > 0.0  # a sample can miss every trial where few tasks met few people
-    means: np.ndarray = sums[held] / weights[held]
-    return means if means.size else np.full(1, values.mean())
-
-
-def _counts(chance: np.random.Generator, sort: int, draws: int) -> np.ndarray:
-    """How often each of ``sort`` things is drawn, (sort, draws)."""
-    return np.ascontiguousarray(chance.multinomial(sort, np.full(sort, 1.0 / sort), size=draws).T.astype(np.float64))

@@ -1,0 +1,110 @@
+"""Agents in order, with what chance leaves of it: ranks, their intervals, and who ties with whom; reads no files.
+
+All agents have played the same trials. An agent's rank is one more than the number of agents that are significantly
+better, as `hthor compare` finds it: paired, over tasks and people, adjusted by Holm for all pairs at once.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from msgspec import Struct
+
+from hthor.eval import contrast, resample, stats
+
+STREAM = "ranking"
+"""The name of the bootstrap's chance stream."""
+
+
+class Standing(Struct, frozen=True, kw_only=True):
+    """An agent's place: 1 is the best.
+
+    Attributes:
+        rank: one more than the number of agents that are significantly better, and never less than the rank of an
+            agent with a higher mean.
+        interval: the ranks that are not excluded at 95 %, for new tasks and new people.
+        ties: indices of the agents that cannot be told from this one, in their order.
+    """
+
+    rank: int
+    interval: tuple[int, int]
+    ties: tuple[int, ...]
+
+
+class Versus(Struct, frozen=True, kw_only=True):
+    """Every agent (row) less every other (column), in shares: (A, A) each, as `hthor.eval.contrast` has them.
+
+    ``p`` is Holm's over all pairs.
+    """
+
+    centre: np.ndarray
+    variance: np.ndarray
+    freedom: np.ndarray
+    p: np.ndarray
+
+
+def standings(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> tuple[Standing, ...]:
+    """The place of each agent.
+
+    The interval's ends are 1 and the number of agents that are better, and all less those that are worse, when this
+    agent's differences from all others are to hold together at 95 %. How far they may all be off at once is taken from
+    samples of tasks and people, the same for all agents ("pigeonhole" bootstrap, of the largest deviation); how wide
+    each is from the same formula as every other interval. Plain quantiles of the ranks in the samples would leave out
+    the true rank far too often among agents that are about equal (Mogstad et al. 2024).
+
+    Args:
+        outcomes: (A, N), shares from 0 to 1, such as successes. tasks, people: (N,) indices from 0.
+    """
+    count = len(outcomes)
+    versus = against(outcomes, tasks, people)
+    better = (versus.p < 1.0 - stats.LEVEL) & (versus.centre < 0.0)  # the column is better than the row
+    told = better | better.T
+    plain = 1 + better.sum(axis=1)
+    totals = np.rint(outcomes * 1e6).sum(axis=1)  # whole numbers: equal means are equal
+    low, high = _excluded(versus, outcomes, tasks, people)
+    found = []
+    for one in range(count):
+        rank = int(plain[totals >= totals[one]].max())
+        ends = (min(rank, 1 + int(low[one])), max(rank, count - int(high[one])))
+        ties = tuple(other for other in range(count) if other != one and not told[one, other])
+        found.append(Standing(rank=rank, interval=ends, ties=ties))
+    return tuple(found)
+
+
+def against(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> Versus:
+    """Each agent against each other."""
+    count = len(outcomes)
+    centre, variance, freedom, adjusted = np.zeros((count, count)), *(np.ones((count, count)) for _ in range(3))
+    p: list[float] = []
+    for one in range(count - 1):
+        found = contrast.spread_of(outcomes[one + 1 :] - outcomes[one], tasks, people, share=True)
+        centre[one + 1 :, one], centre[one, one + 1 :] = found.mean, -found.mean
+        for held, part in ((variance, found.variance), (freedom, found.freedom)):
+            held[one + 1 :, one] = held[one, one + 1 :] = part
+        rows = zip(found.mean.tolist(), found.variance.tolist(), found.freedom.tolist(), strict=True)
+        p += [contrast.p_value(*row) for row in rows]
+    adjusted[np.triu_indices(count, 1)] = contrast.holm(p)  # in the order in which they were found
+    return Versus(centre=centre, variance=variance, freedom=freedom, p=np.minimum(adjusted, adjusted.T))
+
+
+def _excluded(
+    versus: Versus, outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """For each agent, how many are better than it, and how many worse, all of which hold together."""
+    count = len(outcomes)
+    drawn = resample.means(outcomes, tasks, people, name=STREAM)
+    off = drawn - outcomes.mean(axis=1)[:, None]
+    better, worse = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
+    for one in range(count):
+        gaps = off[one] - off  # of each sample's differences from those that were seen
+        sd = np.sqrt((gaps**2).mean(axis=1))
+        moving = sd > 1e-9
+        largest = (np.abs(gaps[moving]) / sd[moving, None]).max(axis=0) if moving.any() else np.zeros(1)
+        far = max(float(np.quantile(largest, stats.LEVEL)), stats.NORMAL)
+        level = 1.0 - math.erfc(far / math.sqrt(2.0)) / 2.0
+        reach = stats.student(versus.freedom[one], level) * np.sqrt(versus.variance[one])
+        others = np.arange(count) != one
+        better[one] = int((others & (versus.centre[one] + reach < 0.0)).sum())
+        worse[one] = int((others & (versus.centre[one] - reach > 0.0)).sum())
+    return better, worse
