@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from hthor import jsonio
 from hthor.errors import RunError
-from hthor.eval import board, control, guarded, log, record, score, setup
+from hthor.eval import command, control, guarded, log, machine, record, score, setup
 from hthor.eval.log import Log, Place
 from hthor.eval.record import Record
 from hthor.eval.run import EFFORT
@@ -157,14 +157,14 @@ def _gaps(parts: Sequence[_Part]) -> tuple[Gap, ...]:
         mine = [part for part in parts if part.shard.number == number]
         if not mine:
             absent = Shard(number=number, of=of)
-            command = board.command(absent.folder(base), msgspec.structs.replace(first.plan, shard=absent))
-            gaps.append(Gap(number=number, of=of, trials=None, command=command))
+            words = command.of(absent.folder(base), msgspec.structs.replace(first.plan, shard=absent))
+            gaps.append(Gap(number=number, of=of, trials=None, command=words))
             continue
         fullest = max(mine, key=lambda part: len(part.records))
         lacks = fullest.shard.trials - len(set().union(*(part.records for part in mine)))
         if lacks:
-            command = board.command(fullest.folder, fullest.plan)
-            gaps.append(Gap(number=number, of=of, trials=lacks, command=command))
+            words = command.of(fullest.folder, fullest.plan)
+            gaps.append(Gap(number=number, of=of, trials=lacks, command=words))
     return tuple(gaps)
 
 
@@ -184,6 +184,7 @@ def _score(out: Path, plan: Setup, folders: Sequence[Path]) -> Result:
             cpu_s=round(sum(one.cpu_s for one in efforts), 3),
             trials=sum(one.trials for one in efforts),
         )
+    machine.join(out, folders)
     beside, held = control.beside(out, plan, records), _held(out, folders)
     result = score.summarise(plan, log.fetch(there), records, effort, uplift=beside, isolation=held)
     score.store(out, result)

@@ -13,7 +13,7 @@ from typing import Protocol
 
 from hthor import jsonio
 from hthor.errors import HthorError, RunError
-from hthor.eval import control, engines, guarded, log, record, score, setup
+from hthor.eval import control, engines, guarded, log, machine, record, score, setup
 from hthor.eval.engines import Engine, Make, SessionFailed
 from hthor.eval.log import Log
 from hthor.eval.score import Effort, Result
@@ -85,6 +85,8 @@ def evaluate(
         watch.begin(len(wanted), sum(key in book for key in wanted))
         if book.torn:
             watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")
+        if left:
+            machine.note(folder)
         cost = _play(book, engine or engines.find(engines.LOCAL, jobs=jobs), left, make, watch) if left else None
         missing = [key for key in wanted if key not in book]
         if missing:
