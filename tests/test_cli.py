@@ -248,13 +248,6 @@ def test_replay_names_what_it_cannot_find(hthor, done: Path):
     assert ".png" in wrong.err
 
 
-def test_leaderboard_add(hthor, done: Path, tmp_path: Path):
-    said = hthor("leaderboard", "add", str(done), "--board", str(tmp_path / "board"))
-    assert said.code == 0
-    assert Path(said.out.strip()).is_file()
-    assert (tmp_path / "board" / "leaderboard.json").is_file()
-
-
 @pytest.mark.parametrize("words", [("houses",), ("tasks",), ("agents",), ("humans",), ("robots",)])
 def test_lists_agree_with_their_json(hthor, words):
     rows = json.loads(hthor(*words, "list", "--json").out)

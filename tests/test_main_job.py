@@ -18,17 +18,18 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import cv2
-import jsonschema
 import msgspec
 import pytest
 
+from benchmarks import forging
 from hthor import cli, guest, houses, jsonio, rules, tasks
-from hthor.eval import cast, crews, find, guarded, redraw
+from hthor.eval import cast, crews, find, guarded
 from hthor.eval.log import Log
 from hthor.eval.record import Record
 from hthor.eval.session import Session, sessions
+from hthor.leaderboard import enter, files, outcomes, worth
 from hthor.tasks import library
+from hthor.tasks.commitment import Commitment
 from hthor.types import HUMAN
 
 HOUSES = ("alder", "elder")
@@ -485,32 +486,62 @@ def test_folders_that_cannot_be_used(copied: Path, say: Callable[..., Said], tmp
     assert "Traceback" not in nowhere.err
 
 
-def test_leaderboard(reference: Path, root: Path, say: Callable[..., Said], tmp_path: Path):
-    said = say("leaderboard", "add", reference, "--board", tmp_path)
-    assert said.code == 0
-    schema = jsonschema.Draft202012Validator(json.loads((root / "leaderboard" / "schema.json").read_bytes()))
-    written = sorted(tmp_path.rglob("*.json"))
-    assert [path.parent.name for path in written if path.name != "leaderboard.json"] == ["entries"]
-    for path in written:
-        schema.validate(json.loads(path.read_bytes()))
-    metrics = json.loads(Path(said.out.strip()).read_bytes())["metrics"]
+@pytest.fixture(scope="module")
+def board(reference: Path, brief: tasks.Suite) -> Path:
+    """A leaderboard that knows the brief suite as an official one, with the run on it and its control."""
+    both = FOLDER / "both"
+    shutil.copytree(reference, both / "run")
+    done = hthor(*EVAL[:2], "silent", *EVAL[3:], "--out", str(both / "alone"), cwd=FOLDER)
+    assert done.returncode == 0, done.stderr
+    made = Commitment(
+        name="brief", salt="0" * 64, houses=2, tasks=TRIALS, suite_sha256=brief.sha256, files={}, made_with={}
+    )
+    jsonio.write(FOLDER / "board" / "suites" / "brief.json", jsonio.pretty(made))
+    enter.add(both / "run", FOLDER / "board")
+    return FOLDER / "board"
+
+
+def test_leaderboard(
+    board: Path, reference: Path, say: Callable[..., Said], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    """Put on the board, verified by real physics on this platform and as on another; a forged copy is caught."""
+    here = shutil.copytree(board, tmp_path / "board")
+    on = ("--board", here)
+    assert say("leaderboard", "validate", *on).code == 0
+    assert say("leaderboard", "build", "--check", *on).code == 1
+    assert say("leaderboard", "build", *on).code == say("leaderboard", "build", "--check", *on).code == 0
+    entry = next(here.glob("entries/frontier-*.json"))
+    metrics = json.loads(entry.read_bytes())["metrics"]
     assert metrics == json.loads((reference / "result.json").read_bytes())["metrics"]
 
+    verify = ("leaderboard", "verify", entry, "--suite", SUITE, "--draw", "0123abcd", "--json")
+    said = say(*verify, "--sample", "3", "--by", "a test", "--date", "2027-01-01", "--write")
+    assert said.code == 0, said.err
+    found = json.loads(said.out)
+    assert (found["tier"], found["drawn"], found["passed"]) == ("V1", 3, True)
+    assert found["compared"] == found["equal"] == found["same_bytes"] >= 3
+    assert json.loads(entry.read_bytes())["verification"] == found
+    assert say("leaderboard", "build", "--check", *on).code == 0
+    assert "V1" in (here / "index.html").read_text()
 
-@pytest.mark.parametrize("agent", ["silent", "frontier", "oracle"])
-def test_a_trial_can_be_looked_at(agent: str, tmp_path: Path):
-    (record,) = played(agent, count=1)
-    redraw.draw(record, tmp_path / "trial.png", video=False)
-    picture = cv2.imread(str(tmp_path / "trial.png"))
-    assert picture.shape[0] > 600
-    assert picture.std() > 10
-    redraw.draw(record, tmp_path / "trial.mp4", video=True)
-    film = cv2.VideoCapture(str(tmp_path / "trial.mp4"))
-    good, frame = film.read()
-    assert good
-    assert frame.std() > 10
-    assert film.get(cv2.CAP_PROP_FRAME_COUNT) > record.ticks / 10
-    film.release()
+    control = files.read(next(here.glob("entries/silent-*.json")))
+    lie = forging.forged(files.read(entry), 1.0)
+    assert lie.uplift is not None
+    held, without = outcomes.unpack(lie.trials), outcomes.unpack(control.trials)
+    lie = msgspec.structs.replace(lie, uplift=worth.uplift(lie, held, control, without))
+    elsewhere = (msgspec.structs.replace(lie.platforms[0], libc="another"),)
+    monkeypatch.setattr(engines, "find", lambda *_, **__: fakes.Here())
+    for platforms, tier in ((lie.platforms, "V1"), (elsewhere, "V2")):
+        files.write(entry, msgspec.structs.replace(lie, platforms=platforms))
+        assert say("leaderboard", "validate", *on).code == 0  # all of it follows from its trials, which never were
+        said = say(*verify)
+        assert (said.code, json.loads(said.out)["tier"]) == (5, tier)
+
+    text = entry.read_text().replace('"seed": 0', '"seed": 1')
+    entry.write_text(text)
+    said = say(*verify)
+    assert said.code == 2
+    assert f"{entry}: hashes.run" in said.err
 
 
 def test_a_trial_is_found_by_any_of_its_names(reference: Path, say: Callable[..., Said]):

@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from hthor import jsonio
 from hthor.errors import RunError
-from hthor.eval import board, control, guarded, log, record, score, setup
+from hthor.eval import command, control, guarded, log, machine, record, score, setup
 from hthor.eval.log import Log, Place
 from hthor.eval.record import Record
 from hthor.eval.run import EFFORT
@@ -152,20 +152,20 @@ def _gaps(parts: Sequence[_Part], out: Path, missing: int) -> tuple[Gap, ...]:
     first = parts[0]
     of, base = first.shard.of, whole_folder(first.folder)
     if any(part.shard.of != of for part in parts):  # the undivided command plays just what is missing
-        return (Gap(number=1, of=1, trials=missing, command=board.command(out, first.plan.whole)),)
+        return (Gap(number=1, of=1, trials=missing, command=command.of(out, first.plan.whole)),)
     gaps = []
     for number in range(1, of + 1):
         mine = [part for part in parts if part.shard.number == number]
         if not mine:
             absent = Shard(number=number, of=of)
-            command = board.command(absent.folder(base), msgspec.structs.replace(first.plan, shard=absent))
-            gaps.append(Gap(number=number, of=of, trials=None, command=command))
+            words = command.of(absent.folder(base), msgspec.structs.replace(first.plan, shard=absent))
+            gaps.append(Gap(number=number, of=of, trials=None, command=words))
             continue
         fullest = max(mine, key=lambda part: len(part.records))
         lacks = fullest.shard.trials - len(set().union(*(part.records for part in mine)))
         if lacks:
-            command = board.command(fullest.folder, fullest.plan)
-            gaps.append(Gap(number=number, of=of, trials=lacks, command=command))
+            words = command.of(fullest.folder, fullest.plan)
+            gaps.append(Gap(number=number, of=of, trials=lacks, command=words))
     return tuple(gaps)
 
 
@@ -186,6 +186,7 @@ def _score(out: Path, plan: Setup, folders: Sequence[Path]) -> Result:
             trials=sum(one.trials for one in efforts),
             replays=sum(one.replays for one in efforts),
         )
+    machine.join(out, folders)
     beside, held = control.beside(out, plan, records), _held(out, folders)
     result = score.summarise(plan, log.fetch(there), records, effort, uplift=beside, isolation=held)
     score.store(out, result)

@@ -11,7 +11,7 @@ from importlib import metadata
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1]
-_ABOVE = ("cli", "__main__.py", "eval", "calibration")
+_ABOVE = ("cli", "__main__.py", "leaderboard", "eval", "calibration")
 _HASHED_BY_CONTENT = (  # each trial names those of its own house, suite and people
     *("houses/data", "houses/unseen", "tasks/suites", "humans/populations"),
 )

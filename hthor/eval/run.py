@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Protocol
 
 from hthor import jsonio
-from hthor.eval import control, course, engines, guarded, log, record, score, setup
+from hthor.eval import control, course, engines, guarded, log, machine, record, score, setup
 from hthor.eval.engines import Engine, Make
 from hthor.eval.log import Log
 from hthor.eval.remains import Keeper
@@ -99,6 +99,8 @@ def _evaluate(
         if book.torn:
             watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")
         keeper = Keeper(folder, again)
+        if left:
+            machine.note(folder)
         came = course.play(book, engine, left, make, watch, keeper, stop) if left else None
         if stop.is_set():
             raise Interrupted(f"interrupted after {len(book)} trials; resume with the same command.")

@@ -170,12 +170,7 @@ class Guest:
     @property
     def pid(self) -> int:
         """The first of its processes, 0 when there is none."""
-        return self._process.pid if self._process is not None else 0
-
-    @property
-    def pid(self) -> int:
-        """The first of its processes, 0 when there is none."""
-        return self._process.pid if self._process is not None else 0
+        return self._talk.line.pid if self._talk.line is not None else 0
 
     @property
     def log(self) -> str:

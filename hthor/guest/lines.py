@@ -17,6 +17,10 @@ class Line(Protocol):
     """A guest that can be talked to."""
 
     @property
+    def pid(self) -> int:
+        """The first of its processes on this machine, 0 when there is none."""
+
+    @property
     def log(self) -> str:
         """The end of what it printed, empty where that cannot be had."""
 

@@ -75,6 +75,7 @@ class Served:
     """A connection to a served agent."""
 
     log = ""
+    pid = 0
 
     def __init__(self, connection: ClientConnection) -> None:
         self._connection = connection.__enter__()

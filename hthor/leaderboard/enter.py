@@ -1,0 +1,153 @@
+"""From a run's folder to an entry, scored anew from the run's log; knows nothing of other entries."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from hthor.errors import HthorError, RunError
+from hthor.eval import command, control, guarded, machine, metrics, programme, provenance, score, setup
+from hthor.eval.record import Record
+from hthor.eval.setup import Setup
+from hthor.leaderboard import files, harness, outcomes, overrides, worth
+from hthor.leaderboard.entry import LOCKSTEP, REALTIME, Agent, Entry, Hashes
+from hthor.leaderboard.files import BoardError
+from hthor.leaderboard.submission import Submission
+
+OURS = "hthor.agents."
+"""Where agents come from that are references."""
+
+
+def add(folder: Path, board: Path, submission: Submission | None = None) -> list[tuple[Entry, Path]]:
+    """Put a run, or every run in a folder of runs, on the board: their entries and the entries' files.
+
+    The control of each comes too when the board has none yet. Twice is the same as once. The list is not made anew.
+
+    Raises:
+        RunError: when there is no run, it is not whole, or has no control.
+        BoardError: when it was played with settings that depart from the benchmark's.
+    """
+    made: dict[Path, Entry] = {}
+    for run in _runs(folder):
+        plan = setup.load(run)
+        beside = control.place(run, plan)
+        for each in (run, *([beside] if beside else [])):
+            made[each] = made.get(each) or of(each, submission if each == run else None)
+    added = {entry.id: (entry, board / files.ENTRIES / f"{entry.id}.json") for entry in made.values()}
+    for entry, path in added.values():
+        files.write(path, _verified(entry, path))
+    return list(added.values())
+
+
+def of(folder: Path, submission: Submission | None = None) -> Entry:
+    """The entry of one run."""
+    plan = setup.load(folder)
+    lines, kept = score.records(folder, plan)
+    _whole(folder, plan, len(kept))
+    found = overrides.of(plan, _crew(plan))
+    if found:
+        listed = ", ".join(f"{name} is {value}" for name, value in found.items())
+        raise BoardError(f"{folder / 'run.json'}: such runs are not ranked: {listed}. Leave these options out.")
+    records = [msgspec.structs.replace(one, metrics=metrics.measure(one.spec, one.log)) for one in kept]
+    gain = control.beside(folder, plan, records)
+    if gain is None and plan.seats:
+        raise RunError(f"{folder} has no run without a robot beside it. 'hthor eval' plays it without --no-control.")
+    held = guarded.load(folder)
+    result = score.summarise(plan, lines, records, uplift=gain, isolation=held)
+    columns = outcomes.of(records, map(outcomes.leaf, lines))
+    whose = worth.people(len(records), plan.participants)
+    agent = submission.agent if submission else Agent(name=plan.name)
+    _same_file(folder, plan, submission)
+    return Entry(
+        id=f"{_slug(agent.name)}-{_slug(Path(plan.suite.name).name)}-{plan.sha256[:10]}",
+        reference=all(robot.agent.source.startswith(OURS) for robot in plan.robots),
+        agent=agent,
+        submission=submission.name if submission else "",
+        run=plan,
+        hashes=Hashes(run=plan.sha256, trials=result.hashes.trials, merkle=columns.merkle),
+        harness=harness.here(),
+        mode=REALTIME if getattr(result, "mode", "") == REALTIME else LOCKSTEP,
+        platforms=machine.load(folder),
+        isolation=held,
+        counts=result.counts,
+        faults=_faults(records),
+        metrics=result.metrics,
+        splits=worth.splits(columns, whose),
+        uplift=gain,
+        trials=outcomes.pack(columns),
+    )
+
+
+def _runs(folder: Path) -> list[Path]:
+    if (folder / "run.json").is_file():
+        return [folder]
+    found = [path.parent for path in sorted(folder.glob("*/run.json"))]
+    if not found:
+        raise RunError(
+            f"{folder} is no run's folder, nor a folder of runs: no run.json is there. 'hthor eval' makes one."
+        )
+    return found
+
+
+def _whole(folder: Path, plan: Setup, there: int) -> None:
+    if plan.shard:
+        raise RunError(f"{folder} is a shard of a run, and only whole runs go on the board. 'hthor merge' makes one.")
+    if plan.trials != there:
+        raise RunError(
+            f"{folder} lacks {plan.trials - there} of its {plan.trials} trials, and only whole runs go on the board. "
+            f"Finish it: {command.of(folder, plan)}"
+        )
+    if plan.code_sha256 != (here := provenance.code_sha256()):
+        raise RunError(
+            f"{folder / 'run.json'}: code_sha256 is {plan.code_sha256[:10]}, and here it is {here[:10]}: another "
+            "version of hthor played it, by which it has to be added. Or play it anew."
+        )
+
+
+def _crew(plan: Setup) -> tuple[str, ...]:
+    """The bodies that the suite is made for; official ones have searches and deliveries, which are the scout's."""
+    try:
+        chosen = programme.choose(plan.suite.name, "")
+    except HthorError:
+        return ("scout",)
+    return chosen.crew
+
+
+def _same_file(folder: Path, plan: Setup, submission: Submission | None) -> None:
+    if submission is None:
+        return
+    from hthor import plugins
+
+    there = plugins.sha256(str(submission.path))
+    if [robot.agent.sha256 for robot in plan.robots] != [there]:
+        raise BoardError(
+            f"{folder / 'run.json'}: robots[0].agent.sha256: is not the hash of {submission.path}, {there[:10]}: "
+            "another file was played. Play the one that was handed in."
+        )
+
+
+def _verified(entry: Entry, path: Path) -> Entry:
+    """The entry with the verification of the one that is there, if it is the same entry."""
+    if not path.is_file():
+        return entry
+    try:
+        there = files.read(path)
+    except BoardError:
+        return entry
+    held = there.verification
+    return msgspec.structs.replace(entry, verification=held) if held and held.entry == entry.digest else entry
+
+
+def _faults(records: Sequence[Record]) -> dict[str, int]:
+    """Trials with a fault, by the kind of their first."""
+    counted: Any = Counter(one.faults[0].kind for one in records if one.faults)
+    return dict(sorted(counted.items()))
+
+
+def _slug(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_+.-]+", "-", name).strip("-.")[:60] or "agent"

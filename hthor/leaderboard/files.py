@@ -1,0 +1,87 @@
+"""The board's files: where they lie, how they are read and written, and what is wrong with them; judges no numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TypeVar
+
+import msgspec
+from msgspec import Struct
+
+from hthor import jsonio
+from hthor.errors import HthorError
+from hthor.leaderboard.entry import Entry
+from hthor.tasks import commitment
+from hthor.tasks.commitment import Commitment
+
+ENTRIES, SUITES, LIST, SCHEMA, PAGE = "entries", "suites", "leaderboard.json", "schema.json", "index.html"
+_T = TypeVar("_T")
+
+
+class BoardError(HthorError):
+    """Files of the leaderboard that cannot be taken."""
+
+
+class Problem(Struct, frozen=True, kw_only=True):
+    """What is wrong: in which file, at which field ($ for the whole), and what was expected there."""
+
+    file: str
+    field: str
+    problem: str
+
+    @property
+    def line(self) -> str:
+        """All of it on one line."""
+        return f"{self.file}: {self.field}: {self.problem}"
+
+
+def refuse(found: Iterable[Problem]) -> None:
+    """Do nothing when there are no problems.
+
+    Raises:
+        BoardError: names them all.
+    """
+    held = list(found)
+    if held:
+        raise BoardError("\n       ".join(one.line for one in held))
+
+
+def entry_paths(board: Path) -> list[Path]:
+    """The entries' files, by name."""
+    return sorted((board / ENTRIES).glob("*.json"))
+
+
+def read(path: Path) -> Entry:
+    """An entry from its file.
+
+    Raises:
+        BoardError: when it cannot be read, naming the field.
+    """
+    return parse(path.read_bytes(), str(path), Entry)
+
+
+def parse(data: bytes, shown: str, sort: type[_T]) -> _T:
+    """A document of this sort.
+
+    Raises:
+        BoardError: when it is none, naming the field.
+    """
+    try:
+        return msgspec.json.decode(data, type=sort)
+    except msgspec.ValidationError as error:
+        problem, _, field = str(error).partition(" - at `")
+        raise BoardError(f"{shown}: {field.strip('`').removeprefix('$.') or '$'}: {problem}") from None
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise BoardError(f"{shown}: $: is not JSON: {error}") from None
+
+
+def write(path: Path, document: object) -> None:
+    """Write a document in canonical form: sorted keys, two spaces, a newline at the end."""
+    jsonio.write(path, jsonio.pretty(document))
+
+
+def commitments(board: Path) -> dict[str, Commitment]:
+    """The commitments to official suites that lie with the board, by the hash of the suite."""
+    held = [commitment.load(path) for path in sorted((board / SUITES).glob("*.json"))]
+    return {one.suite_sha256: one for one in held}

@@ -1,0 +1,149 @@
+"""What became of each trial, as columns: out of records, into an entry, and back; knows nothing of files."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import rules
+from hthor.eval.record import Record
+from hthor.leaderboard import merkle, packing
+from hthor.leaderboard.entry import Labels, Trials
+
+LEAF = 8
+"""Bytes of a record's hash that are kept: nobody finds another record with the same ones and other outcomes."""
+PROPERTIES: dict[str, Callable[[Record], str]] = {
+    "difficulty": lambda one: one.spec.task.difficulty,
+    "kind": lambda one: one.spec.task.kind,
+    "split": lambda one: one.spec.task.split,
+}
+_ORDER = ("easy", "medium", "hard", "seen", "new")
+_MILLION = 1_000_000
+_FLAGS, _TWSR, _TIME, _TRUST = 1, 3, 2, 1
+
+
+class Unreadable(ValueError):
+    """A column that does not hold what it should. ``field`` is its name."""
+
+    def __init__(self, field: str, problem: str) -> None:
+        self.field = field
+        super().__init__(problem)
+
+
+class Outcomes(Struct, frozen=True, kw_only=True):
+    """Columns of equal length: bool, or whole numbers as `hthor.leaderboard.entry.Trials` has them.
+
+    ``labels`` holds, for each property, its values and each trial's as an index.
+    """
+
+    met: np.ndarray
+    adopted: np.ndarray
+    faulty: np.ndarray
+    twsr: np.ndarray
+    time: np.ndarray
+    trust: np.ndarray
+    leaves: list[bytes]
+    labels: dict[str, tuple[tuple[str, ...], np.ndarray]]
+
+    @property
+    def rows(self) -> list[bytes]:
+        """What there is of each trial, a few bytes: outcome first, then the hash of its record."""
+        flags = self.met * 1 + self.adopted * 2 + self.faulty * 4
+        numbers = ((flags, _FLAGS), (self.twsr, _TWSR), (self.time, _TIME), (self.trust, _TRUST))
+        plain = [[int(value).to_bytes(size, "little") for value in column] for column, size in numbers]
+        return [b"".join(parts) + leaf for *parts, leaf in zip(*plain, self.leaves, strict=True)]
+
+    @property
+    def merkle(self) -> str:
+        """The root of all rows."""
+        return merkle.root(self.rows)
+
+
+def outcome(row: bytes) -> bytes:
+    """The part of a row that says what became of the trial."""
+    return row[:-LEAF]
+
+
+def of(records: Sequence[Record], leaves: Iterable[bytes]) -> Outcomes:
+    """The columns of records, whose lines have these hashes."""
+    values = [one.metrics for one in records]
+    return Outcomes(
+        met=np.array([one.sr for one in values], dtype=bool),
+        adopted=np.array([bool(one.adoption) for one in values]),
+        faulty=np.array([bool(one.faults) for one in records]),
+        twsr=_whole([one.twsr * _MILLION for one in values]),
+        time=_whole([one.time_s / rules.TICK_S for one in values]),
+        trust=np.array([one.trust or 0 for one in values], dtype=np.int64),
+        leaves=list(leaves),
+        labels={name: _labels([value(one) or "unknown" for one in records]) for name, value in PROPERTIES.items()},
+    )
+
+
+def leaf(line: bytes) -> bytes:
+    """What is kept of the hash of a record's line."""
+    return hashlib.sha256(line).digest()[:LEAF]
+
+
+def pack(held: Outcomes) -> Trials:
+    """The columns as an entry has them."""
+    return Trials(
+        count=len(held.met),
+        met=packing.bits(held.met),
+        adopted=packing.bits(held.adopted),
+        faulty=packing.bits(held.faulty),
+        twsr=packing.numbers(held.twsr, _TWSR),
+        time=packing.numbers(held.time, _TIME),
+        trust=packing.numbers(held.trust, _TRUST),
+        leaves=packing.pieces(held.leaves),
+        labels={
+            name: Labels(names=names, of=packing.digits(codes.tolist())) for name, (names, codes) in held.labels.items()
+        },
+    )
+
+
+def unpack(trials: Trials) -> Outcomes:
+    """The columns of an entry.
+
+    Raises:
+        Unreadable: when one of them does not hold what it should.
+    """
+    count = trials.count
+    bits = {name: _read(name, packing.unbits, getattr(trials, name), count) for name in ("met", "adopted", "faulty")}
+    sizes = {"twsr": _TWSR, "time": _TIME, "trust": _TRUST}
+    numbers = {name: _read(name, packing.unnumbers, getattr(trials, name), count, size) for name, size in sizes.items()}
+    for name, most in (("twsr", _MILLION), ("trust", rules.TRUST_MAX)):
+        if int(numbers[name].max()) > most:
+            raise Unreadable(name, f"holds {int(numbers[name].max())}, which is more than {most}")
+    return Outcomes(
+        **bits,
+        **numbers,
+        leaves=_read("leaves", packing.unpieces, trials.leaves, count, LEAF),
+        labels={
+            name: (one.names, _read(f"labels.{name}.of", packing.undigits, one.of, count, len(one.names)))
+            for name, one in trials.labels.items()
+        },
+    )
+
+
+def _read(field: str, read: Callable[..., Any], *given: Any) -> Any:
+    try:
+        return read(*given)
+    except ValueError as error:
+        raise Unreadable(field, str(error)) from None
+
+
+def _whole(values: Sequence[float]) -> np.ndarray:
+    """Whole numbers that differ from the values only by what a float loses."""
+    held = np.round(np.array(values))
+    if (np.abs(held - values) > 1e-3).any():
+        raise ValueError("a trial's value is finer than an entry can hold")
+    return held.astype(np.int64)
+
+
+def _labels(values: Sequence[str]) -> tuple[tuple[str, ...], np.ndarray]:
+    names = sorted(set(values), key=lambda name: (_ORDER.index(name) if name in _ORDER else len(_ORDER), name))
+    return tuple(names), np.array([names.index(value) for value in values], dtype=np.int64)

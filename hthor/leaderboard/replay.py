@@ -1,0 +1,114 @@
+"""Playing an entry's trials again, on this machine; judges nothing.
+
+A person remembers earlier trials, so those before a wanted one in the same session are played with it.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Sequence
+from contextlib import closing
+from pathlib import Path
+
+import msgspec
+
+from hthor import guest
+from hthor.eval import cast, crews, engines, guarded, programme, provenance, record, session, setup
+from hthor.eval.crews import Crew
+from hthor.eval.engines import Make
+from hthor.eval.news import Played
+from hthor.eval.programme import Programme
+from hthor.eval.record import Record
+from hthor.eval.session import Session
+from hthor.humans import people
+from hthor.humans.people import People
+from hthor.leaderboard.enter import OURS
+from hthor.leaderboard.entry import Entry
+from hthor.leaderboard.files import BoardError
+from hthor.tasks import library
+
+
+def play(
+    entry: Entry,
+    places: Sequence[int],
+    *,
+    agent: str = "",
+    suite: str = "",
+    jobs: int | None = None,
+    require_isolation: str = "",
+) -> dict[int, tuple[Record, bytes]]:
+    """The records of the trials at these places, and of those that had to be played with them, with their lines.
+
+    Args:
+        agent: the agent's file, for one that is not hthor's own. suite: where the suite lies, when it is not either.
+        require_isolation: the least level that will do for a submitted agent.
+
+    Raises:
+        BoardError: when this is not what the entry says was played, naming the field.
+    """
+    chosen = programme.choose(suite or entry.run.suite.name, "")
+    crew, who = _crew(entry, agent), people.find(entry.run.humans.source)
+    _same(entry, chosen, crew, who)
+    whole = session.sessions(
+        chosen.suite, agent=crew, human=who, seed=entry.run.seed, participants=entry.run.participants
+    )
+    wanted, seats = _cut(whole, places)
+    make = _make(suite, crew, who, require_isolation)
+    found: dict[int, tuple[Record, bytes]] = {}
+    with closing(engines.find(engines.LOCAL, jobs=jobs).perform(wanted, make)) as stream:
+        for news in stream:
+            if isinstance(news, Played):
+                one = record.decode(news.line)
+                found[seats[one.spec.participant, one.spec.index]] = (one, news.line)
+    return found
+
+
+def _crew(entry: Entry, agent: str) -> Crew:
+    minds: list[str] = []
+    for robot in entry.run.robots:
+        ours = robot.agent.source.startswith(OURS)
+        if not ours and not agent:
+            raise BoardError(f"{entry.id}: the agent is a file, {robot.agent.source}. Name it with --agent.")
+        minds.append(robot.agent.name if ours else agent)
+    bodies = [robot.robot or "scout" for robot in entry.run.robots]  # a mind that wants no robot has no body either
+    return crews.form(bodies, minds, entry.run.robots[0].detector or "own")
+
+
+def _same(entry: Entry, chosen: Programme, crew: Crew, who: People) -> None:
+    """See that the same configuration comes out; versions of libraries belong to the platform."""
+    here = setup.settle(chosen.suite, crew, human=who, seed=entry.run.seed, participants=entry.run.participants)
+    there, here = (msgspec.structs.replace(plan, versions={}) for plan in (entry.run, here))
+    if there != here:
+        told = "; ".join(setup.differences(there, here))
+        raise BoardError(f"{entry.id}: this is not what was played: {told} ('there' is the entry).")
+
+
+def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session], dict[tuple[int, int], int]]:
+    """The sessions that are needed, each as far as it is, and the place of each (person, trial)."""
+    seats: dict[tuple[int, int], int] = {}
+    for one in whole:
+        for index in range(len(one.trials)):
+            seats[one.participant, index] = len(seats)
+    asked = set(places)
+    wanted = []
+    for one in whole:
+        last = max((index for index in range(len(one.trials)) if seats[one.participant, index] in asked), default=-1)
+        if last >= 0:
+            wanted.append(Session(participant=one.participant, trials=one.trials[: last + 1]))
+    return wanted, seats
+
+
+def _make(suite: str, crew: Crew, who: People, required: str) -> Make:
+    """What plays a session, as in the run that the entry is of."""
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))  # for what agents import of ours
+    own = bool(suite) and Path(suite).exists() and bool(library.own_houses(suite))
+    folder = Path(suite) if Path(suite).is_dir() else Path(suite).parent
+    houses = str((folder / "houses").resolve()) if own else ""
+    sources = cast.Sources(minds=crew.minds, bodies=crew.bodies, houses=houses, people=who.word)
+    held = guarded.settle("auto", required, sorted(set(crew.minds.values())))
+    if held is None:
+        return functools.partial(cast.player, sources)
+    hidden = (str(folder.resolve()),) if suite else ()
+    guest.confine_guests(held.level, hidden)
+    return functools.partial(guarded.player, sources, held.level, hidden)

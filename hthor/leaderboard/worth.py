@@ -1,0 +1,79 @@
+"""An entry's numbers out of what it carries of each trial, without its log; reads no files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hthor import rules
+from hthor.eval import contrast, metrics, session, stats
+from hthor.eval.stats import Estimate
+from hthor.eval.uplift import Uplift
+from hthor.leaderboard.entry import Entry, Group
+from hthor.leaderboard.outcomes import Outcomes
+
+MEASURED = ("sr", "twsr", "adoption", "time_s", "trust")
+"""Metrics that can be worked out from what an entry carries."""
+_MILLION = 1_000_000
+
+
+def values(held: Outcomes, metric: str, *, alone: bool) -> np.ndarray:
+    """A metric's value in each trial (N,), none (0,) where it has no meaning without a robot."""
+    if alone and metric in ("adoption", "trust"):
+        return np.zeros(0)
+    columns = {
+        "sr": held.met.astype(np.float64),
+        "twsr": held.twsr / _MILLION,
+        "adoption": held.adopted.astype(np.float64),
+        "time_s": np.round(held.time * rules.TICK_S, metrics.DIGITS),
+        "trust": held.trust.astype(np.float64),
+    }
+    return columns[metric]
+
+
+def people(count: int, participants: int) -> list[int]:
+    """Whose each trial is, where every task is done once."""
+    sizes = [session.trials_of(count, [person]) for person in range(participants)]
+    return [person for person, size in enumerate(sizes) for _ in range(size)]
+
+
+def scores(held: Outcomes, whose: Sequence[int], *, alone: bool) -> dict[str, Estimate]:
+    """Means and intervals of all that is `MEASURED`."""
+    return {metric: _estimate(values(held, metric, alone=alone), whose, metric) for metric in MEASURED}
+
+
+def splits(held: Outcomes, whose: Sequence[int]) -> dict[str, dict[str, Group]]:
+    """The same of success, for the trials that have a property in common."""
+    found: dict[str, dict[str, Group]] = {}
+    for name, (names, codes) in held.labels.items():
+        found[name] = {}
+        for code, value in enumerate(names):
+            where = np.flatnonzero(codes == code)
+            mine = [whose[place] for place in where.tolist()]
+            rows = {metric: values(held, metric, alone=False)[where] for metric in ("sr", "twsr")}
+            found[name][value] = Group(**{metric: _estimate(row, mine, metric) for metric, row in rows.items()})
+    return found
+
+
+def uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes) -> Uplift:
+    """What the robots add to people who do the same tasks without one."""
+    whose = np.array(people(entry.trials.count, entry.run.participants), dtype=np.int64)
+    tasks = np.arange(entry.trials.count, dtype=np.int64)
+    found = {
+        metric: contrast.between(
+            values(without, metric, alone=True),
+            values(held, metric, alone=False),
+            tasks,
+            whose,
+            share=metric in contrast.SHARES,
+        )
+        for metric in ("sr", "twsr", "time_s")
+    }
+    return Uplift(control=control.hashes.run, **found)
+
+
+def _estimate(some: np.ndarray, whose: Sequence[int], metric: str) -> Estimate:
+    row = some.tolist()
+    tasks = [str(place) for place in range(len(row))]
+    return stats.estimate(row, tasks, whose[: len(row)], within=metrics.RANGES.get(metric, metrics.AMOUNT))

@@ -1,0 +1,371 @@
+"""The leaderboard: whole runs only, the same bytes always, and whatever is changed in an entry is named."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from unittest import mock
+
+import eval_fakes as fakes
+import jsonschema
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from benchmarks import forging
+from hthor import jsonio
+from hthor.errors import HthorError, RunError
+from hthor.eval import provenance, record
+from hthor.leaderboard import (
+    checks,
+    enter,
+    files,
+    form,
+    listing,
+    merkle,
+    outcomes,
+    overrides,
+    packing,
+    page,
+    publish,
+    submission,
+    worth,
+)
+from hthor.leaderboard.entry import Entry
+from hthor.tasks.commitment import Commitment
+
+COUNT = 20
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _code():
+    with mock.patch.object(provenance, "code_sha256", return_value="34" * 32):
+        yield
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Runs as their folders, with the control beside them."""
+    base = tmp_path_factory.mktemp("runs")
+    for name in ("helper", "clumsy", "silent"):
+        plan, dealt = fakes.run_of(COUNT, name=name, absent=name == "silent")
+        jsonio.write(base / name / "run.json", jsonio.pretty(plan))
+        made = [one for session in dealt for one in fakes.player()(session)]
+        jsonio.write(base / name / "trials.jsonl", b"".join(record.encode(one) for one in made))
+        if name != "silent":
+            held = {"level": "L3", "memory": "2048 MiB"}
+            jsonio.write(base / name / "isolation.json", jsonio.pretty(held))
+        else:
+            text = (base / name / "run.json").read_text().replace('"silent.py"', '"hthor.agents.silent"')
+            (base / name / "run.json").write_text(text)
+    return base
+
+
+def committed(board: Path) -> Path:
+    """A board that knows the made-up suite as an official one."""
+    suite = fakes.suite(COUNT)
+    made = Commitment(
+        name="fake", salt="0" * 64, houses=3, tasks=COUNT, suite_sha256=suite.sha256, files={}, made_with={}
+    )
+    jsonio.write(board / "suites" / "fake.json", jsonio.pretty(made))
+    return board
+
+
+@pytest.fixture(scope="module")
+def whole(runs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    board = committed(tmp_path_factory.mktemp("board"))
+    enter.add(runs, board)
+    publish.build(board)
+    return board
+
+
+@pytest.fixture
+def board(whole: Path, tmp_path: Path) -> Path:
+    return shutil.copytree(whole, tmp_path / "board")
+
+
+def entry_of(board: Path, name: str) -> Path:
+    return next(path for path in files.entry_paths(board) if path.name.startswith(name))
+
+
+def _files(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+# ------------------------------------------------------------------------------------------------------- entries
+
+
+def test_twice_is_once_in_any_order_and_the_control_comes_too(whole: Path, runs: Path, tmp_path: Path):
+    other = committed(tmp_path / "other")
+    for name in ("clumsy", "helper", "clumsy"):
+        enter.add(runs / name, other)
+    publish.build(other)
+    assert _files(other) == _files(whole)
+    assert [path.name.partition("-")[0] for path in files.entry_paths(other)] == ["clumsy", "helper", "silent"]
+
+
+def test_every_file_is_as_the_schema_says(whole: Path):
+    schema = json.loads((whole / "schema.json").read_bytes())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    valid = jsonschema.Draft202012Validator(schema)
+    for path in (*files.entry_paths(whole), whole / "leaderboard.json"):
+        document = json.loads(path.read_bytes())
+        valid.validate(document)
+        assert not valid.is_valid({**document, "extra": 1})
+    assert checks.problems(whole) == []
+    assert publish.differences(whole) == []
+
+
+def test_the_boards_own_files_are_in_order(root: Path):
+    assert [one.line for one in publish.differences(root / "leaderboard")] == []
+
+
+def test_parts_and_departures_are_refused(runs: Path, tmp_path: Path):
+    part = shutil.copytree(runs / "helper", tmp_path / "part")
+    lines = (part / "trials.jsonl").read_bytes().splitlines(keepends=True)
+    (part / "trials.jsonl").write_bytes(b"".join(lines[:7]))
+    with pytest.raises(RunError, match=r"lacks 13 of its 20 trials.*hthor eval --agent helper\.py .*--seed 0 "):
+        enter.add(part, tmp_path / "board")
+    alone = shutil.copytree(runs / "helper", tmp_path / "elsewhere" / "helper")
+    with pytest.raises(RunError, match="no run without a robot beside it"):
+        enter.add(alone, tmp_path / "board")
+    with pytest.raises(RunError, match=r"no run\.json is there"):
+        enter.add(tmp_path / "elsewhere" / "helper" / "none", tmp_path / "board")
+    plan = msgspec.json.decode((runs / "helper" / "run.json").read_bytes(), type=type(fakes.run_of(COUNT)[0]))
+    assert overrides.of(plan, ("scout",)) == {}
+    seat = msgspec.structs.replace(plan.robots[0], detector="ideal", robot_sha256="00")
+    other = msgspec.structs.replace(plan, participants=1, robots=(seat,))
+    assert overrides.of(other, ("tender",)).keys() == {"participants", "detector", "robot", "robots"}
+    with mock.patch.object(provenance, "code_sha256", return_value="56" * 32), pytest.raises(RunError, match="code_"):
+        enter.add(runs / "helper", tmp_path / "board")
+    assert not (tmp_path / "board").exists()
+
+
+# -------------------------------------------------------------------------------------------------- what is changed
+
+CHANGES = {
+    "metrics.sr.mean": ("metrics.sr", lambda one: one["metrics"]["sr"].update(mean=0.99)),
+    "metrics.sr.ci95": ("metrics.sr.ci95[0]", lambda one: one["metrics"]["sr"].update(ci95=[0.0, 1.0])),
+    "metrics.idle_s": ("metrics.idle_s", lambda one: one["metrics"]["idle_s"].update(mean=1e6)),
+    "twsr": (
+        "metrics.twsr.mean",
+        lambda one: one["metrics"]["twsr"].update(mean=one["metrics"]["twsr"]["mean"] + 1e-3),
+    ),
+    "splits": ("splits.kind.mobile_manipulation.sr.mean", lambda one: _split(one).update(mean=0.123)),
+    "uplift": ("uplift.sr.difference", lambda one: one["uplift"]["sr"].update(difference=0.9)),
+    "control": ("uplift.control", lambda one: one["uplift"].update(control="0" * 64)),
+    "faults": ("counts.faults", lambda one: one["counts"].update(faults=7)),
+    "kinds of faults": ("faults", lambda one: one["faults"].update(raised=9)),
+    "successes": ("counts.successes", lambda one: one["counts"].update(successes=0)),
+    "a bit": ("hashes.merkle", lambda one: one["trials"].update(met=packing.bits(np.ones(COUNT)))),
+    "bits beyond": ("trials.met", lambda one: one["trials"].update(met=packing.bits(np.ones(COUNT + 4)))),
+    "too few": ("trials.twsr", lambda one: one["trials"].update(twsr="AAAA")),
+    "too much": ("trials.twsr", lambda one: one["trials"].update(twsr=packing.numbers(np.full(COUNT, 10**6 + 1), 3))),
+    "label": ("trials.labels.split.of", lambda one: one["trials"]["labels"]["split"].update(of="9" * COUNT)),
+    "seed": ("hashes.run", lambda one: one["run"].update(seed=5)),
+    "trials": ("run.trials", lambda one: one["run"].update(trials=19)),
+    "suite": ("run.suite.sha256", lambda one: one["run"]["suite"].update(sha256="0" * 64)),
+    "detector": ("run", lambda one: one["run"]["robots"][0].update(detector="ideal")),
+    "reference": ("reference", lambda one: one.update(reference=True)),
+    "isolation": ("isolation", lambda one: one.update(isolation=None)),
+    "id": ("id", lambda one: one.update(id="helper-fake-0123456789")),
+    "overrides": ("overrides", lambda one: one.update(overrides={"limit": "9"})),
+    "unknown field": ("$", lambda one: one.update(note="hello")),
+    "missing field": ("$", lambda one: one.pop("mode")),
+    "type": ("run.seed", lambda one: one["run"].update(seed="0")),
+    "hash": ("hashes.run", lambda one: one["hashes"].update(run="xyz")),
+}
+
+
+def _split(one: dict) -> dict:
+    return one["splits"]["kind"]["mobile_manipulation"]["sr"]
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_what_was_changed_is_named(board: Path, change: str):
+    field, spoil = CHANGES[change]
+    path = entry_of(board, "clumsy" if change == "splits" else "helper")
+    document = json.loads(path.read_bytes())
+    spoil(document)
+    path.write_bytes(jsonio.pretty(document))
+    found = checks.problems(board)
+    assert field in {one.field for one in found}
+    assert {one.file for one in found} == {str(path)}
+    with pytest.raises(files.BoardError, match=r"helper|clumsy"):
+        publish.build(board)
+
+
+def test_all_problems_are_listed(board: Path):
+    path = entry_of(board, "helper")
+    document = json.loads(path.read_bytes())
+    document["metrics"]["sr"]["mean"] = 0.99
+    document["counts"]["faults"] = 7
+    document["run"]["seed"] = 3
+    path.write_bytes(jsonio.pretty(document))
+    (board / "entries" / "rubbish.json").write_text("{")
+    fields = [one.field for one in checks.problems(board)]
+    assert {"metrics.sr.mean", "counts.faults", "hashes.run", "$"} <= set(fields)
+
+
+def test_another_spelling_is_refused_and_can_be_fixed(board: Path, whole: Path):
+    path = entry_of(board, "helper")
+    path.write_text(json.dumps(json.loads(path.read_bytes())))
+    assert [one.field for one in checks.problems(board)] == [form.SPELLING]
+    assert form.fix(files.entry_paths(board)) == [path]
+    assert _files(board) == _files(whole)
+    (board / "leaderboard.json").write_bytes(b"{}")
+    assert [one.file for one in publish.differences(board)] == [str(board / "leaderboard.json")]
+
+
+def test_a_forger_who_makes_all_follow_passes_the_laws_but_not_an_old_verification(board: Path):
+    path = entry_of(board, "helper")
+    control = files.read(entry_of(board, "silent"))
+    lie = forging.forged(files.read(path), 0.2)
+    without = outcomes.unpack(control.trials)
+    lie = msgspec.structs.replace(lie, uplift=worth.uplift(lie, outcomes.unpack(lie.trials), control, without))
+    files.write(path, lie)
+    assert checks.problems(board) == []
+    assert lie.digest != files.read(entry_of(board, "clumsy")).digest
+
+
+# -------------------------------------------------------------------------------------------------- list and page
+
+
+def test_ranks_follow_from_entries_alone(whole: Path):
+    entries = [files.read(path) for path in files.entry_paths(whole)]
+    found = listing.board(entries)
+    assert jsonio.pretty(found) == (whole / "leaderboard.json").read_bytes()
+    assert listing.board(entries[::-1]) == found
+    (section,) = found.sections
+    ranks = {row.name: row.ranks for row in section.rows}
+    assert ranks["no robot"] is None
+    helper, clumsy = (ranks[name] for name in ("helper", "clumsy"))
+    assert helper is not None
+    assert clumsy is not None
+    assert helper.sr.rank == clumsy.sr.rank == 1  # twenty trials tell nobody apart, and the board says so
+    assert clumsy.sr.interval == (1, 2)
+    assert [id.partition("-")[0] for id in clumsy.sr.ties] == ["helper"]
+    rates = [row.sr.mean for row in section.rows]
+    assert rates == sorted(rates, reverse=True)
+
+
+def test_only_what_can_be_compared_is_ranked_together(whole: Path):
+    entries = [files.read(path) for path in files.entry_paths(whole)]
+    other = msgspec.structs.replace(entries[0], mode="realtime")
+    older = msgspec.structs.replace(entries[0], run=msgspec.structs.replace(entries[0].run, code_sha256="56" * 32))
+    assert len(listing.board([*entries, other, older]).sections) == 3
+
+
+def test_the_page_says_what_the_list_says_and_needs_nothing_else(whole: Path):
+    text = (whole / "index.html").read_text()
+    for stranger in ("http", "src=", "@import", "url(", "fetch"):
+        assert stranger not in text
+    for word in ("no robot", "helper", "cannot tell apart", "1–2", "prefers-color-scheme:dark"):
+        assert word in text
+    found = listing.board([files.read(path) for path in files.entry_paths(whole)])
+    (section,) = found.sections
+    rows = tuple(msgspec.structs.replace(row, name="<b>x", id="<i>") for row in section.rows)
+    assert "<b>x" not in page.render(
+        msgspec.structs.replace(found, sections=(msgspec.structs.replace(section, rows=rows),))
+    )
+    assert "no entry yet" in page.render(listing.board([]))
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
+def test_a_browser_shows_the_page_without_complaint(whole: Path, tmp_path: Path):
+    options = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--enable-logging=stderr"]
+    options += [f"--user-data-dir={tmp_path / 'browser'}", "--dump-dom", f"file://{whole / 'index.html'}"]
+    done = subprocess.run(["chromium", *options], capture_output=True, text=True, timeout=180, check=True)
+    assert ":CONSOLE" not in done.stderr
+    assert 'tabindex="0"' in done.stdout  # the script that sorts has run
+
+
+# ---------------------------------------------------------------------------------------------------- small parts
+
+
+@given(st.lists(st.integers(0, 2**24 - 1), min_size=1, max_size=40))
+def test_columns_come_back(values: list[int]):
+    column = np.array(values)
+    assert packing.unnumbers(packing.numbers(column, 3), len(values), 3).tolist() == values
+    odd = column % 2 == 1
+    assert (packing.unbits(packing.bits(odd), len(values)) == odd).all()
+    small = [value % packing.LABELS_MAX for value in values]
+    assert packing.undigits(packing.digits(small), len(values), packing.LABELS_MAX).tolist() == small
+
+
+@given(st.lists(st.binary(max_size=6), min_size=1, max_size=12), st.data())
+def test_no_row_can_be_changed_moved_or_left_out(rows: list[bytes], data: st.DataObject):
+    root = merkle.root(rows)
+    place = data.draw(st.integers(0, len(rows) - 1))
+    assert merkle.root([*rows[:place], rows[place] + b"x", *rows[place + 1 :]]) != root
+    assert merkle.root(rows[:place] + rows[place + 1 :]) != root
+    assert merkle.root([*rows, rows[place]]) != root
+    turned = rows[::-1]
+    assert (merkle.root(turned) == root) == (turned == rows)
+
+
+def test_what_an_entry_says_of_people_is_how_they_were_dealt():
+    for count in (1, 9, 20, 33):
+        _, dealt = fakes.run_of(count)
+        whose = [session.participant for session in dealt for _ in session.trials]
+        assert worth.people(count, len(dealt)) == whose
+
+
+# --------------------------------------------------------------------------------------------------- submissions
+
+
+@pytest.fixture
+def handed_in(tmp_path: Path) -> Path:
+    folder = tmp_path / "submissions" / "mine"
+    folder.mkdir(parents=True)
+    (folder / "agent.py").write_text("class Agent: ...\n")
+    (folder / "submission.json").write_text('{"name": "My agent", "authors": ["A"], "licence": "MIT"}')
+    return folder
+
+
+def test_a_submission_is_read(handed_in: Path):
+    found = submission.read(handed_in)
+    assert (found.name, found.agent.name, found.agent.deterministic) == ("mine", "My agent", True)
+
+
+SPOILT: dict[str, tuple[Callable[[Path], object], str]] = {
+    "link": (lambda at: (at / "README.md").symlink_to("/etc/passwd"), "is a link"),
+    "more": (lambda at: (at / "weights.bin").write_bytes(b"1"), "is not taken"),
+    "deep": (lambda at: (at / "more").mkdir(), "is not taken"),
+    "binary": (lambda at: (at / "agent.py").write_bytes(b"\xff\xfe"), "is not text"),
+    "zero": (lambda at: (at / "agent.py").write_bytes(b"a\0b"), "zero byte"),
+    "large": (lambda at: (at / "agent.py").write_text("#" * 300_000), "at most"),
+    "no agent": (lambda at: (at / "agent.py").unlink(), "is missing"),
+    "no name": (lambda at: (at / "submission.json").write_text("{}"), "name"),
+    "field": (lambda at: (at / "submission.json").write_text('{"name": "x", "rank": 1}'), "rank"),
+    "no json": (lambda at: (at / "submission.json").write_text("{"), "not JSON"),
+}
+
+
+@pytest.mark.parametrize("how", SPOILT)
+def test_what_is_no_submission_is_refused(handed_in: Path, how: str):
+    spoil, told = SPOILT[how]
+    spoil(handed_in)
+    assert any(told in one.line for one in submission.problems(handed_in))
+    with pytest.raises(HthorError, match="mine"):
+        submission.read(handed_in)
+
+
+def test_names_of_submissions(handed_in: Path):
+    other = handed_in.rename(handed_in.with_name("Mine !"))
+    assert any("cannot be a submission's name" in one.problem for one in submission.problems(other))
+
+
+def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path, tmp_path: Path):
+    with pytest.raises(files.BoardError, match=r"robots\[0\]\.agent\.sha256"):
+        enter.add(runs / "helper", tmp_path / "board", submission.read(handed_in))
+    entry: Entry = enter.of(runs / "helper")
+    path = committed(tmp_path / "board") / "entries" / f"{entry.id}.json"
+    files.write(path, msgspec.structs.replace(entry, submission="mine"))
+    found = checks.problems(tmp_path / "board", [path], submissions=handed_in.parent)
+    assert "run.robots[0].agent.sha256" in {one.field for one in found}
