@@ -14,6 +14,7 @@ from hthor.cli import (
     boards,
     calibrate,
     compare,
+    doctor,
     ending,
     homes,
     lists,
@@ -42,6 +43,7 @@ app.command("replay")(runs.replay)
 app.command("report")(reports.report)
 app.command("case")(reports.case)
 app.command("calibrate")(calibrate.calibrate)
+app.command("doctor")(doctor.doctor)
 app.add_typer(boards.app, name="leaderboard")
 app.add_typer(assets.app, name="assets")
 app.add_typer(homes.app, name="houses")
