@@ -14,6 +14,7 @@ from hthor.cli import (
     boards,
     calibrate,
     compare,
+    completing,
     doctor,
     ending,
     homes,
@@ -86,4 +87,6 @@ def run() -> None:
     _open_streams()
     if "FORCE_COLOR" not in os.environ and not sys.stdout.isatty():
         os.environ["_TYPER_FORCE_DISABLE_TERMINAL"] = "1"  # typer would also colour for GITHUB_ACTIONS and PY_COLORS
+    if completing.VARIABLE in os.environ:
+        completing.attach(app)
     ending.conclude(app)

@@ -129,6 +129,10 @@ def evaluate(
     ] = "",
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Only say what would be played, where, and for how long; write nothing.")
+    ] = False,
+    context: typer.Context = None,  # type: ignore[assignment]
 ) -> None:
     """Evaluate robots' minds with people over a suite of tasks.
 
@@ -164,6 +168,11 @@ def evaluate(
         isolation=isolation,
         require_isolation=require_isolation,
     )
+    if dry_run:
+        from hthor.cli import ahead
+
+        ahead.show(options, watcher, context, json)
+        return
     paper = talk if json else screen.console()
     done: list[Done] = []
     words = options.humans

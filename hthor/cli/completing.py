@@ -1,0 +1,153 @@
+"""What the shell offers for a value when the user presses the tab key: names that ship and runs that lie about.
+
+It reads names of files and imports nothing that computes: an answer must come at once. Where no name fits, the shell
+offers files, as most values may be files too.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import typing
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import typer
+
+VARIABLE = "_HTHOR_COMPLETE"
+"""The shell sets it when it asks."""
+_PACKAGE = Path(__file__).resolve().parents[1]
+_DEPTH = 3
+_MANY = 200
+_ALIASES = ("tall", "small")
+
+
+def agents() -> list[str]:
+    """Built-in minds."""
+    return _stems("agents", "py")
+
+
+def people() -> list[str]:
+    """Populations, kinds of people, human models, and the words for several."""
+    files = (*_stems("humans/populations", "json"), *_stems("humans/kinds", "json"), *_stems("humans/models", "py"))
+    return sorted({*files, "literature", "kinds", "bracket"})
+
+
+def suites() -> list[str]:
+    """The suites that ship."""
+    return _stems("tasks/suites", "json")
+
+
+def kinds() -> list[str]:
+    """Kinds of task, by their names and short names."""
+    files = [_PACKAGE / "tasks/kinds" / f"{name}.py" for name in _stems("tasks/kinds", "py")]
+    shorts = (re.search(r'^    short = "(\w+)"', file.read_text(encoding="utf-8"), re.MULTILINE) for file in files)
+    return sorted({*(file.stem for file in files), *(found[1] for found in shorts if found)})
+
+
+def robots() -> list[str]:
+    """Robots' bodies."""
+    return sorted({*_stems("world/robots", "py"), *_ALIASES})
+
+
+def houses() -> list[str]:
+    """The houses that ship."""
+    return _stems("houses/data", "json")
+
+
+def engines() -> list[str]:
+    """Where trials can be played."""
+    return _stems("eval/engines", "py")
+
+
+def levels() -> list[str]:
+    """Levels of isolation."""
+    return ["auto", "L1", "L2", "L3"]
+
+
+def detectors() -> list[str]:
+    """Robots' detectors."""
+    return ["ideal", "noisy", "own"]
+
+
+def packs() -> list[str]:
+    """Furniture packs in the user's cache."""
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return sorted(path.parent.name for path in cache.glob("hthor/packs/*/pack.json"))
+
+
+def runs(incomplete: str = "") -> list[str]:
+    """Folders of runs, in and below the folder that is being typed, or below the usual one."""
+    typed = Path(os.path.dirname(incomplete)) if incomplete else Path()
+    roots = [typed] if incomplete else [Path(), Path("runs")]
+    found = {str(folder) for root in roots for folder in _runs(root, _DEPTH if root.name else 1)}
+    return sorted(found)[:_MANY]
+
+
+OFFERS: dict[str, Callable[..., list[str]]] = {
+    "agent": agents,
+    "humans": people,
+    "prior": people,
+    "humans name": people,
+    "suite": suites,
+    "suites": suites,
+    "kind": kinds,
+    "robot": robots,
+    "robots": robots,
+    "house": houses,
+    "files": houses,
+    "assets": packs,
+    "assets name": packs,
+    "engine": engines,
+    "isolation": levels,
+    "require_isolation": levels,
+    "detector": detectors,
+    "run": runs,
+    "runs": runs,
+    "folders": runs,
+}
+"""By the parameter's name, with the group's before it where it means something else elsewhere."""
+
+
+def attach(app: typer.Typer, group: str = "") -> None:
+    """Have every command of the tree offer values for the parameters that have some."""
+    for command in app.registered_commands:
+        if command.callback is None:
+            continue
+        hints = typing.get_type_hints(command.callback, include_extras=True)
+        command.callback.__annotations__ = hints  # as words they would be read anew, and forget what is set here
+        for name, hint in hints.items():
+            offer = OFFERS.get(f"{group} {name}") or OFFERS.get(name)
+            for info in getattr(hint, "__metadata__", ()) if offer else ():
+                info.autocompletion = _fitting(offer) if offer else None
+    for below in app.registered_groups:
+        if below.typer_instance is not None:
+            attach(below.typer_instance, str(below.name))
+
+
+def _fitting(offer: Callable[..., list[str]]) -> Callable[[str], Any]:
+    def complete(incomplete: str) -> list[str]:
+        names: Iterable[str] = offer(incomplete) if offer is runs else offer()
+        return [name for name in names if name.startswith(incomplete)]
+
+    return complete
+
+
+def _stems(folder: str, suffix: str) -> list[str]:
+    files = (_PACKAGE / folder).glob(f"*.{suffix}")
+    return sorted(path.stem for path in files if not path.stem.startswith("_"))
+
+
+def _runs(folder: Path, depth: int) -> Iterator[Path]:
+    """Folders with a run, and in those, too: a control lies in its run's folder."""
+    try:
+        entries = sorted(entry.name for entry in os.scandir(folder) if entry.is_dir() and entry.name[0] != ".")
+    except OSError:
+        return
+    for name in entries[:_MANY]:
+        if (folder / name / "run.json").is_file():
+            yield folder / name
+        if depth > 1:
+            yield from _runs(folder / name, depth - 1)
