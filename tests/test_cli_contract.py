@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from hthor import houses, plugins, tasks
-from hthor.cli import completing, ending, reference
+from hthor.cli import completing, ending, offers, reference
 from hthor.eval import crews, engines, peoples
 from hthor.guest.confinement import LEVELS
 from hthor.humans import kinds, population_file
@@ -187,22 +187,22 @@ def test_the_shell_completes_values(both: Path) -> None:
 
 
 def test_what_is_offered_is_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert completing.agents() == list(plugins.names("agent"))
-    assert completing.suites() == list(tasks.suites())
-    assert completing.houses() == list(houses.names())
-    assert completing.engines() == sorted(engines.names())
-    assert completing.robots() == sorted((*plugins.names("robot"), *crews.ALIASES))
-    assert completing.levels() == ["auto", *LEVELS]
+    assert offers.agents() == list(plugins.names("agent"))
+    assert offers.suites() == list(tasks.suites())
+    assert offers.houses() == list(houses.names())
+    assert offers.engines() == sorted(engines.names())
+    assert offers.robots() == sorted((*plugins.names("robot"), *crews.ALIASES))
+    assert offers.levels() == ["auto", *LEVELS]
     loaded = [plugins.load("task kind", name) for name in plugins.names("task kind")]
-    assert completing.kinds() == sorted({name for kind in loaded for name in (kind.name, kind.short)})
+    assert offers.kinds() == sorted({name for kind in loaded for name in (kind.name, kind.short)})
     everybody = (*population_file.names(), *kinds.names(), *plugins.names("human model"), *peoples.WORDS)
-    assert completing.people() == sorted(set(everybody))
+    assert offers.people() == sorted(set(everybody))
     names = {param.name for _, one in reference.leaves() for param in one.params}
     assert {offer.rpartition(" ")[2] for offer in completing.OFFERS} <= names
     (tmp_path / "runs" / "one" / "control").mkdir(parents=True)
     for folder in ("one", "one/control"):
         (tmp_path / "runs" / folder / "run.json").write_text("{}")
     monkeypatch.chdir(tmp_path)
-    assert completing.runs() == ["runs/one", "runs/one/control"]
-    assert completing.runs("runs/o") == completing.runs("runs/") == completing.runs()
-    assert completing.runs("nowhere/") == []
+    assert offers.runs() == ["runs/one", "runs/one/control"]
+    assert offers.runs("runs/o") == offers.runs("runs/") == offers.runs()
+    assert offers.runs("nowhere/") == []

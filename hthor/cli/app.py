@@ -19,6 +19,7 @@ from hthor.cli import (
     ending,
     homes,
     lists,
+    logged,
     people,
     priors,
     reports,
@@ -37,10 +38,10 @@ app = typer.Typer(
 )
 app.command("eval")(runs.evaluate)
 app.command("merge")(shards.merge)
-app.command("score")(runs.score)
+app.command("score")(logged.score)
 app.command("compare")(compare.compare)
 app.command("power")(compare.power)
-app.command("replay")(runs.replay)
+app.command("replay")(logged.replay)
 app.command("report")(reports.report)
 app.command("case")(reports.case)
 app.command("calibrate")(calibrate.calibrate)

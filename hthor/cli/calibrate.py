@@ -116,7 +116,9 @@ def _foretell(brief: dict[str, Any], json: bool) -> None:
     if json:
         screen.put_json({"resumes": Path(brief["folder"]).exists(), **brief})
         return
-    screen.put_table(("what", "value"), [(name, str(value)) for name, value in brief.items()])
+    screen.put_table(
+        ("what", "value"), [(name, one if isinstance(one, list) else str(one)) for name, one in brief.items()]
+    )
     there = "goes on with what is there" if Path(brief["folder"]).exists() else "begins anew"
     screen.put_line(f"it {there}; nothing was written.")
 

@@ -41,9 +41,8 @@ def merge(
         talk.print(text, markup=False, highlight=False, soft_wrap=True)
 
     if dry_run:
-        say(
-            f"{done.trials} of {done.plan.trials} trials would be in {out}/, {done.new} of them new; nothing was written."
-        )
+        would = f"{done.trials} of {done.plan.trials} trials would be in {out}/, {done.new} of them new"
+        say(f"{would}; nothing was written.")
         raise typer.Exit(0 if done.trials == done.plan.trials else _MISSING_EXIT)
     say(f"{done.trials} of {done.plan.trials} trials are in {out}/, {done.new} of them new.")
     if done.result is not None:
