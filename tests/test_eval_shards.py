@@ -111,6 +111,10 @@ def test_the_command_says_what_is_missing_and_ends_with_one(shards: Sequence[Pat
     def said(*words: object) -> Result:
         return CliRunner().invoke(app.app, ["merge", *map(str, words), "--out", str(tmp_path / "whole")])
 
+    dry = said(*shards[:3], "--dry-run")
+    assert dry.exit_code == 1
+    assert f"47 of {COUNT} trials would be in" in dry.stderr
+    assert not (tmp_path / "whole").exists()
     part = said(*shards[:3])
     assert part.exit_code == 1
     assert f"47 of {COUNT} trials are in" in part.stderr

@@ -18,6 +18,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import eval_fakes as fakes
 import msgspec
 import pytest
 

@@ -14,9 +14,12 @@ from hthor.cli import (
     boards,
     calibrate,
     compare,
+    completing,
+    doctor,
     ending,
     homes,
     lists,
+    logged,
     people,
     priors,
     reports,
@@ -36,13 +39,14 @@ app = typer.Typer(
 )
 app.command("eval")(runs.evaluate)
 app.command("merge")(shards.merge)
-app.command("score")(runs.score)
+app.command("score")(logged.score)
 app.command("compare")(compare.compare)
 app.command("power")(compare.power)
-app.command("replay")(runs.replay)
+app.command("replay")(logged.replay)
 app.command("report")(reports.report)
 app.command("case")(reports.case)
 app.command("calibrate")(calibrate.calibrate)
+app.command("doctor")(doctor.doctor)
 app.add_typer(boards.app, name="leaderboard")
 app.add_typer(assets.app, name="assets")
 app.add_typer(homes.app, name="houses")
@@ -86,4 +90,6 @@ def run() -> None:
     _open_streams()
     if "FORCE_COLOR" not in os.environ and not sys.stdout.isatty():
         os.environ["_TYPER_FORCE_DISABLE_TERMINAL"] = "1"  # typer would also colour for GITHUB_ACTIONS and PY_COLORS
+    if completing.VARIABLE in os.environ:
+        completing.attach(app)
     ending.conclude(app)

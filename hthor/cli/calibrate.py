@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -39,6 +39,9 @@ def calibrate(
         str, typer.Option(help="Stop after this stage, such as training or studies.", show_default="the last")
     ] = "",
     prior: Annotated[str, typer.Option(help="With logs: the population that they add to.")] = "proxy",
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Only say what would be done, and where; write nothing.")
+    ] = False,
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
 ) -> None:
@@ -52,6 +55,9 @@ def calibrate(
     if all(_is_log(word) for word in targets):
         from hthor.cli import calibrate_logs
 
+        if dry_run:
+            _foretell({"targets": list(targets), "prior": prior, "folder": str(out or calibrate_logs.OUT)}, json)
+            return
         calibrate_logs.run(targets, prior, out, json)
         return
     from hthor.calibration import run
@@ -67,6 +73,22 @@ def calibrate(
         quick=quick,
         until=until,
     )
+    if dry_run:
+        brief = run.settle(options)
+        sizes = {name: getattr(brief.sizes, name) for name in brief.sizes.__struct_fields__}
+        _foretell(
+            {
+                "targets": [brief.targets.name],
+                "suite": brief.suite.name,
+                "folder": str(brief.folder),
+                "seed": seed,
+                "jobs": brief.jobs,
+                "until": until,
+                **sizes,
+            },
+            json,
+        )
+        return
     talk = screen.console(talk=True)
     from hthor.calibration import telling
 
@@ -87,6 +109,18 @@ def calibrate(
         talk.print(f"files: {folder}/population.json, population.npz, evidence.json, result.json", soft_wrap=True)
     if not found.passed:
         raise typer.Exit(1)
+
+
+def _foretell(brief: dict[str, Any], json: bool) -> None:
+    """What a calibration would do. How long each part takes depends on what its folder holds already."""
+    if json:
+        screen.put_json({"resumes": Path(brief["folder"]).exists(), **brief})
+        return
+    screen.put_table(
+        ("what", "value"), [(name, one if isinstance(one, list) else str(one)) for name, one in brief.items()]
+    )
+    there = "goes on with what is there" if Path(brief["folder"]).exists() else "begins anew"
+    screen.put_line(f"it {there}; nothing was written.")
 
 
 def _is_log(target: str) -> bool:

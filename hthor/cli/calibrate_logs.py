@@ -11,14 +11,14 @@ from hthor.cli import screen
 if TYPE_CHECKING:
     from hthor.calibration.logs.conduct import Found, Row
 
-_OUT = Path("calibration") / "logs"
+OUT = Path("calibration") / "logs"
 
 
 def run(targets: Sequence[str], prior: str, out: Path | None, json: bool) -> None:
     """Estimate parameters from logs, and bring a population up to date with them."""
     from hthor.calibration.logs import conduct
 
-    talk, folder = screen.console(talk=True), out or _OUT
+    talk, folder = screen.console(talk=True), out or OUT
 
     def tell(what: str) -> None:
         if not json:

@@ -1,4 +1,4 @@
-"""`hthor eval`, `score` and `replay`; knows what the user types, not how any of it is done."""
+"""`hthor eval`; knows what the user types, not how any of it is done."""
 
 from __future__ import annotations
 
@@ -153,6 +153,10 @@ def evaluate(
     ] = "0",
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Only say what would be played, where, and for how long; write nothing.")
+    ] = False,
+    context: typer.Context = None,  # type: ignore[assignment]
 ) -> None:
     """Evaluate robots' minds with people over a suite of tasks.
 
@@ -191,6 +195,11 @@ def evaluate(
         require_isolation=require_isolation,
         trial_limit=trial_limit,
     )
+    if dry_run:
+        from hthor.cli import ahead
+
+        ahead.show(options, watcher, context, json)
+        return
     paper = talk if json else screen.console()
     done: list[Done] = []
     words = options.humans
@@ -213,78 +222,6 @@ def evaluate(
         screen.put_json(whole or (results[0] if len(results) == 1 else results))
     if any(one.result.counts.faults > allowed(one.result.counts.trials) for one in done):
         raise typer.Exit(_FAULTS_EXIT)
-
-
-def score(
-    run: Run,
-    everything: Annotated[
-        bool,
-        typer.Option("--all", help="With messages, idle time, bodies in the way, and shares of the work."),
-    ] = False,
-    json: Json = False,
-) -> None:
-    """Work out a run's metrics again from its log alone; nothing is simulated."""
-    from hthor.eval import report
-    from hthor.eval import score as scoring
-
-    plan, result, stored = scoring.rescore(run)
-    talk = screen.console(talk=True)
-    if json:
-        screen.put_json(result)
-    else:
-        paper = screen.console()
-        paper.print(report.result_table(result, everything=everything))
-        if everything and len(result.by_kind) > 1:
-            paper.print(report.kinds_table(result))
-    missing = plan.trials - result.counts.trials
-    if missing:
-        _say(talk, f"{missing} of {plan.trials} trials are missing, so this is no result yet and was not stored.")
-        return
-    if stored is None:
-        _say(talk, f"stored as {run / 'result.json'}.")
-    elif stored != result:
-        _say(talk, f"differs from {run / 'result.json'} in {_difference(stored, result)}; stored anew.")
-    else:
-        _say(talk, f"the same as {run / 'result.json'}.")
-        return
-    scoring.store(run, result)
-
-
-def replay(
-    run: Run,
-    trial: Annotated[
-        str, typer.Argument(metavar="TRIAL", help="A key or its start, a task's id, or a number counted from 0.")
-    ],
-    out: Annotated[
-        Path | None, typer.Option(help="The file to write.", show_default="RUN/replays/TASK-KEY.png, or .mp4")
-    ] = None,
-    video: Annotated[bool, typer.Option("--video", help="Write a film instead of a picture.")] = False,
-    mind: Annotated[
-        bool, typer.Option("--mind", help="Instead, what the person believed, saw and chose; the session is replayed.")
-    ] = False,
-    agent: Annotated[
-        list[str] | None,
-        typer.Option(help="With --mind: the file of an agent that is not built in.", show_default=False),
-    ] = None,
-    humans: Annotated[str, typer.Option(help="With --mind: the people's file, if any.", show_default=False)] = "",
-    json: Annotated[
-        bool, typer.Option("--json", help="What was written as JSON; with --mind: the thoughts, and no picture.")
-    ] = False,
-) -> None:
-    """Draw one trial from above: the paths, the messages and what came of them."""
-    if mind:
-        from hthor.cli import minds
-
-        minds.replay(run, trial, out, agent or (), humans, json)
-        return
-    from hthor import houses
-    from hthor.eval import find, redraw
-
-    houses.shelve(run / "houses")  # where the suite brought its own
-    record = find.trial(run, trial)
-    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'mp4' if video else 'png'}"
-    redraw.draw(record, path, video=video)
-    screen.put_files([path], json, key=record.key, task=record.spec.task.id)
 
 
 def _show(console: Console, one: Done) -> None:
@@ -333,10 +270,3 @@ def _compare_peoples(console: Console, whole: Matrix) -> None:
 
 def _say(console: Console, text: str) -> None:
     console.print(text, markup=False, highlight=False, soft_wrap=True)
-
-
-def _difference(stored: object, result: object) -> str:
-    import msgspec
-
-    before, now = msgspec.to_builtins(stored), msgspec.to_builtins(result)
-    return ", ".join(name for name in now if before.get(name) != now[name])

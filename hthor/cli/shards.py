@@ -17,6 +17,9 @@ def merge(
     folders: Annotated[list[Path], typer.Argument(metavar="FOLDER...", help="The shards' folders.")],
     out: Annotated[Path, typer.Option(help="The whole run's folder.")],
     json: Json = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Only say how many trials would be there; write nothing.")
+    ] = False,
 ) -> None:
     """Join the shards of a run that 'hthor eval --shard i/N' played on several machines.
 
@@ -25,7 +28,7 @@ def merge(
     """
     from hthor.eval import merge as merging
 
-    done = merging.merge(folders, out)
+    done = merging.merge(folders, out, dry=dry_run)
     if json:
         screen.put_json(done)
     elif done.result is not None:
@@ -37,6 +40,10 @@ def merge(
     def say(text: str) -> None:
         talk.print(text, markup=False, highlight=False, soft_wrap=True)
 
+    if dry_run:
+        would = f"{done.trials} of {done.plan.trials} trials would be in {out}/, {done.new} of them new"
+        say(f"{would}; nothing was written.")
+        raise typer.Exit(0 if done.trials == done.plan.trials else _MISSING_EXIT)
     say(f"{done.trials} of {done.plan.trials} trials are in {out}/, {done.new} of them new.")
     if done.result is not None:
         if done.result.counts.faults:

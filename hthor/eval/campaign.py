@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import os
 import shlex
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
 
@@ -85,6 +85,16 @@ class Part(Struct, frozen=True, kw_only=True):
     title: str
 
 
+class Intent(Struct, frozen=True, kw_only=True):
+    """What a command stands for, when everything is settled and before anything is written: the runs that were asked
+    for, those that are played as their controls, and what will hold agents of the user's own.
+    """
+
+    parts: tuple[Part, ...]
+    controls: tuple[Part, ...]
+    held: Isolation | None
+
+
 class Done(Struct, frozen=True, kw_only=True):
     """A run that is whole."""
 
@@ -93,13 +103,18 @@ class Done(Struct, frozen=True, kw_only=True):
     result: Result
 
 
-def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iterator[Done]:
+def conduct(
+    options: Options,
+    watcher: Callable[[str], ClosableWatcher],
+    agree: Callable[[Intent], bool] = lambda _: True,
+) -> Iterator[Done]:
     """Run every crew's evaluation with every people; each that is whole is given at once, peoples in turn.
 
     Everything that the user can have got wrong is looked at before the first trial is played.
 
     Args:
         watcher: makes who follows the run of this name.
+        agree: is told what will be done before anything is; nothing is where it says no.
     """
     if not options.agents and not options.robots:
         raise HthorError(
@@ -119,6 +134,8 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
         setup.examine(part.folder, part.plan)
         _engine(options, chosen, part.crew)  # is there such an engine?
         guarded.weakest(part.folder, guarded.of(held, part.crew.minds.values()), options.require_isolation)
+    if not agree(_intent(parts, controls, held)):
+        return
     told: set[str] = set()
 
     def perform(part: Part) -> Result:
@@ -136,6 +153,12 @@ def conduct(options: Options, watcher: Callable[[str], ClosableWatcher]) -> Iter
         result = early[part.folder] if part.folder in early else perform(part)
         early[part.folder] = result
         yield Done(plan=part.plan, folder=part.folder, result=result)
+
+
+def _intent(parts: Sequence[Part], controls: Mapping[Path, Part], held: Isolation | None) -> Intent:
+    asked = {part.folder for part in parts}
+    more = {part.folder: part for part in controls.values() if part.folder not in asked}
+    return Intent(parts=tuple(parts), controls=tuple(more.values()), held=held)
 
 
 def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dict[Path, Part]:

@@ -55,7 +55,7 @@ class _Part(Struct, frozen=True, kw_only=True):
     records: dict[tuple[int, int], tuple[Place, str, int]]
 
 
-def merge(folders: Sequence[Path], out: Path) -> Merged:
+def merge(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Merged:
     """Join shards, all of them or those that there are so far, in a folder that is then like an undivided run's.
 
     They may overlap, and be of several divisions: thirds with a half. Records lie there in the order of people and
@@ -71,6 +71,10 @@ def merge(folders: Sequence[Path], out: Path) -> Merged:
         _same_run(first, part)
     plan, found = first.plan.whole, _join(parts)
     setup.examine(out, plan)
+    if dry:  # only count; what is missing is named by the merge itself
+        there = {one.key for _, one in log.read(out / "trials.jsonl")}
+        more = {key for _, key, _ in found.values()} - there
+        return Merged(folder=str(out), plan=plan, trials=len(there) + len(more), new=len(more), gaps=(), result=None)
     new = 0
     with Log(out) as book:
         setup.write(out, plan)

@@ -1,0 +1,74 @@
+"""`hthor eval --dry-run`; knows how a forecast looks, not how it is made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from hthor.cli import screen
+
+if TYPE_CHECKING:
+    import typer
+
+    from hthor.eval.campaign import ClosableWatcher, Intent, Options
+    from hthor.eval.forecast import Ahead, Forecast
+
+_LEFT_OUT = ("json", "quiet", "dry_run", "context")
+_ORIGINS = {"COMMANDLINE": "flag", "ENVIRONMENT": "environment", "DEFAULT": "default", "DEFAULT_MAP": "default"}
+
+
+def show(options: Options, watcher: Callable[[str], ClosableWatcher], context: typer.Context, json: bool) -> None:
+    """Say what the command would do."""
+    from hthor.eval import campaign, forecast
+
+    names = [str(one.name) for one in context.command.params if one.name in context.params]
+    origins = {name: _origin(context, name) for name in names if name not in _LEFT_OUT}
+    found: list[Forecast] = []
+
+    def agree(intent: Intent) -> bool:
+        found.append(forecast.of(options, intent, origins))
+        return False
+
+    for _ in campaign.conduct(options, watcher, agree):
+        raise AssertionError("a dry run plays nothing")
+    if json:
+        screen.put_json(found[0])
+    else:
+        _put(found[0])
+
+
+def _origin(context: typer.Context, name: str) -> str:
+    source = context.get_parameter_source(name)
+    return _ORIGINS.get(source.name if source is not None else "DEFAULT", "flag")
+
+
+def _put(found: Forecast) -> None:
+    settings = [(one.name.replace("_", "-"), _value(one.value), one.origin) for one in found.settings]
+    screen.put_table(("option", "value", "from"), settings)
+    screen.put_table(("run", "folder", "trials", "played", "time"), [_row(one) for one in found.runs])
+    held = found.isolation
+    why = f" ({held.reason_not_higher})" if held and held.reason_not_higher else ""
+    screen.put_line(f"isolation: {held.level if held else 'none, as all agents are built in'}{why}")
+    for folder in dict.fromkeys(one.pace.folder for one in found.runs if one.pace):
+        screen.put_line(f"time: as in {folder}/")
+    if found.seconds is None:
+        screen.put_line("time: unknown, as no finished run here has these robots and people; see docs/speed.md")
+    left = found.trials - found.played
+    screen.put_line(f"{left} of {found.trials} trials would be played{_time(found.seconds)}; nothing was written.")
+
+
+def _row(one: Ahead) -> tuple[object, ...]:
+    return one.name, f"{one.folder}/", one.trials, one.played, _time(one.seconds).removeprefix(", about ") or "unknown"
+
+
+def _time(seconds: float | None) -> str:
+    if seconds is None:
+        return ""
+    minutes, rest = divmod(round(seconds), 60)
+    return f", about {minutes} min {rest:02d} s" if minutes else f", about {rest} s"
+
+
+def _value(value: object) -> object:
+    if value is None or value == "":
+        return "–"
+    return {True: "yes", False: "no"}.get(value, value) if isinstance(value, bool) else value

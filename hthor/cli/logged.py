@@ -1,0 +1,94 @@
+"""`hthor score` and `replay`: what a run's log tells later; knows what the user types, not how it is worked out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hthor.cli import screen
+from hthor.cli.runs import Json, Run
+
+
+def score(
+    run: Run,
+    everything: Annotated[
+        bool,
+        typer.Option("--all", help="With messages, idle time, bodies in the way, and shares of the work."),
+    ] = False,
+    json: Json = False,
+) -> None:
+    """Work out a run's metrics again from its log alone; nothing is simulated."""
+    from hthor.eval import report
+    from hthor.eval import score as scoring
+
+    plan, result, stored = scoring.rescore(run)
+    talk = screen.console(talk=True)
+
+    def say(text: str) -> None:
+        talk.print(text, markup=False, highlight=False, soft_wrap=True)
+
+    if json:
+        screen.put_json(result)
+    else:
+        paper = screen.console()
+        paper.print(report.result_table(result, everything=everything))
+        if everything and len(result.by_kind) > 1:
+            paper.print(report.kinds_table(result))
+    missing = plan.trials - result.counts.trials
+    if missing:
+        say(f"{missing} of {plan.trials} trials are missing, so this is no result yet and was not stored.")
+        return
+    if stored is None:
+        say(f"stored as {run / 'result.json'}.")
+    elif stored != result:
+        say(f"differs from {run / 'result.json'} in {_difference(stored, result)}; stored anew.")
+    else:
+        say(f"the same as {run / 'result.json'}.")
+        return
+    scoring.store(run, result)
+
+
+def replay(
+    run: Run,
+    trial: Annotated[
+        str, typer.Argument(metavar="TRIAL", help="A key or its start, a task's id, or a number counted from 0.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="The file to write.", show_default="RUN/replays/TASK-KEY.png, or .mp4")
+    ] = None,
+    video: Annotated[bool, typer.Option("--video", help="Write a film instead of a picture.")] = False,
+    mind: Annotated[
+        bool, typer.Option("--mind", help="Instead, what the person believed, saw and chose; the session is replayed.")
+    ] = False,
+    agent: Annotated[
+        list[str] | None,
+        typer.Option(help="With --mind: the file of an agent that is not built in.", show_default=False),
+    ] = None,
+    humans: Annotated[str, typer.Option(help="With --mind: the people's file, if any.", show_default=False)] = "",
+    json: Annotated[
+        bool, typer.Option("--json", help="What was written as JSON; with --mind: the thoughts, and no picture.")
+    ] = False,
+) -> None:
+    """Draw one trial from above: the paths, the messages and what came of them."""
+    if mind:
+        from hthor.cli import minds
+
+        minds.replay(run, trial, out, agent or (), humans, json)
+        return
+    from hthor import houses
+    from hthor.eval import find, redraw
+
+    houses.shelve(run / "houses")  # where the suite brought its own
+    record = find.trial(run, trial)
+    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'mp4' if video else 'png'}"
+    redraw.draw(record, path, video=video)
+    screen.put_files([path], json, key=record.key, task=record.spec.task.id)
+
+
+def _difference(stored: object, result: object) -> str:
+    import msgspec
+
+    before, now = msgspec.to_builtins(stored), msgspec.to_builtins(result)
+    return ", ".join(name for name in now if before.get(name) != now[name])

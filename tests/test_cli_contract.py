@@ -1,0 +1,208 @@
+"""What programs rely on: exit codes of real processes, one document under --json, dry runs, completion, the page."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from hthor import houses, plugins, tasks
+from hthor.cli import completing, ending, offers, reference
+from hthor.eval import crews, engines, peoples
+from hthor.guest.confinement import LEVELS
+from hthor.humans import kinds, population_file
+
+FAKES = Path(__file__).with_name("command_fakes.py")
+WITHOUT_JSON = {
+    "hthor leaderboard add": "tells the file that it wrote",
+    "hthor agent serve": "serves until it is stopped, and has nothing to tell",
+}
+
+
+def start(*words: str, play: str = "player") -> subprocess.Popen[str]:
+    command = [sys.executable, str(FAKES), play, *words]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def run(*words: str, play: str = "player") -> tuple[int, object, str]:
+    """Exit code, the one document on standard output, and what is said to people."""
+    process = start(*words, "--json", play=play)
+    out, err = process.communicate(timeout=100)
+    return process.returncode, json.loads(out), err
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two finished runs, of which one is much better."""
+    folder = tmp_path_factory.mktemp("both")
+    words = ("--agent", "silent", "--agent", "helper", "--suite", "fake", "--participants", "16")
+    code, document, _ = run("eval", *words, "--out", str(folder), play="leaning_player")
+    assert code == 0
+    assert [one["name"] for one in document] == ["silent", "helper"]
+    return folder
+
+
+def failed(said: tuple[int, object, str], code: int) -> str:
+    """The words of an error, which are the same for people and programs."""
+    found, document, err = said
+    assert found == code
+    assert set(document) == {"error", "exit_code"}
+    assert document["exit_code"] == code
+    assert document["error"].splitlines()[0] in err
+    return document["error"]
+
+
+def test_1_is_a_fault_of_our_own(tmp_path: Path) -> None:
+    said = run("eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "a"), play="failing_player:own")
+    assert "ZeroDivisionError" in failed(said, 1)
+
+
+def test_2_is_a_wrong_word() -> None:
+    assert "--agent" in failed(run("eval", "--agnet", "silent"), 2)
+
+
+def test_3_is_an_agent_that_failed(tmp_path: Path) -> None:
+    words = ("--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path / "a"), "--no-control")
+    code, document, _ = run("eval", *words)
+    assert code == 3
+    assert document["counts"]["faults"] == 2
+
+
+def test_4_is_an_agent_that_does_not_load(tmp_path: Path) -> None:
+    failed(run("eval", "--agent", str(tmp_path / "none.py"), "--suite", "fake"), 4)
+
+
+def test_5_is_too_little_isolation(tmp_path: Path) -> None:
+    agent = tmp_path / "mine.py"
+    agent.write_text(plugins.Path(plugins.__file__).with_name("agents").joinpath("_template.py.txt").read_text())
+    words = ("--agent", str(agent), "--suite", "fake", "--isolation", "L1", "--require-isolation", "L2")
+    assert "L2 is required" in failed(run("eval", *words), 5)
+
+
+def test_6_is_a_run_that_is_worse(both: Path) -> None:
+    code, document, _ = run("compare", str(both / "helper"), str(both / "silent"), "--fail-if-worse")
+    assert code == 6
+    assert document["pairs"][0]["better"] == "helper"
+
+
+def test_75_is_a_run_that_another_process_writes(both: Path) -> None:
+    with (both / "silent" / ".lock").open("rb") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        words = ("--agent", "silent", "--suite", "fake", "--participants", "16", "--out", str(both / "silent"))
+        assert "is being written" in failed(run("eval", *words), 75)
+
+
+def test_130_is_an_interruption_and_the_same_command_resumes(tmp_path: Path) -> None:
+    words = ("eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "a"), "--jobs", "1")
+    process = start(*words, "--json", play="slow_player:0.4")
+    until = time.monotonic() + 60.0
+    while not (log := tmp_path / "a" / "trials.jsonl").exists() or not log.stat().st_size:
+        assert time.monotonic() < until
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    out, _ = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert json.loads(out)["exit_code"] == 130
+    assert run(*words)[0] == 0
+
+
+def test_the_exit_codes_are_listed_where_people_look(root: Path) -> None:
+    text = (root / "docs" / "cli.md").read_text()
+    assert all(f"| {code} | " in text for code in ending.CODES)
+    assert all(f" {code} {meaning}" in ending.words() for code, meaning in ending.CODES.items())
+
+
+def test_every_command_that_has_something_to_tell_tells_programs() -> None:
+    lacking = {name for name, one in reference.leaves() if not any("--json" in param.opts for param in one.params)}
+    assert lacking <= set(WITHOUT_JSON)
+
+
+def test_the_page_has_every_command(root: Path) -> None:
+    text = (root / "docs" / "cli.md").read_text()
+    assert text == reference.page(text), f"write it anew: python -m {reference.__name__} docs/cli.md"
+
+
+def test_a_dry_run_tells_all_and_writes_nothing(both: Path, tmp_path: Path) -> None:
+    def files(folder: Path) -> dict[str, int]:
+        return {str(path): path.stat().st_mtime_ns for path in folder.rglob("*")}
+
+    words = ("eval", "--agent", "helper", "--suite", "fake", "--seed", "3", "--dry-run")
+    code, document, _ = run(*words, "--out", str(tmp_path / "new"))
+    assert code == 0
+    assert files(tmp_path) == {}
+    assert {one["name"]: (one["played"], one["trials"]) for one in document["runs"]} == {
+        "control, no robot": (0, 20),
+        "helper": (0, 20),
+    }
+    assert document["seconds"] is None
+    settings = {one["name"]: (one["value"], one["origin"]) for one in document["settings"]}
+    assert settings["seed"] == (3, "flag")
+    assert settings["suite"] == ("fake", "flag")
+    assert settings["robot"] == (["scout"], "default")
+    before = files(both)
+    half = both / "helper" / "trials.jsonl"
+    data = half.read_bytes()
+    words = ("eval", "--agent", "helper", "--suite", "fake", "--participants", "16", "--dry-run")
+    code, document, _ = run(*words, "--out", str(both / "helper"))
+    (one,) = document["runs"]
+    assert (one["played"], one["trials"], one["seconds"]) == (160, 160, 0.0)
+    assert data == half.read_bytes()
+    assert files(both) == before
+
+
+def complete(words: str, folder: Path, shell: str = "bash") -> list[str]:
+    """What the shell would offer, from a process that must not import what computes."""
+    code = (
+        "import sys; sys.argv = ['hthor']\n"
+        "from hthor.cli import main\n"
+        "try: main()\n"
+        "except SystemExit: pass\n"
+        "heavy = {'numpy', 'mujoco', 'numba', 'cv2', 'matplotlib', 'msgspec'} & set(sys.modules)\n"
+        "sys.exit(f'imports {heavy}' if heavy else 0)"
+    )
+    asked = {
+        "_HTHOR_COMPLETE": f"complete_{shell}",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(words.count(" ")),
+        "_TYPER_COMPLETE_ARGS": words,
+    }
+    path = os.pathsep.join((str(Path(completing.__file__).parents[2]), os.environ.get("PYTHONPATH", "")))
+    environment = {**os.environ, **asked, "PYTHONPATH": path}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+def test_the_shell_completes_values(both: Path) -> None:
+    assert complete("hthor eval --agent fr", both) == ["frontier"]
+    assert complete("hthor compare s", both) == ["silent"]
+    assert "paper" in complete("hthor humans describe pa", both, "zsh")[-1]
+
+
+def test_what_is_offered_is_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert offers.agents() == list(plugins.names("agent"))
+    assert offers.suites() == list(tasks.suites())
+    assert offers.houses() == list(houses.names())
+    assert offers.engines() == sorted(engines.names())
+    assert offers.robots() == sorted((*plugins.names("robot"), *crews.ALIASES))
+    assert offers.levels() == ["auto", *LEVELS]
+    loaded = [plugins.load("task kind", name) for name in plugins.names("task kind")]
+    assert offers.kinds() == sorted({name for kind in loaded for name in (kind.name, kind.short)})
+    everybody = (*population_file.names(), *kinds.names(), *plugins.names("human model"), *peoples.WORDS)
+    assert offers.people() == sorted(set(everybody))
+    names = {param.name for _, one in reference.leaves() for param in one.params}
+    assert {offer.rpartition(" ")[2] for offer in completing.OFFERS} <= names
+    (tmp_path / "runs" / "one" / "control").mkdir(parents=True)
+    for folder in ("one", "one/control"):
+        (tmp_path / "runs" / folder / "run.json").write_text("{}")
+    monkeypatch.chdir(tmp_path)
+    assert offers.runs() == ["runs/one", "runs/one/control"]
+    assert offers.runs("runs/o") == offers.runs("runs/") == offers.runs()
+    assert offers.runs("nowhere/") == []
