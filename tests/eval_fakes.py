@@ -335,6 +335,3 @@ if __name__ == "__main__":
     except HthorError as error:
         sys.stderr.write(f"{error}\n")
         sys.exit(error.exit_code)
-    except OSError as error:
-        sys.stderr.write(f"{error.filename}: {error.strerror}\n")
-        sys.exit(2)

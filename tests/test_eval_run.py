@@ -170,7 +170,7 @@ def test_a_full_disk_leaves_whole_lines(tmp_path: Path, monkeypatch: pytest.Monk
         return count
 
     monkeypatch.setattr(log.os, "write", write)
-    with pytest.raises(OSError, match=r"No space left.*trials\.jsonl"):
+    with pytest.raises(RunError, match=r"trials\.jsonl: No space left on device\. The \d+ trials .* are kept"):
         run.evaluate(plan, dealt, fakes.player, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
     monkeypatch.undo()
     held = _lines(tmp_path)

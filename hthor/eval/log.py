@@ -81,7 +81,7 @@ class Log:
 
     Raises:
         RunLocked: when another process is writing this run.
-        RunError: when a line is damaged.
+        RunError: when a line is damaged; later, when one cannot be written.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -128,7 +128,7 @@ class Log:
         except OSError as error:  # a full disk; what the cut leaves, the next command cuts
             with contextlib.suppress(OSError):
                 os.ftruncate(self._file, self._size)
-            raise self._named(error) from None
+            raise self._unwritten(error) from None
         self._size += written
         self._checks[key] = record.checksum(line)
         if self._dirty_since is None:
@@ -143,7 +143,7 @@ class Log:
         try:
             os.fdatasync(self._file)
         except OSError as error:  # some file systems learn only now that there is no room
-            raise self._named(error) from None
+            raise self._unwritten(error) from None
         self._dirty_since = None
 
     def close(self) -> None:
@@ -154,8 +154,11 @@ class Log:
             os.close(self._file)
             os.close(self._lock)
 
-    def _named(self, error: OSError) -> OSError:
-        return OSError(error.errno, error.strerror, str(self.path))
+    def _unwritten(self, error: OSError) -> RunError:
+        return RunError(
+            f"{self.path}: {error.strerror}. The {len(self)} trials that it holds are kept; make room, and the same "
+            "command goes on."
+        )
 
 
 def lock(folder: Path) -> int:
