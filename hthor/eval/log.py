@@ -21,6 +21,8 @@ from hthor.eval.waiting import BEAT_S
 SYNC_S = 0.25
 """Longest time that a written record may wait for the disk, if `Log.sync` is called with every beat."""
 _BLOCK = 1 << 16
+_UNSYNCED = 1 << 22
+"""More than is ever written between two syncs."""
 
 
 class Place(NamedTuple):
@@ -89,8 +91,8 @@ class Log:
         jsonio.make_folder(folder)
         self._lock = lock(folder)
         try:
+            self.torn = cut_torn_lines(self.path)
             self._checks = {found.key: record.checksum(line) for line, found in read(self.path)}
-            self.torn = cut_torn_line(self.path)
             self._file = os.open(self.path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC, 0o644)
             jsonio.sync_folder(folder)
         except BaseException:
@@ -178,12 +180,19 @@ def lock(folder: Path) -> int:
     return handle
 
 
-def cut_torn_line(path: Path) -> int:
-    """Cut what a killed writer left after the last whole line; the number of bytes that were cut."""
+def cut_torn_lines(path: Path) -> int:
+    """Cut what a killed writer or machine left after the last whole line; the number of bytes that were cut.
+
+    A machine that loses power may leave a hole of zeros where blocks did not reach the disk, and later lines after it.
+    No record has a zero byte. What is cut had not been promised, and is played again.
+    """
     if not path.exists():
         return 0
     with path.open("r+b") as file:
-        size = end = file.seek(0, os.SEEK_END)
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(0, size - _UNSYNCED))
+        hole = file.read().find(b"\0")
+        end = max(0, size - _UNSYNCED) + hole if hole >= 0 else size
         whole = 0
         while end and not whole:
             start = max(0, end - _BLOCK)
