@@ -91,7 +91,7 @@ class Chaos:
         for kind, aim in zip(kinds, aims, strict=True):
             process = self._until(process, int(aim))
             time.sleep(self._chance.uniform(0.0, 0.1))
-            self._known |= {(pid, _born(pid)) for pid in _family(process.pid)}
+            self._known |= {(pid, born) for pid in _family(process.pid) if (born := _born(pid))}
             if kind == "runner":
                 process.kill()
                 process.communicate()

@@ -40,8 +40,10 @@ def write(path: Path, data: bytes) -> None:
             os.fsync(file.fileno())
         os.chmod(name, 0o644)
         os.replace(name, path)
-    except BaseException:
+    except BaseException as error:
         Path(name).unlink(missing_ok=True)
+        if isinstance(error, OSError) and not error.filename:  # the user is to know where there is no room
+            error.filename = str(path)
         raise
     sync_folder(path.parent)
 

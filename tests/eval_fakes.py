@@ -185,6 +185,17 @@ def dying_player(folder: str, deaths: int = 1) -> Callable[[Session], Iterator[R
     return perform
 
 
+def lonely_player(sources: cast.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
+    """Participant 1 cannot be played without a robot."""
+
+    def perform(session_: Session) -> Iterator[Record]:
+        if session_.participant == 1 and not session_.trials[0].robots:
+            raise ZeroDivisionError("our own")
+        yield from player()(session_)
+
+    return perform
+
+
 def hopeless_player() -> Callable[[Session], Iterator[Record]]:
     raise ModuleNotFoundError("no module named 'mujoco'")
 
@@ -335,6 +346,3 @@ if __name__ == "__main__":
     except HthorError as error:
         sys.stderr.write(f"{error}\n")
         sys.exit(error.exit_code)
-    except OSError as error:
-        sys.stderr.write(f"{error.filename}: {error.strerror}\n")
-        sys.exit(2)

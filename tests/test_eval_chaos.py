@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from pathlib import Path
 
+import guest_fakes
 import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from benchmarks import chaos
 
-TRIALS = 300
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
-def test_a_disturbed_run_is_as_an_undisturbed_one(tmp_path: Path):
+@pytest.mark.parametrize(("real", "trials", "kills"), [(False, 300, 6), (True, 40, 6)], ids=["made-up", "held"])
+def test_a_disturbed_run_is_as_an_undisturbed_one(real: bool, trials: int, kills: int, tmp_path: Path):
+    agent = guest_fakes.write(tmp_path / "agent")
+
+    def command(folder: Path) -> list[str]:
+        return chaos.held(folder, trials, agent, "auto") if real else chaos.fake(folder, trials)
+
     reference, folder = tmp_path / "undisturbed", tmp_path / "disturbed"
-    subprocess.run(chaos.fake(reference, TRIALS), check=True, timeout=300)
-    storm = chaos.Chaos(chaos.fake(folder, TRIALS), folder)
-    storm.kill(6, TRIALS, 30_000)
+    chaos.Chaos(command(reference), reference).finish()
+    storm = chaos.Chaos(command(folder), folder)
+    storm.kill(kills, trials, 10_000)
     storm.finish()
     assert chaos.differences(folder, reference) == []
     assert storm.report.orphans == []

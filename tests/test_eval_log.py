@@ -47,6 +47,21 @@ def test_a_torn_last_line_is_cut(tmp_path: Path, cut: int):
     assert path.read_bytes() == whole
 
 
+@pytest.mark.parametrize("first", [0, 1, 3])
+def test_a_hole_of_zeros_is_cut_with_what_follows(tmp_path: Path, first: int):
+    path = _written(tmp_path)
+    lines = [line for _, line in _lines()]
+    start = sum(map(len, lines[:first]))
+    with path.open("r+b") as file:
+        file.seek(start + 20)
+        file.write(bytes(300))
+    with log.Log(tmp_path) as book:
+        assert len(book) == first
+        assert book.torn == sum(map(len, lines[first:]))
+        assert [book.append(key, line) for key, line in _lines()].count(True) == 4 - first
+    assert path.read_bytes() == b"".join(lines)
+
+
 def test_damage_in_the_middle_names_file_line_and_field(tmp_path: Path):
     path = _written(tmp_path)
     lines = path.read_bytes().splitlines(keepends=True)

@@ -15,9 +15,9 @@ from pathlib import Path
 import eval_fakes as fakes
 import pytest
 
-from hthor import rules
+from hthor import rules, tasks
 from hthor.errors import RunError
-from hthor.eval import course, engines, log, progress, run, runner, score, waiting
+from hthor.eval import campaign, cast, course, engines, log, progress, run, runner, score, waiting
 from hthor.eval.score import Result
 
 
@@ -137,6 +137,21 @@ def test_a_run_of_which_nothing_can_be_played_ends_soon(tmp_path: Path):
     assert sum("is given up" in note for note in watch.notes) == 3
 
 
+def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path: Path, monkeypatch):
+    real = tasks.suite
+    monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
+    monkeypatch.setattr(cast, "player", fakes.lonely_player)
+    options = campaign.Options(agents=("silent", "frontier"), suite="fake", jobs=1, out=tmp_path)
+    with pytest.raises(course.InternalFailure, match=r"participant 1: ZeroDivisionError.* 10 of 20 trials are missing"):
+        list(campaign.conduct(options, lambda _: progress.Silent()))
+    assert score.load(tmp_path / "frontier").counts.trials == 20
+    assert score.load(tmp_path / "silent") is None
+    monkeypatch.setattr(cast, "player", fakes.player)
+    done = [one.plan.name for one in campaign.conduct(options, lambda _: progress.Silent())]
+    assert done == ["silent", "frontier"]
+    assert score.load(tmp_path / "frontier").uplift is not None
+
+
 def test_a_worker_has_as_long_as_its_agents_deadlines_allow():
     tasks = [fakes.task()]
     assert waiting.limit(tasks, 0) == waiting.LIMIT_S
@@ -170,7 +185,7 @@ def test_a_full_disk_leaves_whole_lines(tmp_path: Path, monkeypatch: pytest.Monk
         return count
 
     monkeypatch.setattr(log.os, "write", write)
-    with pytest.raises(OSError, match=r"No space left.*trials\.jsonl"):
+    with pytest.raises(RunError, match=r"trials\.jsonl: No space left on device\. The \d+ trials .* are kept"):
         run.evaluate(plan, dealt, fakes.player, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
     monkeypatch.undo()
     held = _lines(tmp_path)

@@ -77,7 +77,7 @@ def test_merged_shards_are_the_undivided_run(undivided: Path, shards: Sequence[P
     assert (tmp_path / "whole" / "run.json").read_bytes() == (undivided / "run.json").read_bytes()
     there = score.records(undivided, setup.load(undivided))[0]
     assert (tmp_path / "whole" / "trials.jsonl").read_bytes() == b"".join(there)
-    again = merge.merge(shards, tmp_path / "whole")
+    again = merge.merge([*shards, shards[1]], tmp_path / "whole")
     assert (again.trials, again.new, again.result) == (COUNT, 0, done.result)
     assert _play(tmp_path / "whole", make=fakes.forgetful_player)  # plays nothing, as all is there
 
@@ -119,6 +119,7 @@ def test_the_command_says_what_is_missing_and_ends_with_one(shards: Sequence[Pat
     assert part.exit_code == 1
     assert f"47 of {COUNT} trials are in" in part.stderr
     assert "shard 4/4 is missing: hthor eval --agent helper.py" in part.stderr
+    assert "helper.py is the agent's file: name it by its path." in part.stderr
     assert part.stdout == ""
     whole = said(*shards, "--json")
     assert whole.exit_code == 0

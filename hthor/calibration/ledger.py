@@ -45,7 +45,7 @@ class Ledger:
         self._lock = log.lock(folder)
         try:
             _examine(folder, identity)
-            self.torn = log.cut_torn_line(self.path)
+            self.torn = log.cut_torn_lines(self.path)
             self.held = {sat.key: sat for sat in read(self.path)}
         except BaseException:
             os.close(self._lock)

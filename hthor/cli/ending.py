@@ -15,7 +15,7 @@ INTERNAL, USAGE, INTERRUPTED = 1, 2, 130
 
 CODES = {
     0: "done",
-    INTERNAL: "a check failed (a house, a task, a suite, a table, a gate of a calibration, a merge that lacks trials), "
+    INTERNAL: "a check failed (a house, a task, a suite, a table, a gate of a calibration, a merge or an evaluation that lacks trials), "
     "or an error of our own",
     USAGE: "wrong usage or input",
     3: "done, but the agent failed in more trials than --max-faults",

@@ -52,6 +52,9 @@ def merge(
     for gap in done.gaps:
         lacks = "is missing" if gap.trials is None else f"lacks {gap.trials} trials"
         say(f"{f'shard {gap.number}/{gap.of}' if gap.of > 1 else 'the run'} {lacks}: {gap.command}")
+    for name in dict.fromkeys(seat.agent.source.partition(":")[0] for seat in done.plan.robots):
+        if name.endswith(".py"):
+            say(f"{name} is the agent's file: name it by its path.")
     if any(gap.of > 1 for gap in done.gaps):
         say("Then merge again.")
     raise typer.Exit(_MISSING_EXIT)

@@ -27,6 +27,7 @@ from hthor.eval import (
     shard,
     waiting,
 )
+from hthor.eval.course import InternalFailure, Unfinished
 from hthor.eval.crews import Crew
 from hthor.eval.programme import Programme
 from hthor.eval.run import Watcher
@@ -110,7 +111,8 @@ def conduct(
 ) -> Iterator[Done]:
     """Run every crew's evaluation with every people; each that is whole is given at once, peoples in turn.
 
-    Everything that the user can have got wrong is looked at before the first trial is played.
+    Everything that the user can have got wrong is looked at before the first trial is played. A run that lacks
+    trials in the end does not keep the others from being played.
 
     Args:
         watcher: makes who follows the run of this name.
@@ -137,22 +139,29 @@ def conduct(
     if not agree(_intent(parts, controls, held)):
         return
     told: set[str] = set()
+    unfinished: list[Unfinished | InternalFailure] = []
 
-    def perform(part: Part) -> Result:
+    def perform(part: Part) -> Result | None:
         watch = watcher(part.title)
         try:
             return _perform(options, chosen, part, watch, told, guarded.of(held, part.crew.minds.values()))
+        except (Unfinished, InternalFailure) as error:  # the other runs go on
+            unfinished.append(error)
+            return None
         finally:
             watch.close()
 
-    early: dict[Path, Result] = {}
+    early: dict[Path, Result | None] = {}
     for part in parts:
         first = controls.get(part.folder)
         if first is not None and first.folder not in early:
             early[first.folder] = perform(first)
         result = early[part.folder] if part.folder in early else perform(part)
         early[part.folder] = result
-        yield Done(plan=part.plan, folder=part.folder, result=result)
+        if result is not None:
+            yield Done(plan=part.plan, folder=part.folder, result=result)
+    if unfinished:
+        raise unfinished[0] if len(unfinished) == 1 else Unfinished(" ".join(map(str, unfinished)))
 
 
 def _intent(parts: Sequence[Part], controls: Mapping[Path, Part], held: Isolation | None) -> Intent:

@@ -21,6 +21,8 @@ from hthor.eval.waiting import BEAT_S
 SYNC_S = 0.25
 """Longest time that a written record may wait for the disk, if `Log.sync` is called with every beat."""
 _BLOCK = 1 << 16
+_UNSYNCED = 1 << 22
+"""More than is ever written between two syncs."""
 
 
 class Place(NamedTuple):
@@ -81,7 +83,7 @@ class Log:
 
     Raises:
         RunLocked: when another process is writing this run.
-        RunError: when a line is damaged.
+        RunError: when a line is damaged; later, when one cannot be written.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -89,8 +91,8 @@ class Log:
         jsonio.make_folder(folder)
         self._lock = lock(folder)
         try:
+            self.torn = cut_torn_lines(self.path)
             self._checks = {found.key: record.checksum(line) for line, found in read(self.path)}
-            self.torn = cut_torn_line(self.path)
             self._file = os.open(self.path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC, 0o644)
             jsonio.sync_folder(folder)
         except BaseException:
@@ -128,7 +130,7 @@ class Log:
         except OSError as error:  # a full disk; what the cut leaves, the next command cuts
             with contextlib.suppress(OSError):
                 os.ftruncate(self._file, self._size)
-            raise self._named(error) from None
+            raise self._unwritten(error) from None
         self._size += written
         self._checks[key] = record.checksum(line)
         if self._dirty_since is None:
@@ -143,7 +145,7 @@ class Log:
         try:
             os.fdatasync(self._file)
         except OSError as error:  # some file systems learn only now that there is no room
-            raise self._named(error) from None
+            raise self._unwritten(error) from None
         self._dirty_since = None
 
     def close(self) -> None:
@@ -154,8 +156,11 @@ class Log:
             os.close(self._file)
             os.close(self._lock)
 
-    def _named(self, error: OSError) -> OSError:
-        return OSError(error.errno, error.strerror, str(self.path))
+    def _unwritten(self, error: OSError) -> RunError:
+        return RunError(
+            f"{self.path}: {error.strerror}. The {len(self)} trials that it holds are kept; make room, and the same "
+            "command goes on."
+        )
 
 
 def lock(folder: Path) -> int:
@@ -175,12 +180,19 @@ def lock(folder: Path) -> int:
     return handle
 
 
-def cut_torn_line(path: Path) -> int:
-    """Cut what a killed writer left after the last whole line; the number of bytes that were cut."""
+def cut_torn_lines(path: Path) -> int:
+    """Cut what a killed writer or machine left after the last whole line; the number of bytes that were cut.
+
+    A machine that loses power may leave a hole of zeros where blocks did not reach the disk, and later lines after it.
+    No record has a zero byte. What is cut had not been promised, and is played again.
+    """
     if not path.exists():
         return 0
     with path.open("r+b") as file:
-        size = end = file.seek(0, os.SEEK_END)
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(0, size - _UNSYNCED))
+        hole = file.read().find(b"\0")
+        end = max(0, size - _UNSYNCED) + hole if hole >= 0 else size
         whole = 0
         while end and not whole:
             start = max(0, end - _BLOCK)

@@ -65,6 +65,7 @@ def merge(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Merged:
         RunError: when a folder is no shard, they are not of one run, or a record is damaged or there twice and unlike.
         RunLocked: when ``out`` is being written.
     """
+    folders = list({folder.resolve(): folder for folder in folders}.values())  # each costs what it did but once
     parts = [_examine(folder) for folder in folders]
     first = parts[0]
     for part in parts[1:]:
