@@ -174,6 +174,12 @@ class Company:
                 self._minds[robot.seat] = self._make(robot)
         return dict(self._minds)
 
+    def rest(self) -> None:
+        """The trial is over: whoever clears up for the next may do so now."""
+        for mind in self._minds.values():
+            if (finish := getattr(mind, "finish", None)) is not None:
+                finish()
+
     def dismiss(self, seat: str) -> None:
         """Let a mind go; the next trial gets a fresh one."""
         mind: Any = self._minds.pop(seat)
@@ -191,6 +197,7 @@ def player(sources: Sources | None = None) -> Callable[[Session], Iterator[Recor
         with stage.enter(session) as company:
             for trial in session.trials:
                 log = _play(stage, company, trial)
+                company.rest()
                 for seat in dict.fromkeys(fault.seat for fault in log.faults):
                     company.dismiss(seat)
                 yield record.of(trial, log)
