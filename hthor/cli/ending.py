@@ -15,8 +15,8 @@ INTERNAL, USAGE, INTERRUPTED = 1, 2, 130
 
 CODES = {
     0: "done",
-    INTERNAL: "a check failed (a house, a task, a suite, a table, a gate of a calibration, a merge or an evaluation that lacks trials), "
-    "or an error of our own",
+    INTERNAL: "a check failed (a house, a task, a suite, a table, a gate of a calibration, a merge or an evaluation "
+    "that lacks trials), or an error of our own",
     USAGE: "wrong usage or input",
     3: "done, but the agent failed in more trials than --max-faults",
     4: "the agent's file does not load, or breaks the contract",

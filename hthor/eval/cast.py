@@ -110,6 +110,7 @@ class Stage:
         from hthor.eval import impersonal, record, remains
 
         log = _play(self, company, trial)
+        company.rest()
         if not log.faults:
             return record.of(trial, log)
         files = self._sources.minds.values()
@@ -195,6 +196,12 @@ class Company:
     def minds(self) -> Mapping[str, Mind]:
         """The minds of the trial that was played, by seat."""
         return self._minds
+
+    def rest(self) -> None:
+        """The trial is over: whoever clears up for the next may do so now."""
+        for mind in self._minds.values():
+            if (finish := getattr(mind, "finish", None)) is not None:
+                finish()
 
     def dismiss(self, seat: str) -> None:
         """Let a mind go; the next trial gets a fresh one."""

@@ -19,17 +19,26 @@ ORDERLY = 97
 """Exit status of a trial that came to its end, which an agent would hardly choose for itself."""
 
 
-def serve(pipe: Pipe, order: wire.Load, held: Ruleset | None, *, first: bool) -> None:
+def serve(pipe: Pipe, order: wire.Load, held: Ruleset | None, *, first: bool, wait: int = -1) -> None:
     """Play one trial, or, with an agent that says ``persistent = True``, all of them.
 
     Args:
         held: rules for files. first: say what holds this process, and what the file is.
+        wait: a pipe that says when the trial begins; until then nothing is said and nothing of the agent is read.
     """
     word = seccomp.new_word() if order.words and held is not None else b""
     try:
         holding.confine(order.policy, held, word)
     except Refused as error:
-        pipe.send(wire.Failed(kind="confinement", detail=str(error)))
+        problem = str(error)
+    else:
+        problem = ""
+    if wait >= 0:
+        if not os.read(wait, 1):
+            return
+        os.close(wait)
+    if problem:
+        pipe.send(wire.Failed(kind="confinement", detail=problem))
         return
     if first:
         pipe.send(_confined(held))

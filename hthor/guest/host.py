@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 import msgspec
 
@@ -18,6 +20,7 @@ from hthor.guest.served import Unreachable
 from hthor.guest.talk import Talk
 from hthor.types import Action, Briefing, Observation
 
+_T = TypeVar("_T")
 _ENTER_S = 120.0
 """Seconds until a process must say what holds it: the start of an interpreter, and the libraries an agent names."""
 _ASKS = 100
@@ -77,7 +80,8 @@ class Guest:
         self._isolation, self._memory_mb, self._disk_mb = isolation, memory_mb, disk_mb
         self._info: GuestInfo | None = None
         self._gpus = 0.0
-        self._playing = False
+        self._playing = self._ending = self._ahead = False
+        self._habits: answering.Habits | None = None
 
     def load(self) -> GuestInfo:
         """Bring the agent up, unless that is done.
@@ -109,7 +113,7 @@ class Guest:
             self.close()
             self._gpus = found.gpus
             return self.load()
-        self._talk.loaded, self._info = True, found
+        self._talk.loaded, self._info, self._ahead = True, found, ready.ahead
         return found
 
     def begin(self, briefing: Briefing) -> None:
@@ -118,8 +122,9 @@ class Guest:
         Raises:
             GuestFault: when the agent fails, or its server is gone. AgentError: when it cannot be loaded.
         """
-        if self._playing:
-            self._end()
+        self.finish()
+        if self._ending:
+            self._await_end()
         talk = self._talk
         try:
             self.load()
@@ -134,6 +139,7 @@ class Guest:
         if not isinstance(answer, wire.Done):
             raise talk.wrong("begin", answer)
         self._playing, self._bank = True, self._bank_s
+        self._habits = answering.Habits() if self._ahead else None
 
     def act(self, observation: Observation) -> Action:
         """The agent's action.
@@ -145,7 +151,9 @@ class Guest:
         if not self._playing or talk.line is None:
             raise GuestFault("died", "the agent has no trial: begin was not called, or it failed before")
         slim = tuple(msgspec.structs.replace(message, image=None) for message in observation.inbox)
-        talk.send(wire.Look(observation=msgspec.structs.replace(observation, senses=None, inbox=slim)), self._step_s)
+        ahead = self._ours(self._habits.ahead, observation) if self._habits else {}
+        bare = msgspec.structs.replace(observation, senses=None, inbox=slim)
+        talk.send(wire.Look(observation=bare, ahead=ahead), self._step_s)
         if window is not None:
             window.clear()
         left = granted = self._step_s + self._bank
@@ -153,18 +161,31 @@ class Guest:
             said, left = talk.receive(left)
             if isinstance(said, wire.Ask):
                 talk.send(self._given(observation, said), self._step_s)
+                if self._habits:
+                    self._habits.read(said.what)
             elif isinstance(said, wire.Acted):
                 if wrong := wire.objection(said.action):
                     raise talk.fault(*wrong)
+                if self._habits:
+                    self._habits.read(*said.read)
                 self._bank -= max(0.0, granted - left - self._step_s)
                 return said.action
             else:
                 raise talk.wrong("act", said)
         raise talk.fault("garbage", f"asked for more than {_ASKS} things within one act")
 
+    def finish(self) -> None:
+        """The trial is over: its process comes to its end while the caller goes on. Need not be called."""
+        if not self._playing:
+            return
+        self._playing = False
+        with contextlib.suppress(GuestFault):
+            self._talk.send(wire.End(), self._step_s)
+            self._ending = self._info is not None and not self._info.persistent
+
     def close(self) -> None:
         """End the process; a later ``begin`` starts another."""
-        self._playing = False
+        self._playing = self._ending = False
         self._talk.close()
 
     @property
@@ -230,22 +251,26 @@ class Guest:
         self.close()
         return said.detail if isinstance(said, wire.Failed) else f"unexpected {type(said).__name__}"
 
-    def _end(self) -> None:
-        """Let the trial's process come to its end; whoever will not is ended with its keeper."""
-        self._playing = False
+    def _await_end(self) -> None:
+        """Wait until the last trial's process has come to its end; whoever will not is ended with its keeper."""
+        self._ending = False
         with contextlib.suppress(GuestFault):
-            self._talk.send(wire.End(), self._step_s)
-            if self._info is not None and not self._info.persistent:
-                answer, _ = self._talk.receive(self._step_s)
-                if not isinstance(answer, wire.Over):
-                    self.close()
+            answer, _ = self._talk.receive(self._step_s)
+            if not isinstance(answer, wire.Over):
+                self.close()
 
     def _given(self, observation: Observation, ask: wire.Ask) -> wire.Given:
-        """What was asked for. A failure to sense is ours, so the guest is let go and the error passed on."""
         try:
-            return answering.answer(observation, ask, self._window)
+            return self._ours(answering.answer, observation, ask, self._window)
         except answering.Unknown as error:
             raise self._talk.fault("garbage", str(error)) from None
+
+    def _ours(self, sense: Callable[..., _T], *values: object) -> _T:
+        """What sensing gives. A failure to sense is ours, so the guest is let go and the error passed on."""
+        try:
+            return sense(*values)
+        except answering.Unknown:
+            raise
         except Exception:
             self.close()
             raise

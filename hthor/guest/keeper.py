@@ -16,10 +16,10 @@ import sys
 import time
 from pathlib import Path
 
-from hthor.guest import child, ending, frames, wire
+from hthor.guest import child, ending, forking, frames, wire
 from hthor.guest.confinement import holding, kernel, limits
 from hthor.guest.confinement.holding import Refused
-from hthor.guest.confinement.landlock import Ruleset
+from hthor.guest.forking import Spare
 from hthor.guest.preloading import preload
 from hthor.guest.senses import Pipe
 
@@ -58,12 +58,15 @@ def main(read: int, tell: int, write: int, parent: int) -> None:
         return
     if not order.words:
         preload(Path(order.path), order.module)
-    pid = _fork(pipe, tell, order, held, first=True)
+    pid = forking.fork(pipe, tell, order, held, first=True)
+    spare: Spare | None = None
     while True:
         own.send(_watch(pid, order))
         if not _called(read):
             return
-        pid = _fork(pipe, tell, order, held, first=False)
+        pid = (spare.start() if spare else 0) or forking.fork(pipe, tell, order, held)
+        if order.policy.level != "L1":  # there all that the keeper has started ends with each trial
+            spare = Spare(pipe, tell, order, held)
 
 
 def _called(read: int) -> bool:
@@ -106,21 +109,6 @@ def _leave_guard(pipes: tuple[int, ...], scratch: str) -> None:
         if code is not None and code < 0:  # so that the host hears how the keeper ended
             os.kill(me, -code)
         os._exit(code or 0)
-
-
-def _fork(pipe: Pipe, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool) -> int:
-    """A child that plays one trial; its process id."""
-    me = os.getpid()
-    pid = os.fork()
-    if pid:
-        return pid
-    try:
-        limits.die_with(me)
-        os.close(tell)
-        child.serve(pipe, order, held, first=first)
-        os._exit(child.ORDERLY)
-    finally:
-        os._exit(1)
 
 
 def _watch(pid: int, order: wire.Load) -> wire.KeeperToHost:

@@ -39,6 +39,7 @@ def load(order: wire.Load) -> tuple[type[Any], wire.Ready]:
         absent=bool(getattr(cls, "absent", False)),
         persistent=bool(getattr(cls, "persistent", False)),
         doc=(cls.__doc__ or module.__doc__ or "").strip()[: wire.TEXT_MAX],
+        ahead=True,
         gpus=_gpus(cls, path),
     )
     return cls, ready

@@ -9,7 +9,7 @@ import msgspec
 
 from hthor.guest import loading, wire
 from hthor.guest.senses import Gone, RemoteSenses, Wire
-from hthor.types import Action, Message, Observation
+from hthor.types import Action, Message
 
 
 def play(pipe: Wire, cls: type[Any], order: wire.Begin) -> None:
@@ -19,15 +19,15 @@ def play(pipe: Wire, cls: type[Any], order: wire.Begin) -> None:
         agent.begin(order.briefing)
         pipe.send(wire.Done())
         while isinstance(look := pipe.receive(), wire.Look):
-            pipe.send(_act(pipe, agent, look.observation))
+            pipe.send(_act(pipe, agent, look))
     except Gone:
         raise
     except BaseException as error:
         pipe.send(_failed(error))
 
 
-def _act(pipe: Wire, agent: Any, observation: Observation) -> wire.Acted | wire.Failed:
-    senses = RemoteSenses(pipe)
+def _act(pipe: Wire, agent: Any, look: wire.Look) -> wire.Acted | wire.Failed:
+    observation, senses = look.observation, RemoteSenses(pipe, look.ahead)
     inbox = tuple(_with_image(message, senses) for message in observation.inbox)
     action = agent.act(msgspec.structs.replace(observation, senses=senses, inbox=inbox))
     senses.expire()
@@ -35,7 +35,7 @@ def _act(pipe: Wire, agent: Any, observation: Observation) -> wire.Acted | wire.
         detail = f"act must return an hthor.types.Action, got {type(action).__name__}: {repr(action)[:200]}"
         return wire.Failed(kind="wrong_type", detail=detail)
     try:
-        message = wire.Acted(action=wire.plain(action))
+        message = wire.Acted(action=wire.plain(action), read=senses.read)
     except wire.Unfit as error:
         return wire.Failed(kind="garbage", detail=f"act returned an Action that cannot be taken: {error}")
     size = len(wire.encode(message))

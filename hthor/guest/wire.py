@@ -61,9 +61,13 @@ class Begin(Struct, tag="begin", frozen=True, kw_only=True):
 
 
 class Look(Struct, tag="look", frozen=True, kw_only=True):
-    """Host: act. ``senses`` of the observation and the images of its messages are left out, to be asked for."""
+    """Host: act. ``senses`` of the observation and the images of its messages are left out, to be asked for.
+
+    ``ahead`` holds what the guest has read in both of its last two steps, if it takes such: it need not ask for that.
+    """
 
     observation: Observation
+    ahead: dict[str, msgspec.Raw] = {}
 
 
 class Given(Struct, tag="given", frozen=True, kw_only=True):
@@ -87,7 +91,8 @@ class Confined(Struct, tag="confined", frozen=True, kw_only=True):
 class Ready(Struct, tag="ready", frozen=True, kw_only=True):
     """Guest: loaded; what the agent says of itself.
 
-    ``version`` is whatever tells one version of a served agent from another; ``gpus`` is how much of a GPU it asks for.
+    ``version`` is whatever tells one version of a served agent from another; ``ahead``
+    says that it takes what it is going to read before it asks; ``gpus`` is how much of a GPU it asks for.
     """
 
     name: str = ""
@@ -97,6 +102,7 @@ class Ready(Struct, tag="ready", frozen=True, kw_only=True):
     persistent: bool = False
     doc: str = ""
     version: str = ""
+    ahead: bool = False
     gpus: float = 0.0
     wire: int = VERSION
 
@@ -117,9 +123,10 @@ class Ask(Struct, tag="ask", frozen=True, kw_only=True):
 
 
 class Acted(Struct, tag="acted", frozen=True, kw_only=True):
-    """Guest: its action."""
+    """Guest: its action, and what it has read of what was sent ahead."""
 
     action: Action
+    read: tuple[str, ...] = ()
 
 
 class Over(Struct, tag="over", frozen=True, kw_only=True):
