@@ -89,7 +89,7 @@ def evaluate(
         if book.torn:
             watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")
         where, keeper = engine or engines.find(engines.LOCAL, jobs=jobs), Keeper(folder, again)
-        cost = _play(book, where, left, make, watch, keeper) if left else None
+        cost = _play(book, where, left, make, watch, keeper, steady=not plan.realtime) if left else None
         missing = [key for key in wanted if key not in book]
         if missing:
             raise RunError(f"{folder}: {len(missing)} trials were not played, {missing[0]} is one. Run it again.")
@@ -101,7 +101,14 @@ def evaluate(
 
 
 def _play(
-    book: Log, engine: Engine, sessions: Sequence[Session], make: Make, watch: Watcher, keeper: Keeper
+    book: Log,
+    engine: Engine,
+    sessions: Sequence[Session],
+    make: Make,
+    watch: Watcher,
+    keeper: Keeper,
+    *,
+    steady: bool,
 ) -> tuple[float, int]:
     """Play sessions and write down what is new; CPU time [s] and the number of new trials."""
     cpu_s, new, other = 0.0, 0, 0
@@ -127,7 +134,7 @@ def _play(
                 jsonio.write(book.path.with_name("error.txt"), failure.detail.encode())
                 raise InternalFailure(f"{failure}. The traceback is in {book.path.with_name('error.txt')}.") from None
             raise
-    if other:
+    if other and steady:
         watch.note(f"{other} trials went otherwise when they were played again: something here does not repeat itself")
     return cpu_s, new
 
