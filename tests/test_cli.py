@@ -201,6 +201,24 @@ def test_an_agents_faults_are_shown_with_a_way_to_look(hthor, tmp_path: Path, mo
     assert [hthor(*words, most).code for most in ("1", "2", "9%", "10%", "x")] == [3, 0, 3, 0, 2]
 
 
+def test_real_time_is_another_run_and_says_so(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(crews, "introduce", fakes.character)
+    monkeypatch.chdir(tmp_path)
+    modes = {}
+    for words in ((), ("--realtime",)):
+        said = hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--json", *words)
+        result = json.loads(said.out)
+        modes[result["mode"]] = result["hashes"]["run"], result["hashes"]["trials"]
+        assert ("in real time" in said.err) == bool(words)
+    assert modes.keys() == {"lockstep", "realtime"}
+    assert len({*modes["lockstep"], *modes["realtime"]}) == 4
+    late, soon = sorted((tmp_path / "runs").iterdir(), key=lambda folder: "-realtime-" not in folder.name)
+    assert "-realtime-" in late.name
+    assert hthor("score", str(late)).code == 0
+    (soon / "trials.jsonl").write_bytes((late / "trials.jsonl").read_bytes())
+    assert "spec.realtime is not the one in run.json" in hthor("score", str(soon)).err
+
+
 def test_faults_of_several_robots_are_told_apart(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(crews, "introduce", fakes.character)
     folder = str(tmp_path / "run")

@@ -149,7 +149,7 @@ class Stage:
         try:
             changed = guest.load().sha256 != seat.agent.sha256
         except Unreachable:  # a server that is gone for a while costs its trials, not the run
-            return guest
+            return Watched(guest)
         if changed:
             guest.close()
             raise AgentError(_changed(path))

@@ -62,8 +62,14 @@ def play(
     watch: Watcher,
     keeper: Keeper,
     stop: threading.Event,
+    *,
+    steady: bool = True,
 ) -> Course:
-    """Play sessions and write down what is new, and beside the log what is left of agents that failed."""
+    """Play sessions and write down what is new, and beside the log what is left of agents that failed.
+
+    Args:
+        steady: whether a trial that is played again has to go the same way.
+    """
     came, draining = Course(), False
     with closing(engine.perform(sessions, make)) as stream:
         for news in stream:
@@ -92,7 +98,7 @@ def play(
                 draining = True
                 engine.drain()
                 watch.note("stopping when the trials that are being played are over; Ctrl-C again stops at once")
-    if came.other:
+    if came.other and steady:
         watch.note(
             f"{came.other} trials went otherwise when they were played again: something here does not repeat itself"
         )

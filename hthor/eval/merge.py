@@ -19,7 +19,7 @@ from hthor.eval.setup import Setup
 from hthor.eval.shard import Shard, whole_folder
 from hthor.guest import Isolation
 
-_CARRIED = ("suite.json", "houses/*.json")
+_CARRIED = ("suite.json", "houses/*.json", "faults/*.json")
 """What else a run's folder may hold that others need to read it."""
 
 

@@ -101,7 +101,7 @@ def _evaluate(
         keeper = Keeper(folder, again)
         if left:
             machine.note(folder)
-        came = course.play(book, engine, left, make, watch, keeper, stop) if left else None
+        came = course.play(book, engine, left, make, watch, keeper, stop, steady=not plan.realtime) if left else None
         if stop.is_set():
             raise Interrupted(f"interrupted after {len(book)} trials; resume with the same command.")
         missing = [key for key in wanted if key not in book]
