@@ -24,7 +24,7 @@ import pytest
 
 from benchmarks import forging
 from hthor import cli, guest, houses, jsonio, rules, tasks
-from hthor.eval import cast, crews, find, guarded
+from hthor.eval import cast, crews, engines, find, guarded
 from hthor.eval.log import Log
 from hthor.eval.record import Record
 from hthor.eval.session import Session, sessions
