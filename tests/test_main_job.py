@@ -23,6 +23,7 @@ import msgspec
 import pytest
 
 from hthor import cli, guest, houses, jsonio, tasks
+from hthor.errors import AgentError
 from hthor.eval import cast, crews, find, guarded, redraw
 from hthor.eval.log import Log
 from hthor.eval.record import Record
@@ -401,7 +402,7 @@ def test_a_run_has_the_weakest_isolation_of_its_commands(tmp_path: Path):
 def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
     sources, session = dealt(written(tmp_path))
     written(tmp_path, act="return None")
-    with pytest.raises(guest.host.AgentError, match=r"agent\.py was changed while its run was going on"):
+    with pytest.raises(AgentError, match=r"agent\.py was changed while its run was going on"):
         list(cast.player(sources)(session))
 
 
