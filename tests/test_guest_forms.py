@@ -164,7 +164,7 @@ def test_the_examples_of_the_wire_play(level: str, words: str, monkeypatch: pyte
             assert mind.act(look(1, Walled())).motion == Rotate(yaw=0.7)
 
 
-@pytest.mark.parametrize("record", (*RECORDS, *MESSAGES, *ACTIONS))
+@pytest.mark.parametrize("record", [*RECORDS, *MESSAGES, *ACTIONS])
 def test_the_page_of_the_wire_leaves_nothing_out(record: Any) -> None:
     page = (EXAMPLES.parent / "docs" / "wire.md").read_text()
     tags = [record.__struct_config__.tag] if record.__struct_config__.tag else []
