@@ -13,14 +13,42 @@ from msgspec import structs
 
 from hthor import guest
 from hthor.errors import AgentError, UnknownName
-from hthor.guest import Guest, GuestFault, IsolationError, digests, load_info, reference
+from hthor.guest import Guest, GuestFault, IsolationError, digests, load_info, reference, wire
 from hthor.guest.confinement import devices
-from hthor.types import Action, Move, Rotate, Scan, Wait
+from hthor.types import (
+    Action,
+    BodySpec,
+    Briefing,
+    Camera,
+    Close,
+    Detection,
+    Drop,
+    Job,
+    Message,
+    Move,
+    Observation,
+    Open,
+    Outcome,
+    Pick,
+    Place,
+    Pose,
+    Receipt,
+    Rotate,
+    Scan,
+    Send,
+    ThingState,
+    Wait,
+)
 from tests.test_guest import BRIEFING, HEAD, Sensors, agent, living, look
 
 PACKAGE = Path(guest.__file__).parents[1]
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 LEVELS = ("L1", "L2", "L3")
+
+
+RECORDS = (Briefing, BodySpec, Job, Observation, Outcome, Receipt, Message, ThingState, Detection, Scan, Camera, Pose)
+MESSAGES = (wire.Ready, wire.Begin, wire.Done, wire.Look, wire.Ask, wire.Given, wire.Acted, wire.Failed, wire.End)
+ACTIONS = (Action, Move, Rotate, Pick, Place, Drop, Open, Close, Wait, Send)
 
 
 class Walled(Sensors):
@@ -134,6 +162,14 @@ def test_the_examples_of_the_wire_play(level: str, words: str, monkeypatch: pyte
             action = mind.act(look())
             assert action.motion == Move(forward=0.3)
             assert mind.act(look(1, Walled())).motion == Rotate(yaw=0.7)
+
+
+@pytest.mark.parametrize("record", [*RECORDS, *MESSAGES, *ACTIONS])
+def test_the_page_of_the_wire_leaves_nothing_out(record: Any) -> None:
+    page = (EXAMPLES.parent / "docs" / "wire.md").read_text()
+    tags = [record.__struct_config__.tag] if record.__struct_config__.tag else []
+    missing = [name for name in (*tags, *record.__struct_fields__) if f"`{name}`" not in page]
+    assert not missing
 
 
 PERL = (EXAMPLES / "wire_agent.pl").read_text().partition("say_it({ type => 'ready'")[0]

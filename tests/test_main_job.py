@@ -24,6 +24,7 @@ import pytest
 
 from benchmarks import forging
 from hthor import cli, guest, houses, jsonio, rules, tasks
+from hthor.errors import AgentError
 from hthor.eval import cast, crews, engines, find, guarded
 from hthor.eval.log import Log
 from hthor.eval.record import Record
@@ -425,7 +426,7 @@ def test_a_run_has_the_weakest_isolation_of_its_commands(tmp_path: Path):
 def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
     sources, session = dealt(written(tmp_path))
     written(tmp_path, act="return None")
-    with pytest.raises(guest.host.AgentError, match=r"agent\.py was changed while its run was going on"):
+    with pytest.raises(AgentError, match=r"agent\.py was changed while its run was going on"):
         list(cast.player(sources)(session))
 
 

@@ -78,7 +78,7 @@ class Process:
 
     def write(self, body: bytes, end: float) -> None:
         """As `Line` says."""
-        left = memoryview(wire.frame(body))
+        left = memoryview(wire.framed(body))
         while left:
             try:
                 left = left[os.write(self._out, left) :]

@@ -31,7 +31,7 @@ class Pipe:
         return message
 
     def send(self, message: wire.ToHost | wire.KeeperToHost) -> None:
-        data = memoryview(wire.frame(wire.encode(message)))
+        data = memoryview(wire.frame(message))
         while data:
             data = data[os.write(self._write, data) :]
 

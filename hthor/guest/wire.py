@@ -189,8 +189,13 @@ def encode(message: object) -> bytes:
     return _encoder.encode(message)
 
 
-def frame(body: bytes) -> bytes:
-    """A message with its length in front, as it goes through a pipe."""
+def frame(message: ToGuest | ToHost | KeeperToHost) -> bytes:
+    """One message as it goes through a pipe."""
+    return framed(encode(message))
+
+
+def framed(body: bytes) -> bytes:
+    """An encoded message with its length in front."""
     return len(body).to_bytes(4, "little") + body
 
 

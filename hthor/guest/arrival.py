@@ -1,0 +1,91 @@
+"""How a submitted agent comes up: a process at some level, or a connection; knows nothing of trials."""
+
+from __future__ import annotations
+
+from hthor.errors import KILLED, AgentError, AgentKilled
+from hthor.guest import choosing, info, served, wire
+from hthor.guest.confinement import Isolation
+from hthor.guest.faults import GuestFault
+from hthor.guest.info import GuestInfo
+from hthor.guest.process import Process
+from hthor.guest.reference import Reference
+from hthor.guest.talk import Talk
+
+_ENTER_S = 120.0
+"""Seconds until a process must say what holds it: the start of an interpreter, and the libraries an agent names."""
+
+
+class Arrival:
+    """Brings an agent up, and up again after it has failed. The arguments are those of `Guest`."""
+
+    def __init__(
+        self, talk: Talk, agent: Reference, *, start_s: float, isolation: str | None, memory_mb: int, disk_mb: int
+    ) -> None:
+        self._talk, self._agent = talk, agent
+        self._start_s, self._isolation = start_s, isolation
+        self._memory_mb, self._disk_mb = memory_mb, disk_mb
+        self._gpus = 0.0
+        self.ahead = False
+
+    def come(self) -> GuestInfo:
+        """Bring it up, and say what it is; ``ahead`` is then what it says of itself.
+
+        Raises:
+            Unreachable, AgentError, IsolationError: as `Guest.load`.
+        """
+        talk, agent = self._talk, self._agent
+        digest = agent.sha256
+        held = self._connected() if agent.url else self._started()
+        try:
+            ready = talk.receive(self._start_s)[0]
+        except GuestFault as fault:
+            kind = AgentKilled if fault.kind == KILLED else AgentError
+            raise kind(f"{agent.text}: loading it failed ({fault}).\n{fault.log}".rstrip()) from None
+        if not isinstance(ready, wire.Ready):
+            talk.close()
+            raise AgentError(ready.detail if isinstance(ready, wire.Failed) else f"unexpected {type(ready).__name__}")
+        try:
+            found = info.describe(agent, digest, ready, held)
+        except AgentError:
+            talk.close()
+            raise
+        if found.gpus and not self._gpus and not agent.url:  # once more, with what it asks for
+            talk.close()
+            self._gpus = found.gpus
+            return self.come()
+        talk.loaded, self.ahead = True, ready.ahead
+        return found
+
+    def _connected(self) -> Isolation:
+        self._talk.open(served.connect(self._agent.url, self._start_s))
+        return served.ISOLATION
+
+    def _started(self) -> Isolation:
+        """Start its process, at the level that is wanted or the strongest that comes up."""
+        return choosing.start(
+            self._agent, self._isolation, self._enter, self._memory_mb, self._disk_mb, gpus=self._gpus > 0.0
+        )
+
+    def _enter(self, process: Process) -> wire.Confined | str:
+        """What a process that has just started says of its confinement, or why it has none."""
+        self._talk.open(process)
+        agent = self._agent
+        load = wire.Load(
+            path=agent.path,
+            cls=agent.cls,
+            policy=process.policy,
+            module=agent.module,
+            words=agent.words,
+            root=agent.root,
+        )
+        try:
+            self._talk.send(load, _ENTER_S)
+            said, _ = self._talk.receive(_ENTER_S)
+        except GuestFault as fault:
+            if fault.kind == KILLED:  # which says nothing about what this machine can do
+                raise AgentKilled(f"{agent.text}: its process was {fault.detail} while it started.") from None
+            return fault.log.strip() or str(fault)
+        if isinstance(said, wire.Confined):
+            return said
+        self._talk.close()
+        return said.detail if isinstance(said, wire.Failed) else f"unexpected {type(said).__name__}"

@@ -1,0 +1,93 @@
+"""One trial of a guest from its first look to its last action: who asks, who answers, and what time is left.
+
+Knows nothing of how the guest came up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import msgspec
+
+from hthor.guest import answering, wire
+from hthor.guest.faults import GuestFault
+from hthor.guest.frames import Window
+from hthor.guest.talk import Talk
+from hthor.types import Action, Observation
+
+_T = TypeVar("_T")
+_ASKS = 100
+"""How often an agent may ask for something within one ``act``; what it has read once it need not ask for again."""
+
+
+class Turns:
+    """A trial that has begun.
+
+    Args:
+        step_s: seconds for each action; what the host takes to answer does not count.
+        bank_s: seconds by which actions may take longer than that, all together.
+        ahead: whether the guest takes what it is likely to read before it asks.
+        window: where pictures are shared, None for nowhere.
+    """
+
+    def __init__(self, talk: Talk, *, step_s: float, bank_s: float, ahead: bool, window: Window | None) -> None:
+        self._talk, self._window = talk, window
+        self._step_s, self._bank = step_s, bank_s
+        self._habits = answering.Habits() if ahead else None
+        if window is not None:
+            window.wipe()
+
+    def act(self, observation: Observation) -> Action:
+        """The agent's action.
+
+        Raises:
+            GuestFault: when there is none.
+        """
+        talk, habits = self._talk, self._habits
+        slim = tuple(msgspec.structs.replace(message, image=None) for message in observation.inbox)
+        bare = msgspec.structs.replace(observation, senses=None, inbox=slim)
+        ahead = self._sensed(habits.ahead, observation) if habits else {}
+        if self._window is not None:
+            self._window.clear()
+        talk.send(wire.Look(observation=bare, ahead=ahead), self._step_s)
+        left = granted = self._step_s + self._bank
+        for _ in range(_ASKS):
+            said, left = talk.receive(left)
+            if isinstance(said, wire.Ask):
+                talk.send(self._given(observation, said), self._step_s)
+                if habits:
+                    habits.read(said.what)
+            elif isinstance(said, wire.Acted):
+                if wrong := wire.objection(said.action):
+                    raise talk.fault(*wrong)
+                if habits:
+                    habits.read(*said.read)
+                self._bank -= max(0.0, granted - left - self._step_s)
+                return said.action
+            else:
+                raise talk.wrong("act", said)
+        raise talk.fault("garbage", f"asked for more than {_ASKS} things within one act")
+
+    def end(self) -> None:
+        """Say that the trial is over, if there is still somebody to hear it."""
+        try:
+            self._talk.send(wire.End(), self._step_s)
+        except GuestFault:
+            return
+
+    def _given(self, observation: Observation, ask: wire.Ask) -> wire.Given:
+        try:
+            return self._sensed(answering.answer, observation, ask, self._window)
+        except answering.Unknown as error:
+            raise self._talk.fault("garbage", str(error)) from None
+
+    def _sensed(self, sense: Callable[..., _T], *values: object) -> _T:
+        """What sensing gives. A failure to sense is ours, so the guest is let go and the error passed on."""
+        try:
+            return sense(*values)
+        except answering.Unknown:
+            raise
+        except Exception:
+            self._talk.close()
+            raise
