@@ -35,6 +35,11 @@ class Watched:
         self.looks[-1] = (observation, action)
         return action
 
+    def finish(self) -> None:
+        """Its trial is over."""
+        if (finish := getattr(self.mind, "finish", None)) is not None:
+            finish()
+
     def close(self) -> None:
         """Let the mind go."""
         self.mind.close()
