@@ -18,7 +18,7 @@ from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, Case
 def verdict(one: dict[str, Any], idle: dict[str, Any], case: Case) -> str:
     """What is not as it should be, empty when all is."""
     wrong = {
-        "it got something": "BREACH" in one["detail"] + one["output"],
+        "it got something": one["breach"],
         f"unexpected end, expected {' or '.join(case.kinds)}": (one["kind"] or NO_FAULT) not in case.kinds,
         "the fault is not counted": one["counted"] != ({one["kind"]: 1} if one["kind"] else {}),
         "its trial is not scored": one["scored"] != idle["scored"],

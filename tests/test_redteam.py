@@ -90,7 +90,7 @@ def test_a_hostile_agents_trial_is_scored_with_a_named_fault(level: str) -> None
         assert one["counted"] == {one["kind"]: 1}, one
         assert one["scored"] == idle["scored"], "a trial like any other"
         assert one["person"] == idle["person"], "the person did as if the robot had stood still"
-        assert "BREACH" not in one["detail"] + one["output"], one
+        assert not one["breach"], one
         assert not one["changed"]
     assert found["intact"]
 

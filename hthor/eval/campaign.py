@@ -316,8 +316,8 @@ def _again(options: Options, chosen: Programme, part: Part) -> str:
 
 
 def _near(path: str) -> str:
-    """A path as short as it can be said from here."""
-    near = os.path.relpath(path)
+    """A path as short as it can be said from here; whatever is no absolute path stays as it is."""
+    near = os.path.relpath(path) if os.path.isabs(path) else path
     return path if near.startswith("..") else near
 
 

@@ -36,7 +36,7 @@ class Watched:
         return action
 
     def finish(self) -> None:
-        """The trial is over."""
+        """Its trial is over."""
         if (finish := getattr(self.mind, "finish", None)) is not None:
             finish()
 

@@ -96,7 +96,6 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
         extra={guarded.NAME: jsonio.pretty(held)},
     )
     ((_, record),) = read(runs / "trials.jsonl")
-    left = runs / remains.FOLDER / f"{record.key}.json"
     fault = record.faults[0] if record.faults else None
     after = sorted(one for one in home.rglob("*") if runs not in (one, *one.parents))
     return {
@@ -104,13 +103,20 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
         "level": result.isolation.level if result.isolation else "",
         "kind": fault.kind if fault else "",
         "detail": fault.detail if fault else "",
-        "output": remains.load(left).failures[0].output if left.exists() else "",
+        "breach": _breached(fault.detail if fault else "", record.key, runs),
         "counted": result.counts.faults_by_kind,
         "scored": [result.counts.trials, result.metrics.sr.n, result.metrics.time_s.mean],
         "ticks": record.ticks,
         "person": hashlib.sha256(repr(record.paths[HUMAN]).encode()).hexdigest()[:16],
         "changed": after != before or path.read_text() != text,
     }
+
+
+def _breached(detail: str, key: str, runs: Path) -> bool:
+    """Whether it says so with its last words; a traceback may also show the line that would have said it."""
+    left = runs / remains.FOLDER / f"{key}.json"
+    output = remains.load(left).failures[0].output if left.exists() else ""
+    return any("BREACH" in line for line in (*detail.strip().splitlines()[-1:], *output.splitlines()))
 
 
 if __name__ == "__main__":
