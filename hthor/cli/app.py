@@ -28,9 +28,10 @@ from hthor.errors import HthorError
 
 EPILOG = (
     "Exit codes: 0 done; 1 a check failed (a house, a task, a suite, a table, a gate of a calibration, a merge that "
-    "lacks trials), or an error of our own; 2 wrong usage or input; 3 done, but the agent failed in some trials; 4 the "
-    "agent's file does not load; 5 less isolation than is required; 6 compare --fail-if-worse found a run worse than "
-    "the first; 75 the run is being written by another process; 130 interrupted, the same command resumes."
+    "lacks trials, an entry of the leaderboard), or an error of our own; 2 wrong usage or input; 3 done, but the agent "
+    "failed in some trials; 4 the agent's file does not load; 5 less isolation than is required, or a refuted entry; 6 "
+    "compare --fail-if-worse found a run worse than the first; 75 the run is being written by another process; 130 "
+    "interrupted, the same command resumes."
 )
 
 app = typer.Typer(
