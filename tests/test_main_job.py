@@ -505,7 +505,7 @@ def test_leaderboard(
 
     control = files.read(next(here.glob("entries/silent-*.json")))
     lie = forging.forged(files.read(entry), 1.0, control)
-    elsewhere = (msgspec.structs.replace(lie.platforms[0], libc="another"),)
+    elsewhere = ({**lie.platforms[0], "libc": "another"},)
     monkeypatch.setattr(engines, "find", lambda *_, **__: fakes.Here())
     for platforms, tier in ((lie.platforms, "V1"), (elsewhere, "V2")):
         files.write(entry, msgspec.structs.replace(lie, platforms=platforms))
