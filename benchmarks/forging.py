@@ -26,9 +26,13 @@ SHARES = (0.005, 0.01, 0.03, 0.05)
 _MILLION = 1_000_000
 
 
-def forged(entry: Entry, share: float, seed: int = 0) -> Entry:
-    """A copy of an entry in which this share of the trials, or all that failed, did better; the copy is in order."""
-    held = better(outcomes.unpack(entry.trials), share, seed)
+def forged(entry: Entry, share: float, control: Entry | None = None) -> Entry:
+    """A copy of an entry in which this share of the trials, or all that failed, did better; the copy is in order.
+
+    Args:
+        control: the entry without a robot that its uplift is over.
+    """
+    held = better(outcomes.unpack(entry.trials), share)
     whose = worth.people(entry.trials.count, entry.run.participants)
     fresh: dict[str, Estimate] = worth.scores(held, whose, alone=entry.alone)
     return msgspec.structs.replace(
@@ -36,6 +40,7 @@ def forged(entry: Entry, share: float, seed: int = 0) -> Entry:
         metrics=msgspec.structs.replace(entry.metrics, **fresh),
         counts=msgspec.structs.replace(entry.counts, successes=int(held.met.sum())),
         splits=worth.splits(held, whose),
+        uplift=worth.uplift(entry, held, control, outcomes.unpack(control.trials)) if control else entry.uplift,
         hashes=msgspec.structs.replace(entry.hashes, merkle=held.merkle),
         trials=outcomes.pack(held),
         verification=None,
@@ -95,7 +100,10 @@ def main() -> None:
     options.add_argument("--draws", type=int, default=1000, help="for the table (%(default)s)")
     given = options.parse_args()
     if given.entry is not None and given.out is not None:
-        files.write(given.out, forged(files.read(given.entry), given.share))
+        entry = files.read(given.entry)
+        beside = [files.read(path) for path in sorted(given.entry.parent.glob("*.json"))]
+        control = next((one for one in beside if entry.uplift and one.hashes.run == entry.uplift.control), None)
+        files.write(given.out, forged(entry, given.share, control))
         return
     print(f"caught of {given.draws} draws of {SAMPLE} among {COUNT} trials\n", file=sys.stderr)
     for line in _lines(given.draws):

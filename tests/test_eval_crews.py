@@ -11,7 +11,7 @@ import pytest
 
 from hthor import tasks
 from hthor.errors import HthorError, RunError, UnknownName
-from hthor.eval import board, campaign, cast, crews, find, picture, progress, record, run, score, session
+from hthor.eval import campaign, cast, command, crews, find, picture, progress, record, run, score, session
 from hthor.eval.record import Record
 from hthor.eval.setup import crew_name
 from hthor.guest import choosing
@@ -188,7 +188,7 @@ def test_a_run_of_several_robots_is_resumed_and_told_from_others(tmp_path: Path)
 
 def test_the_command_that_finishes_a_run_names_every_robot(tmp_path: Path):
     plan, _ = fakes.run_of(20, name="helper+other")
-    told = board.command(tmp_path, plan)
+    told = command.of(tmp_path, plan)
     assert " --robots scout:helper.py,scout:other.py --humans proxy --suite fake --seed 0 " in told
 
 

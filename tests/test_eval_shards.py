@@ -19,6 +19,7 @@ from hthor.errors import HthorError, RunError
 from hthor.eval import merge, progress, run, score, session, setup, shard
 
 COUNT = 57
+_FILES = [".lock", "effort.json", "platform.json", "run.json", "trials.jsonl"]
 
 
 def _play(folder: Path, words: str = "", *, make=fakes.player, **how) -> Path:
@@ -83,7 +84,7 @@ def test_merged_shards_are_the_undivided_run(undivided: Path, shards: Sequence[P
 
 
 def test_a_shard_is_no_result(shards: Sequence[Path]):
-    assert sorted(path.name for path in shards[0].iterdir()) == [".lock", "effort.json", "run.json", "trials.jsonl"]
+    assert sorted(path.name for path in shards[0].iterdir()) == _FILES
     assert shards[2].name == "run-shard-3-of-4"
 
 

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 from unittest import mock
 
 import eval_fakes as fakes
@@ -28,7 +29,6 @@ from hthor.leaderboard import (
     form,
     listing,
     merkle,
-    outcomes,
     overrides,
     packing,
     page,
@@ -36,7 +36,7 @@ from hthor.leaderboard import (
     submission,
     worth,
 )
-from hthor.leaderboard.entry import Entry
+from hthor.leaderboard.entry import Entry, Verification
 from hthor.tasks.commitment import Commitment
 
 COUNT = 20
@@ -225,12 +225,24 @@ def test_another_spelling_is_refused_and_can_be_fixed(board: Path, whole: Path):
 def test_a_forger_who_makes_all_follow_passes_the_laws_but_not_an_old_verification(board: Path):
     path = entry_of(board, "helper")
     control = files.read(entry_of(board, "silent"))
-    lie = forging.forged(files.read(path), 0.2)
-    without = outcomes.unpack(control.trials)
-    lie = msgspec.structs.replace(lie, uplift=worth.uplift(lie, outcomes.unpack(lie.trials), control, without))
-    files.write(path, lie)
+    true = files.read(path)
+    seal = Verification(
+        tier="V1", passed=True, entry=true.digest, draw="x", drawn=1, compared=1, equal=1, same_bytes=1,
+        platform="0" * 64, why="tested",
+    )  # fmt: skip
+    files.write(path, msgspec.structs.replace(true, verification=seal))
     assert checks.problems(board) == []
-    assert lie.digest != files.read(entry_of(board, "clumsy")).digest
+    lie = forging.forged(true, 0.2, control)
+    files.write(path, lie)
+    assert checks.problems(board) == []  # all of it follows from its trials, which never were
+    files.write(path, msgspec.structs.replace(lie, verification=seal))
+    assert [one.field for one in checks.problems(board)] == ["verification.entry"]
+
+
+@pytest.mark.parametrize("tier", ["V1", "V2"])
+def test_one_false_outcome_in_twenty_is_caught_by_two_hundred_trials(tier: Literal["V1", "V2"]):
+    assert forging.caught(tier, 0.05, 30) == 30
+    assert forging.caught(tier, 0.0, 3) == 0
 
 
 # -------------------------------------------------------------------------------------------------- list and page

@@ -29,7 +29,7 @@ from hthor.eval import cast, crews, engines, find, guarded
 from hthor.eval.log import Log
 from hthor.eval.record import Record
 from hthor.eval.session import Session, sessions
-from hthor.leaderboard import enter, files, outcomes, worth
+from hthor.leaderboard import enter, files
 from hthor.tasks import library
 from hthor.tasks.commitment import Commitment
 from hthor.types import HUMAN
@@ -527,11 +527,8 @@ def test_leaderboard(
     assert "V1" in (here / "index.html").read_text()
 
     control = files.read(next(here.glob("entries/silent-*.json")))
-    lie = forging.forged(files.read(entry), 1.0)
-    assert lie.uplift is not None
-    held, without = outcomes.unpack(lie.trials), outcomes.unpack(control.trials)
-    lie = msgspec.structs.replace(lie, uplift=worth.uplift(lie, held, control, without))
-    elsewhere = (msgspec.structs.replace(lie.platforms[0], libc="another"),)
+    lie = forging.forged(files.read(entry), 1.0, control)
+    elsewhere = ({**lie.platforms[0], "libc": "another"},)
     monkeypatch.setattr(engines, "find", lambda *_, **__: fakes.Here())
     for platforms, tier in ((lie.platforms, "V1"), (elsewhere, "V2")):
         files.write(entry, msgspec.structs.replace(lie, platforms=platforms))

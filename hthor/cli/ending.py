@@ -16,11 +16,11 @@ INTERNAL, USAGE, INTERRUPTED = 1, 2, 130
 CODES = {
     0: "done",
     INTERNAL: "a check failed (a house, a task, a suite, a table, a gate of a calibration, a merge or an evaluation "
-    "that lacks trials), or an error of our own",
+    "that lacks trials, an entry of the leaderboard), or an error of our own",
     USAGE: "wrong usage or input",
     3: "done, but the agent failed in more trials than --max-faults",
     4: "the agent's file does not load, or breaks the contract",
-    5: "less isolation than is required, or 'hthor doctor' found that something that is needed does not work",
+    5: "less isolation than is required, or 'hthor doctor' found that something that is needed does not work, or a refuted entry",
     6: "compare --fail-if-worse found a run worse than the first",
     75: "the run is being written by another process",
     INTERRUPTED: "interrupted, the same command resumes",

@@ -8,7 +8,7 @@ import msgspec
 from msgspec import Meta, Struct
 
 from hthor import jsonio
-from hthor.eval.machine import Machine
+from hthor.eval.machine import Platform
 from hthor.eval.score import Counts, Scores
 from hthor.eval.setup import Setup
 from hthor.eval.stats import Estimate
@@ -143,7 +143,7 @@ class Entry(Struct, frozen=True, kw_only=True):
     harness: Harness
     mode: Literal["lockstep", "realtime"] = LOCKSTEP
     overrides: Annotated[dict[str, str], Meta(max_length=0)] = {}
-    platforms: tuple[Machine, ...] = ()
+    platforms: tuple[Platform, ...] = ()
     isolation: Isolation | None = None
     counts: Counts
     faults: dict[str, Count]

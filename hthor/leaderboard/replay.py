@@ -10,6 +10,7 @@ import os
 from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
@@ -24,7 +25,7 @@ from hthor.eval.session import Session
 from hthor.humans import people
 from hthor.humans.people import People
 from hthor.leaderboard.enter import OURS
-from hthor.leaderboard.entry import Entry
+from hthor.leaderboard.entry import REALTIME, Entry
 from hthor.leaderboard.files import BoardError
 from hthor.tasks import library
 
@@ -50,9 +51,7 @@ def play(
     chosen = programme.choose(suite or entry.run.suite.name, "")
     crew, who = _crew(entry, agent), people.find(entry.run.humans.source)
     _same(entry, chosen, crew, who)
-    whole = session.sessions(
-        chosen.suite, agent=crew, human=who, seed=entry.run.seed, participants=entry.run.participants
-    )
+    whole = session.sessions(chosen.suite, agent=crew, human=who, **_dealt(entry))
     wanted, seats = _cut(whole, places)
     make = _make(suite, crew, who, require_isolation)
     found: dict[int, tuple[Record, bytes]] = {}
@@ -77,11 +76,17 @@ def _crew(entry: Entry, agent: str) -> Crew:
 
 def _same(entry: Entry, chosen: Programme, crew: Crew, who: People) -> None:
     """See that the same configuration comes out; versions of libraries belong to the platform."""
-    here = setup.settle(chosen.suite, crew, human=who, seed=entry.run.seed, participants=entry.run.participants)
+    here = setup.settle(chosen.suite, crew, human=who, **_dealt(entry))
     there, here = (msgspec.structs.replace(plan, versions={}) for plan in (entry.run, here))
     if there != here:
         told = "; ".join(setup.differences(there, here))
         raise BoardError(f"{entry.id}: this is not what was played: {told} ('there' is the entry).")
+
+
+def _dealt(entry: Entry) -> dict[str, Any]:
+    """How its people were dealt their tasks, and whether thinking took time."""
+    clock = {"realtime": True} if entry.mode == REALTIME else {}
+    return {"seed": entry.run.seed, "participants": entry.run.participants, **clock}
 
 
 def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session], dict[tuple[int, int], int]]:

@@ -8,8 +8,9 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
+from hthor import jsonio
 from hthor.errors import HthorError
-from hthor.eval import machine
+from hthor.eval import fingerprint
 from hthor.eval.record import Record
 from hthor.leaderboard import checks, draw, files, outcomes, replay, verdict, worth
 from hthor.leaderboard.entry import REALTIME, Entry, Verification
@@ -58,7 +59,7 @@ def judged(
     entry: Entry, drawn: Sequence[int], again: dict[int, tuple[Record, bytes]], request: Request
 ) -> Verification:
     """The verdict over these records, for the entry's verification block."""
-    here = machine.here()
+    here = fingerprint.here()
     by = verdict.tier(
         repeats=entry.agent.deterministic and entry.mode != REALTIME, same_platform=entry.platforms == (here,)
     )
@@ -80,18 +81,20 @@ def judged(
         compared=found.compared,
         equal=found.equal,
         same_bytes=found.same_bytes,
-        platform=here.sha256,
+        platform=jsonio.sha256(here),
         by=request.by,
         date=request.date,
-        why=f"{_grounds(by, entry)}: {found.why}.",
+        why=f"{_grounds(by, entry, here)}: {found.why}.",
     )
 
 
-def _grounds(by: verdict.Tier, entry: Entry) -> str:
+def _grounds(by: verdict.Tier, entry: Entry, here: dict[str, str]) -> str:
     if by == "V1":
         return "the same platform"
     if by == "V2":
-        return "another platform" if entry.platforms else "a platform that was not noted"
+        if len(entry.platforms) != 1:
+            return "several platforms" if entry.platforms else "a platform that was not noted"
+        return f"another platform ({'; '.join(fingerprint.differences(entry.platforms[0], here))})"
     return "thinking takes time" if entry.mode == REALTIME else "the agent does not claim to repeat itself"
 
 
