@@ -48,6 +48,8 @@ def conclude(command: Callable[..., Any]) -> None:
             _fail(words, getattr(error, "exit_code", USAGE))
         sys.stderr.write(traceback.format_exc())
         _fail("".join(traceback.format_exception_only(error)).strip(), INTERNAL, told=True)
+    if code == INTERRUPTED:
+        _fail("interrupted.", INTERRUPTED)
     sys.exit(code if isinstance(code, int) else 0)
 
 
