@@ -256,6 +256,20 @@ def test_score_of_a_part_is_shown_but_not_stored(hthor, done: Path):
     assert not (done / "result.json").exists()
 
 
+def test_a_run_that_is_spelt_wrong_is_guessed(hthor, done: Path):
+    said = hthor("score", str(done.parent / "ran"))
+    assert said.code == 2
+    assert f"Did you mean '{done}'?" in said.err
+
+
+def test_a_calibration_is_foretold_and_nothing_written(hthor, tmp_path: Path):
+    said = hthor("calibrate", "--quick", "--seed", "7", "--out", str(tmp_path / "new"), "--dry-run", "--json")
+    assert said.code == 0
+    document = json.loads(said.out)
+    assert (document["seed"], document["quick"], document["resumes"]) == (7, True, False)
+    assert not (tmp_path / "new").exists()
+
+
 def test_replay_names_what_it_cannot_find(hthor, done: Path):
     said = hthor("replay", str(done), "t00")
     assert said.code == 2

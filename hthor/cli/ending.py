@@ -20,7 +20,8 @@ CODES = {
     USAGE: "wrong usage or input",
     3: "done, but the agent failed in more trials than --max-faults",
     4: "the agent's file does not load, or breaks the contract",
-    5: "less isolation than is required, or 'hthor doctor' found that something that is needed does not work, or a refuted entry",
+    5: "less isolation than is required, or 'hthor doctor' found that something that is needed does not work, or "
+    "'hthor leaderboard verify' refuted an entry",
     6: "compare --fail-if-worse found a run worse than the first",
     75: "the run is being written by another process",
     INTERRUPTED: "interrupted, the same command resumes",
@@ -48,6 +49,8 @@ def conclude(command: Callable[..., Any]) -> None:
             _fail(words, getattr(error, "exit_code", USAGE))
         sys.stderr.write(traceback.format_exc())
         _fail("".join(traceback.format_exception_only(error)).strip(), INTERNAL, told=True)
+    if code == INTERRUPTED:
+        _fail("interrupted.", INTERRUPTED)
     sys.exit(code if isinstance(code, int) else 0)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import fnmatch
 from collections.abc import Sequence
 from pathlib import Path
@@ -180,7 +181,7 @@ def load(folder: Path) -> Setup:
     """
     path = folder / "run.json"
     if not path.is_file():
-        raise RunError(f"{folder} is not a run's folder: it has no run.json. 'hthor eval' makes one.")
+        raise RunError(f"{folder} is not a run's folder: it has no run.json.{_guess(folder)} 'hthor eval' makes one.")
     data = path.read_bytes()
     try:
         schema = msgspec.json.decode(data, type=_Versioned).schema
@@ -189,6 +190,13 @@ def load(folder: Path) -> Setup:
         return msgspec.json.decode(data, type=Setup)
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise RunError(f"{path}: {error}. The file was changed after it was written.") from None
+
+
+def _guess(folder: Path) -> str:
+    """Which run was meant, of those that lie where it was looked for."""
+    beside = sorted(path.parent.name for path in folder.parent.glob("*/run.json"))
+    near = difflib.get_close_matches(folder.name, beside, n=1, cutoff=0.5)
+    return f" Did you mean '{folder.parent / near[0]}'?" if near else ""
 
 
 class _Versioned(Struct):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from collections.abc import Iterator
 
 from msgspec import Struct
 
@@ -45,21 +47,23 @@ def _nice(drawn: Drawn) -> Finding:
     return Finding(name=name, status="warn", says=f"{says} (only pictures in the profile nice need it)", fix=_CURE)
 
 
-def draw() -> Drawn:
-    """Draw a frame in each profile."""
+def draw() -> Iterator[Drawn]:
+    """Draw a frame in each profile; told after each, as a driver may end the process."""
     from hthor.errors import RenderingUnavailable
     from hthor.world import World, opengl
 
     world = World(_HOUSE, robots=["scout"])
     fast = _colours(world.robot.rgb(_SIZE))
+    yield Drawn(fast=fast, reason="the process that draws a frame with OpenGL crashed")
     try:
         context = opengl.context(*_SIZE)
         backend = type(context).__module__.rpartition(".")[2]
         context.free()
         nice = _colours(world.robot.rgb(_SIZE, profile="nice"))
     except RenderingUnavailable as error:
-        return Drawn(fast=fast, reason=str(error).partition(". ")[0])
-    return Drawn(fast=fast, nice=nice, backend=backend)
+        yield Drawn(fast=fast, reason=str(error).partition(". ")[0])
+    else:
+        yield Drawn(fast=fast, nice=nice, backend=backend)
 
 
 def _colours(picture: object) -> int:
@@ -71,8 +75,7 @@ def _colours(picture: object) -> int:
 if __name__ == "__main__":
     from hthor import jsonio
 
-    sys.stdout.write(jsonio.canonical(draw()).decode() + "\n")
-    sys.stdout.flush()
-    import os
-
+    for drawn in draw():
+        sys.stdout.write(jsonio.canonical(drawn).decode() + "\n")
+        sys.stdout.flush()
     os._exit(0)  # some drivers crash when they are unloaded, after all that was asked is done

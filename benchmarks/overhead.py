@@ -1,0 +1,90 @@
+"""What `hthor eval` costs beside the trials: `python -m benchmarks.overhead RUN`, a finished run with its control.
+
+The run's command is given again, in a folder of its own, and workers take the trials from RUN's log instead of
+simulating them. What the supervising process then spends is the harness: resolving, handing out sessions, writing
+records, progress, scoring with intervals, storing. It is set against the CPU time that RUN's trials took.
+"""
+
+from __future__ import annotations
+
+import functools
+import io
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from rich.console import Console
+
+from hthor.eval import campaign, cast, control, log, progress, record, run, score, setup
+from hthor.eval.record import Record
+from hthor.eval.session import Session
+
+
+def player(folder: Path, sources: object = None) -> Callable[[Session], Iterator[Record]]:
+    """What a worker does: tells the trials of a run and of its control from their logs."""
+    del sources  # nothing is made
+    logs = (folder / "trials.jsonl", folder / control.FOLDER / "trials.jsonl")
+    kept = {_seat(one): one.log for path in logs for _, one in log.read(path)}
+
+    def perform(session: Session) -> Iterator[Record]:
+        for trial in session.trials:
+            yield record.of(trial, kept[bool(trial.robots), trial.participant, trial.index])
+
+    return perform
+
+
+def main(folder: Path) -> None:
+    """Give the run's command again, and print what the harness took."""
+    plan = setup.load(folder)
+    results = [score.load(path) for path in (folder, folder / control.FOLDER)]
+    trials_s = sum(one.effort.cpu_s for one in results if one is not None and one.effort is not None)
+    spent: dict[str, float] = {}
+    for name in ("_play", "_finish"):
+        setattr(run, name, _timed(getattr(run, name), name, spent))
+    cast.player = functools.partial(player, folder.resolve())  # type: ignore[assignment]
+    with tempfile.TemporaryDirectory() as scratch:
+        options = campaign.Options(
+            agents=tuple(robot.agent.name for robot in plan.robots),
+            humans=(plan.humans.source,),
+            suite=plan.suite.name,
+            seed=plan.seed,
+            participants=plan.participants,
+            control=True,
+            out=Path(scratch) / "run",
+        )
+        console = Console(file=io.StringIO())
+        count = sum(one.result.counts.trials for one in campaign.conduct(options, lambda n: progress.Plain(console, n)))
+    whole = time.process_time()
+    rows = {
+        "imports, resolving, sessions": whole - sum(spent.values()),
+        "handing out, writing, progress": spent["_play"],
+        "scores, intervals, storing": spent["_finish"],
+        "the harness": whole,
+        "the trials that RUN simulated": trials_s,
+    }
+    for what, seconds in rows.items():
+        print(f"{what:<32} {seconds:8.2f} s of CPU time")
+    print(f"{count} trials and their control: the harness is {100.0 * whole / (whole + trials_s):.1f} % of it all")
+
+
+def _timed(work: Callable[..., object], name: str, spent: dict[str, float]) -> Callable[..., object]:
+    def timed(*words: object, **named: object) -> object:
+        began = time.process_time()
+        try:
+            return work(*words, **named)
+        finally:
+            spent[name] = spent.get(name, 0.0) + time.process_time() - began
+
+    return timed
+
+
+def _seat(one: Record) -> tuple[bool, int, int]:
+    return bool(one.spec.robots), one.spec.participant, one.spec.index
+
+
+if __name__ == "__main__":
+    from benchmarks import overhead  # workers must find its functions under this name, not under __main__
+
+    overhead.main(Path(sys.argv[1]))
