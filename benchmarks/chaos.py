@@ -18,9 +18,11 @@ import sys
 import tempfile
 import time
 import uuid
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+
+from benchmarks import family
 
 ROOT = Path(__file__).resolve().parents[1]
 FAKES = ROOT / "tests" / "eval_fakes.py"
@@ -91,7 +93,7 @@ class Chaos:
         for kind, aim in zip(kinds, aims, strict=True):
             process = self._until(process, int(aim))
             time.sleep(self._chance.uniform(0.0, 0.1))
-            self._known |= {(pid, born) for pid in _family(process.pid) if (born := _born(pid))}
+            self._known |= {(pid, born) for pid in family.of(process.pid) if (born := family.born(pid))}
             if kind == "runner":
                 process.kill()
                 process.communicate()
@@ -144,7 +146,7 @@ class Chaos:
             if process.poll() is not None:
                 self._note(process)
                 process = None
-            elif self.played() >= trials and _children(process.pid):
+            elif self.played() >= trials and family.children(process.pid):
                 return process
             if time.monotonic() > end:
                 raise TimeoutError(f"the run does not get beyond {self.played()} trials: {self.report}")
@@ -154,8 +156,8 @@ class Chaos:
         """Kill a worker or a guest; false when there was none within a while."""
         end = time.monotonic() + 5.0
         while time.monotonic() < end and process.poll() is None:
-            workers = [pid for pid in _children(process.pid) if "spawn_main" in _words(pid)]
-            found = workers if kind == "worker" else [pid for one in workers for pid in _family(one)[1:]]
+            workers = [pid for pid in family.children(process.pid) if "spawn_main" in family.words(pid)]
+            found = workers if kind == "worker" else [pid for one in workers for pid in family.of(one)[1:]]
             if found:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(self._chance.choice(found), 9)
@@ -177,51 +179,14 @@ class Chaos:
 
     def _expect_nobody(self) -> None:
         end = time.monotonic() + 10.0
-        while found := [*_marked(self._mark), *(f"process {pid}" for pid, born in self._known if _born(pid) == born)]:
+        while found := [
+            *family.marked(self._mark),
+            *(f"process {pid}" for pid, born in self._known if family.born(pid) == born),
+        ]:
             if time.monotonic() > end:
                 self.report.orphans += found
                 return
             time.sleep(0.005)
-
-
-def _children(pid: int) -> list[int]:
-    try:
-        return [int(text) for text in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
-    except OSError:
-        return []
-
-
-def _family(pid: int) -> list[int]:
-    """A process and all that it and they have started."""
-    found = [pid]
-    for one in found:
-        found += _children(one)
-    return found
-
-
-def _born(pid: int) -> str:
-    """When a living process was started, which tells it from a later one of its number; empty when there is none."""
-    try:
-        words = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    except OSError:
-        return ""
-    return "" if words[0] in "ZX" else words[19]
-
-
-def _words(pid: int) -> str:
-    try:
-        return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
-    except OSError:
-        return ""
-
-
-def _marked(mark: str) -> Iterator[str]:
-    """Command lines of living processes that have the mark in their environment."""
-    for folder in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError):
-            state = (folder / "stat").read_text().rpartition(")")[2].split()[0]
-            if state not in "ZX" and mark.encode() in (folder / "environ").read_bytes():
-                yield _words(int(folder.name))
 
 
 def differences(folder: Path, reference: Path) -> list[str]:

@@ -19,7 +19,7 @@ import msgspec
 
 from hthor import seeds
 from hthor.episode import EpisodeLog, Fault
-from hthor.errors import KILLED
+from hthor.errors import KILLED, AgentKilled
 from hthor.eval import cast, crews, engines, provenance, record, session, setup, worker
 from hthor.eval.engines import SessionFailed
 from hthor.eval.news import Failed, News
@@ -277,6 +277,20 @@ def killing_player(times: int) -> Callable[[Session], Iterator[Record]]:
                 fault = Fault(seat="robot", kind=KILLED, tick=1, detail="killed by SIGKILL")
                 log = msgspec.structs.replace(log, faults=(fault,))
             yield record.of(trial, log)
+
+    return perform
+
+
+def late_player(times: int) -> Callable[[Session], Iterator[Record]]:
+    """The agent of participant 1 is killed before it can say what it is, so many times."""
+    plays = 0
+
+    def perform(session_: Session) -> Iterator[Record]:
+        nonlocal plays
+        if session_.participant == 1 and plays < times:
+            plays += 1
+            raise AgentKilled("helper.py: its process was killed by SIGKILL while it started.")
+        yield from player()(session_)
 
     return perform
 

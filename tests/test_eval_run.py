@@ -172,6 +172,23 @@ def test_an_agent_that_is_killed_from_outside_plays_again(tmp_path: Path, times:
     assert (result.counts.trials, result.counts.faults) == (30, faults)
 
 
+@pytest.mark.parametrize("times", [2, 3])
+def test_an_agent_that_is_killed_while_it_starts_is_started_again(tmp_path: Path, times: int):
+    plan, dealt = fakes.run_of(30)
+    make, watch = functools.partial(fakes.late_player, times), Notes()
+
+    def whole() -> Result:
+        return run.evaluate(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=watch)
+
+    if times == 3:
+        with pytest.raises(course.Unfinished, match=r"participant 1: helper\.py: its process was killed.*10 of 30"):
+            whole()
+        assert len(_lines(tmp_path)) == 20
+    else:
+        assert whole().effort.replays == 2
+    assert sum("begins again: an agent's process was killed" in note for note in watch.notes) == 2
+
+
 def test_a_full_disk_leaves_whole_lines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     plan, dealt = fakes.run_of(30)
     real, room = os.write, 20_000
