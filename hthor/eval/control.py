@@ -31,8 +31,18 @@ def find(folder: Path, plan: Setup) -> tuple[Setup, list[Record]] | None:
 
     It counts only when it is whole; its metrics are worked out anew from its events.
     """
+    return next(((there, kept) for _, there, kept in _whole(folder, plan)), None)
+
+
+def place(folder: Path, plan: Setup) -> Path | None:
+    """Where the control of a run lies, as `find` finds it."""
+    return next((candidate for candidate, _, _ in _whole(folder, plan)), None)
+
+
+def _whole(folder: Path, plan: Setup) -> Iterator[tuple[Path, Setup, list[Record]]]:
+    """Every whole control of a run, and where it lies."""
     if not plan.seats:
-        return None
+        return
     for candidate in _candidates(folder):
         try:
             there = setup.load(candidate)
@@ -42,8 +52,7 @@ def find(folder: Path, plan: Setup) -> tuple[Setup, list[Record]] | None:
             continue
         kept = _records(candidate)
         if len({record.key for record in kept}) >= there.trials:
-            return there, kept
-    return None
+            yield candidate, there, kept
 
 
 def _candidates(folder: Path) -> Iterator[Path]:

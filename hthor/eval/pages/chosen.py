@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from hthor.eval.pages.findings import Shown
 from hthor.eval.pages.gather import Run, pair
+from hthor.eval.pages.singled import Shown
 from hthor.eval.record import Record
 
 EACH = 2
@@ -57,4 +57,4 @@ def _shown(run: Run, rank: str, record: Record, other: Record | None) -> Shown:
 
 def replay(run: Run, record: Record) -> str:
     """The command that draws a trial; a folder's own name alone, as no page is to tell where it lay."""
-    return f"hthor replay {run.folder.resolve().name} {record.key}"
+    return f"hthor replay {run.name} {record.key}"

@@ -8,7 +8,6 @@ import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from matplotlib import patheffects
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from msgspec import Struct
@@ -24,12 +23,11 @@ from hthor.types import HUMAN, HouseSpec, Vec2
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MAP_WIDE, _VIEW_WIDE = 3.1, 1.62
+_MAP_WIDE, _VIEW_WIDE = 3.1, 1.55
 _HEAD, _EDGES = 0.36, 0.5
 """Inches above each row, and above and below all."""
 _NEAR_M = 0.5
 _WORDS_MAX = 60
-_STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.0, foreground="white")]
 
 
 class Row(Struct, frozen=True, kw_only=True, eq=False):
@@ -96,31 +94,35 @@ def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
 def _letter(ax: Axes, place: Vec2, letters: str, seat: str) -> None:
     """Above a person and below a robot, as they may stand in one place."""
     side = 1 if seat == HUMAN else -1
-    text = ax.annotate(
+    ax.annotate(
         letters,
         place,
-        (5 * side, 5 * side),
+        (4 * side, 6.5 * side),
         textcoords="offset points",
         ha="left" if side > 0 else "right",
         va="bottom" if side > 0 else "top",
-        fontsize=8,
-        weight="bold",
-        color=trace.colour(seat),
-        zorder=15,
+        **_badge(seat),
     )
-    text.set_path_effects(_STROKE)
 
 
 def _draw_view(ax: Axes, view: Any, seat: str, column: int, moment: Moment, *, first: bool) -> None:
-    """A picture in a frame of its seat's colour, what happened above the first."""
+    """A picture in a frame of its seat's colour, with its letter; what happened above the first."""
     ax.imshow(view, interpolation="none")
     ax.set_xticks([])
     ax.set_yticks([])
     for side in ax.spines.values():
         side.set(visible=True, color=trace.colour(seat), linewidth=1.4)
+    letter = string.ascii_lowercase[column]
+    ax.annotate(letter, (0.0, 1.0), (6, -6), "axes fraction", "offset points", ha="center", va="center", **_badge(seat))
     if first:
         when = f"{moment.tick * rules.TICK_S:.1f} s"
-        ax.set_title(f"{string.ascii_lowercase[column]}  {when}: {moment.words}", fontsize=7.5)
+        ax.set_title(f"{when}: {moment.words}", fontsize=6.8)
+
+
+def _badge(seat: str) -> dict[str, Any]:
+    """A letter in a seat's colour, as it stands on the map and on the view."""
+    box = {"boxstyle": "round,pad=0.2,rounding_size=0.5", "fc": trace.colour(seat), "ec": "white", "lw": 0.7}
+    return {"fontsize": 6.5, "weight": "bold", "color": "white", "bbox": box, "zorder": 15}
 
 
 def _headline(row: Row) -> str:
