@@ -9,6 +9,8 @@ from hthor.eval.pages import chosen, failures, origin, paired, parted, sessions
 from hthor.eval.pages.findings import Arm, Findings, Published
 from hthor.eval.pages.gather import Run
 
+_MANY = 8
+"""Of more runs than these fewer trials are drawn, so that the page stays small."""
 _STUDIED = {"object_goal_navigation", "mobile_manipulation"}
 """Kinds of task that published figures are of."""
 
@@ -23,6 +25,7 @@ def findings(runs: Sequence[Run], published: Published | None = None) -> Finding
     people = runs[0].plan.humans.name
     own = [run for run in runs if run.plan.humans.name == people]
     baseline = next((run for run in own if run.condition == "none"), None)
+    each = chosen.EACH if len(own) <= _MANY else 1
     comparisons, apart = paired.pairs(baseline, own)
     return Findings(
         suite=runs[0].plan.suite,
@@ -37,7 +40,7 @@ def findings(runs: Sequence[Run], published: Published | None = None) -> Finding
         splits=parted.splits(own),
         by_people=parted.by_people(runs),
         people_uplift=paired.by_people(runs),
-        shown=tuple(one for run in own if run.plan.seats for one in chosen.extremes(run, baseline)),
+        shown=tuple(one for run in own if run.plan.seats for one in chosen.extremes(run, baseline, each)),
         failures=tuple(one for run in runs for one in failures.of(run)),
         origins=tuple(origin.of(run) for run in runs),
     )

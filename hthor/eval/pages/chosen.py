@@ -10,8 +10,8 @@ EACH = 2
 """So many of the best and of the worst."""
 
 
-def extremes(run: Run, alone: Run | None) -> list[Shown]:
-    """The best and the worst trials of a run with robots, each trial at most once.
+def extremes(run: Run, alone: Run | None, each: int = EACH) -> list[Shown]:
+    """The ``each`` best and worst trials of a run with robots, each trial at most once.
 
     Against the same person without a robot where there is such a run: by the time saved, and among equals by
     time-weighted success. Without one by time-weighted success, and among equals by the time spent.
@@ -26,7 +26,7 @@ def extremes(run: Run, alone: Run | None) -> list[Shown]:
         return (round(other.metrics.time_s - own.time_s, 6), own.twsr, record.key)
 
     ranked.sort(key=worth)
-    each = min(EACH, len(ranked) // 2)
+    each = min(each, len(ranked) // 2)
     worst, best = ranked[:each], ranked[len(ranked) - each :][::-1]
     return [
         *(_shown(run, "best", record, others.get(pair(record))) for record in best),

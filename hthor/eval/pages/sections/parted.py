@@ -8,6 +8,7 @@ from hthor.eval.contrast import Difference
 from hthor.eval.pages import cells, html, words
 from hthor.eval.pages.findings import Findings, Split
 from hthor.eval.pages.html import Band, Piece
+from hthor.eval.pages.numbers import listed
 from hthor.eval.stats import NOTHING
 
 DIFFICULTY, SCENES, PEOPLE = "By difficulty and kind of task", "By scene", "By kind of person"
@@ -28,7 +29,8 @@ def difficulty(found: Findings, drawings: Mapping[str, str]) -> list[str]:
             )
         ]
     said = [words.widest(one.word, _gains(found, one)) for one in held if one.word == "difficulty"]
-    return _made(found, held, said, drawings, "difficulty", "Success rates with 95 % intervals.")
+    by = listed(one.word for one in held)
+    return _made(found, held, said, drawings, "difficulty", f"Success rates by {by} with 95 % intervals.")
 
 
 def scenes(found: Findings, drawings: Mapping[str, str]) -> list[str]:
