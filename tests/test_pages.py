@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import shutil
 import subprocess
@@ -272,12 +273,19 @@ def _browsed(file: Path, folder: Path) -> tuple[int, int]:
 
 
 def test_moments_are_in_order_and_end_at_the_end(folders: list[Path]) -> None:
+    house = houses.load("hazel")
     for one in gather.runs(folders):
         for held in one.records:
-            ticks = [moment.tick for moment in moments.of(held)]
-            assert ticks == sorted(set(ticks))
-            assert 1 <= len(ticks) <= moments.MANY
+            found = moments.of(held, house)
+            ticks = [moment.tick for moment in found]
+            assert len(ticks) == moments.MANY
+            assert min(b - a for a, b in itertools.pairwise([0, *ticks])) >= 10
             assert ticks[-1] == held.ticks
+            assert found[-1].words == ("done" if held.met else "time is up")
+            said = [moment.tick for moment in found if moment.words == "robot, message 1"]
+            assert said == ([40] if held.spec.robots else [])
+            answered = [moment.tick for moment in found if moment.words == "person confirms"]
+            assert answered == ([60] if held.metrics.adoption else [])
 
 
 def test_a_case_is_drawn_the_same_twice_and_says_who_can_be_drawn(

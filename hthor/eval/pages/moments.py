@@ -50,7 +50,7 @@ def _candidates(record: Record) -> Iterator[Moment]:
     if sent:
         fates = [trace.fate(record.log, event.data["message"]) for event in sent]
         number = next((fates.index(fate) for fate in _ANSWERS if fate in fates), 0)
-        yield Moment(tick=sent[number].tick, words=f"{sent[number].seat} sends message {number + 1}")
+        yield Moment(tick=sent[number].tick, words=f"{sent[number].seat}, message {number + 1}")
         yield from _answer(record, sent[number])
     own = [event for event in record.events if event.seat == HUMAN]
     for kind in _DEEDS:

@@ -14,6 +14,7 @@ from hthor.guest import Isolation
 from hthor.types import RobotSeat
 
 _PLATFORM = "platform.json"
+_LOCKSTEP = "lockstep"
 
 
 class Platform(Struct, frozen=True, kw_only=True):
@@ -29,7 +30,7 @@ class Origin(Struct, frozen=True, kw_only=True):
 
     ``name`` is that of its folder. ``beside`` says that the report found it there by itself, as the control of another.
     ``isolation`` is None where all agents are built in; ``platforms`` is empty where the run did not note them.
-    ``command`` plays the run again.
+    ``command`` plays the run again. ``mode`` is lockstep, or realtime where robots' thinking took time of the trials.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Origin(Struct, frozen=True, kw_only=True):
     suite: SuiteRef
     kind: KindRef | None
     seed: int
+    mode: str
     participants: int
     trials: int
     whole: int
@@ -73,6 +75,7 @@ def of(run: Run) -> Origin:
         suite=plan.suite,
         kind=plan.kind,
         seed=plan.seed,
+        mode=getattr(plan, "mode", _LOCKSTEP),
         participants=plan.participants,
         trials=len(run.records),
         whole=plan.trials,

@@ -63,7 +63,10 @@ def published(found: Findings) -> str:
     study = found.published
     if study is None:
         return ""
-    text = f"Published figures: {study.source}; intervals are Wilson's, from the counts. "
+    text = f"Published figures: {study.source}; intervals are Wilson's, from its counts"
+    text += (
+        ", inferred where it prints only percentages. " if any(one.inferred for one in study.counts.values()) else ". "
+    )
     if found.suite.name == study.suite:
         return text + "These runs are of its tasks."
     return (

@@ -26,8 +26,11 @@ if TYPE_CHECKING:
 _MAP_WIDE, _VIEW_WIDE = 3.1, 1.55
 _HEAD, _EDGES = 0.36, 0.5
 """Inches above each row, and above and below all."""
-_NEAR_M = 0.5
+_MAP_HIGH = 3.3
+"""Inches that a map may take at most."""
+_NEAR_M, _BESIDE_M = 0.5, 0.6
 _WORDS_MAX = 60
+_CORNERS: tuple[Vec2, ...] = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0))
 
 
 class Row(Struct, frozen=True, kw_only=True, eq=False):
@@ -43,6 +46,7 @@ def figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
     """Draw the case, about 8 inches wide."""
     xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
     deep = _MAP_WIDE * (max(ys) - min(ys) + 1.0) / (max(xs) - min(xs) + 0.7)
+    deep = min(deep, _MAP_HIGH)
     seats = [list(row.record.paths) for row in rows]
     highs = [max(deep, 0.75 * _VIEW_WIDE * len(held) + 0.2) + _HEAD for held in seats]
     with ink.style():
@@ -74,9 +78,22 @@ def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
         picture.draw_path(ax, record.log, seat)
     for _, start in trace.targets(record.spec, house):
         ax.scatter(*start.position[:2], s=80, marker="*", color=trace.TARGET, edgecolor="white", lw=0.6, zorder=12)
-    for seat in record.paths:
-        for place, letters in _places(row, seat):
-            _letter(ax, place, letters, seat)
+    busy = [start.position[:2] for _, start in trace.targets(record.spec, house)]
+    marks = [(seat, place, letters) for seat in record.paths for place, letters in _places(row, seat)]
+    for seat, place, letters in marks:
+        others = [other for _, other, _ in marks if other != place]
+        side = max(_CORNERS, key=lambda side: _room(place, side, [*busy, *others]))
+        _letter(ax, place, letters, seat, side)
+        busy.append(_beside(place, side))
+
+
+def _room(place: Vec2, side: Vec2, busy: Sequence[Vec2]) -> float:
+    """How far a letter at this corner is from everything else."""
+    return round(min((math.dist(_beside(place, side), other) for other in busy), default=math.inf), 2)
+
+
+def _beside(place: Vec2, side: Vec2) -> Vec2:
+    return (place[0] + _BESIDE_M * side[0], place[1] + _BESIDE_M * side[1])
 
 
 def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
@@ -91,16 +108,15 @@ def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
     return found
 
 
-def _letter(ax: Axes, place: Vec2, letters: str, seat: str) -> None:
-    """Above a person and below a robot, as they may stand in one place."""
-    side = 1 if seat == HUMAN else -1
+def _letter(ax: Axes, place: Vec2, letters: str, seat: str, side: Vec2) -> None:
+    """Beside the place, where there is room."""
     ax.annotate(
         letters,
         place,
-        (4 * side, 6.5 * side),
+        (5 * side[0], 5 * side[1]),
         textcoords="offset points",
-        ha="left" if side > 0 else "right",
-        va="bottom" if side > 0 else "top",
+        ha="left" if side[0] > 0 else "right",
+        va="bottom" if side[1] > 0 else "top",
         **_badge(seat),
     )
 

@@ -88,6 +88,7 @@ _FIELDS: dict[str, Callable[[Origin], Piece]] = {
     "people": _people,
     "seed": lambda one: str(one.seed),
     "trials": _trials,
+    "thinking": lambda one: "takes no time (lockstep)" if one.mode == "lockstep" else f"takes time ({one.mode})",
     "isolation": lambda one: isolation(one.isolation) if any(robot.seat for robot in one.robots) else "no agent",
     "platform": lambda one: _platforms(one.platforms),
     "versions": _versions,
