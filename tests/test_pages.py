@@ -139,6 +139,8 @@ def test_what_is_put_in_is_escaped_and_uncertain_gains_are_not_claimed(written: 
         text = page.render(msgspec.structs.replace(found, arms=arms, comparisons=pairs, apart=()), {})
         assert said in text
         assert "<b>" not in text
+    many = msgspec.structs.replace(found, comparisons=found.comparisons * 3)
+    assert verdict.lead(many).endswith("Section 2 has all pairs.")
     nobody = msgspec.structs.replace(found, baseline="", arms=found.arms[1:], comparisons=())
     assert "no run without a robot" in verdict.lead(nobody)
 

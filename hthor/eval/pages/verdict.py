@@ -10,20 +10,24 @@ from hthor.eval.pages.findings import Findings
 from hthor.eval.pages.numbers import listed, signed
 
 _MANY = 6
-"""Of more pairs than these the sentence tells only those with no robot, and of the best two."""
+"""Of more pairs than these the sentence tells only those of the best robot."""
 
 
 def lead(found: Findings) -> str:
     """Which robot is better."""
     if not found.comparisons:
         return _alone(found)
-    pairs = _worth_telling(found)
+    many = len(found.comparisons) > _MANY
+    pairs = _of_the_best(found) if many else found.comparisons
     counts = {pair.n for pair in pairs}
     over = f"the same {counts.pop()} trials" if len(counts) == 1 else "the trials that they share"
-    text = "; ".join((*_better(found, pairs), *_unsure(pairs)))
-    more = "" if len(pairs) == len(found.comparisons) else " Section 2 has all pairs."
-    end = "" if found.baseline else f" {words.alone()}"
-    return f"Over {over}, {text}.{more}{end}"
+    said = [f"Over {over}, {'; '.join((*_better(found, pairs), *_unsure(pairs)))}."]
+    if many and found.uplift:
+        better = sum(pair.better == pair.second for pair in found.uplift)
+        said.append(f"{better or 'None'} of {len(found.uplift)} robots are better than no robot.")
+    said += ["Section 2 has all pairs."] if many else []
+    said += [] if found.baseline else [words.alone()]
+    return " ".join(said)
 
 
 def _alone(found: Findings) -> str:
@@ -38,12 +42,24 @@ def _alone(found: Findings) -> str:
     return text if found.apart and found.baseline else f"{text} {words.alone()}"
 
 
-def _worth_telling(found: Findings) -> Sequence[Comparison]:
+def worth_telling(found: Findings) -> Sequence[Comparison]:
+    """The comparisons that are told in words below."""
     if len(found.comparisons) <= _MANY:
         return found.comparisons
-    best = sorted(found.arms, key=lambda arm: -(arm.scores.sr.mean or 0.0))[:2]
-    top = {arm.label for arm in best}
-    return [pair for pair in found.comparisons if pair in found.uplift or {pair.first, pair.second} == top]
+    best = _of_the_best(found)
+    return [pair for pair in found.comparisons if pair in found.uplift or pair in best]
+
+
+def _of_the_best(found: Findings) -> list[Comparison]:
+    """Of the robot that does best, the comparisons with the second and with no robot."""
+    ranked = sorted(found.arms, key=lambda arm: -(arm.scores.sr.mean or 0.0))
+    robots = [arm.label for arm in ranked if arm.label != found.baseline]
+    others = {*robots[1:2], found.baseline}
+    return [
+        pair
+        for pair in found.comparisons
+        if robots[0] in (pair.first, pair.second) and _other(pair, robots[0]) in others
+    ]
 
 
 def _better(found: Findings, pairs: Sequence[Comparison]) -> list[str]:

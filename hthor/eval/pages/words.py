@@ -11,6 +11,8 @@ from hthor.eval.pages.findings import Apart, Arm, Curve, Findings, Spent, Split
 from hthor.eval.pages.numbers import listed, plain, signed
 from hthor.eval.pages.singled import Shown
 
+_NAMED = 4
+"""So many robots are named in the title."""
 _CLEAR = 2.0
 """A slope of so many standard errors is called one."""
 _APART = {
@@ -28,7 +30,8 @@ def title(found: Findings) -> str:
     """What the page is called."""
     robots = [arm.label for arm in found.arms if arm.label != found.baseline]
     against = " against no robot" if found.baseline and robots else ""
-    return f"{_upper(listed(robots or [found.baseline]))}{against}, on the suite {found.suite.name}"
+    named = listed(robots or [found.baseline]) if len(robots) <= _NAMED else f"{len(robots)} robots"
+    return f"{_upper(named)}{against}, on the suite {found.suite.name}"
 
 
 def facts(found: Findings) -> str:

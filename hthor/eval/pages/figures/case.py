@@ -29,7 +29,7 @@ _HEAD, _EDGES = 0.36, 0.5
 _MAP_HIGH = 3.3
 """Inches that a map may take at most."""
 _NEAR_M, _BESIDE_M = 0.5, 0.6
-_WORDS_MAX = 60
+_WORDS_MAX = 80
 _CORNERS: tuple[Vec2, ...] = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0))
 
 

@@ -29,7 +29,7 @@ def figure(arms: Sequence[Arm]) -> Figure:
     """
     own, rows = marks.of(arms), len(arms)
     with ink.style():
-        made = ink.sheet(1.0 + 0.36 * rows)
+        made = ink.sheet(1.0 + rows * marks.high(arm.label for arm in arms))
         bars, *others = made.subplots(1, 1 + len(_PANELS), sharey=True, width_ratios=(1.5, 1.0, 1.0))
         for y, arm in enumerate(arms):
             left = 0.0

@@ -21,8 +21,9 @@ _PANELS = (
 def figure(pairs: Sequence[Comparison], arms: Sequence[Arm]) -> Figure:
     """Paired differences with 95 % intervals; right of the line the robot that is named first is better."""
     own, rows = marks.of(arms), len(pairs)
+    names = [f"{pair.second} − {pair.first}" for pair in pairs]
     with ink.style():
-        made = ink.sheet(0.62 + 0.34 * rows)
+        made = ink.sheet(0.62 + rows * marks.high(names, 0.34))
         panels = made.subplots(1, len(_PANELS), sharey=True)
         for ax, (name, title, scale) in zip(panels, _PANELS, strict=True):
             ink.bare(ax)
@@ -33,8 +34,7 @@ def figure(pairs: Sequence[Comparison], arms: Sequence[Arm]) -> Figure:
                 ends = None if one.ci95 is None else sorted(scale * end for end in one.ci95)
                 marks.interval(ax, y, scale * one.difference, ends, own[pair.second])
             ax.margins(x=0.08)
-        panels[0].set_yticks(
-            range(rows), [f"{marks.label(f'{pair.second} − {pair.first}')}\nn = {pair.n}" for pair in pairs]
-        )
+        labels = [f"{marks.label(name)}\nn = {pair.n}" for name, pair in zip(names, pairs, strict=True)]
+        panels[0].set_yticks(range(rows), labels)
         panels[0].set_ylim(rows - 0.45, -0.55)
     return made

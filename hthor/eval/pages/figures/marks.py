@@ -106,6 +106,12 @@ def label(name: str) -> str:
     return "\n".join(textwrap.wrap(name.replace("+", "+ "), _NAME_MAX)).replace("+ ", "+")
 
 
+def high(names: Iterable[str], least: float = 0.36) -> float:
+    """Inches that a row takes whose name has a line for n below."""
+    lines = 1 + max(label(name).count("\n") + 1 for name in names)
+    return max(least, 0.135 * lines + 0.08)
+
+
 def handle(mark: Mark, label: str) -> Line2D:
     """An entry of a legend."""
     return Line2D([], [], color=mark.shade, lw=1.4, marker=mark.shape, ms=5, mec=ink.PAPER, mew=0.5, label=label)

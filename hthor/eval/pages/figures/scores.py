@@ -27,7 +27,7 @@ def figure(found: Findings) -> Figure:
     held = [name for name in METRICS if any(getattr(arm.scores, name).n for arm in found.arms)]
     study = found.published is not None and any(arm.condition for arm in found.arms)
     with ink.style():
-        made = ink.sheet(0.95 + 0.36 * rows)
+        made = ink.sheet(0.95 + rows * marks.high(arm.label for arm in found.arms))
         panels = made.subplots(1, len(held), sharey=True, squeeze=False)[0]
         for ax, metric in zip(panels, held, strict=True):
             ink.bare(ax)

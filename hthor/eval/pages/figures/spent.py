@@ -28,7 +28,7 @@ def figure(parts: Sequence[Spent], arms: Sequence[Arm]) -> Figure:
     own = marks.of(arms)
     longest = max(max(one.most for one in parts), len(parts[0].solved) - 1.0)
     with ink.style():
-        made = ink.sheet(max(2.3, 0.75 + 0.38 * len(parts)))
+        made = ink.sheet(max(2.3, 0.75 + len(parts) * marks.high((one.arm for one in parts), 0.38)))
         boxes, curves = made.subplots(1, 2, width_ratios=(1.15, 1.0))
         for y, one in enumerate(parts):
             _box(boxes, y, one, own[one.arm])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from hthor.eval.compare import Comparison
-from hthor.eval.pages import cells, html, words
+from hthor.eval.pages import cells, html, verdict, words
 from hthor.eval.pages.findings import Findings
 from hthor.eval.pages.html import Piece, Value
 
@@ -23,7 +23,7 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         return [*said, *apart]
     return [
         *said,
-        html.bullets([words.sentence(pair) for pair in found.comparisons]),
+        html.bullets([words.sentence(pair) for pair in verdict.worth_telling(found)]),
         html.drawn(
             drawings,
             "compared",

@@ -48,13 +48,11 @@ def _published(found: Findings, metrics: list[str]) -> Iterator[list[Piece] | Ba
     study = found.published
     if study is None:
         return
-    yield Band(f"Published: HumanTHOR, RSS 2024, its own simulator and {_people(found)}")
+    rows: list[list[Piece]] = []
     for condition, name in _PUBLISHED.items():
-        figures = (f"{metric} {condition}" for metric in metrics)
-        yield [name, *(cells.share(study.figures.get(one), study.counts.get(one)) for one in figures)]
-
-
-def _people(found: Findings) -> str:
-    assert found.published is not None
-    trials = sum(one.n for name, one in found.published.counts.items() if name.startswith("sr "))
-    return f"people in {trials} trials"
+        figures = [f"{metric} {condition}" for metric in metrics]
+        if any(one in study.figures for one in figures):
+            rows.append([name, *(cells.share(study.figures.get(one), study.counts.get(one)) for one in figures)])
+    trials = sum(one.n for name, one in study.counts.items() if name.startswith("sr "))
+    yield Band(f"Published: {study.source.partition(':')[0]}, people in {trials} trials")
+    yield from rows
