@@ -66,13 +66,14 @@ def legend(seats: Collection[str], *, alone: bool, destined: bool) -> Figure:
     columns = -(-len(handles) // 2)
     with ink.style():
         made = ink.sheet(0.5)
-        made.set_facecolor("white")
+        made.set_facecolor("white")  # as the plans have it
         made.legend(
             handles=handles,
             loc="center left",
             ncols=columns,
             columnspacing=1.6,
             handlelength=1.8,
+            labelcolor=trace.INK,
         )
     return made
 
