@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import shutil
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -18,9 +20,9 @@ from hthor import houses, jsonio
 from hthor.cli import app as cli
 from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval import record, redraw
-from hthor.eval.pages import case, filming, gather, ink, moments, page, words, write
+from hthor.eval.pages import assemble, case, drawings, failures, filming, gather, ink, moments, page, verdict, write
 from hthor.eval.pages.findings import Findings, Published, Share
-from hthor.eval.stats import Estimate
+from hthor.guest import Isolation
 
 PUBLISHED = Published(
     name="study",
@@ -42,10 +44,12 @@ def run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, count: 
     return folder
 
 
-@pytest.fixture(autouse=True)
-def _known_house(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(scope="module", autouse=True)
+def _known_house() -> Iterator[None]:
     plan = houses.load("hazel")
-    monkeypatch.setattr(redraw, "house", lambda _: plan)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(redraw, "house", lambda _: plan)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -54,9 +58,16 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     return [run(base / "alone", "silent", absent=True), run(base / "helper", "helper"), run(base / "clumsy", "clumsy")]
 
 
-@pytest.fixture
-def written(folders: list[Path], tmp_path: Path) -> tuple[Findings, Path]:
-    return write.report(folders, tmp_path / "out", PUBLISHED), tmp_path / "out"
+@pytest.fixture(scope="module")
+def written(folders: list[Path], tmp_path_factory: pytest.TempPathFactory) -> tuple[Findings, Path]:
+    out = tmp_path_factory.mktemp("report")
+    return write.report(folders, out, PUBLISHED), out
+
+
+def _told(*folders: Path) -> tuple[Findings, str]:
+    """What a report says of runs, and its page, without the drawings."""
+    found = assemble.findings(gather.with_controls(gather.runs(folders)))
+    return found, page.render(found, {})
 
 
 def _bytes(folder: Path) -> dict[str, bytes]:
@@ -68,7 +79,8 @@ def test_the_same_runs_give_the_same_bytes(written: tuple[Findings, Path], folde
     first, again = _bytes(written[1]), _bytes(tmp_path / "again")
     assert first == again
     assert {"report.html", "report.json", "figures/scores.svg", "figures/time-spent.svg"} <= first.keys()
-    assert str(tmp_path).encode() not in b"".join(first.values())
+    for folder in (tmp_path, written[1], folders[0].parent):
+        assert str(folder).encode() not in b"".join(first.values())
 
 
 def test_the_page_needs_nothing_else(written: tuple[Findings, Path]) -> None:
@@ -102,12 +114,17 @@ def test_the_numbers_are_those_of_the_trials(written: tuple[Findings, Path], fol
     assert [arm.condition for arm in found.arms] == ["none", "", ""]
     pairs = [(a.met, b.met) for a, b in zip(helper.records, alone.records, strict=True)]
     gain = found.uplift[0]
-    assert gain.pairs == 20
-    assert gain.sr.mean == pytest.approx(sum(a - b for a, b in pairs) / 20)
-    assert (gain.wins, gain.losses) == (sum(a > b for a, b in pairs), sum(a < b for a, b in pairs))
+    assert (gain.first, gain.second, gain.n) == ("no robot", "helper", 20)
+    assert gain.differences["sr"].difference == pytest.approx(sum(a - b for a, b in pairs) / 20)
+    assert gain.mcnemar.only_second == sum(a > b for a, b in pairs)
+    assert gain.mcnemar.only_first == sum(a < b for a, b in pairs)
+    assert [(pair.first, pair.second) for pair in found.comparisons[2:]] == [("helper", "clumsy")]
+    spent = found.spent[1]
+    assert spent.solved[-1] == pytest.approx(1.0 - spent.unsolved / spent.trials)
+    assert spent.solved[45] == pytest.approx(sum(one.met and one.ticks <= 450 for one in helper.records) / 20)
     failed = [one for one in clumsy.records if one.faults]
-    assert [(one.run, one.kind, one.trials, one.last) for one in found.failures] == [
-        ("clumsy", "raised", len(failed), "ValueError: no")
+    assert [(one.run, one.kind, one.trials, one.whole) for one in found.failures] == [
+        ("clumsy", "raised", len(failed), 20)
     ]
     shown = [one for one in found.shown if one.arm == "helper"]
     assert [one.rank for one in shown] == ["best", "best", "worst", "worst"]
@@ -118,13 +135,70 @@ def test_the_numbers_are_those_of_the_trials(written: tuple[Findings, Path], fol
 
 def test_what_is_put_in_is_escaped_and_uncertain_gains_are_not_claimed(written: tuple[Findings, Path]) -> None:
     found = written[0]
-    unsure = Estimate(mean=0.1, ci95=(-0.1, 0.3), n=20)
-    for sr, said in ((unsure, "cannot tell"), (Estimate(mean=0.2, ci95=(0.1, 0.3), n=20), "more often")):
-        one = msgspec.structs.replace(found.uplift[0], arm="<b>", sr=sr)
-        text = page.render(msgspec.structs.replace(found, uplift=(one,)), {})
+    gain = msgspec.structs.replace(found.uplift[0], second="<b>", sentence="<b> said")
+    for better, said in (
+        ("", "these data cannot tell &lt;b&gt; from no robot"),
+        ("<b>", "&lt;b&gt; is better than no"),
+    ):
+        arms = (found.arms[0], msgspec.structs.replace(found.arms[1], label="<b>"))
+        pairs = (msgspec.structs.replace(gain, better=better),)
+        text = page.render(msgspec.structs.replace(found, arms=arms, comparisons=pairs, apart=()), {})
         assert said in text
         assert "<b>" not in text
-    assert "no run without a robot" in words.lead(msgspec.structs.replace(found, baseline=""))
+    many = msgspec.structs.replace(found, comparisons=found.comparisons * 3)
+    assert verdict.lead(many).endswith("Section 2 has all pairs.")
+    nobody = msgspec.structs.replace(found, baseline="", arms=found.arms[1:], comparisons=())
+    assert "no run without a robot" in verdict.lead(nobody)
+
+
+def test_runs_that_share_no_trial_are_told_apart_and_not_compared(folders: list[Path], tmp_path: Path) -> None:
+    other = run(tmp_path / "other", "helper", seed=1)
+    found, text = _told(*folders[:2], other)
+    assert [(pair.first, pair.second) for pair in found.comparisons] == [("no robot", "helper (helper)")]
+    assert {(one.first, one.second, one.field) for one in found.apart} == {
+        ("no robot", "helper (other)", "seed"),
+        ("helper (helper)", "helper (other)", "seed"),
+    }
+    assert "Helper (helper) and helper (other) are not compared trial by trial: their seeds differ" in text
+
+
+def test_what_is_left_of_an_agent_is_shown_with_the_command_that_plays_it_again(
+    folders: list[Path], tmp_path: Path
+) -> None:
+    mine = shutil.copytree(folders[2], tmp_path / "clumsy")
+    first = failures.of(gather.runs([mine])[0])[0]
+    assert (first.detail.splitlines()[-1], first.output, first.again) == ("ValueError: no", "", "")
+    told = {
+        "seat": "robot",
+        "kind": "raised",
+        "detail": "Traceback\nKeyError: <i>",
+        "output": "last & least",
+        "looks": [],
+    }
+    left = {"schema": "hthor.faults/1", "key": first.key, "failures": [told], "again": f"hthor agent run x {first.key}"}
+    jsonio.write(mine / "faults" / f"{first.key}.json", msgspec.json.encode(left))
+    _, text = _told(mine)
+    for said in ("KeyError: &lt;i&gt;", "last &amp; least", left["again"], first.replay):
+        assert said in text
+    jsonio.write(mine / "faults" / f"{first.key}.json", b"torn")
+    assert failures.of(gather.runs([mine])[0])[0] == first
+
+
+def test_what_held_the_agents_and_where_they_were_played_is_told(folders: list[Path], tmp_path: Path) -> None:
+    mine = shutil.copytree(folders[1], tmp_path / "mine")
+    held = Isolation(level="L2", landlock_abi=7, seccomp=True, memory="4096 MB", reason_not_higher="no bubblewrap")
+    jsonio.write(mine / "isolation.json", jsonio.pretty(held))
+    there = {"system": "Linux", "machine": "x86_64", "libc": "glibc-2.36", "vector_units": ["AVX2"], "versions": {}}
+    jsonio.write(mine / "platform.json", msgspec.json.encode([there]))
+    found, text = _told(mine)
+    assert found.origins[0].command == (
+        "hthor eval --agent helper.py --robot scout --humans proxy --suite fake --seed 0 --participants 2 --out mine"
+    )
+    assert "L2: Landlock (ABI 7), seccomp, memory 4096 MB. Not higher: no bubblewrap" in text
+    assert "Linux, x86_64, glibc-2.36" in text
+    jsonio.write(mine / "platform.json", b"{")
+    with pytest.raises(RunError, match=r"mine/platform\.json"):
+        _told(mine)
 
 
 def test_runs_that_do_not_belong_together_are_refused(folders: list[Path], tmp_path: Path) -> None:
@@ -152,25 +226,34 @@ def test_a_damaged_run_is_refused_with_file_and_field(folders: list[Path], tmp_p
         write.report([other], tmp_path / "out")
 
 
-def test_a_report_of_one_run_without_anything_to_set_it_against(folders: list[Path], tmp_path: Path) -> None:
-    found = write.report([folders[1]], tmp_path / "one")
+def test_a_report_of_one_run_takes_the_control_that_lies_beside(folders: list[Path], tmp_path: Path) -> None:
+    mine = shutil.copytree(folders[1], tmp_path / "mine" / "helper")
+    found = write.report([mine], tmp_path / "one")
     assert (found.baseline, found.uplift, found.by_people) == ("", (), None)
     assert all(one.gain_s is None for one in found.shown)
-    assert not (tmp_path / "one" / "figures" / "uplift.svg").exists()
-    lone = write.report([folders[0]], tmp_path / "lone")
-    assert (lone.shown, lone.trust) == ((), ())
+    assert not (tmp_path / "one" / "figures" / "compared.svg").exists()
+    shutil.copytree(folders[0], mine / "control")
+    found, _ = _told(mine)
+    assert [(one.name, one.beside) for one in found.origins] == [("helper/control", True), ("helper", False)]
+    assert [pair.second for pair in found.uplift] == ["helper"]
+    lone, _ = _told(folders[0])
+    assert (lone.shown, lone.trust, lone.comparisons) == ((), (), ())
 
 
 def test_several_peoples_have_a_section_of_their_own(folders: list[Path], tmp_path: Path) -> None:
     others = [run(tmp_path / "a", "clumsy", people="slow"), run(tmp_path / "b", "silent", absent=True, people="slow")]
-    found = write.report([*folders[:2], *others], tmp_path / "out")
+    found, _ = _told(*folders[:2], *others)
     assert found.by_people is not None
     assert [(group.name, sorted(group.sr)) for group in found.by_people.groups] == [
         ("proxy", ["helper", "no robot"]),
         ("slow", ["clumsy", "no robot"]),
     ]
     assert [arm.folder for arm in found.arms] == ["alone", "helper"]
-    assert (tmp_path / "out" / "figures" / "people.svg").exists()
+    assert {people: [pair.second for pair in pairs] for people, pairs in found.people_uplift.items()} == {
+        "proxy": ["helper"],
+        "slow": ["clumsy"],
+    }
+    assert "people" in [one.name for one in drawings.draw(found, [])]
 
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
@@ -195,12 +278,19 @@ def _browsed(file: Path, folder: Path) -> tuple[int, int]:
 
 
 def test_moments_are_in_order_and_end_at_the_end(folders: list[Path]) -> None:
+    house = houses.load("hazel")
     for one in gather.runs(folders):
         for held in one.records:
-            ticks = [moment.tick for moment in moments.of(held)]
-            assert ticks == sorted(set(ticks))
-            assert 1 <= len(ticks) <= moments.MANY
+            found = moments.of(held, house)
+            ticks = [moment.tick for moment in found]
+            assert len(ticks) == moments.MANY
+            assert min(b - a for a, b in itertools.pairwise([0, *ticks])) >= 10
             assert ticks[-1] == held.ticks
+            assert found[-1].words == ("done" if held.met else "time is up")
+            said = [moment.tick for moment in found if moment.words == "robot, message 1"]
+            assert said == ([40] if held.spec.robots else [])
+            answered = [moment.tick for moment in found if moment.words == "person confirms"]
+            assert answered == ([60] if held.metrics.adoption else [])
 
 
 def test_a_case_is_drawn_the_same_twice_and_says_who_can_be_drawn(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -125,6 +126,16 @@ def runs(folders: Sequence[Path]) -> Comparisons:
         ),
         pairs=_judged(found),
     )
+
+
+def pairs(read_: Sequence[Read]) -> tuple[Comparison, ...]:
+    """Every pair of these runs that can be compared and has trials in common, judged together."""
+    fair = [pair for pair in itertools.combinations(read_, 2) if not pairing.difference(pair[0].plan, pair[1].plan)]
+    found = []
+    for one, other in fair:
+        with contextlib.suppress(RunError):  # nothing in common yet
+            found.append(_pair(one, other))
+    return _judged(found)
 
 
 def read(folders: Sequence[Path]) -> tuple[Read, ...]:

@@ -15,7 +15,7 @@ from hthor.eval.pages.figures.case import Row
 from hthor.eval.pages.gather import Run
 from hthor.eval.record import Record
 
-_DPI = 200
+_DPI = 220
 
 
 def study(
@@ -47,13 +47,13 @@ def study(
     chosen = _records(runs, task, person)
     for run in runs:
         houses.shelve(run.folder / "houses")  # where the suite brought its own
-    rows = []
+    rows, house = [], redraw.house(chosen[0])
     for run, record in zip(runs, chosen, strict=True):
-        held = moments.of(record)
+        held = moments.of(record, house)
         ticks = [one.tick for one in held]
         views = filming.film(run.folder, record, ticks, profile=profile, agents=agents, humans=humans)
         rows.append(Row(label=run.label, record=record, moments=held, views=views))
-    made = case.figure(rows, redraw.house(chosen[0]))
+    made = case.figure(rows, house)
     spec = chosen[0].spec
     stem = f"case-{spec.task.id.replace('/', '-')}-{spec.participant}"
     words = f"{spec.task.instruction} One person at this task with: {', '.join(run.label for run in runs)}."

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from hthor.eval.pages.findings import Shown
 from hthor.eval.pages.gather import Run, pair
+from hthor.eval.pages.singled import Shown
 from hthor.eval.record import Record
 
 EACH = 2
 """So many of the best and of the worst."""
 
 
-def extremes(run: Run, alone: Run | None) -> list[Shown]:
-    """The best and the worst trials of a run with robots, each trial at most once.
+def extremes(run: Run, alone: Run | None, each: int = EACH) -> list[Shown]:
+    """The ``each`` best and worst trials of a run with robots, each trial at most once.
 
     Against the same person without a robot where there is such a run: by the time saved, and among equals by
     time-weighted success. Without one by time-weighted success, and among equals by the time spent.
@@ -26,7 +26,7 @@ def extremes(run: Run, alone: Run | None) -> list[Shown]:
         return (round(other.metrics.time_s - own.time_s, 6), own.twsr, record.key)
 
     ranked.sort(key=worth)
-    each = min(EACH, len(ranked) // 2)
+    each = min(each, len(ranked) // 2)
     worst, best = ranked[:each], ranked[len(ranked) - each :][::-1]
     return [
         *(_shown(run, "best", record, others.get(pair(record))) for record in best),
@@ -57,4 +57,4 @@ def _shown(run: Run, rank: str, record: Record, other: Record | None) -> Shown:
 
 def replay(run: Run, record: Record) -> str:
     """The command that draws a trial; a folder's own name alone, as no page is to tell where it lay."""
-    return f"hthor replay {run.folder.resolve().name} {record.key}"
+    return f"hthor replay {run.name} {record.key}"

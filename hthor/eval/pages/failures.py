@@ -1,39 +1,73 @@
-"""In what ways a run's robots failed, and how often; knows nothing of how it is shown."""
+"""In what ways a run's robots failed, how often, and what is left of the first; knows nothing of how it is shown."""
 
 from __future__ import annotations
 
+import msgspec
+from msgspec import Struct
+
 from hthor import rules
 from hthor.eval.pages import chosen
-from hthor.eval.pages.findings import Failure
 from hthor.eval.pages.gather import Run
+from hthor.eval.pages.singled import Failure
 from hthor.eval.record import Record
 
-_LAST_MAX = 160
+_DETAIL_MAX, _OUTPUT_MAX = 4000, 2000
+_FOLDER = "faults"
+
+
+class _Left(Struct):
+    """What a run kept of one robot that failed, as far as it is shown."""
+
+    seat: str = ""
+    kind: str = ""
+    detail: str = ""
+    output: str = ""
+
+
+class _Remains(Struct):
+    failures: tuple[_Left, ...] = ()
+    again: str = ""
 
 
 def of(run: Run) -> list[Failure]:
-    """One entry for each seat and sort of fault, by the first trial that it came in."""
+    """One entry for each seat and sort of fault, by the first trial that it came in, the most frequent first."""
     agents = {robot.seat: robot.agent.name for robot in run.plan.seats}
     cases: dict[tuple[str, str], list[Record]] = {}
     for record in run.records:
         for seat, kind in dict.fromkeys((fault.seat, fault.kind) for fault in record.faults):
             cases.setdefault((seat, kind), []).append(record)
-    return [_failure(run, seat, agents.get(seat, ""), kind, held) for (seat, kind), held in cases.items()]
+    found = [_failure(run, seat, agents.get(seat, ""), kind, held) for (seat, kind), held in cases.items()]
+    return sorted(found, key=lambda one: -one.trials)
 
 
 def _failure(run: Run, seat: str, agent: str, kind: str, held: list[Record]) -> Failure:
     first = held[0]
     fault = next(one for one in first.faults if (one.seat, one.kind) == (seat, kind))
-    lines = fault.detail.strip().splitlines()
+    remains = _remains(run, first)
+    left = next((one for one in remains.failures if (one.seat, one.kind) == (seat, kind)), _Left())
     return Failure(
-        run=run.folder.resolve().name,
+        run=run.name,
         seat=seat,
         agent=agent,
         kind=kind,
         trials=len(held),
+        whole=len(run.records),
         key=first.key,
         task=first.spec.task.id,
+        participant=first.spec.participant,
+        index=first.spec.index,
         after_s=round(fault.tick * rules.TICK_S, 1),
-        last=lines[-1][:_LAST_MAX] if lines else "",
+        detail=(left.detail or fault.detail).strip()[-_DETAIL_MAX:],
+        output=left.output.strip()[-_OUTPUT_MAX:],
+        again=remains.again,
         replay=chosen.replay(run, first),
     )
+
+
+def _remains(run: Run, record: Record) -> _Remains:
+    """What the run kept of a trial; nothing where it kept none, or what nobody can read: no number depends on it."""
+    path = run.folder / _FOLDER / f"{record.key}.json"
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=_Remains)
+    except (OSError, msgspec.DecodeError, UnicodeDecodeError):
+        return _Remains()

@@ -6,18 +6,17 @@ Fractions are fractions, times are seconds, trust is 1 to 7.
 from __future__ import annotations
 
 import math
-from typing import Literal
 
 from msgspec import Struct
 
-from hthor.eval.peoples import HumansRef
+from hthor.eval.compare import Comparison
+from hthor.eval.pages.origin import Origin
+from hthor.eval.pages.singled import Failure, Shown
 from hthor.eval.score import Scores
-from hthor.eval.setup import AssetsRef, KindRef, SuiteRef
+from hthor.eval.setup import SuiteRef
 from hthor.eval.stats import Estimate
-from hthor.types import RobotSeat
 
-SCHEMA = "hthor.report/1"
-NONE = "no robot"
+SCHEMA = "hthor.report/2"
 
 
 class Share(Struct, frozen=True, kw_only=True):
@@ -66,24 +65,19 @@ class Arm(Struct, frozen=True, kw_only=True):
     scores: Scores
 
 
-class Uplift(Struct, frozen=True, kw_only=True):
-    """What a run's robots change against no robot, over the same people at the same tasks in the same order.
+class Apart(Struct, frozen=True, kw_only=True):
+    """Two runs that share no trial; ``field`` of their configurations says why, empty where they only lack trials."""
 
-    ``pairs`` is how many trials both runs have. ``sr``, ``twsr`` and ``saved_s`` are differences, positive where the
-    robots help.
-    """
-
-    arm: str
-    pairs: int
-    sr: Estimate
-    twsr: Estimate
-    saved_s: Estimate
-    wins: int
-    losses: int
+    first: str
+    second: str
+    field: str
 
 
 class Spent(Struct, frozen=True, kw_only=True):
-    """Time spent in one run [s]; an unsolved trial counts with the time limit. ``unsolved`` of ``trials`` did."""
+    """Time spent in one run [s]; an unsolved trial counts with the time limit. ``unsolved`` of ``trials`` did.
+
+    ``solved`` is the share of trials that were solved within 0, 1, 2, ... seconds.
+    """
 
     arm: str
     trials: int
@@ -93,6 +87,7 @@ class Spent(Struct, frozen=True, kw_only=True):
     upper: float
     most: float
     unsolved: int
+    solved: tuple[float, ...]
 
 
 class Curve(Struct, frozen=True, kw_only=True):
@@ -125,71 +120,13 @@ class Split(Struct, frozen=True, kw_only=True):
     groups: tuple[Group, ...]
 
 
-class Shown(Struct, frozen=True, kw_only=True):
-    """A trial worth a map. ``gain_s`` is the time saved [s] against the same person without a robot, None without one.
-
-    ``replay`` is the command that draws it whole.
-    """
-
-    arm: str
-    rank: Literal["best", "worst"]
-    key: str
-    task: str
-    instruction: str
-    house: str
-    participant: int
-    index: int
-    met: bool
-    time_s: float
-    t_star: float
-    alone_met: bool | None
-    alone_s: float | None
-    gain_s: float | None
-    replay: str
-
-
-class Failure(Struct, frozen=True, kw_only=True):
-    """One way in which a run's robots failed: in how many trials, and the first of them."""
-
-    run: str
-    seat: str
-    agent: str
-    kind: str
-    trials: int
-    key: str
-    task: str
-    after_s: float
-    last: str
-    replay: str
-
-
-class Origin(Struct, frozen=True, kw_only=True):
-    """Where one run came from: everything that decides its records. ``name`` is that of its folder."""
-
-    name: str
-    agent: str
-    robots: tuple[RobotSeat, ...]
-    humans: HumansRef
-    suite: SuiteRef
-    kind: KindRef | None
-    seed: int
-    participants: int
-    trials: int
-    whole: int
-    faulty: int
-    assets: AssetsRef
-    versions: dict[str, str]
-    run_sha256: str
-    rules_sha256: str
-    code_sha256: str
-    trials_sha256: str
-
-
 class Findings(Struct, frozen=True, kw_only=True):
     """The whole document.
 
     ``people`` are those whom most of the report is of; ``by_people`` has all. ``baseline`` is the label of the run
-    without a robot, empty where there is none.
+    without a robot, empty where there is none. ``comparisons`` are of runs with these people, by label, the one
+    without a robot first; ``apart`` are the pairs that cannot be compared. ``people_uplift`` has the comparisons with
+    no robot for each people of ``by_people``.
     """
 
     schema: str = SCHEMA
@@ -198,11 +135,18 @@ class Findings(Struct, frozen=True, kw_only=True):
     baseline: str
     published: Published | None
     arms: tuple[Arm, ...]
-    uplift: tuple[Uplift, ...]
+    comparisons: tuple[Comparison, ...]
+    apart: tuple[Apart, ...]
     spent: tuple[Spent, ...]
     trust: tuple[Curve, ...]
     splits: tuple[Split, ...]
     by_people: Split | None
+    people_uplift: dict[str, tuple[Comparison, ...]]
     shown: tuple[Shown, ...]
     failures: tuple[Failure, ...]
     origins: tuple[Origin, ...]
+
+    @property
+    def uplift(self) -> tuple[Comparison, ...]:
+        """What each robot changes against no robot."""
+        return tuple(pair for pair in self.comparisons if self.baseline and pair.first == self.baseline)

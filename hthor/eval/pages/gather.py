@@ -10,11 +10,11 @@ import msgspec
 from msgspec import Struct
 
 from hthor.errors import RunError
-from hthor.eval import metrics, score, setup
-from hthor.eval.pages.findings import NONE
+from hthor.eval import control, metrics, score, setup
 from hthor.eval.record import Record
 from hthor.eval.setup import Setup
 
+NONE = "no robot"
 Pair = tuple[int, int, int, str]
 """What two runs' trials share when they are of the same person at the same task: seed, person, place, task."""
 
@@ -22,15 +22,18 @@ Pair = tuple[int, int, int, str]
 class Run(Struct, frozen=True, kw_only=True, eq=False):
     """One run: its configuration, its trials in order with freshly measured metrics, and what to call it.
 
-    ``sha256`` is the hash of its log as `hthor.eval.score` has it.
+    ``name`` is what its folder is called, with the folder above where that tells it apart. ``sha256`` is the hash of
+    its log as `hthor.eval.score` has it. ``beside`` says that nobody named it: it was found as the control of another.
     """
 
     folder: Path
+    name: str
     plan: Setup
     records: tuple[Record, ...]
     sha256: str
     label: str
     condition: str
+    beside: bool = False
 
     @property
     def by_pair(self) -> dict[Pair, Record]:
@@ -57,6 +60,18 @@ def runs(folders: Sequence[Path]) -> list[Run]:
     return _named(found)
 
 
+def with_controls(found: Sequence[Run]) -> list[Run]:
+    """The same runs; where nobody of some people is without a robot, their control first, if it lies beside."""
+    whole: list[Run] = []
+    for one in found:
+        people = one.plan.humans.name
+        if not any(not other.plan.seats and other.plan.humans.name == people for other in (*found, *whole)):
+            place = control.place(one.folder, one.plan)
+            whole += [msgspec.structs.replace(_read(place), beside=True)] if place is not None else []
+        whole.append(one)
+    return _named(whole) if len(whole) > len(found) else whole
+
+
 def _read(folder: Path) -> Run:
     plan = setup.load(folder)
     lines, records = score.records(folder, plan)
@@ -65,6 +80,7 @@ def _read(folder: Path) -> Run:
     fresh = (msgspec.structs.replace(one, metrics=metrics.measure(one.spec, one.log)) for one in records)
     return Run(
         folder=folder,
+        name=folder.resolve().name,
         plan=plan,
         records=tuple(fresh),
         sha256=hashlib.sha256(b"".join(lines)).hexdigest(),
@@ -109,10 +125,22 @@ def _distinct(found: Sequence[Run]) -> None:
 
 
 def _named(found: Sequence[Run]) -> list[Run]:
-    """Labels that tell runs with the same people apart: where two are equal, with the folder's name."""
+    """Names and labels that tell runs apart: where two labels with the same people are equal, with the name."""
+    names = [_name(one, found) for one in found]
     whole: list[Run] = []
-    for one in found:
-        same = [two for two in found if (two.label, two.plan.humans.name) == (one.label, one.plan.humans.name)]
-        label = one.label if len(same) == 1 else f"{one.label} ({one.folder.resolve().name})"
-        whole.append(msgspec.structs.replace(one, label=label))
+    for one, name in zip(found, names, strict=True):
+        plain = _plain(one)
+        same = [two for two in found if (_plain(two), two.plan.humans.name) == (plain, one.plan.humans.name)]
+        label = plain if len(same) == 1 else f"{plain} ({name})"
+        whole.append(msgspec.structs.replace(one, name=name, label=label))
     return whole
+
+
+def _plain(one: Run) -> str:
+    return one.plan.name if one.plan.seats else NONE
+
+
+def _name(one: Run, found: Sequence[Run]) -> str:
+    folder = one.folder.resolve()
+    alike = sum(other.folder.resolve().name == folder.name for other in found)
+    return folder.name if alike == 1 and folder.name != control.FOLDER else f"{folder.parent.name}/{folder.name}"

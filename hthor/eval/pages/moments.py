@@ -1,14 +1,22 @@
-"""The moments of a trial that are worth a look: a robot speaks, the target is taken, the end; draws nothing."""
+"""The moments of a trial that are worth a look: a robot speaks, the person answers and acts, the end; draws nothing."""
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
+
 from msgspec import Struct
 
+from hthor import geometry, rules
 from hthor.eval import trace
 from hthor.eval.record import Record
-from hthor.types import HUMAN
+from hthor.types import HUMAN, Event, HouseSpec
 
-MANY = 3
+MANY = 4
+_APART_S = 1.0
+"""Two moments are at least so far apart."""
+_ANSWERS = {"confirmed": "person confirms", "declined": "person declines"}
+_DEEDS = ("picked", "held", "lifted", "opened", "placed")
 
 
 class Moment(Struct, frozen=True, kw_only=True):
@@ -18,37 +26,54 @@ class Moment(Struct, frozen=True, kw_only=True):
     words: str
 
 
-def of(record: Record) -> list[Moment]:
-    """Up to three moments in order, the last of them the end.
+def of(record: Record, house: HouseSpec | None = None) -> list[Moment]:
+    """Up to `MANY` moments in order, the last of them the end.
 
-    They are the sending of the first message that the person confirmed (else of the first), the first deed of the
-    person's hands (else their answer), and the end. Where nothing was said there is the middle of what is left instead.
+    First come the sending of the first message that the person confirmed (else of the first), the answer to it, and the
+    first deed of the person's hands. What is left is filled with looks into the longest waits; where ``house`` is
+    given, they say in which room the person is.
     """
-    end = Moment(tick=record.ticks, words="done" if record.met else "time is up")
-    found = [one for one in (_spoken(record), _done(record)) if one is not None and one.tick < end.tick]
-    found = [one for one in found if one.tick > 0]
-    if len(found) < MANY - 1:
-        first = found[0].tick if found else 0
-        middle = (first // 2) if first > end.tick // 2 else (first + end.tick) // 2
-        if middle not in (0, end.tick, first):
-            found.append(Moment(tick=middle, words="on the way"))
-    return [*sorted(found, key=lambda one: one.tick), end]
+    found = [Moment(tick=record.ticks, words="done" if record.met else "time is up")]
+    apart = round(_APART_S / rules.TICK_S)
+    for one in _candidates(record):
+        if len(found) < MANY and one.tick > 0 and all(abs(one.tick - other.tick) >= apart for other in found):
+            found.append(one)
+    while len(found) < MANY and (middle := _longest_wait(found, 2 * apart)):
+        where = _room(record, middle, house)
+        found.append(Moment(tick=middle, words=f"in {where}" if where else "on the way"))
+    return sorted(found, key=lambda one: one.tick)
 
 
-def _spoken(record: Record) -> Moment | None:
+def _candidates(record: Record) -> Iterator[Moment]:
+    """What happened, the most telling first."""
     sent = trace.messages(record.log)
-    if not sent:
-        return None
-    fates = [trace.fate(record.log, event.data["message"]) for event in sent]
-    number = fates.index("confirmed") if "confirmed" in fates else 0
-    return Moment(tick=sent[number].tick, words=f"{sent[number].seat}, message {number + 1}")
-
-
-def _done(record: Record) -> Moment | None:
+    if sent:
+        fates = [trace.fate(record.log, event.data["message"]) for event in sent]
+        number = next((fates.index(fate) for fate in _ANSWERS if fate in fates), 0)
+        yield Moment(tick=sent[number].tick, words=f"{sent[number].seat}, message {number + 1}")
+        yield from _answer(record, sent[number])
     own = [event for event in record.events if event.seat == HUMAN]
-    for kind in ("picked", "opened", "confirmed", "declined"):
+    for kind in _DEEDS:
         event = next((one for one in own if one.kind == kind), None)
         if event is not None:
-            verb = trace.ACTS[kind][1] if kind in trace.ACTS else {"confirmed": "confirms"}.get(kind, "declines")
-            return Moment(tick=event.tick, words=f"person {verb}")
-    return None
+            yield Moment(tick=event.tick, words=f"person {trace.ACTS[kind][1]}")
+
+
+def _answer(record: Record, message: Event) -> Iterator[Moment]:
+    for event in record.events:
+        if event.kind in _ANSWERS and event.data.get("message") == message.data["message"]:
+            yield Moment(tick=event.tick, words=_ANSWERS[event.kind])
+            return
+
+
+def _longest_wait(found: list[Moment], least: int) -> int:
+    """The middle of the longest time in which nothing is shown; 0 where none is worth it."""
+    ticks = [0, *sorted(one.tick for one in found)]
+    wait, first = max((second - first, -first) for first, second in itertools.pairwise(ticks))
+    return -first + wait // 2 if wait >= least else 0
+
+
+def _room(record: Record, tick: int, house: HouseSpec | None) -> str:
+    place = trace.at(record.log, HUMAN, tick)
+    rooms = house.rooms if house is not None else ()
+    return next((room.name for room in rooms if geometry.inside(place, room.polygon)), "")

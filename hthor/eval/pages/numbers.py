@@ -21,7 +21,7 @@ def signed(value: float, digits: int = 1) -> str:
     return text[1:] if float(f"{value:.{digits}f}") == 0.0 else text
 
 
-def listed(names: Iterable[str], nothing: str = "none") -> str:
+def listed(names: Iterable[str], nothing: str = "none", last: str = "and") -> str:
     """Names in a row: "a, b and c"."""
     held = list(names)
-    return nothing if not held else held[0] if len(held) == 1 else f"{', '.join(held[:-1])} and {held[-1]}"
+    return nothing if not held else held[0] if len(held) == 1 else f"{', '.join(held[:-1])} {last} {held[-1]}"

@@ -1,37 +1,38 @@
-"""What robots change against no robot, trial by trial; knows nothing of how it is shown."""
+"""Runs against each other, trial by trial, as `hthor compare` does it; knows nothing of how it is shown."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import itertools
+from collections.abc import Sequence
 
-from hthor.eval import stats
-from hthor.eval.pages.findings import Uplift
+from hthor.eval import compare, pairing
+from hthor.eval.compare import Comparison, Read
+from hthor.eval.pages.findings import Apart
 from hthor.eval.pages.gather import Run
-from hthor.eval.record import Record
-from hthor.eval.stats import Estimate
-
-Both = tuple[Record, Record]
-"""A trial with robots and the same person's at the same task without."""
 
 
-def uplift(alone: Run, helped: Run) -> Uplift:
-    """The differences over all trials that both runs have."""
-    others = alone.by_pair
-    both = [(record, others[pair]) for pair, record in helped.by_pair.items() if pair in others]
-    return Uplift(
-        arm=helped.label,
-        pairs=len(both),
-        sr=_difference(both, lambda one: float(one.metrics.sr)),
-        twsr=_difference(both, lambda one: one.metrics.twsr),
-        saved_s=_difference(both, lambda one: -one.metrics.time_s),
-        wins=sum(a.met and not b.met for a, b in both),
-        losses=sum(b.met and not a.met for a, b in both),
+def pairs(baseline: Run | None, runs: Sequence[Run]) -> tuple[tuple[Comparison, ...], tuple[Apart, ...]]:
+    """Every pair of runs, that without a robot as the first of its pairs, and the pairs that share no trial."""
+    order = [run for run in (baseline, *(one for one in runs if one is not baseline)) if run is not None]
+    found = compare.pairs(
+        [Read(name=run.label, folder=run.folder, plan=run.plan, records=run.records) for run in order]
     )
-
-
-def _difference(both: list[Both], value: Callable[[Record], float]) -> Estimate:
-    return stats.estimate(
-        [value(a) - value(b) for a, b in both],
-        [a.spec.task.id for a, _ in both],
-        [a.spec.participant for a, _ in both],
+    known = {(pair.first, pair.second) for pair in found}
+    apart = tuple(
+        Apart(first=one.label, second=other.label, field=pairing.difference(one.plan, other.plan))
+        for one, other in itertools.combinations(order, 2)
+        if (one.label, other.label) not in known
     )
+    return found, apart
+
+
+def by_people(runs: Sequence[Run]) -> dict[str, tuple[Comparison, ...]]:
+    """For each of several peoples what the robots change against no robot."""
+    found: dict[str, tuple[Comparison, ...]] = {}
+    names = list(dict.fromkeys(run.plan.humans.name for run in runs))
+    for name in names if len(names) > 1 else ():
+        own = [run for run in runs if run.plan.humans.name == name]
+        alone = next((run for run in own if run.condition == "none"), None)
+        if alone is not None:
+            found[name] = tuple(pair for pair in pairs(alone, own)[0] if pair.first == alone.label)
+    return found

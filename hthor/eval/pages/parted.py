@@ -15,14 +15,19 @@ _KINDS = "kind of task"
 
 
 def splits(runs: Sequence[Run]) -> tuple[Split, ...]:
-    """Every way to part the trials that leaves more than one part."""
+    """Every way to part the trials that leaves more than one part, and more than a trial in some of them."""
     found = (
         _split("difficulty", runs, lambda one: one.spec.task.difficulty, _LEVELS),
         _split(_KINDS, runs, lambda one: one.spec.task.kind.replace("_", " ")),
         _split("split", runs, lambda one: one.spec.task.split, ("seen", "new")),
         _split("scene", runs, lambda one: one.spec.task.house),
     )
-    return tuple(one for one in found if len(one.groups) > 1)
+    return tuple(one for one in found if len(one.groups) > 1 and _tells(one))
+
+
+def _tells(split: Split) -> bool:
+    """Whether any part has more than a single trial."""
+    return any(one.n > 1 for group in split.groups for one in group.sr.values())
 
 
 def by_people(runs: Sequence[Run]) -> Split | None:

@@ -15,10 +15,13 @@ _QUARTILES = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 
 def spent(run: Run) -> Spent:
-    """Minimum, quartiles and maximum of the time spent."""
+    """Minimum, quartiles and maximum of the time spent, and how many were done by when."""
     times = [record.metrics.time_s for record in run.records]
     least, lower, median, upper, most = (round(float(value), _DIGITS) for value in np.quantile(times, _QUARTILES))
     unsolved = sum(not record.met for record in run.records)
+    ends = np.sort([record.metrics.time_s for record in run.records if record.met])
+    seconds = np.arange(math.ceil(max(record.spec.task.time_limit for record in run.records)) + 1)
+    solved = np.searchsorted(ends, seconds, side="right") / len(times)
     return Spent(
         arm=run.label,
         trials=len(times),
@@ -28,6 +31,7 @@ def spent(run: Run) -> Spent:
         upper=upper,
         most=most,
         unsolved=unsolved,
+        solved=tuple(round(float(share), _DIGITS) for share in solved),
     )
 
 

@@ -24,30 +24,50 @@ nav a{color:var(--oracle);text-decoration:none;margin-right:1rem;white-space:now
 nav a:hover{text-decoration:underline}
 .wide{overflow-x:auto;margin:1rem 0}
 table{border-collapse:collapse;font:.8rem/1.4 system-ui,Arial,sans-serif;font-variant-numeric:tabular-nums}
-caption{text-align:left;padding:0 0 .4rem;font-size:.85rem}
-th,td{padding:.24rem .8rem .24rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--line)}
-thead th{vertical-align:bottom;font-weight:600;border-bottom:1.5px solid var(--soft)}
+caption{text-align:left;padding:0 0 .45rem;font:.9rem/1.45 Charter,"Bitstream Charter",Georgia,serif}
+th,td{padding:.2rem 1rem .2rem 0;text-align:left;vertical-align:top}
+th:last-child,td:last-child{padding-right:0}
+thead th{vertical-align:bottom;font-weight:600;border-top:2px solid var(--ink);border-bottom:1px solid var(--ink)}
+tbody tr:first-child>*{padding-top:.35rem}
+tbody tr:last-child>*{padding-bottom:.4rem;border-bottom:2px solid var(--ink)}
 tbody th{font-weight:normal}
 .n{text-align:right;white-space:nowrap}
 thead .n{white-space:normal}
 td b,tbody th{white-space:nowrap}
+caption span{display:block;position:sticky;left:0;max-width:calc(100vw - 2rem)}
+td i{font-style:normal;color:var(--soft);margin-left:.15rem}
+td small,th small{display:block;font-size:.86em;line-height:1.3;color:var(--soft)}
+td.v{white-space:nowrap}
+td.v>span{display:inline-block;min-width:2.9em;text-align:right}
+td.v small,th.v{padding-left:.55em}
+.high td.v>span{min-width:0;font-weight:600}
+.high td.v i{display:block;margin-left:0}
+.high td.v small,.high th.v{padding-left:0}
+tr.band>th{padding-top:.6rem;font-style:italic;white-space:normal;color:var(--soft)}
+tr.band:not(:first-child)>th{border-top:1px solid var(--line)}
 b{font-weight:600}
 b.good{color:var(--oracle)}
 b.bad{color:var(--published)}
 b.quiet{color:var(--soft);font-weight:normal}
-figure{margin:1.4rem 0}
+figure{margin:1.6rem 0}
 figure svg{display:block;width:100%;height:auto;font-family:system-ui,"Helvetica Neue",Arial,sans-serif}
 figcaption{font-size:.86rem;line-height:1.45;max-width:46rem;margin-top:.3rem}
 footer{margin-top:3rem;padding-top:.7rem;border-top:1px solid var(--line);font-size:.85rem}
-code{font-size:.88em}
+code,pre{font:.84em/1.45 ui-monospace,"DejaVu Sans Mono",Menlo,monospace}
+code{overflow-wrap:anywhere}
+pre{background:var(--shade);padding:.6rem .8rem;overflow-x:auto;white-space:pre-wrap;overflow-wrap:anywhere}
+details{margin:1rem 0}
+summary{cursor:pointer;color:var(--oracle);font-size:.9rem}
 @media print{
  main{max-width:none;padding:0}
  body{font-size:10pt}
  nav{display:none}
  figure,tr,.wide{break-inside:avoid}
  h2,h3{break-after:avoid}
- .wide{overflow:visible}
+ .wide,.art{overflow:visible}
  table{font-size:7.5pt}
+ details::details-content{content-visibility:visible;block-size:auto}
+ summary{display:none}
 }
 """
 

@@ -15,7 +15,7 @@ from hthor.eval.pages.gather import Run, pair
 
 
 def report(folders: Sequence[Path], out: Path, published: Published | None = None) -> Findings:
-    """Read the runs, and write the report into ``out``.
+    """Read the runs, and their control where none of them is without a robot, and write the report into ``out``.
 
     Raises:
         RunError: when a run is damaged, or the runs do not belong together.
@@ -23,7 +23,7 @@ def report(folders: Sequence[Path], out: Path, published: Published | None = Non
     """
     if out.exists() and not out.is_dir():
         raise HthorError(f"{out} is a file; --out takes the report's folder.")
-    runs = gather.runs(folders)
+    runs = gather.with_controls(gather.runs(folders))
     found = assemble.findings(runs, published)
     elements: dict[str, str] = {}
     for one in drawings.draw(found, list(_scenes(runs, found))):

@@ -8,7 +8,6 @@ import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from matplotlib import patheffects
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from msgspec import Struct
@@ -24,12 +23,14 @@ from hthor.types import HUMAN, HouseSpec, Vec2
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MAP_WIDE, _VIEW_WIDE = 3.1, 1.62
+_MAP_WIDE, _VIEW_WIDE = 3.1, 1.55
 _HEAD, _EDGES = 0.36, 0.5
 """Inches above each row, and above and below all."""
-_NEAR_M = 0.5
-_WORDS_MAX = 60
-_STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.0, foreground="white")]
+_MAP_HIGH = 3.3
+"""Inches that a map may take at most."""
+_NEAR_M, _BESIDE_M = 0.5, 0.6
+_WORDS_MAX = 80
+_CORNERS: tuple[Vec2, ...] = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0))
 
 
 class Row(Struct, frozen=True, kw_only=True, eq=False):
@@ -45,6 +46,7 @@ def figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
     """Draw the case, about 8 inches wide."""
     xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
     deep = _MAP_WIDE * (max(ys) - min(ys) + 1.0) / (max(xs) - min(xs) + 0.7)
+    deep = min(deep, _MAP_HIGH)
     seats = [list(row.record.paths) for row in rows]
     highs = [max(deep, 0.75 * _VIEW_WIDE * len(held) + 0.2) + _HEAD for held in seats]
     with ink.style():
@@ -76,9 +78,22 @@ def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
         picture.draw_path(ax, record.log, seat)
     for _, start in trace.targets(record.spec, house):
         ax.scatter(*start.position[:2], s=80, marker="*", color=trace.TARGET, edgecolor="white", lw=0.6, zorder=12)
-    for seat in record.paths:
-        for place, letters in _places(row, seat):
-            _letter(ax, place, letters, seat)
+    busy = [start.position[:2] for _, start in trace.targets(record.spec, house)]
+    marks = [(seat, place, letters) for seat in record.paths for place, letters in _places(row, seat)]
+    for seat, place, letters in marks:
+        others = [other for _, other, _ in marks if other != place]
+        side = max(_CORNERS, key=lambda side: _room(place, side, [*busy, *others]))
+        _letter(ax, place, letters, seat, side)
+        busy.append(_beside(place, side))
+
+
+def _room(place: Vec2, side: Vec2, busy: Sequence[Vec2]) -> float:
+    """How far a letter at this corner is from everything else."""
+    return round(min((math.dist(_beside(place, side), other) for other in busy), default=math.inf), 2)
+
+
+def _beside(place: Vec2, side: Vec2) -> Vec2:
+    return (place[0] + _BESIDE_M * side[0], place[1] + _BESIDE_M * side[1])
 
 
 def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
@@ -93,34 +108,37 @@ def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
     return found
 
 
-def _letter(ax: Axes, place: Vec2, letters: str, seat: str) -> None:
-    """Above a person and below a robot, as they may stand in one place."""
-    side = 1 if seat == HUMAN else -1
-    text = ax.annotate(
+def _letter(ax: Axes, place: Vec2, letters: str, seat: str, side: Vec2) -> None:
+    """Beside the place, where there is room."""
+    ax.annotate(
         letters,
         place,
-        (5 * side, 5 * side),
+        (5 * side[0], 5 * side[1]),
         textcoords="offset points",
-        ha="left" if side > 0 else "right",
-        va="bottom" if side > 0 else "top",
-        fontsize=8,
-        weight="bold",
-        color=trace.colour(seat),
-        zorder=15,
+        ha="left" if side[0] > 0 else "right",
+        va="bottom" if side[1] > 0 else "top",
+        **_badge(seat),
     )
-    text.set_path_effects(_STROKE)
 
 
 def _draw_view(ax: Axes, view: Any, seat: str, column: int, moment: Moment, *, first: bool) -> None:
-    """A picture in a frame of its seat's colour, what happened above the first."""
+    """A picture in a frame of its seat's colour, with its letter; what happened above the first."""
     ax.imshow(view, interpolation="none")
     ax.set_xticks([])
     ax.set_yticks([])
     for side in ax.spines.values():
         side.set(visible=True, color=trace.colour(seat), linewidth=1.4)
+    letter = string.ascii_lowercase[column]
+    ax.annotate(letter, (0.0, 1.0), (6, -6), "axes fraction", "offset points", ha="center", va="center", **_badge(seat))
     if first:
         when = f"{moment.tick * rules.TICK_S:.1f} s"
-        ax.set_title(f"{string.ascii_lowercase[column]}  {when}: {moment.words}", fontsize=7.5)
+        ax.set_title(f"{when}: {moment.words}", fontsize=6.8)
+
+
+def _badge(seat: str) -> dict[str, Any]:
+    """A letter in a seat's colour, as it stands on the map and on the view."""
+    box = {"boxstyle": "round,pad=0.2,rounding_size=0.5", "fc": trace.colour(seat), "ec": "white", "lw": 0.7}
+    return {"fontsize": 6.5, "weight": "bold", "color": "white", "bbox": box, "zorder": 15}
 
 
 def _headline(row: Row) -> str:

@@ -1,7 +1,9 @@
-"""How robots are told apart in every figure: a colour, and a mark for those who see none; knows nothing of results."""
+"""How runs are told apart in figures: a colour each, and a mark for those who see none; knows nothing of results."""
 
 from __future__ import annotations
 
+import math
+import textwrap
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
 
 _OTHERS = ("#9a5fb5", "#2f9270", "#c4587f", "#7f7a2c", "#4a79c4")
 _SHAPES = {"none": "o", "frontier": "s", "oracle": "^"}
+_NAME_MAX = 22
 _MORE = ("v", "P", "X", "p", "h")
 
 
@@ -47,19 +50,71 @@ def of(arms: Sequence[Arm], more: Iterable[str] = ()) -> dict[str, Mark]:
     return found
 
 
-def interval(ax: Axes, y: float, one: Estimate, mark: Mark, scale: float = 100.0, *, thin: bool = False) -> None:
-    """A mean with its 95 % interval, lying."""
-    if one.mean is None or one.ci95 is None:
+def interval(
+    ax: Axes, y: float, mean: float | None, ci95: Sequence[float] | None, mark: Mark, *, thin: bool = False
+) -> None:
+    """A mean with its 95 % interval, lying; the ends are ticked, as a good interval is shorter than its mark."""
+    if mean is None:
         return
-    ends = [scale * end for end in one.ci95]
-    ax.plot(ends, (y, y), color=mark.shade, lw=1.1 if thin else 2.2, zorder=3)
-    size = 4.4 if thin else 6.0
-    ax.plot(scale * one.mean, y, mark.shape, color=mark.shade, ms=size, mec=ink.PAPER, mew=0.7, zorder=4)
+    if ci95 is not None:
+        ax.plot(tuple(ci95), (y, y), color=mark.shade, lw=1.0 if thin else 1.6, solid_capstyle="butt", zorder=3)
+        ax.plot(tuple(ci95), (y, y), "|", color=mark.shade, ms=3.6 if thin else 6.0, mew=0.9 if thin else 1.2, zorder=3)
+    size = (4.4 if thin else 5.4) * (1.15 if mark.shape == "^" else 1.0)
+    ax.plot(mean, y, mark.shape, color=mark.shade, ms=size, mec=ink.PAPER, mew=0.5, zorder=4)
+
+
+def estimate(ax: Axes, y: float, one: Estimate, mark: Mark, scale: float = 100.0, *, thin: bool = False) -> None:
+    """An estimate, as `interval` draws it."""
+    if one.mean is not None:
+        ends = None if one.ci95 is None else [scale * end for end in one.ci95]
+        interval(ax, y, scale * one.mean, ends, mark, thin=thin)
+
+
+def window(
+    values: Iterable[float], step: float, most: tuple[float, float] = (-math.inf, math.inf)
+) -> tuple[float, float]:
+    """Limits of an axis that holds these values with some air, at whole steps."""
+    held = list(values) or [0.0]
+    low = step * math.floor((min(held) - 0.15 * step) / step)
+    high = step * math.ceil((max(held) + 0.15 * step) / step)
+    return max(low, most[0]), min(max(high, low + step), most[1])
+
+
+def names(ax: Axes, ends: Sequence[tuple[float, float, str, Mark]], apart: float) -> None:
+    """Names of curves at their right ends, moved up where one would touch the one below.
+
+    Args:
+        ends: x, y, name and mark of each. apart: the least distance between two names, in units of y.
+    """
+    lowest = -math.inf
+    for x, y, name, mark in sorted(ends, key=lambda end: end[1]):
+        height = max(y, lowest)
+        lowest = height + apart
+        ax.annotate(
+            label(name),
+            (x, height),
+            (9, 0),
+            textcoords="offset points",
+            color=mark.shade,
+            va="center",
+            annotation_clip=False,
+        )
+
+
+def label(name: str) -> str:
+    """A long name in lines that are short enough for an axis."""
+    return "\n".join(textwrap.wrap(name.replace("+", "+ "), _NAME_MAX)).replace("+ ", "+")
+
+
+def high(names: Iterable[str], least: float = 0.36) -> float:
+    """Inches that a row takes whose name has a line for n below."""
+    lines = 1 + max(label(name).count("\n") + 1 for name in names)
+    return max(least, 0.135 * lines + 0.08)
 
 
 def handle(mark: Mark, label: str) -> Line2D:
     """An entry of a legend."""
-    return Line2D([], [], color=mark.shade, lw=1.4, marker=mark.shape, ms=5, mec=ink.PAPER, mew=0.7, label=label)
+    return Line2D([], [], color=mark.shade, lw=1.4, marker=mark.shape, ms=5, mec=ink.PAPER, mew=0.5, label=label)
 
 
 def count(estimates: Sequence[Estimate]) -> str:

@@ -3,15 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
+from msgspec import Struct
 
 from hthor.eval.pages import ink
 from hthor.eval.pages.figures import marks
+from hthor.eval.pages.figures.marks import Mark
 from hthor.eval.pages.findings import Arm, Group, Split
 
-_STEP, _ROW = 0.22, 0.145
-"""Distance of two robots within a group [rows], and inches that each of them takes up."""
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_ROW = 0.13
+"""Inches that each robot takes up within a group."""
+_HEAD = 0.45
+"""Height of the name of a split, in groups."""
+_LONG = 8
+"""More groups than these stand in two columns."""
+
+
+class _Line(Struct):
+    """A group, or the name of what the groups below it part."""
+
+    word: str
+    group: Group | None = None
 
 
 def figure(splits: Sequence[Split], arms: Sequence[Arm], *, ranked: bool = False) -> Figure:
@@ -21,34 +38,61 @@ def figure(splits: Sequence[Split], arms: Sequence[Arm], *, ranked: bool = False
         ranked: the group in which people do worst first.
     """
     own = marks.of(arms, (label for split in splits for group in split.groups for label in group.sr))
-    groups = [(split, _ranked(split.groups) if ranked else split.groups) for split in splits]
-    labels = [label for label in own if any(label in group.sr for _, held in groups for group in held)]
-    height = (len(labels) - 1) * _STEP + 0.55
-    rows = sum(len(held) for _, held in groups)
+    lines: list[_Line] = []
+    for split in splits:
+        lines += [_Line(word=split.word)] if len(splits) > 1 else []
+        held = _ranked(split.groups) if ranked else split.groups
+        lines += [_Line(word=f"{group.name}, {marks.count(list(group.sr.values()))}", group=group) for group in held]
+    half = -(-len(lines) // 2) if ranked and len(lines) > _LONG else len(lines)
+    columns = [lines[:half], lines[half:]] if half < len(lines) else [lines]
+    labels = [label for label in own if any(line.group and label in line.group.sr for line in lines)]
+    ends = [
+        100.0 * value
+        for line in lines
+        if line.group
+        for one in line.group.sr.values()
+        for value in (one.mean, *(one.ci95 or ()))
+        if value is not None
+    ]
     with ink.style():
-        made = ink.sheet(0.75 + _ROW * rows * max(2.0, len(labels)) + 0.24 * len(splits), 6.4)
-        ax = made.subplots()
-        y, ticks = 0.0, []
-        for split, held in groups:
-            if len(splits) > 1:
-                ax.text(-0.5, y, f"by {split.word}", ha="right", va="center", fontsize=7.5, color=ink.SOFT)
-                y += 0.75 * height
-            for group in held:
-                ticks.append((y, f"{group.name}, {marks.count(list(group.sr.values()))}"))
-                for label, one in group.sr.items():
-                    shift = labels.index(label) - (len(labels) - 1) / 2
-                    marks.interval(ax, y + _STEP * shift, one, own[label], thin=True)
-                ax.axhline(y + height / 2, color=ink.LINE, lw=0.4)
-                y += height
-            y += 0.2
-        ax.set_yticks([place for place, _ in ticks], [name for _, name in ticks])
-        ax.set_ylim(y - 0.2 - height / 2, -height / 2)
-        ax.set_xlim(-1, 101)
-        ax.set_xlabel("success rate [%], with 95 % intervals")
-        ink.bare(ax)
+        high = max(_places(column)[1] for column in columns)
+        made = ink.sheet(0.85 + high * (_ROW * len(labels) + 0.12))
+        panels = made.subplots(1, len(columns), sharex=True, squeeze=False)[0]
+        for ax, column in zip(panels, columns, strict=True):
+            _draw(ax, column, {label: own[label] for label in labels})
+            ax.set_ylim(high, 0.0)
+            ax.set_xlabel("success rate [%]")
+        panels[0].set_xlim(marks.window(ends, 10.0, (-1.0, 101.0)))
         handles = [marks.handle(own[label], label) for label in labels]
-        made.legend(handles=handles, loc="outside upper right", ncols=min(4, len(handles)))
+        made.legend(handles=handles, loc="outside upper left", ncols=min(5, len(handles)))
     return made
+
+
+def _draw(ax: Axes, lines: Sequence[_Line], own: dict[str, Mark]) -> None:
+    labels, step = list(own), 0.74 / max(1, len(own))
+    shaded, (places, _) = False, _places(lines)
+    for y, line in zip(places, lines, strict=True):
+        shaded = line.group is not None and not shaded
+        if shaded:
+            ax.axhspan(y - 0.5, y + 0.5, color=ink.SHADE, lw=0, zorder=0)
+        for label, one in line.group.sr.items() if line.group else ():
+            shift = step * (labels.index(label) - (len(labels) - 1) / 2)
+            marks.estimate(ax, y + shift, one, own[label], thin=True)
+    ink.bare(ax)
+    ax.set_yticks(places, [line.word for line in lines])
+    for tick, line in zip(ax.get_yticklabels(), lines, strict=True):
+        if line.group is None:
+            tick.set(style="italic", color=ink.SOFT)
+
+
+def _places(lines: Sequence[_Line]) -> tuple[list[float], float]:
+    """The middle of each line from above, and the height of all."""
+    places, y = [], 0.0
+    for line in lines:
+        high = _HEAD if line.group is None else 1.0
+        places.append(y + (high / 2 if line.group is not None else 0.7 * high))
+        y += high
+    return places, y
 
 
 def _ranked(groups: Sequence[Group]) -> list[Group]:

@@ -1,7 +1,8 @@
-"""Success, time-weighted success and adoption of every run beside the published ones."""
+"""Success, time-weighted success, adoption and progress of every run beside the published ones."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
@@ -14,42 +15,59 @@ from hthor.eval.pages.findings import Findings
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-METRICS = {"sr": "success rate", "twsr": "time-weighted success", "adoption": "adoption"}
+METRICS = {"sr": "success rate", "twsr": "time-weighted success", "adoption": "adoption", "progress": "progress"}
+_SHIFT = 0.17
+_MANY = 4
+"""So many panels have short titles."""
 
 
 def figure(found: Findings) -> Figure:
     """Means with 95 % intervals; diamonds are the paper's, with intervals of their own where it tells counts."""
     own, rows = marks.of(found.arms), len(found.arms)
+    held = [name for name in METRICS if any(getattr(arm.scores, name).n for arm in found.arms)]
+    study = found.published is not None and any(arm.condition for arm in found.arms)
     with ink.style():
-        made = ink.sheet(0.85 + 0.34 * rows)
-        panels = made.subplots(1, 3, sharey=True)
-        for ax, (metric, title) in zip(panels, METRICS.items(), strict=True):
+        made = ink.sheet(0.95 + rows * marks.high(arm.label for arm in found.arms))
+        panels = made.subplots(1, len(held), sharey=True, squeeze=False)[0]
+        for ax, metric in zip(panels, held, strict=True):
             ink.bare(ax)
-            ax.set_title(f"{title} [%]")
-            ax.set_xlim(0, 100)
-            ax.set_xticks(range(0, 101, 20), ["", "20", "40", "60", "80", ""])
+            ax.set_title(f"{METRICS[metric] if len(held) < _MANY else METRICS[metric].removesuffix(' success')} [%]")
+            ax.set_xlim(marks.window(_ends(found, metric), 10.0, (0.0, 100.0)))
             for y, arm in enumerate(found.arms):
                 one = getattr(arm.scores, metric)
-                marks.interval(ax, y - 0.12, one, own[arm.label])
+                marks.estimate(ax, y - _SHIFT if study else y, one, own[arm.label])
                 if one.mean is None:
-                    ax.text(50, y, "nothing to adopt", ha="center", va="center", color=ink.SOFT, fontsize=7)
-                if found.published is not None:
-                    _publish(ax, y + 0.2, f"{metric} {arm.condition}", found)
-        panels[0].set_yticks(range(rows), [f"{arm.label}, n = {arm.trials}" for arm in found.arms])
-        panels[0].set_ylim(rows - 0.4, -0.6)
-        handles = [Line2D([], [], color=ink.SOFT, lw=2.2, marker="o", ms=5, mec=ink.PAPER, label="mean and 95 %")]
-        if found.published is not None and any(arm.condition for arm in found.arms):
-            word = f"published ({found.published.name}), 95 % from its counts"
-            handles.append(Line2D([], [], color=ink.PUBLISHED, lw=0.8, marker="D", mfc="none", ms=4.6, label=word))
-        made.legend(handles=handles, loc="outside lower center", ncols=2)
+                    ax.text(0.5, y, "no robot" if not one.n else "", transform=ax.get_yaxis_transform(), **_QUIET)
+                _publish(ax, y + _SHIFT, f"{metric} {arm.condition}", found)
+        panels[0].set_yticks(range(rows), [f"{marks.label(arm.label)}\nn = {arm.trials}" for arm in found.arms])
+        panels[0].set_ylim(rows - 0.45, -0.55)
+        if study and found.published is not None:
+            word = f"published ({found.published.name}), 95 % from its counts where it has any"
+            handles = [Line2D([], [], color=ink.SOFT, lw=1.6, marker="o", ms=5, mec=ink.PAPER, label="mean and 95 %")]
+            handles.append(Line2D([], [], color=ink.PUBLISHED, lw=0.9, marker="D", mfc="none", ms=4.6, label=word))
+            made.legend(handles=handles, loc="outside lower right", ncols=2)
     return made
+
+
+_QUIET = {"ha": "center", "va": "center", "color": ink.SOFT, "fontsize": 7}
+
+
+def _ends(found: Findings, metric: str) -> Iterator[float]:
+    """Every number of a panel, in per cent."""
+    for arm in found.arms:
+        one, name = getattr(arm.scores, metric), f"{metric} {arm.condition}"
+        yield from (100.0 * value for value in (one.mean, *(one.ci95 or ())) if value is not None)
+        if found.published is not None and name in found.published.figures:
+            yield 100.0 * found.published.figures[name]
+            yield from (
+                100.0 * end for end in (found.published.counts[name].ci95 if name in found.published.counts else ())
+            )
 
 
 def _publish(ax: Axes, y: float, name: str, found: Findings) -> None:
     published = found.published
-    assert published is not None
-    if name not in published.figures:
+    if published is None or name not in published.figures:
         return
     if name in published.counts:
-        ax.plot([100.0 * end for end in published.counts[name].ci95], (y, y), color=ink.PUBLISHED, lw=0.8, zorder=2)
+        ax.plot([100.0 * end for end in published.counts[name].ci95], (y, y), color=ink.PUBLISHED, lw=0.9, zorder=2)
     ax.plot(100.0 * published.figures[name], y, "D", mfc="none", mec=ink.PUBLISHED, mew=1.1, ms=4.6, zorder=5)

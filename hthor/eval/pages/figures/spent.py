@@ -1,4 +1,4 @@
-"""Box plots of the time spent."""
+"""The time spent: box plots, and how many trials were done by when."""
 
 from __future__ import annotations
 
@@ -15,41 +15,46 @@ from hthor.eval.pages.findings import Arm, Spent
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from hthor.eval.pages.figures.marks import Mark
+
+_APART = 8.0
+"""Least distance between two names of curves [per cent]."""
+_MANY = 6
+"""So many curves are named at their ends; boxes have the names of more."""
+
 
 def figure(parts: Sequence[Spent], arms: Sequence[Arm]) -> Figure:
-    """Minimum, quartiles and maximum; how many trials were not solved stands beside."""
+    """On the left minimum, quartiles and maximum; on the right the share of trials that was solved by each second."""
     own = marks.of(arms)
+    longest = max(max(one.most for one in parts), len(parts[0].solved) - 1.0)
     with ink.style():
-        made = ink.sheet(0.6 + 0.36 * len(parts), 6.2)
-        ax = made.subplots()
+        made = ink.sheet(max(2.3, 0.75 + len(parts) * marks.high((one.arm for one in parts), 0.38)))
+        boxes, curves = made.subplots(1, 2, width_ratios=(1.15, 1.0))
         for y, one in enumerate(parts):
-            _box(ax, y, one, own[one.arm].shade)
-        longest = max(one.most for one in parts)
-        ax.set_yticks(range(len(parts)), [f"{one.arm}, n = {one.trials}" for one in parts])
-        ax.set_ylim(len(parts) - 0.45, -0.55)
-        ax.set_xlim(0.0, 1.02 * longest)
-        ax.xaxis.set_major_locator(MaxNLocator(nbins=8, steps=[1, 1.5, 3, 5, 10]))
-        ax.set_xlabel("time spent [s]; unsolved trials count with the limit")
-        ink.bare(ax)
+            _box(boxes, y, one, own[one.arm])
+            curves.plot(
+                range(len(one.solved)), [100.0 * share for share in one.solved], color=own[one.arm].shade, lw=1.5
+            )
+        boxes.set_yticks(range(len(parts)), [f"{marks.label(one.arm)}\nn = {one.trials}" for one in parts])
+        boxes.set_ylim(len(parts) - 0.4, -0.6)
+        boxes.set_title("time spent [s]")
+        curves.set_title("trials solved by then [%]")
+        ends = [(len(one.solved) - 1.0, 100.0 * one.solved[-1], one.arm, own[one.arm]) for one in parts]
+        marks.names(curves, ends if len(ends) <= _MANY else [], _APART)
+        curves.set_ylim(0.0, 100.0)
+        for ax, grid in ((boxes, "x"), (curves, "both")):
+            ax.set_xlim(0.0, 1.01 * longest)
+            ax.xaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 1.5, 3, 5, 10]))
+            ax.set_xlabel("time since the start [s]" if ax is curves else "an unsolved trial counts with its limit")
+            ink.bare(ax, grid="x" if grid == "x" else "both")
     return made
 
 
-def _box(ax: Axes, y: int, one: Spent, shade: str) -> None:
+def _box(ax: Axes, y: int, one: Spent, mark: Mark) -> None:
+    shade, wide = mark.shade, one.upper - one.lower
     ax.plot((one.least, one.most), (y, y), color=shade, lw=1.0, zorder=2)
-    ax.barh(
-        y, one.upper - one.lower, left=one.lower, height=0.5, facecolor=ink.PAPER, edgecolor=shade, lw=1.3, zorder=3
-    )
+    ax.plot((one.least, one.most), (y, y), "|", color=shade, ms=8, mew=1.1, zorder=2)
+    ax.barh(y, wide, left=one.lower, height=0.5, facecolor=ink.PAPER, edgecolor="none", zorder=2.5)
+    ax.barh(y, wide, left=one.lower, height=0.5, facecolor=shade, edgecolor="none", alpha=0.18, zorder=3)
+    ax.barh(y, wide, left=one.lower, height=0.5, facecolor="none", edgecolor=shade, lw=1.2, zorder=3.5)
     ax.plot((one.median, one.median), (y - 0.25, y + 0.25), color=shade, lw=2.4, solid_capstyle="butt", zorder=4)
-    ax.plot((one.least, one.most), (y, y), "|", color=shade, ms=8, mew=1.1, zorder=4)
-    share = f"{100.0 * one.unsolved / one.trials:.0f} % unsolved"
-    ax.annotate(
-        share,
-        (1.0, y),
-        (6, 0),
-        xycoords=("axes fraction", "data"),
-        textcoords="offset points",
-        va="center",
-        fontsize=7,
-        color=ink.SOFT,
-        annotation_clip=False,
-    )

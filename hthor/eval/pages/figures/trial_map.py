@@ -2,32 +2,37 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from hthor.eval import picture, plan, trace
 from hthor.eval.pages import ink
 from hthor.eval.record import Record
 from hthor.types import HUMAN, HouseSpec
 
-_WIDE = 3.5
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+_WIDE, _HIGH = 3.5, 2.75
+_DASH = (0, (2, 2))
 
 
 def figure(record: Record, house: HouseSpec, alone: Record | None) -> Figure:
-    """A small plan.
+    """A small plan; all are of one size, whatever the house.
 
     Args:
         alone: the trial of the same person at the same task without a robot, if there is one.
     """
-    xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
-    deep = (max(ys) - min(ys)) / (max(xs) - min(xs))
     with ink.style():
-        made = ink.sheet(min(4.4, _WIDE * deep + 0.1), _WIDE)
+        made = ink.sheet(_HIGH, _WIDE)
         made.set_facecolor("white")  # a plan's colours are those of light paper
         ax = made.subplots()
         plan.draw_house(ax, house, marked=trace.destinations(record.spec, house), small=True)
         if alone is not None:
             way = trace.points(alone.log, HUMAN)
-            ax.plot(way[:, 0], way[:, 1], color=trace.INK, lw=0.8, ls=(0, (2, 2)), alpha=0.7, zorder=7.5)
+            ax.plot(way[:, 0], way[:, 1], color=trace.INK, lw=0.8, ls=_DASH, alpha=0.7, zorder=7.5)
         for seat in record.paths:
             picture.draw_path(ax, record.log, seat)
         for _, start in trace.targets(record.spec, house):
@@ -37,3 +42,41 @@ def figure(record: Record, house: HouseSpec, alone: Record | None) -> Figure:
         for number, event in enumerate(trace.messages(record.log), 1):
             trace.badge(ax, trace.at(record.log, event.seat, event.tick), str(number), trace.tint(record.log, event))
     return made
+
+
+def legend(seats: Collection[str], *, alone: bool, destined: bool) -> Figure:
+    """What all these plans have in common.
+
+    Args:
+        seats: everybody who is drawn. alone: whether ways without a robot are. destined: whether destinations are.
+    """
+    ways = [Line2D([], [], color=trace.colour(seat), lw=2, label="person" if seat == HUMAN else seat) for seat in seats]
+    if alone:
+        ways.append(Line2D([], [], color=trace.INK, lw=0.9, ls=_DASH, label="the same person alone"))
+    marks = [
+        _mark("o", "white", "start", ink.SOFT),
+        _mark("o", ink.SOFT, "end"),
+        _mark("*", trace.TARGET, "target at the start", size=9),
+        _mark("o", trace.MESSAGE, "message, confirmed"),
+        _mark("o", trace.IDLE_MESSAGE, "message, not confirmed"),
+    ]
+    if destined:
+        marks.append(_mark("s", plan.MARKED, "destination", plan.MARKED_EDGE))
+    handles = [*ways, *marks]
+    columns = -(-len(handles) // 2)
+    with ink.style():
+        made = ink.sheet(0.5)
+        made.set_facecolor("white")  # as the plans have it
+        made.legend(
+            handles=handles,
+            loc="center left",
+            ncols=columns,
+            columnspacing=1.6,
+            handlelength=1.8,
+            labelcolor=trace.INK,
+        )
+    return made
+
+
+def _mark(marker: str, face: str, label: str, edge: str = "white", size: float = 6.5) -> Line2D:
+    return Line2D([], [], ls="", marker=marker, ms=size, mfc=face, mec=edge, label=label)

@@ -11,48 +11,43 @@ from hthor.eval.pages import ink
 from hthor.eval.pages.figures import marks
 from hthor.eval.pages.findings import Arm, Curve
 
-_SIDE = 0.07
-_APART = 0.34
-"""Least distance between two names at the right [points of trust]."""
+_SIDE = 0.06
+_APART = 0.07
+"""Least distance between two names at the right, as a share of the axis."""
 
 
 def figure(curves: Sequence[Curve], arms: Sequence[Arm]) -> Figure:
-    """Means with bars of one standard error over people."""
-    own = marks.of(arms)
+    """Means with bars and bands of one standard error over people."""
+    own, ends = marks.of(arms), []
+    low, high = window(curves)
     with ink.style():
-        made = ink.sheet(2.6, 5.6)
+        made = ink.sheet(2.7)
         ax = made.subplots()
         for number, curve in enumerate(curves):
             mark = own[curve.arm]
             x = [trial + _SIDE * (2 * number - len(curves) + 1) for trial in curve.trial]
             bars = [0.0 if error is None else error for error in curve.se]
-            ax.errorbar(
-                x, curve.mean, yerr=bars, color=mark.shade, marker=mark.shape, ms=3.6, lw=1.3, elinewidth=0.9, capsize=0
-            )
-        for curve, height in _heights(curves):
-            many = sorted({curve.people[0], curve.people[-1]}, reverse=True)
-            people = " to ".join(str(count) for count in many)
-            ax.annotate(
-                f"{curve.arm} ({people} people)",
-                (curve.trial[-1], height),
-                (12, 0),
-                textcoords="offset points",
-                color=own[curve.arm].shade,
-                va="center",
-                annotation_clip=False,
-            )
+            lower, upper = ([m + s * b for m, b in zip(curve.mean, bars, strict=True)] for s in (-1.0, 1.0))
+            ax.fill_between(x, lower, upper, color=mark.shade, alpha=0.13, lw=0, zorder=2)
+            ax.plot(x, curve.mean, color=mark.shade, lw=1.4, zorder=3)
+            ax.vlines(x, lower, upper, color=mark.shade, lw=1.0, zorder=3)
+            ax.plot(x, curve.mean, mark.shape, color=mark.shade, ms=5.4, mec=ink.PAPER, mew=0.6, zorder=4)
+            ends.append((x[-1], curve.mean[-1], curve.arm, mark))
         ax.set_xticks(sorted({trial for curve in curves for trial in curve.trial}))
-        ax.set_ylim(rules.TRUST_MIN, rules.TRUST_MAX)
+        ax.set_yticks(range(round(low), round(high) + 1))
+        ax.set_ylim(low, high)
+        marks.names(ax, ends, _APART * (high - low))
         ax.set_xlabel("trial of the session")
-        ax.set_ylabel("trust, 1 to 7")
+        ax.set_title(f"trust, {rules.TRUST_MIN} to {rules.TRUST_MAX}")
         ink.bare(ax, grid="y")
     return made
 
 
-def _heights(curves: Sequence[Curve]) -> list[tuple[Curve, float]]:
-    """Where each curve's name stands: at its end, moved up where it would touch the one below."""
-    placed: list[tuple[Curve, float]] = []
-    for curve in sorted(curves, key=lambda one: one.mean[-1]):
-        lowest = placed[-1][1] + _APART if placed else float(rules.TRUST_MIN)
-        placed.append((curve, max(curve.mean[-1], lowest)))
-    return placed
+def window(curves: Sequence[Curve]) -> tuple[float, float]:
+    """The part of the scale that is drawn, from a whole point to another."""
+    errors = [(m, 0.0 if e is None else e) for curve in curves for m, e in zip(curve.mean, curve.se, strict=True)]
+    values = [m + s * e for m, e in errors for s in (-1.0, 1.0)]
+    low, high = marks.window(values, 1.0, (float(rules.TRUST_MIN), float(rules.TRUST_MAX)))
+    if high - low < 2.0:
+        low, high = (low - 1.0, high) if low - 1.0 >= rules.TRUST_MIN else (low, high + 1.0)
+    return low, high

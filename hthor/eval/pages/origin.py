@@ -1,0 +1,102 @@
+"""Where one run came from: everything that decides its records, and what held its agents; knows nothing of results."""
+
+from __future__ import annotations
+
+import msgspec
+from msgspec import Struct
+
+from hthor.errors import RunError
+from hthor.eval import command, guarded
+from hthor.eval.pages.gather import Run
+from hthor.eval.peoples import HumansRef
+from hthor.eval.setup import AssetsRef, KindRef, SuiteRef
+from hthor.guest import Isolation
+from hthor.types import RobotSeat
+
+_PLATFORM = "platform.json"
+_LOCKSTEP = "lockstep"
+
+
+class Platform(Struct, frozen=True, kw_only=True):
+    """A machine that played a part of a run: system, processor's architecture and C library."""
+
+    system: str = ""
+    machine: str = ""
+    libc: str = ""
+
+
+class Origin(Struct, frozen=True, kw_only=True):
+    """One run's.
+
+    ``name`` is that of its folder. ``beside`` says that the report found it there by itself, as the control of another.
+    ``isolation`` is None where all agents are built in; ``platforms`` is empty where the run did not note them.
+    ``command`` plays the run again. ``mode`` is lockstep, or realtime where robots' thinking took time of the trials.
+    """
+
+    name: str
+    label: str
+    beside: bool
+    agent: str
+    robots: tuple[RobotSeat, ...]
+    humans: HumansRef
+    suite: SuiteRef
+    kind: KindRef | None
+    seed: int
+    mode: str
+    participants: int
+    trials: int
+    whole: int
+    faulty: int
+    assets: AssetsRef
+    versions: dict[str, str]
+    isolation: Isolation | None
+    platforms: tuple[Platform, ...]
+    command: str
+    run_sha256: str
+    rules_sha256: str
+    code_sha256: str
+    trials_sha256: str
+
+
+def of(run: Run) -> Origin:
+    """Where a run came from.
+
+    Raises:
+        RunError: when what was noted beside its log cannot be read.
+    """
+    plan = run.plan
+    return Origin(
+        name=run.name,
+        label=run.label,
+        beside=run.beside,
+        agent=plan.name,
+        robots=plan.robots,
+        humans=plan.humans,
+        suite=plan.suite,
+        kind=plan.kind,
+        seed=plan.seed,
+        mode=getattr(plan, "mode", _LOCKSTEP),
+        participants=plan.participants,
+        trials=len(run.records),
+        whole=plan.trials,
+        faulty=sum(bool(record.faults) for record in run.records),
+        assets=plan.assets,
+        versions=plan.versions,
+        isolation=guarded.load(run.folder),
+        platforms=_platforms(run),
+        command=command.of(run.folder, plan).replace(f"--out {run.folder}", f"--out {run.name}"),
+        run_sha256=plan.sha256,
+        rules_sha256=plan.rules_sha256,
+        code_sha256=plan.code_sha256,
+        trials_sha256=run.sha256,
+    )
+
+
+def _platforms(run: Run) -> tuple[Platform, ...]:
+    path = run.folder / _PLATFORM
+    if not path.is_file():
+        return ()
+    try:
+        return tuple(dict.fromkeys(msgspec.json.decode(path.read_bytes(), type=list[Platform])))
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise RunError(f"{path}: {error}. Delete the file; the run is then of unknown platforms.") from None

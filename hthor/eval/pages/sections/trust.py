@@ -1,0 +1,48 @@
+"""Trust over the trials of a session."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from hthor import rules
+from hthor.eval.pages import html, words
+from hthor.eval.pages.figures import trust
+from hthor.eval.pages.findings import Findings
+from hthor.eval.pages.numbers import plain, signed
+
+TITLE = "Trust"
+_HEAD = ("robot", "people", "after the first trial", "after the last trial", "slope [points a trial]")
+
+
+def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
+    """Of what the section is made."""
+    if not found.trust:
+        return [html.paragraph("Nobody rated a robot in these runs.")]
+    rows = [
+        [
+            one.arm,
+            str(max(one.people)),
+            _with_error(one.mean[0], one.se[0]),
+            _with_error(one.mean[-1], one.se[-1]),
+            "–" if one.slope is None else f"{signed(one.slope, 3)} ± {plain(one.slope_se, 3)}",
+        ]
+        for one in found.trust
+    ]
+    cut = (
+        ""
+        if trust.window(found.trust) == (rules.TRUST_MIN, rules.TRUST_MAX)
+        else " The axis shows a part of the scale."
+    )
+    return [
+        html.paragraph(words.trust(found.trust)),
+        html.drawn(
+            drawings,
+            "trust",
+            f"Mean rating after each trial of a session; bars and bands are one standard error over people.{cut}",
+        ),
+        html.table(_HEAD, rows, "Trust from 1 to 7: means over people ± standard error."),
+    ]
+
+
+def _with_error(mean: float, error: float | None) -> str:
+    return plain(mean) if error is None else f"{plain(mean)} ± {plain(error)}"
