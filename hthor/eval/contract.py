@@ -6,45 +6,19 @@ what its author would want to know.
 
 from __future__ import annotations
 
-import math
-import statistics
 import time
-from typing import Literal
 
 from msgspec import Struct
 
-from hthor import rules
-from hthor.episode import Fault
 from hthor.errors import AgentError, HthorError
-from hthor.eval import crews, impersonal
+from hthor.eval import crews, points
 from hthor.eval.crews import Character
-from hthor.eval.rehearsal import Notes, Rehearsal
+from hthor.eval.points import Finding
+from hthor.eval.rehearsal import Rehearsal
 from hthor.guest import Guest, Isolation, confine_guests
 
 SCHEMA = "hthor.check/1"
-Status = Literal["ok", "broken", "warning", "skipped"]
 CHECKS = ("loads", "begins", "acts", "deterministic", "keeps nothing", "fast enough", "held")
-_ADVICE = {
-    "raised": "The last lines say where it failed. Mend that, and check again.",
-    "timeout": "A step may take 5 s, and 60 s more in all. Do less in act, or spread the work over several steps.",
-    "died": "Its process ended. Look for os._exit, a crash in a library, or what it printed last.",
-    "memory": "Load less, or load it in smaller parts.",
-    "disk": "Write less, and remove what is done with; only the folder that TMPDIR names can be written.",
-    "wrong_type": "Return hthor.types.Action(motion=..., say=...) from every path through act.",
-    "garbage": "Give the fields of Action values of the types that docs/agents.md lists.",
-    "oversized": "Shorten texts and ids: an action takes 64 KiB at most.",
-    "not_finite": "Look for a division by zero, or a mean of nothing, on the way to that number.",
-}
-_SLOW_LOAD_S, _SLOW_BEGIN_S, _LOUD = 5.0, 1.0, 15_000
-
-
-class Finding(Struct, frozen=True, kw_only=True):
-    """One check: how it ended, in words, and what to do next."""
-
-    check: str
-    status: Status
-    told: str = ""
-    advice: str = ""
 
 
 class Report(Struct, frozen=True, kw_only=True):
@@ -87,20 +61,20 @@ def check(agent: str, *, robot: str = "", isolation: str = "auto") -> Report:
     with Guest(agent) as guest:
         info = guest.load()
         (first,) = rehearsal.play(guest, [rehearsal.a])
-    findings = [_loads(load_s, character), *_plays(first, agent)]
-    figures = {"load_s": load_s, **_figures(first)}
+    findings = [points.loads(load_s, character), *points.plays(first, agent)]
+    figures = {"load_s": load_s, **points.figures(first)}
     if not first.faults:
         with Guest(agent) as guest:
             again, other, last = rehearsal.play(guest, [rehearsal.a, rehearsal.b, rehearsal.a])
         if not other.faults:  # only from the second trial on it has to be imported anew
-            findings[1], figures["begin_s"] = _plays(other, agent)[0], other.begin_s
+            findings[1], figures["begin_s"] = points.plays(other, agent)[0], other.begin_s
         findings += [
-            _same("deterministic", first, again, "the same trial twice", _VARIES),
-            *([_plays(other, agent)[-1]] if other.faults else []),
-            _same("keeps nothing", again, last, "the same trial before and after another one", _LEAKS),
-            _speed(first),
+            points.same("deterministic", first, again, "the same trial twice", points.VARIES),
+            *([points.plays(other, agent)[-1]] if other.faults else []),
+            points.same("keeps nothing", again, last, "the same trial before and after another one", points.LEAKS),
+            points.speed(first),
         ]
-        findings += _warnings((first, other), character)
+        findings += points.warnings((first, other), character)
     held = info.isolation
     words = held.level + (f"; not higher, as {held.reason_not_higher}" if held.reason_not_higher else "")
     findings.append(Finding(check="held", status="ok", told=words))
@@ -128,109 +102,3 @@ def _report(
         isolation=held,
         figures={name: round(value, 3) for name, value in figures.items()},
     )
-
-
-def _loads(seconds: float, character: Character) -> Finding:
-    asked = ", ".join(character.ref.privileges) or "no privileges"
-    told = f"in {seconds:.2f} s; asks for {asked}"
-    if seconds < _SLOW_LOAD_S:
-        return Finding(check="loads", status="ok", told=told)
-    advice = "60 s are allowed. Import less, or later; import libraries at the top of the file, where it is done once."
-    return Finding(check="loads", status="warning", told=told, advice=advice)
-
-
-def _plays(notes: Notes, agent: str) -> list[Finding]:
-    """Whether it began, and acted to the trial's end."""
-    if notes.faults:
-        fault = notes.faults[0]
-        began = bool(notes.actions or notes.thought_s or fault.tick)
-        broken = _broken("acts" if began else "begins", fault, agent, len(notes.actions) + 1)
-        return [Finding(check="begins", status="ok"), broken] if began else [broken]
-    slow = notes.begin_s > _SLOW_BEGIN_S
-    begins = Finding(
-        check="begins",
-        status="warning" if slow else "ok",
-        told=f"in {notes.begin_s:.2f} s",
-        advice="Every trial takes that. Import libraries at the top of the file; persistent = True keeps the process."
-        if slow
-        else "",
-    )
-    return [begins, Finding(check="acts", status="ok", told=f"{len(notes.actions)} actions in a trial, all legal")]
-
-
-def _broken(name: str, fault: Fault, agent: str, step: int) -> Finding:
-    when = f"step {step}, after {fault.tick * rules.TICK_S:.1f} s" if name == "acts" else "in begin"
-    detail = impersonal.words(fault.detail.strip(), [agent])
-    return Finding(
-        check=name, status="broken", told=f"{fault.kind}, {when}\n{detail}", advice=_ADVICE.get(fault.kind, "")
-    )
-
-
-_VARIES = (
-    "Draw chance from random.Random(0) or numpy.random.default_rng(0) made in begin, look at no clock, and let threads "
-    "decide nothing."
-)
-_LEAKS = "Make everything anew in begin: what is kept at the class or the module, or in a file, lasts for other trials."
-
-
-def _same(name: str, one: Notes, other: Notes, what: str, advice: str) -> Finding:
-    """Whether two plays of one trial came out equal, and else where they part."""
-    if one.line == other.line and one.actions == other.actions:
-        return Finding(check=name, status="ok", told=f"{what}: {len(one.actions)} actions and every byte the same")
-    for step, (a, b) in enumerate(zip(one.actions, other.actions, strict=False), 1):
-        if a != b:
-            told = f"{what} parts at step {step} (tick {a[0]}): {a[1]} and {b[1]}"
-            return Finding(check=name, status="broken", told=told, advice=advice)
-    told = f"{what}: {len(one.actions)} actions and {len(other.actions)}"
-    if other.faults:
-        told += f"; the second time it failed: {other.faults[0].kind}"
-    return Finding(check=name, status="broken", told=told, advice=advice)
-
-
-def _figures(notes: Notes) -> dict[str, float]:
-    if not notes.thought_s:
-        return {"begin_s": notes.begin_s}
-    ordered = sorted(notes.thought_s)
-    return {
-        "begin_s": notes.begin_s,
-        "step_ms_median": 1000.0 * statistics.median(ordered),
-        "step_ms_p99": 1000.0 * ordered[math.ceil(0.99 * len(ordered)) - 1],
-        "share": sum(ordered) / notes.wall_s,
-        "memory_mb": notes.memory_mb,
-    }
-
-
-def _speed(notes: Notes) -> Finding:
-    found = _figures(notes)
-    told = (
-        f"median {found['step_ms_median']:.2f} ms a step, 99 % within {found['step_ms_p99']:.2f} ms, "
-        f"{100.0 * found['share']:.0f} % of the trial's time; {found['memory_mb']:.0f} MB"
-    )
-    ended_s = notes.actions[-1][0] * rules.TICK_S if notes.actions else 0.0
-    if sum(notes.thought_s) <= max(ended_s, rules.TICK_S):
-        return Finding(check="fast enough", status="ok", told=told)
-    advice = "It thinks longer than the trial lasts: 'hthor eval --realtime' would charge that."
-    return Finding(check="fast enough", status="warning", told=told, advice=advice)
-
-
-def _warnings(trials: tuple[Notes, ...], character: Character) -> list[Finding]:
-    """What keeps to the contract, but is hardly meant."""
-    found: list[tuple[str, str]] = []
-    if any(len(one.output) > _LOUD for one in trials):
-        found.append(("it prints much", "Only the last 16 KiB are kept, and printing costs time."))
-    if not any(one.motions for one in trials):
-        found.append(("it never moved", "Return Action(motion=Move(...)) or Rotate(...) when observation.idle."))
-    refused, motions = sum(one.refused for one in trials), sum(one.motions for one in trials)
-    if motions and refused > motions / 2:
-        found.append(
-            (f"{refused} of {motions} motions failed", "observation.outcome says why: blocked, out of reach ...")
-        )
-    if not any(one.sent for one in trials):
-        found.append(
-            ("it never sent a message", "Without Send(text, object, position) the person learns nothing from it.")
-        )
-    unseen, claims = sum(one.unseen for one in trials), sum(one.claims for one in trials)
-    if unseen and "object_poses" not in character.ref.privileges:
-        advice = "Claims are scored, and false ones cost trust: say what was detected."
-        found.append((f"{unseen} of {claims} messages were about what it had not detected", advice))
-    return [Finding(check="note", status="warning", told=told, advice=advice) for told, advice in found]
