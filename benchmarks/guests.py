@@ -5,6 +5,7 @@ Wall time, since two processes take turns.
 
 from __future__ import annotations
 
+import os
 import statistics
 import tempfile
 import time
@@ -19,7 +20,7 @@ from benchmarks.table import Row
 from hthor.episode import play
 from hthor.eval import cast, crews
 from hthor.eval.session import Session
-from hthor.guest import Guest
+from hthor.guest import Guest, keeper
 from hthor.types import BodySpec, Briefing, Observation, Pose
 
 STATE_BAR_US, PICTURE_BAR_US, SHARE_BAR = 60.0, 100.0, 15.0
@@ -85,7 +86,7 @@ def rows(suite: str, steps: int, sessions: int) -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as folder:
         home = Path(folder)
         yield from _steps(home, steps)
-        yield _trials(home, suite, sessions)
+        yield from _trials(home, suite, sessions)
 
 
 def _steps(home: Path, steps: int) -> Iterator[Row]:
@@ -130,39 +131,56 @@ def _timed(mind: Guest, steps: int) -> list[float]:
     return took[steps // 10 :]
 
 
-def _trials(home: Path, suite: str, count: int) -> Row:
+def _trials(home: Path, suite: str, count: int) -> Iterator[Row]:
     """The frontier robot as a file of somebody's, beside the built-in one: the same trials, each of them in turn."""
     path = home / "frontier_as_guest.py"
     path.write_text(_SAME)
     guest = crews.introduce(str(path))
     inside, outside = cast.Stage(), cast.Stage(cast.Sources(minds={"robot": guest.path}))
     ours, theirs = hands(suite, "frontier"), hands(suite, crews.form(["scout"], [guest]))
-    ratios: list[float] = []
-    total = [0.0, 0.0]
+    took: list[tuple[Spent, Spent]] = []
     for number in range(count + 1):  # the first session compiles
         pair = list(_together((inside, ours[number]), (outside, theirs[number])))
-        if number:
-            ratios += [after / before for before, after in pair]
-            total = [total[0] + sum(one for one, _ in pair), total[1] + sum(other for _, other in pair)]
-    more = (total[1] / total[0] - 1.0) * 100.0
-    each = 1000.0 / len(ratios)
-    remark = f"{len(ratios)} trials: {total[0] * each:.0f} ms inside, {total[1] * each:.0f} ms as a guest; median "
-    remark += f"{(statistics.median(ratios) - 1.0) * 100.0:.0f} %"
+        took += pair if number else []
     what = "a trial of the frontier robot as a guest: more than inside"
-    return Row(part="guests", what=what, value=more, unit="%", bar=SHARE_BAR, remark=remark)
+    for kind, name, bar in ((0, "wall", SHARE_BAR), (1, "CPU of all processes", None)):
+        before = 1000.0 * sum(one[kind] for one, _ in took) / len(took)
+        after = 1000.0 * sum(other[kind] for _, other in took) / len(took)
+        remark = f"{name}; {len(took)} trials: {before:.0f} ms inside, {after:.0f} ms as a guest"
+        yield Row(part="guests", what=what, value=(after / before - 1.0) * 100.0, unit="%", bar=bar, remark=remark)
 
 
-def _together(one: tuple[cast.Stage, Session], other: tuple[cast.Stage, Session]) -> Iterator[tuple[float, float]]:
-    """Wall times [s] of two sessions' trials, each trial of one followed by the same of the other."""
+Spent = tuple[float, float]
+"""Wall time and CPU time [s]."""
+
+
+def _together(one: tuple[cast.Stage, Session], other: tuple[cast.Stage, Session]) -> Iterator[tuple[Spent, Spent]]:
+    """What two sessions' trials take, each trial of one followed by the same of the other."""
     with one[0].enter(one[1]) as mine, other[0].enter(other[1]) as yours:
         for first, second in zip(one[1].trials, other[1].trials, strict=True):
-            took = []
+            took: list[Spent] = []
             ticks = set()
             for stage, company, trial in ((one[0], mine, first), (other[0], yours, second)):
                 world, robots = stage.world(trial), company.robots()
-                begin = time.perf_counter()
+                pid = getattr(robots["robot"], "pid", 0)
+                begin, busy = time.perf_counter(), time.process_time() + _cpu_s(pid)
                 ticks.add(play(trial, world, company.human, robots).ticks)
-                took.append(time.perf_counter() - begin)
+                company.rest()
+                wall = time.perf_counter() - begin
+                time.sleep(0.05 if pid else 0.0)  # so that its end is counted too
+                took.append((wall, time.process_time() + _cpu_s(pid) - busy))
             if len(ticks) > 1:
                 raise AssertionError(f"the guest did not play the same trial: {sorted(ticks)} ticks")
             yield took[0], took[1]
+
+
+def _cpu_s(pid: int) -> float:
+    """CPU time [s] of a process, of all that it has started, and of those of them that have ended."""
+    if not pid:
+        return 0.0
+    families, line, ticks = keeper._families(), [pid], 0
+    while line:
+        one = line.pop()
+        line += families.get(one, [])
+        ticks += sum(int(word) for word in Path(f"/proc/{one}/stat").read_text().rpartition(")")[2].split()[11:15])
+    return ticks / os.sysconf("SC_CLK_TCK")

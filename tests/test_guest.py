@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -12,7 +13,7 @@ import numpy as np
 import pytest
 
 from hthor.errors import AgentError
-from hthor.guest import Guest, GuestFault, load_info
+from hthor.guest import Guest, GuestFault, load_info, parking
 from hthor.types import (
     Action,
     BodySpec,
@@ -354,3 +355,38 @@ def test_a_missing_file_and_a_missing_class_are_refused(write: Write, tmp_path: 
 def test_an_endless_import_is_refused(write: Write) -> None:
     with pytest.raises(AgentError, match="timeout"):
         load_info(write("while True: pass\n"), start_s=0.5)
+
+
+@pytest.fixture
+def parked() -> Iterator[None]:
+    parking.keep()
+    yield
+    parking.clear()
+
+
+@pytest.mark.usefixtures("parked")
+def test_a_guest_waits_for_whoever_wants_the_same(write: Write) -> None:
+    path = write(COUNTER)
+
+    def play(**options: Any) -> tuple[int, float]:
+        with Guest(path, **options) as guest:
+            guest.begin(BRIEFING)
+            for _ in range(2):
+                seconds = guest.act(look()).motion.seconds  # type: ignore[union-attr]
+            return guest.pid, seconds
+
+    first, second = play(), play()
+    assert first == second, "the same keeper, and a trial that knows nothing of the one before"
+    assert play(memory_mb=1000)[0] != first[0], "other terms"
+    write(COUNTER + "# changed\n")
+    assert play()[0] != first[0], "another file"
+    assert len(parking.pids()) == 3
+    with Guest(path) as guest:
+        guest.begin(BRIEFING)
+        waited = guest.pid
+        os.kill(waited, 9)
+        with pytest.raises(GuestFault, match="died"):
+            guest.act(look())
+    assert not living(waited)
+    parking.clear()
+    assert not living(first[0])

@@ -212,6 +212,9 @@ class Company:
 
 def player(sources: Sources | None = None) -> Callable[[Session], Iterator[Record]]:
     """What a worker does with each session: play its trials in order. Called in the worker; imports what is heavy."""
+    from hthor.guest import parking
+
+    parking.keep()
     stage = Stage(sources)
 
     def perform(session: Session) -> Iterator[Record]:

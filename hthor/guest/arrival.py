@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hthor.errors import KILLED, AgentError, AgentKilled
-from hthor.guest import choosing, info, served, wire
+from hthor.guest import choosing, info, parking, served, wire
 from hthor.guest.confinement import Isolation
 from hthor.guest.faults import GuestFault
 from hthor.guest.info import GuestInfo
@@ -35,6 +35,10 @@ class Arrival:
         """
         talk, agent = self._talk, self._agent
         digest = agent.sha256
+        if waiting := parking.take(self._key(digest)):
+            talk.open(waiting.process)
+            talk.loaded, self.ahead = True, waiting.ahead
+            return waiting.info
         held = self._connected() if agent.url else self._started()
         try:
             ready = talk.receive(self._start_s)[0]
@@ -55,6 +59,21 @@ class Arrival:
             return self.come()
         talk.loaded, self.ahead = True, ready.ahead
         return found
+
+    def leave(self, found: GuestInfo) -> bool:
+        """Let the guest, which has no trial, wait for whoever wants the same; false when it is to end."""
+        line = self._talk.line
+        if not isinstance(line, Process):
+            return False
+        waiting = parking.Parked(process=line, info=found, ahead=self.ahead)
+        if left := parking.put(self._key(found.sha256), waiting):
+            self._talk.release()
+        return left
+
+    def _key(self, digest: str) -> parking.Key:
+        """What two guests must share to be exchangeable."""
+        limits = self._isolation, self._memory_mb, self._disk_mb
+        return self._agent.text, digest, *limits, *choosing.terms()
 
     def _connected(self) -> Isolation:
         self._talk.open(served.connect(self._agent.url, self._start_s))

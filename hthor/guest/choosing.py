@@ -40,6 +40,11 @@ def confine_guests(isolation: str = AUTO, hidden: tuple[str, ...] = ()) -> None:
     _Terms.isolation, _Terms.hidden = known(isolation), hidden
 
 
+def terms() -> tuple[object, ...]:
+    """What is laid down for the guests of this process."""
+    return _Terms.isolation, _Terms.hidden
+
+
 def start(
     agent: Reference,
     wanted: str | None,

@@ -127,9 +127,12 @@ class Guest:
             self._ending = self._info is not None and not self._info.persistent
 
     def close(self) -> None:
-        """End the process; a later ``begin`` starts another."""
-        self._turns, self._ending = None, False
-        self._talk.close()
+        """End the process, unless it is to wait for another user; a later ``begin`` starts another."""
+        self.finish()
+        if self._ending:
+            self._await_end()
+        if self._info is None or not self._arrival.leave(self._info):
+            self._talk.close()
 
     @property
     def pid(self) -> int:

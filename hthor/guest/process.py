@@ -128,6 +128,11 @@ class Process:
                 time.sleep(0.001)  # the log was closed; do not spin on it
 
     @property
+    def lives(self) -> bool:
+        """Whether it still runs."""
+        return self._process.poll() is None
+
+    @property
     def log(self) -> str:
         """The end of what was printed, 16 KiB at most."""
         self._drain()

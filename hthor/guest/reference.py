@@ -141,7 +141,7 @@ def _served(text: str) -> Reference:
     except ValueError:
         port = None
     if parts.scheme not in ("ws", "wss") or not parts.hostname or not port:
-        raise UnknownName("agent", text, (), _guess(text) + HINT)
+        raise UnknownName("agent", text, plugins.names("agent"), _guess(text) + HINT)
     if parts.username or parts.password or parts.query or parts.fragment:
         raise AgentError(f"agent '{text}': an address is ws://HOST:PORT[/PATH], without user, password, ? or #.")
     return Reference(form="served", text=text, source=text, name=f"{parts.hostname}-{port}", url=text)

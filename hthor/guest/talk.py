@@ -88,6 +88,11 @@ class Talk:
         """The end of what the guest printed."""
         return self._log if self.line is None else self.line.log
 
+    def release(self) -> None:
+        """Go on without the guest, which somebody else has now."""
+        if self.line is not None:
+            self._log, self.line = self.line.log, None
+
     def close(self) -> None:
         """End the guest."""
         line, self.line = self.line, None
