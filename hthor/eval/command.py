@@ -22,6 +22,7 @@ def of(folder: Path, plan: Setup) -> str:
     parts += [] if plan.assets.name == PROCEDURAL else [f"--assets {plan.assets.name}"]
     detector = next((robot.detector for robot in plan.seats), OWN)
     parts += [] if detector == OWN else [f"--detector {detector}"]
+    parts += ["--realtime"] if getattr(plan, "realtime", False) else []
     parts.append(f"--seed {plan.seed} --participants {plan.participants}")
     parts.append(f"--shard {plan.shard.words} --out {whole_folder(folder)}" if plan.shard else f"--out {folder}")
     return " ".join(parts)
