@@ -188,14 +188,21 @@ def test_what_held_the_agents_and_where_they_were_played_is_told(folders: list[P
     mine = shutil.copytree(folders[1], tmp_path / "mine")
     held = Isolation(level="L2", landlock_abi=7, seccomp=True, memory="4096 MB", reason_not_higher="no bubblewrap")
     jsonio.write(mine / "isolation.json", jsonio.pretty(held))
-    there = {"system": "Linux", "machine": "x86_64", "libc": "glibc-2.36", "vector_units": ["AVX2"], "versions": {}}
+    there = {
+        "system": "Linux",
+        "machine": "x86_64",
+        "cpu": "znver3",
+        "simd": "AVX2",
+        "libc": "glibc 2.36",
+        "numpy": "2",
+    }
     jsonio.write(mine / "platform.json", msgspec.json.encode([there]))
     found, text = _told(mine)
     assert found.origins[0].command == (
         "hthor eval --agent helper.py --robot scout --humans proxy --suite fake --seed 0 --participants 2 --out mine"
     )
     assert "L2: Landlock (ABI 7), seccomp, memory 4096 MB. Not higher: no bubblewrap" in text
-    assert "Linux, x86_64, glibc-2.36" in text
+    assert "Linux, x86_64, znver3, AVX2, glibc 2.36" in text
     jsonio.write(mine / "platform.json", b"{")
     with pytest.raises(RunError, match=r"mine/platform\.json"):
         _told(mine)

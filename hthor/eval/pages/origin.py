@@ -18,10 +18,12 @@ _LOCKSTEP = "lockstep"
 
 
 class Platform(Struct, frozen=True, kw_only=True):
-    """A machine that played a part of a run: system, processor's architecture and C library."""
+    """A machine that played a part of a run: system, processor's architecture and make, vector units, C library."""
 
     system: str = ""
     machine: str = ""
+    cpu: str = ""
+    simd: str = ""
     libc: str = ""
 
 

@@ -58,7 +58,7 @@ def isolation(held: Isolation | None) -> str:
 
 
 def _platforms(held: Sequence[Platform]) -> str:
-    words = (", ".join(part for part in (one.system, one.machine, one.libc) if part) for one in held)
+    words = (", ".join(part for part in (one.system, one.machine, one.cpu, one.simd, one.libc) if part) for one in held)
     return "; ".join(dict.fromkeys(words)) or "not noted"
 
 
