@@ -8,6 +8,6 @@ hthor leaderboard add "$folder" --board "$board"
 PYTHONPATH="$ROOT" "$PYTHON" "$ROOT/scripts/leaderboard/stale.py" "$board"
 for entry in "$board"/entries/*-standard-*.json; do
   case "$(basename "$entry")" in silent-* | frontier-* | oracle-*) ;; *) continue ;; esac
-  hthor leaderboard verify "$entry" --draw "$(git -C "$ROOT" rev-parse HEAD)" --by baselines.sh --write --board "$board"
+  hthor leaderboard verify "$entry" --draw "$(git -C "$ROOT" rev-parse HEAD)" --sample "${SAMPLE:-200}" --by baselines.sh --write --board "$board"
 done
 hthor leaderboard build --board "$board"

@@ -232,6 +232,10 @@ def test_a_forger_who_makes_all_follow_passes_the_laws_but_not_an_old_verificati
     )  # fmt: skip
     files.write(path, msgspec.structs.replace(true, verification=seal))
     assert checks.problems(board) == []
+    for field, value in (("passed", False), ("drawn", 2), ("equal", 0)):
+        wrong = msgspec.structs.replace(seal, **{field: value})
+        files.write(path, msgspec.structs.replace(true, verification=wrong))
+        assert {one.field.partition(".")[0] for one in checks.problems(board)} == {"verification"}
     lie = forging.forged(true, 0.2, control)
     files.write(path, lie)
     assert checks.problems(board) == []  # all of it follows from its trials, which never were

@@ -61,6 +61,7 @@ def _read(path: Path, found: list[Problem]) -> Iterator[_Held]:
 def _laws(one: _Held, all_: Sequence[_Held], sizes: dict[str, int], submissions: Path | None) -> invariants.Found:
     entry, held = one.entry, one.outcomes
     yield from invariants.hashes(entry, held)
+    yield from invariants.verification(entry)
     yield from invariants.sizes(entry, held)
     yield from _suite(entry, sizes)
     yield from invariants.settings(entry)

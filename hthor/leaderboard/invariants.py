@@ -14,7 +14,7 @@ import msgspec
 from hthor.eval.session import people_for
 from hthor.eval.stats import Estimate
 from hthor.leaderboard import overrides, worth
-from hthor.leaderboard.entry import Entry
+from hthor.leaderboard.entry import REALTIME, Entry
 from hthor.leaderboard.outcomes import Outcomes
 
 Found = Iterator[tuple[str, str]]
@@ -33,6 +33,22 @@ def hashes(entry: Entry, held: Outcomes) -> Found:
     found = entry.verification
     if found is not None and found.entry != entry.digest:
         yield "verification.entry", f"is of {found.entry[:10]}, but this entry is {entry.digest[:10]}: verify it again"
+
+
+def verification(entry: Entry) -> Found:
+    """What a verifier wrote holds together."""
+    found = entry.verification
+    if found is None:
+        return
+    if not found.same_bytes <= found.equal <= found.compared <= entry.trials.count:
+        told = f"{found.same_bytes} the same, {found.equal} equal, {found.compared} compared"
+        yield "verification", f"cannot be of {entry.trials.count} trials: {told}"
+    if not 1 <= found.drawn <= found.compared:
+        yield "verification.drawn", f"is {found.drawn}, but {found.compared} were compared"
+    if found.tier == "V1" and found.passed != (found.same_bytes == found.compared):
+        yield "verification.passed", f"is {found.passed} with {found.same_bytes} of {found.compared} records the same"
+    if found.tier != "V3" and (not entry.agent.deterministic or entry.mode == REALTIME):
+        yield "verification.tier", f"is {found.tier}, but the agent does not repeat itself: V3 is all that there can be"
 
 
 def sizes(entry: Entry, held: Outcomes) -> Found:
