@@ -32,6 +32,7 @@ def designs() -> dict[str, tuple[np.ndarray, np.ndarray]]:
         "600 tasks once, 60 people": (np.arange(600), np.arange(600) // 10),
         "2000 tasks once, 200 people": (np.arange(2000), np.arange(2000) // 10),
         "30 tasks, 18 people, ten each": dealt(30, 18),
+        "60 tasks, 60 people, ten each": dealt(60, 60),
     }
 
 
@@ -89,8 +90,7 @@ def main() -> None:
                 one, other = outcomes(tasks, people, rate, task_sd, person_sd, repeats)
                 found = spread.two_way(one, tasks, people)
                 low, high = stats.interval(found, len(tasks), stats.SHARE)
-                gap = contrast.steadied(spread.two_way(one - other, tasks, people), len(tasks))
-                least, most = stats.interval(gap, len(tasks))
+                least, most = contrast.ends(contrast.spread_of(one - other, tasks, people, share=True), share=True)
                 held = 100.0 * np.mean((low <= rate) & (rate <= high))
                 equal = 100.0 * np.mean((least <= 0.0) & (most >= 0.0))
                 old = 100.0 * pigeonhole(one[: wanted.bootstrap], tasks, people, rate) if wanted.bootstrap else math.nan

@@ -63,10 +63,10 @@ def test_equal_agents_are_tied_and_a_far_better_one_is_first():
 
 def test_ranks_are_those_that_compare_would_give():
     played = _played([(0.4, 1), (0.6, 1), (0.8, 1), (0.78, 2)])
-    versus = ranking.against(played, TASKS, PEOPLE)
+    versus = [contrast.spread_of(played - one, TASKS, PEOPLE, share=True) for one in played]
     pairs = [(one, other) for one in range(4) for other in range(one + 1, 4)]
     found = [contrast.between(played[one], played[other], TASKS, PEOPLE, share=True) for one, other in pairs]
-    assert [versus.p[pair] for pair in pairs] == contrast.holm([gap.p for gap in found])
+    assert [ranking.adjusted(versus)[pair] for pair in pairs] == contrast.holm([gap.p for gap in found])
 
 
 def test_the_same_name_gives_the_same_samples_and_rows_share_them():

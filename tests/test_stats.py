@@ -111,9 +111,8 @@ def test_intervals_hold_the_truth_as_often_as_they_say(design: str):
 def test_two_equal_robots_are_seldom_told_apart(design: str):
     tasks, people = DESIGNS[design]
     one, other = _worlds(design, 0.75, 1000), _worlds(design, 0.75, 1000, seed=8)
-    found = contrast.steadied(spread.two_way(one - other, tasks, people), len(tasks))
-    low, high = stats.interval(found, len(tasks))
-    assert 0.93 <= np.mean((low <= 0.0) & (high >= 0.0)) <= 0.98
+    low, high = contrast.ends(contrast.spread_of(one - other, tasks, people, share=True), share=True)
+    assert 0.93 <= np.mean((low <= 0.0) & (high >= 0.0)) <= 0.97
 
 
 def test_taking_trials_for_independent_would_not_be_honest():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import msgspec
 import numpy as np
 from msgspec import Struct
 
@@ -76,52 +77,64 @@ def of(pairs: Sequence[Pair], metric: str) -> Difference | None:
 
 
 def between(first: np.ndarray, second: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, share: bool) -> Difference:
-    """The difference of two rows of values, (N,) each, of the same trials.
-
-    Args:
-        share: whether the values are shares. Two trials are then added, one for either robot, which keeps the interval
-            honest where the robots differ in few trials or none (Agresti and Min 2005).
-    """
+    """The difference of two rows of values, (N,) each, of the same trials; `spread_of` says what ``share`` does."""
     count = len(first)
     found = spread_of((second - first)[None], tasks, people, share=share)
-    raw = float((second - first).mean())
-    centre, variance, freedom = (float(part[0]) for part in (found.mean, found.variance, found.freedom))
-    known = math.isfinite(variance)
-    low, high = (float(end[0]) for end in stats.interval(found, count))
-    if share:
-        low, high = max(low, -1.0), min(high, 1.0)
+    raw, freedom = float(found.mean[0]), float(found.freedom[0])
+    known = math.isfinite(float(found.variance[0]))
+    low, high = (float(end[0]) for end in ends(found, share=share))
     needed = float(stats.detectable(found, count)[0])
     return Difference(
         n=count,
         first=_rounded(float(first.mean())),
         second=_rounded(float(second.mean())),
         difference=_rounded(raw),
-        ci95=(_rounded(min(low, raw)), _rounded(max(high, raw))) if known else None,
-        p=p_value(centre, variance, freedom) if known else None,
+        ci95=(_rounded(low), _rounded(high)) if known else None,
+        p=p_value(raw, float(null(found, share=share)[0]), freedom) if known else None,
         mde80=_rounded(needed) if known else None,
         correlation=_correlation(first, second),
         gain=_gain(first, second),
-        more_tasks=_more(raw, variance * count, count) if known else None,
+        more_tasks=_more(raw, float(found.variance[0]) * count, count) if known else None,
     )
 
 
 def spread_of(gaps: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, share: bool) -> Spread:
-    """The spread of the mean of differences, (..., N), as all comparisons take it."""
-    found = spread.two_way(gaps, tasks, people)
-    return steadied(found, gaps.shape[-1]) if share else found
+    """The spread of the mean of differences, (..., N), as all comparisons take it.
 
-
-def steadied(found: Spread, count: int) -> Spread:
-    """The spread of a difference of shares with one trial more in which only the one did well, and one for the other.
-
-    Without it, two robots that never differed in sixty trials would be said to be equal beyond doubt.
+    Args:
+        share: whether they are differences of shares. Their mean's variance is then never below that of one trial in
+            which one robot failed wholly and the other did not at all: two robots that never differed in sixty trials
+            are not equal beyond doubt.
     """
-    scale = count / (count + 2.0)
-    return Spread(
-        mean=found.mean * scale,
-        variance=found.variance * scale**2 + 1.0 / (count + 2.0) ** 2,
-        freedom=found.freedom,
-    )
+    found, count = spread.two_way(gaps, tasks, people, differences=True), gaps.shape[-1]
+    if not share:
+        return found
+    variance, single = np.maximum(found.variance, 1.0 / count**2), np.maximum(found.single, 1.0 / count)
+    return msgspec.structs.replace(found, variance=variance, single=single)
+
+
+def null(found: Spread, *, share: bool) -> np.ndarray:
+    """The variance that a mean difference would have if there were none.
+
+    For shares it counts the squares about zero instead of about the mean, so that a few trials that all speak for one
+    robot do not look surer than they are (a score test; McNemar's, where trials are independent).
+    """
+    return found.variance * (1.0 + found.mean**2 / found.single) if share else found.variance
+
+
+def ends(found: Spread, *, share: bool, level: float = (1.0 + stats.LEVEL) / 2.0) -> tuple[np.ndarray, np.ndarray]:
+    """The 95 % interval: every difference from which the one that was found is not told apart by `null`'s variance.
+
+    Args:
+        level: of the quantile, one-sided.
+    """
+    quantile = stats.student(found.freedom, level)
+    if not share:
+        half = quantile * np.sqrt(found.variance)
+        return found.mean - half, found.mean + half
+    left = 1.0 - quantile**2 * found.variance / found.single
+    half = np.where(left > 0.0, quantile * np.sqrt(found.variance / np.where(left > 0.0, left, 1.0)), 2.0)
+    return np.maximum(found.mean - half, -1.0), np.minimum(found.mean + half, 1.0)
 
 
 def p_value(centre: float, variance: float, freedom: float) -> float:

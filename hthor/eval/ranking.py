@@ -6,12 +6,15 @@ better, as `hthor compare` finds it: paired, over tasks and people, adjusted by 
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from msgspec import Struct
 
 from hthor.eval import contrast, resample, stats
+from hthor.eval.spread import Spread
 
 STREAM = "ranking"
 """The name of the bootstrap's chance stream."""
@@ -32,18 +35,6 @@ class Standing(Struct, frozen=True, kw_only=True):
     ties: tuple[int, ...]
 
 
-class Versus(Struct, frozen=True, kw_only=True):
-    """Every agent (row) less every other (column), in shares: (A, A) each, as `hthor.eval.contrast` has them.
-
-    ``p`` is Holm's over all pairs.
-    """
-
-    centre: np.ndarray
-    variance: np.ndarray
-    freedom: np.ndarray
-    p: np.ndarray
-
-
 def standings(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> tuple[Standing, ...]:
     """The place of each agent.
 
@@ -57,9 +48,9 @@ def standings(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> tu
         outcomes: (A, N), shares from 0 to 1, such as successes. tasks, people: (N,) indices from 0.
     """
     count = len(outcomes)
-    versus = against(outcomes, tasks, people)
-    better = (versus.p < 1.0 - stats.LEVEL) & (versus.centre < 0.0)  # the column is better than the row
-    told = better | better.T
+    versus = [contrast.spread_of(outcomes - one, tasks, people, share=True) for one in outcomes]
+    better = (adjusted(versus) < 1.0 - stats.LEVEL) & (np.array([found.mean for found in versus]) > 0.0)
+    told = better | better.T  # in a row, an agent; in its columns, those that are better than it
     plain = 1 + better.sum(axis=1)
     totals = np.rint(outcomes * 1e6).sum(axis=1)  # whole numbers: equal means are equal
     low, high = _excluded(versus, outcomes, tasks, people)
@@ -72,24 +63,26 @@ def standings(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> tu
     return tuple(found)
 
 
-def against(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> Versus:
-    """Each agent against each other."""
-    count = len(outcomes)
-    centre, variance, freedom, adjusted = np.zeros((count, count)), *(np.ones((count, count)) for _ in range(3))
-    p: list[float] = []
-    for one in range(count - 1):
-        found = contrast.spread_of(outcomes[one + 1 :] - outcomes[one], tasks, people, share=True)
-        centre[one + 1 :, one], centre[one, one + 1 :] = found.mean, -found.mean
-        for held, part in ((variance, found.variance), (freedom, found.freedom)):
-            held[one + 1 :, one] = held[one, one + 1 :] = part
-        rows = zip(found.mean.tolist(), found.variance.tolist(), found.freedom.tolist(), strict=True)
-        p += [contrast.p_value(*row) for row in rows]
-    adjusted[np.triu_indices(count, 1)] = contrast.holm(p)  # in the order in which they were found
-    return Versus(centre=centre, variance=variance, freedom=freedom, p=np.minimum(adjusted, adjusted.T))
+def adjusted(versus: Sequence[Spread]) -> np.ndarray:
+    """Holm's p of every two agents' difference, (A, A), for the spreads of all less each."""
+    pairs = list(itertools.combinations(range(len(versus)), 2))
+    variances = [contrast.null(found, share=True) for found in versus]
+    p = contrast.holm(
+        [
+            contrast.p_value(
+                float(versus[one].mean[other]), float(variances[one][other]), float(versus[one].freedom[other])
+            )
+            for one, other in pairs
+        ]
+    )
+    held = np.ones((len(versus), len(versus)))
+    for (one, other), value in zip(pairs, p, strict=True):
+        held[one, other] = held[other, one] = value
+    return held
 
 
 def _excluded(
-    versus: Versus, outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray
+    versus: Sequence[Spread], outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """For each agent, how many are better than it, and how many worse, all of which hold together."""
     count = len(outcomes)
@@ -103,8 +96,8 @@ def _excluded(
         largest = (np.abs(gaps[moving]) / sd[moving, None]).max(axis=0) if moving.any() else np.zeros(1)
         far = max(float(np.quantile(largest, stats.LEVEL)), stats.NORMAL)
         level = 1.0 - math.erfc(far / math.sqrt(2.0)) / 2.0
-        reach = stats.student(versus.freedom[one], level) * np.sqrt(versus.variance[one])
+        least, most = contrast.ends(versus[one], share=True, level=level)
         others = np.arange(count) != one
-        better[one] = int((others & (versus.centre[one] + reach < 0.0)).sum())
-        worse[one] = int((others & (versus.centre[one] - reach > 0.0)).sum())
+        better[one] = int((others & (least > 0.0)).sum())
+        worse[one] = int((others & (most < 0.0)).sum())
     return better, worse

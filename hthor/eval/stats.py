@@ -63,8 +63,8 @@ def estimate(values: Sequence[float], tasks: Sequence[str], people: Sequence[int
 
 def interval(found: spread.Spread, count: int, within: Range = ANY) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper ends of the 95 % intervals of means over ``count`` trials."""
-    quantile = student(found.freedom, (1.0 + LEVEL) / 2.0)
     low, high = within
+    quantile = student(_freedom(found, within), (1.0 + LEVEL) / 2.0)
     if not math.isfinite(high - low):
         half = quantile * np.sqrt(found.variance)
         return np.maximum(found.mean - half, low), np.minimum(found.mean + half, high)
@@ -84,9 +84,24 @@ def detectable(found: spread.Spread, count: int, within: Range = ANY) -> np.ndar
         inner = np.clip((found.mean - low) / (high - low), 1.0 / (count + 2), (count + 1) / (count + 2))
         edge = inner * (1.0 - inner) * (high - low) ** 2 * _inverse_worth(found, count, within)
         variance = np.where(np.isfinite(variance) & (variance > 0.0), variance, edge)
-    factor = student(found.freedom, (1.0 + LEVEL) / 2.0) + student(found.freedom, POWER)
+    freedom = _freedom(found, within)
+    factor = student(freedom, (1.0 + LEVEL) / 2.0) + student(freedom, POWER)
     needed: np.ndarray = factor * np.sqrt(variance)
     return needed
+
+
+def _freedom(found: spread.Spread, within: Range) -> np.ndarray:
+    """Degrees of freedom. Near a bound, where few trials deviate, what these few trials' tasks and people tell counts.
+
+    In the middle between the bounds, unevenness is mostly chance.
+    """
+    low, high = within
+    if not math.isfinite(high - low):
+        return found.freedom
+    skew = np.clip(2.0 * (found.mean - low) / (high - low) - 1.0, -1.0, 1.0) ** 2
+    uneven = np.where(skew > 0.0, found.uneven / np.where(skew > 0.0, skew, 1.0), np.inf)
+    least: np.ndarray = np.maximum(np.minimum(found.freedom, uneven), 1.0)
+    return least
 
 
 def _inverse_worth(found: spread.Spread, count: int, within: Range) -> np.ndarray:
