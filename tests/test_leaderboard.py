@@ -33,6 +33,7 @@ from hthor.leaderboard import (
     packing,
     page,
     publish,
+    rescore,
     submission,
     worth,
 )
@@ -241,6 +242,17 @@ def test_a_forger_who_makes_all_follow_passes_the_laws_but_not_an_old_verificati
     assert checks.problems(board) == []  # all of it follows from its trials, which never were
     files.write(path, msgspec.structs.replace(lie, verification=seal))
     assert [one.field for one in checks.problems(board)] == ["verification.entry"]
+
+
+def test_numbers_of_older_statistics_are_worked_out_anew(board: Path, whole: Path):
+    for path in files.entry_paths(board):
+        entry = files.read(path)
+        sr = msgspec.structs.replace(entry.metrics.sr, ci95=(0.0, 1.0))
+        files.write(path, msgspec.structs.replace(entry, metrics=msgspec.structs.replace(entry.metrics, sr=sr)))
+    assert checks.problems(board) != []
+    assert rescore.rescore(board) == files.entry_paths(board)
+    assert _files(board) == _files(whole)
+    assert rescore.rescore(board) == []
 
 
 @pytest.mark.parametrize("tier", ["V1", "V2"])

@@ -104,6 +104,22 @@ def build(
         sys.stdout.write(f"{path}\n")
 
 
+@app.command("rescore")
+def rescore(board: Board = BOARD, json: Json = False) -> None:
+    """Work out entries' numbers anew from their trials, where hthor's statistics have changed; nothing is played."""
+    from hthor.leaderboard import publish
+    from hthor.leaderboard import rescore as rescoring
+
+    changed = rescoring.rescore(board)
+    publish.build(board)
+    if json:
+        screen.put_json({"entries": [str(path) for path in changed]})
+        return
+    for path in changed:
+        sys.stdout.write(f"{path}\n")
+    sys.stderr.write(f"{len(changed)} of {len(list(board.glob('entries/*.json')))} entries came out otherwise\n")
+
+
 @app.command("verify")
 def verify(
     entry: Annotated[Path, typer.Argument(metavar="ENTRY", help="An entry's file.")],

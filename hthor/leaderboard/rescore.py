@@ -1,0 +1,46 @@
+"""Entries' numbers out of their trials once more, for when the statistics have changed; plays and judges nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from hthor import jsonio
+from hthor.leaderboard import files, outcomes, worth
+from hthor.leaderboard.entry import Entry
+
+
+def rescore(board: Path) -> list[Path]:
+    """Write every entry anew whose numbers come out otherwise; which ones. What its trials were stays as it is.
+
+    Raises:
+        BoardError: when an entry cannot be read.
+        Unreadable: when a column of its trials cannot.
+    """
+    held = [(path, files.read(path)) for path in files.entry_paths(board)]
+    changed = []
+    for path, entry in held:
+        named = entry.uplift.control if entry.uplift else ""
+        control = next((other for _, other in held if other.alone and other.hashes.run == named), None)
+        fresh = _fresh(entry, control)
+        if jsonio.pretty(fresh) != path.read_bytes():
+            files.write(path, fresh)
+            changed.append(path)
+    return changed
+
+
+def _fresh(entry: Entry, control: Entry | None) -> Entry:
+    columns = outcomes.unpack(entry.trials)
+    whose = worth.people(entry.trials.count, entry.run.participants)
+    scores: dict[str, object] = {**worth.scores(columns, whose, alone=entry.alone)}
+    fresh = msgspec.structs.replace(
+        entry,
+        metrics=msgspec.structs.replace(entry.metrics, **scores),
+        splits=worth.splits(columns, whose),
+        uplift=worth.uplift(entry, columns, control, outcomes.unpack(control.trials)) if control else entry.uplift,
+    )
+    seal = entry.verification
+    if seal is None or seal.entry != entry.digest:
+        return fresh
+    return msgspec.structs.replace(fresh, verification=msgspec.structs.replace(seal, entry=fresh.digest))
