@@ -23,8 +23,8 @@ def serve(
     from hthor.guest import serving
 
     server = serving.serve(agent, host, port)
+    sys.stdout.write(f"{serving.address(server)}\n")
+    sys.stdout.flush()
+    sys.stderr.write(f"serves {agent}; stop it with Ctrl-C\n")
     with server:
-        sys.stdout.write(f"{serving.address(server)}\n")
-        sys.stdout.flush()
-        sys.stderr.write(f"serves {agent}; stop it with Ctrl-C\n")
         server.serve_forever()

@@ -67,9 +67,7 @@ def serve(text: str, host: str, port: int) -> Server:
     """
     agent = reference.read(text)
     if agent.form not in ("file", "module"):
-        raise UnknownName(
-            "agent to serve", text, (), "Only Python agents are served: my_agent.py, package.module:Class."
-        )
+        raise UnknownName("agent to serve", text, reference.FORMS[:3], "Only Python agents are served.")
     sockets = served.library()
     version = agent.sha256
     sys.path.insert(0, agent.root)
