@@ -21,7 +21,6 @@ from hthor.humans import kinds, population_file
 
 FAKES = Path(__file__).with_name("command_fakes.py")
 WITHOUT_JSON = {
-    "hthor leaderboard add": "tells the file that it wrote",
     "hthor agent serve": "serves until it is stopped, and has nothing to tell",
 }
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -75,7 +74,6 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
         platforms=machine.load(folder),
         isolation=held,
         counts=result.counts,
-        faults=_faults(records),
         metrics=result.metrics,
         splits=worth.splits(columns, whose),
         uplift=gain,
@@ -141,12 +139,6 @@ def _verified(entry: Entry, path: Path) -> Entry:
         return entry
     held = there.verification
     return msgspec.structs.replace(entry, verification=held) if held and held.entry == entry.digest else entry
-
-
-def _faults(records: Sequence[Record]) -> dict[str, int]:
-    """Trials with a fault, by the kind of their first."""
-    counted: Any = Counter(one.faults[0].kind for one in records if one.faults)
-    return dict(sorted(counted.items()))
 
 
 def _slug(name: str) -> str:

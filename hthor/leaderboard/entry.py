@@ -128,7 +128,6 @@ class Entry(Struct, frozen=True, kw_only=True):
         mode: whether the world waited for the agent (lockstep) or its thinking took time (realtime).
         overrides: settings that depart from the benchmark's; there are none in an entry that is taken.
         platforms: where it was played; empty where that was not noted.
-        faults: trials in which an agent failed, by kind of fault.
         splits: by property and value, such as "difficulty" and "hard".
         uplift: over no robot, the same people at the same tasks; None where there is no robot.
     """
@@ -146,7 +145,6 @@ class Entry(Struct, frozen=True, kw_only=True):
     platforms: tuple[Platform, ...] = ()
     isolation: Isolation | None = None
     counts: Counts
-    faults: dict[str, Count]
     metrics: Scores
     splits: dict[str, dict[str, Group]]
     uplift: Uplift | None = None

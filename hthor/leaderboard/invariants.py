@@ -67,7 +67,6 @@ def sizes(entry: Entry, held: Outcomes) -> Found:
     for field, value, there in (
         ("counts.successes", counts.successes, int(held.met.sum())),
         ("counts.faults", counts.faults, int(held.faulty.sum())),
-        ("faults", sum(entry.faults.values()), int(held.faulty.sum())),
     ):
         if value != there:
             yield field, f"says {value}, but 'trials' has {there}"
@@ -75,6 +74,8 @@ def sizes(entry: Entry, held: Outcomes) -> Found:
         counts.faults_by_seat.values()
     ):
         yield "counts.faults_by_seat", f"cannot add up to {counts.faults} trials with a fault"
+    if sum(counts.faults_by_kind.values()) != sum(counts.faults_by_seat.values()):
+        yield "counts.faults_by_kind", f"adds up to {sum(counts.faults_by_kind.values())} faults, 'faults_by_seat' not"
 
 
 def settings(entry: Entry) -> Found:
