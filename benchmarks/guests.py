@@ -163,12 +163,13 @@ def _together(one: tuple[cast.Stage, Session], other: tuple[cast.Stage, Session]
             for stage, company, trial in ((one[0], mine, first), (other[0], yours, second)):
                 world, robots = stage.world(trial), company.robots()
                 pid = getattr(robots["robot"], "pid", 0)
-                begin, busy = time.perf_counter(), time.process_time() + _cpu_s(pid)
+                spent = _cpu_s(pid)
+                begin, busy = time.perf_counter(), time.process_time()
                 ticks.add(play(trial, world, company.human, robots).ticks)
                 company.rest()
-                wall = time.perf_counter() - begin
+                wall, busy = time.perf_counter() - begin, time.process_time() - busy
                 time.sleep(0.05 if pid else 0.0)  # so that its end is counted too
-                took.append((wall, time.process_time() + _cpu_s(pid) - busy))
+                took.append((wall, busy + _cpu_s(pid) - spent))
             if len(ticks) > 1:
                 raise AssertionError(f"the guest did not play the same trial: {sorted(ticks)} ticks")
             yield took[0], took[1]
