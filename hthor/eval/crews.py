@@ -17,6 +17,8 @@ from hthor.types import AgentRef, RobotSeat
 
 ALIASES = {"tall": "tender", "small": "puck"}
 """Other words for robots: what the paper's figure calls them."""
+MIND_ALIASES = {"none": "silent"}
+"""Other words for minds: what the paper calls the condition."""
 _EXAMPLE = "--robots tall:oracle,small:frontier"
 
 
@@ -181,7 +183,8 @@ def introduce(agent: str) -> Character:
         UnknownName: when it is neither.
         AgentError: when it does not load.
     """
-    return _own(agent) if agent in plugins.names("agent") else _guest(agent)
+    name = MIND_ALIASES.get(agent, agent)
+    return _own(name) if name in plugins.names("agent") else _guest(agent)
 
 
 def _own(name: str) -> Character:

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import msgspec
 
 from hthor.errors import HthorError, RunError
 from hthor.eval import command, control, guarded, machine, metrics, programme, provenance, score, setup
-from hthor.eval.record import Record
 from hthor.eval.setup import Setup
 from hthor.leaderboard import files, harness, outcomes, overrides, worth
 from hthor.leaderboard.entry import LOCKSTEP, REALTIME, Agent, Entry, Hashes
