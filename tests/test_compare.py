@@ -42,6 +42,7 @@ def test_an_agent_cannot_be_told_from_itself_under_another_name(runs: Path):
     assert pair.differences["sr"].ci95[1] > 0.0, "sixty trials do not prove that two agents are the same"
     assert (pair.tally.wins, pair.tally.ties, pair.tally.losses) == (0, 60, 0)
     assert pair.sentence.startswith("These data cannot separate twin from helper: +0.0 points")
+    assert pair.sentence.endswith("success was the same in every trial.")
 
 
 def test_what_is_better_is_said_to_be_and_by_how_much(runs: Path):

@@ -223,6 +223,8 @@ def sentence(pair: Comparison) -> str:
         f"These data cannot separate {pair.second} from {pair.first}: {points:+.1f} points of success "
         f"(95 % interval {low:+.1f} to {high:+.1f}, {trials})"
     )
+    if not pair.mcnemar.only_first + pair.mcnemar.only_second:
+        return f"{told}; success was the same in every trial."
     if found.difference == 0.0 or found.more_tasks is None:
         return f"{told}; a difference of {100.0 * (found.mde80 or 0.0):.1f} points would have shown."
     if found.separated:
