@@ -41,7 +41,8 @@ def test_an_agent_cannot_be_told_from_itself_under_another_name(runs: Path):
     assert pair.differences["sr"].p == 1.0
     assert pair.differences["sr"].ci95[1] > 0.0, "sixty trials do not prove that two agents are the same"
     assert (pair.tally.wins, pair.tally.ties, pair.tally.losses) == (0, 60, 0)
-    assert pair.sentence.startswith("These data cannot tell twin from helper: +0.0 points")
+    assert pair.sentence.startswith("These data cannot separate twin from helper: +0.0 points")
+    assert pair.sentence.endswith("success was the same in every trial.")
 
 
 def test_what_is_better_is_said_to_be_and_by_how_much(runs: Path):
@@ -50,6 +51,7 @@ def test_what_is_better_is_said_to_be_and_by_how_much(runs: Path):
     assert pair.better == "better"
     assert pair.differences["sr"].p < 0.001
     assert pair.sentence.startswith("better is better than alone by 4")
+    assert "p < 0.001" in pair.sentence
     assert "adoption" not in pair.differences, "without a robot there is nothing to adopt"
     assert set(pair.groups) == {"kind", "scene"}
     assert sum(one.n for one in pair.groups["scene"].values()) == pair.n

@@ -105,6 +105,19 @@ def test_scoring_again_gives_the_stored_result(tmp_path):
     assert again == stored == result
 
 
+def test_a_result_of_an_older_format_is_made_anew(tmp_path):
+    _played(tmp_path)
+    folder = tmp_path
+    path = folder / "result.json"
+    path.write_bytes(b'{"schema": "hthor.result/3", "name": "helper"}')
+    _, result, stored = score.rescore(folder)
+    assert stored is None
+    assert result.counts.trials > 0
+    path.write_bytes(b'{"schema": "hthor.result/4"}')
+    with pytest.raises(RunError, match="Delete the file"):
+        score.rescore(folder)
+
+
 def test_scoring_trusts_events_not_stored_metrics(tmp_path):
     honest = _played(tmp_path)
     path = tmp_path / "trials.jsonl"

@@ -221,19 +221,21 @@ def sentence(pair: Comparison) -> str:
     points = 100.0 * found.difference
     trials = f"{pair.n} shared trial{'' if pair.n == 1 else 's'}"
     if found.ci95 is None:
-        return f"One trial cannot tell {pair.second} from {pair.first}."
+        return f"One trial cannot separate {pair.second} from {pair.first}."
     low, high = (100.0 * end for end in found.ci95)
     if pair.better:
         sign, worse = (1.0, pair.first) if pair.better == pair.second else (-1.0, pair.second)
         ends = sorted((sign * low, sign * high))
         return (
             f"{pair.better} is better than {worse} by {sign * points:.1f} points of success "
-            f"(95 % interval {ends[0]:.1f} to {ends[1]:.1f}, {trials})."
+            f"(95 % interval {ends[0]:.1f} to {ends[1]:.1f}, {_chance(pair)}, {trials})."
         )
     told = (
-        f"These data cannot tell {pair.second} from {pair.first}: {points:+.1f} points of success "
+        f"These data cannot separate {pair.second} from {pair.first}: {points:+.1f} points of success "
         f"(95 % interval {low:+.1f} to {high:+.1f}, {trials})"
     )
+    if not pair.mcnemar.only_first + pair.mcnemar.only_second:
+        return f"{told}; success was the same in every trial."
     if found.difference == 0.0 or found.more_tasks is None:
         return f"{told}; a difference of {100.0 * (found.mde80 or 0.0):.1f} points would have shown."
     if found.separated:
@@ -241,6 +243,12 @@ def sentence(pair: Comparison) -> str:
     if found.more_tasks == 0:
         return f"{told}; {pair.people} people are too few to tell, however many tasks they do."
     return f"{told}; if it is real, about {_about(found.more_tasks)} more tasks would show it."
+
+
+def _chance(pair: Comparison) -> str:
+    """The p of the verdict, no finer than anyone can use."""
+    p = pair.p_holm if pair.p_holm is not None else 1.0
+    return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"
 
 
 def _about(number: int) -> str:

@@ -102,14 +102,14 @@ def spread_of(gaps: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, share:
     """The spread of the mean of differences, (..., N), as all comparisons take it.
 
     Args:
-        share: whether they are differences of shares. Their mean's variance is then never below that of one trial in
+        share: whether they are differences of shares. Their mean's variance is then never below that of two trials in
             which one robot failed wholly and the other did not at all: two robots that never differed in sixty trials
             are not equal beyond doubt.
     """
     found, count = spread.two_way(gaps, tasks, people, differences=True), gaps.shape[-1]
     if not share:
         return found
-    variance, single = np.maximum(found.variance, 1.0 / count**2), np.maximum(found.single, 1.0 / count)
+    variance, single = np.maximum(found.variance, 2.0 / count**2), np.maximum(found.single, 2.0 / count)
     return msgspec.structs.replace(found, variance=variance, single=single)
 
 

@@ -41,8 +41,7 @@ def standings(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> tu
     The interval's ends are 1 and the number of agents that are better, and all less those that are worse, when this
     agent's differences from all others are to hold together at 95 %. How far they may all be off at once is taken from
     samples of tasks and people, the same for all agents ("pigeonhole" bootstrap, of the largest deviation); how wide
-    each is from the same formula as every other interval. Plain quantiles of the ranks in the samples would leave out
-    the true rank far too often among agents that are about equal (Mogstad et al. 2024).
+    each is from the same formula as every other interval.
 
     Args:
         outcomes: (A, N), shares from 0 to 1, such as successes. tasks, people: (N,) indices from 0.

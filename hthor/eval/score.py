@@ -280,11 +280,12 @@ def _score(records: Sequence[Record], name: str, value: Callable[[TrialMetrics],
 def rescore(folder: Path) -> tuple[Setup, Result, Result | None]:
     """Score a run again from its log alone: its configuration, the new result, and the stored one if there is any.
 
-    Every trial's metrics are worked out anew from its events. The stored effort is kept, as no log has it.
+    Every trial's metrics are worked out anew from its events. The stored effort is kept, as no log has it. A stored
+    result of another version of the format counts as none: the log has all that it takes.
     """
     plan = setup.load(folder)
     lines, kept = records(folder, plan)
-    fresh, stored = _measured(kept), load(folder)
+    fresh, stored = _measured(kept), None if _outdated(folder / "result.json") else load(folder)
     effort = stored.effort if stored else None
     beside, held = control.beside(folder, plan, fresh), guarded.load(folder)
     return plan, summarise(plan, lines, fresh, effort, uplift=beside, isolation=held), stored
@@ -313,6 +314,16 @@ def load(folder: Path) -> Result | None:
         return msgspec.json.decode(path.read_bytes(), type=Result)
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise RunError(f"{path}: {error}. Delete the file; 'hthor score {folder}' writes it anew.") from None
+
+
+def _outdated(path: Path) -> bool:
+    """Whether a file is a result of another version of the format."""
+    try:
+        schema = msgspec.json.decode(path.read_bytes(), type=dict[str, msgspec.Raw]).get("schema", msgspec.Raw(b'""'))
+        name = msgspec.json.decode(schema, type=str)
+    except (OSError, msgspec.DecodeError, UnicodeDecodeError):
+        return False
+    return name != SCHEMA and name.startswith(SCHEMA.partition("/")[0])
 
 
 def store(folder: Path, result: Result) -> None:

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from hthor.eval.compare import Comparison
 
 _TITLES = {
-    "sr": "success rate",
-    "twsr": "time-weighted success",
-    "adoption": "adoption",
-    "progress": "progress",
-    "time_s": "time spent",
+    "sr": "success rate [%]",
+    "twsr": "time-weighted success [%]",
+    "adoption": "adoption [%]",
+    "progress": "progress [%]",
+    "time_s": "time spent [s]",
     "trust": "trust (1 to 7)",
 }
 
@@ -34,7 +34,7 @@ def table(pair: Comparison) -> Table:
 
 def groups_table(pair: Comparison, by: str) -> Table:
     """Success by kind, split, difficulty or scene."""
-    made = _table(f"success, by {by}")
+    made = _table(f"success rate [%], by {by}")
     for heading in (pair.first, pair.second, "difference", "95 % interval", "could have seen", "p", "trials"):
         made.add_column(heading, justify="right")
     for name, found in pair.groups[by].items():
@@ -47,7 +47,8 @@ def lines(pair: Comparison, among: int) -> Iterator[str]:
     mcnemar, tally = pair.mcnemar, pair.tally
     yield (
         f"success in one of the two only: {mcnemar.only_second} times {pair.second}, {mcnemar.only_first} times "
-        f"{pair.first}; exact McNemar p = {mcnemar.p:.3g}"
+        f"{pair.first}; exact McNemar p "
+        f"{'< 0.001' if mcnemar.p < 0.001 else f'= {mcnemar.p:.3f}'}"
     )
     yield (
         f"{pair.second} was better in time-weighted success in {tally.wins} trials, the same in {tally.ties}, worse in "
@@ -72,7 +73,7 @@ def _cells(found: Difference, unit: str) -> Iterator[str]:
     yield from (_plain(found.first, unit), _plain(found.second, unit), _signed(found.difference, unit))
     yield "–" if found.ci95 is None else " … ".join(_signed(end, unit) for end in found.ci95)
     yield "–" if found.mde80 is None else _plain(found.mde80, unit)
-    yield "–" if found.p is None else f"{found.p:.3g}"
+    yield "–" if found.p is None else ("< 0.001" if found.p < 0.001 else f"{found.p:.3f}")
     yield str(found.n)
 
 
