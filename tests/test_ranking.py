@@ -1,17 +1,13 @@
-"""Ranks: laws of order, what is shown as a tie, and that an entry's outcomes are those of its run."""
+"""Ranks: laws of order, and what is shown as a tie."""
 
 from __future__ import annotations
 
-import eval_fakes as fakes
-import msgspec
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hthor.errors import RunError
-from hthor.eval import contrast, outcomes, ranking, resample
-from hthor.eval.record import Record
+from hthor.eval import contrast, ranking, resample
 
 TRIALS = 80
 TASKS, PEOPLE = np.arange(TRIALS), np.arange(TRIALS) // 10
@@ -76,38 +72,3 @@ def test_the_same_name_gives_the_same_samples_and_rows_share_them():
     assert (first[0] == first[1]).all()
     assert (first != other).any()
     assert first.mean() == pytest.approx(rows[0].mean(), abs=0.02)
-
-
-# ----------------------------------------------------------------------------------------------- what an entry carries
-
-
-def _records(name: str, count: int = 40) -> list[Record]:
-    return [found for session in fakes.run_of(count, name=name)[1] for found in fakes.player()(session)]
-
-
-def test_outcomes_are_the_runs_own():
-    records = _records("helper")
-    packed = msgspec.json.decode(msgspec.json.encode(outcomes.pack(records[::-1])), type=outcomes.Outcomes)
-    assert packed == outcomes.pack(records)
-    assert outcomes.values(packed).tolist() == [found.metrics.sr for found in records]
-    assert outcomes.values(packed, "twsr").tolist() == [found.metrics.twsr for found in records]
-    held = outcomes.table([packed, outcomes.pack(_records("twin"))])
-    assert held.values.shape == (2, 40)
-    assert (held.tasks == np.arange(40)).all()
-    assert len(set(held.people.tolist())) == 4
-
-
-def test_outcomes_of_other_trials_and_damaged_ones_are_refused():
-    packed = outcomes.pack(_records("helper"))
-    with pytest.raises(RunError, match="the same trials"):
-        outcomes.table([packed, outcomes.pack(_records("helper", 30))])
-    for field, wrong in (("sr", packed.sr[:-4]), ("twsr", "?" + packed.twsr[1:]), ("sr", packed.sr[:-2] + "F=")):
-        with pytest.raises(RunError, match=f"outcomes.{field}"):
-            outcomes.values(msgspec.structs.replace(packed, **{field: wrong}), field)
-
-
-def test_trials_that_one_run_lacks_are_left_out():
-    whole, part = _records("helper"), _records("twin")[:25]
-    one, other = outcomes.shared([whole, part])
-    assert outcomes.pack(one).occasions == outcomes.pack(other).occasions
-    assert outcomes.pack(one).n == 25
