@@ -65,7 +65,9 @@ def test_a_class_says_how_much_of_a_gpu_it_wants(line: str, gpus: float, tmp_pat
 
 def test_a_wish_that_is_no_number_is_refused(tmp_path: Path):
     (tmp_path / "agent.py").write_text(AGENT.format(line="gpus = 'all'"))
-    with pytest.raises(AgentError, match=r"agent\.py: Agent\.gpus must be a number from 0 on, such as 0\.25 or 1, got 'all'"):
+    with pytest.raises(
+        AgentError, match=r"agent\.py: Agent\.gpus must be a number from 0 on, such as 0\.25 or 1, got 'all'"
+    ):
         crews.introduce(str(tmp_path / "agent.py"))
 
 
