@@ -9,7 +9,7 @@ import pytest
 from test_guest import BRIEFING, look
 
 from hthor import guest
-from hthor.guest import Guest, IsolationError, cost
+from hthor.guest import Guest, IsolationError, cost, parking
 
 BURNS = """
 import time
@@ -36,6 +36,7 @@ def test_the_processor_time_of_guests_is_counted_once(level: str, tmp_path: Path
         guest.in_force(level)
     except IsolationError as error:
         pytest.skip(str(error))
+    parking.clear()
     path = tmp_path / "burns.py"
     path.write_text(BURNS)
     with Guest(path, isolation=level) as mind:
