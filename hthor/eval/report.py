@@ -58,19 +58,18 @@ def result_table(result: Result, *, everything: bool = False) -> RenderableType:
     """
     title = f"{result.name}: {result.suite.name}, {result.counts.trials} trials, {result.humans.name} people"
     table = _table(title + (", in real time" if result.mode == REALTIME else ""))
-    for heading in ("mean", "95 % interval", *(["could have seen"] if everything else []), "trials"):
+    for heading in ("mean", "95 % interval", "could have seen", "trials"):
         table.add_column(heading, justify="right")
     later = enumerate(result.trust_by_trial if everything else (), 1)
     rated = ((f"trust after a person's trial {number}", "", estimate) for number, estimate in later)
     for title, unit, estimate in (*_rows(result.metrics, everything), *rated):
-        seen = [detectable(estimate, unit)] if everything else []
-        table.add_row(title, number(estimate, unit), interval(estimate, unit), *seen, str(estimate.n))
+        seen = detectable(estimate, unit)
+        table.add_row(title, number(estimate, unit), interval(estimate, unit), seen, str(estimate.n))
     for name, title, unit in _UPLIFT if result.uplift else ():
         gain: Difference = getattr(result.uplift, name)
         ends = "–" if gain.ci95 is None else " … ".join(_gain(end, unit) for end in gain.ci95)
         least = "–" if gain.mde80 is None else _gain(gain.mde80, unit).removeprefix("+")
-        seen = [least] if everything else []
-        table.add_row(f"uplift: {title}", f"{_gain(gain.difference, unit)} {unit}", ends, *seen, str(gain.n))
+        table.add_row(f"uplift: {title}", f"{_gain(gain.difference, unit)} {unit}", ends, least, str(gain.n))
     return _doubted(table, [result.humans])
 
 
