@@ -21,6 +21,9 @@ from hthor.guest.reference import Reference
 
 _PASSED_ON = ("PATH", "LANG", "LC_ALL", "TZ", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+_MEMORY = f"glibc.malloc.mmap_threshold={64 << 20}:glibc.malloc.trim_threshold={256 << 20}"
+"""Keep what arrays have freed, as a process that has lived for long does anyway: each trial's is new, and pages that
+are given back and taken again cost it more than its agent."""
 _LOG_BYTES = 16 << 10
 _PIPE_BYTES = 1 << 20
 _F_SETPIPE_SZ = 1031
@@ -71,6 +74,11 @@ class Process:
             for handle in (guest_in, tell, guest_out, printed):
                 os.close(handle)
         self._buffers = {self._words: b"", self._keeper: b""}
+        self._hear, self._say = select.poll(), select.poll()
+        for handle in (self._words, self._keeper, self._err):
+            self._hear.register(handle, select.POLLIN)
+        self._say.register(self._out, select.POLLOUT)
+        self._say.register(self._err, select.POLLIN)
 
     @property
     def pid(self) -> int:
@@ -83,7 +91,7 @@ class Process:
             try:
                 left = left[os.write(self._out, left) :]
             except BlockingIOError:
-                self._wait({self._out: select.POLLOUT}, end)
+                self._wait(self._say, (self._out,), end)
             except OSError:
                 raise HungUp from None
 
@@ -93,8 +101,7 @@ class Process:
             for handle in (self._words, self._keeper):
                 if (found := self._next(handle, most)) is not None:
                     return handle == self._keeper, found
-            ready = self._wait({self._words: select.POLLIN, self._keeper: select.POLLIN}, end)
-            for handle in ready:
+            for handle in self._wait(self._hear, (self._words, self._keeper), end):
                 chunk = os.read(handle, 1 << 16)
                 if not chunk:
                     raise HungUp
@@ -112,14 +119,10 @@ class Process:
         self._buffers[handle] = buffer[4 + size :]
         return buffer[4 : 4 + size]
 
-    def _wait(self, wanted: Mapping[int, int], end: float) -> list[int]:
+    def _wait(self, poll: select.poll, wanted: tuple[int, ...], end: float) -> list[int]:
         """Which pipes are ready, in the order asked for, reading along what is printed."""
         while True:
-            poll = select.poll()
-            for handle, event in wanted.items():
-                poll.register(handle, event)
-            poll.register(self._err, select.POLLIN)
-            ready = {handle for handle, _ in poll.poll(max(0.0, end - time.monotonic()) * 1000.0)}
+            ready = [handle for handle, _ in poll.poll(max(0.0, end - time.monotonic()) * 1000.0)]
             if found := [handle for handle in wanted if handle in ready]:
                 return found
             if not ready:
@@ -203,6 +206,7 @@ def _environment(ours: Mapping[str, str], policy: Policy) -> dict[str, str]:
     env = {name: ours[name] for name in passed_on if name in ours}
     env.update(dict.fromkeys(_THREADS, "1"))
     env.update(dict.fromkeys(("HOME", "TMPDIR"), policy.scratch))
+    env["GLIBC_TUNABLES"] = _MEMORY
     env.update(PYTHONHASHSEED="0", PYTHONDONTWRITEBYTECODE="1", USER="agent", LOGNAME="agent")
     env["PYTHONPATH"] = os.pathsep.join([str(paths.PACKAGE.parent), *paths.libraries()])
     return env
