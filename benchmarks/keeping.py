@@ -17,7 +17,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from hthor.eval import engines, log, progress, run, score, setup
+from hthor.eval import engines, log, progress, reading, result_file, run, score, setup
 from hthor.eval.record import Record
 from hthor.eval.session import Session
 
@@ -37,7 +37,7 @@ def player(path: Path) -> Callable[[Session], Iterator[Record]]:
 
 def sessions(folder: Path) -> list[Session]:
     """The sessions of a finished run, from its log."""
-    _, records = score.digest(folder, setup.load(folder))
+    _, records = reading.digest(folder, setup.load(folder))
     people = itertools.groupby(records, key=lambda one: one.spec.participant)
     return [Session(participant=who, trials=tuple(one.spec for one in mine)) for who, mine in people]
 
@@ -47,7 +47,7 @@ def main() -> None:
     options = argparse.ArgumentParser(prog="python -m benchmarks.keeping", description=__doc__.split("\n\n")[0])
     options.add_argument("run", type=Path, help="the folder of a finished run")
     folder = options.parse_args().run
-    plan, dealt, stored = setup.load(folder), sessions(folder), score.load(folder)
+    plan, dealt, stored = setup.load(folder), sessions(folder), result_file.load(folder)
     engine = engines.find("local", jobs=2)
     scoring = 0.0
     real = score.summarise

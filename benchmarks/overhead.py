@@ -17,7 +17,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from hthor.eval import campaign, cast, control, log, progress, record, run, score, setup
+from hthor.eval import campaign, cast, control, intent, log, progress, record, result_file, run, setup
 from hthor.eval.record import Record
 from hthor.eval.session import Session
 
@@ -38,14 +38,14 @@ def player(folder: Path, sources: object = None) -> Callable[[Session], Iterator
 def main(folder: Path) -> None:
     """Give the run's command again, and print what the harness took."""
     plan = setup.load(folder)
-    results = [score.load(path) for path in (folder, folder / control.FOLDER)]
+    results = [result_file.load(path) for path in (folder, folder / control.FOLDER)]
     trials_s = sum(one.effort.cpu_s for one in results if one is not None and one.effort is not None)
     spent: dict[str, float] = {}
     for name in ("_play", "_finish"):
         setattr(run, name, _timed(getattr(run, name), name, spent))
     cast.player = functools.partial(player, folder.resolve())  # type: ignore[assignment]
     with tempfile.TemporaryDirectory() as scratch:
-        options = campaign.Options(
+        options = intent.Options(
             agents=tuple(robot.agent.name for robot in plan.robots),
             humans=(plan.humans.source,),
             suite=plan.suite.name,

@@ -10,7 +10,7 @@ import argparse
 import itertools
 from pathlib import Path
 
-from hthor.eval import campaign, compare, progress
+from hthor.eval import campaign, compare, intent, progress
 
 AGENTS = ("silent", "frontier", "oracle")
 
@@ -25,7 +25,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=1, help="the suite is played with seeds 0, 1, ...")
     wanted = parser.parse_args()
     for seed in range(wanted.seeds):
-        options = campaign.Options(
+        options = intent.Options(
             agents=AGENTS,
             suite=wanted.suite,
             participants=wanted.participants,

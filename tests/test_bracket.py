@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor.errors import HthorError
-from hthor.eval import bracket, crews, score, setup, stats
+from hthor.eval import bracket, crews, result_file, score, setup, stats
 
 CREWS = {
     "silent": crews.form(["scout"], [eval_fakes.character("silent", absent=True)]),
@@ -22,13 +22,13 @@ SUITE = eval_fakes.suite(30)
 
 
 @functools.cache
-def nothing(agent: str, model: str) -> score.Result:
+def nothing(agent: str, model: str) -> result_file.Result:
     """The result of a run without a trial."""
     who = msgspec.structs.replace(eval_fakes.persons(model), model=model)
     return score.summarise(setup.settle(SUITE, CREWS[agent], human=who, seed=0, participants=None), [], [])
 
 
-def result(agent: str, model: str, sr: float, half: float = 0.05, trials: int = 60) -> score.Result:
+def result(agent: str, model: str, sr: float, half: float = 0.05, trials: int = 60) -> result_file.Result:
     """A run's result with this success rate, and half of it for the time-weighted one."""
 
     def about(mean):
@@ -40,7 +40,7 @@ def result(agent: str, model: str, sr: float, half: float = 0.05, trials: int = 
     return msgspec.structs.replace(empty, metrics=metrics, counts=counts)
 
 
-def results(**rates: tuple[float, ...]) -> dict[str, list[score.Result]]:
+def results(**rates: tuple[float, ...]) -> dict[str, list[result_file.Result]]:
     """By people, the rates of silent, frontier and oracle, or of the first of them."""
     models = {"paper": "proxy", "slow": "proxy"}
     return {

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy import stats as scipy_stats
 
 from hthor.errors import HthorError, RunError
-from hthor.eval import compare, contrast, control, pairing, planning, power, progress, run, score, setup
+from hthor.eval import compare, contrast, control, pairing, planning, power, progress, result_file, run, score, setup
 
 
 def _run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, make=fakes.player, count: int = 60) -> Path:
@@ -129,12 +129,12 @@ def test_an_occasion_is_the_trial_without_a_robot():
 
 def test_uplift_is_the_comparison_with_the_run_without_a_robot_that_lies_beside(runs: Path):
     folder = runs / "leaning"
-    result = score.load(folder / "better")
+    result = result_file.load(folder / "better")
     assert result.uplift is not None
-    assert result.uplift.control == score.load(folder / "alone").hashes.run
+    assert result.uplift.control == result_file.load(folder / "alone").hashes.run
     assert result.uplift.sr == compare.runs([folder / "alone", folder / "better"]).pairs[0].differences["sr"]
-    assert score.load(folder / "alone").uplift is None
-    assert score.load(runs / "helper").uplift is None, "nothing without a robot lies beside it"
+    assert result_file.load(folder / "alone").uplift is None
+    assert result_file.load(runs / "helper").uplift is None, "nothing without a robot lies beside it"
     assert score.rescore(folder / "better")[1] == result
 
 

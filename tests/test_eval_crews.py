@@ -11,7 +11,7 @@ import pytest
 
 from hthor import tasks
 from hthor.errors import HthorError, RunError, UnknownName
-from hthor.eval import campaign, cast, command, crews, find, picture, progress, record, run, score, session
+from hthor.eval import campaign, cast, command, crews, find, intent, picture, progress, record, run, score, session
 from hthor.eval.record import Record
 from hthor.eval.setup import crew_name
 from hthor.guest import choosing
@@ -198,7 +198,7 @@ def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):
     suite.write_bytes(library.encode(library.frozen("brief", 1, tuple(chosen))))
     results = []
     for jobs in (1, 2):
-        options = campaign.Options(
+        options = intent.Options(
             robots="tall:oracle,small:frontier",
             suite=str(suite),
             participants=2,

@@ -9,7 +9,7 @@ import pytest
 
 from hthor import houses, tasks
 from hthor.errors import HthorError, UnknownName
-from hthor.eval import campaign, picture, programme, progress, record, score
+from hthor.eval import campaign, intent, picture, programme, progress, record, score
 from hthor.eval.session import sessions
 
 HOUSES = ("elder", "rowan")
@@ -32,7 +32,7 @@ def _forget():
 
 
 def conducted(**asked) -> campaign.Done:
-    (done,) = campaign.conduct(campaign.Options(**asked), lambda _: progress.Silent())
+    (done,) = campaign.conduct(intent.Options(**asked), lambda _: progress.Silent())
     return done
 
 

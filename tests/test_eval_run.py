@@ -17,8 +17,8 @@ import pytest
 
 from hthor import rules, tasks
 from hthor.errors import RunError
-from hthor.eval import campaign, cast, course, engines, log, progress, run, runner, score, waiting
-from hthor.eval.score import Result
+from hthor.eval import campaign, cast, course, engines, intent, log, progress, result_file, run, runner, waiting
+from hthor.eval.result_file import Result
 
 
 class Notes(progress.Silent):
@@ -55,7 +55,7 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_one_worker_and_two_write_the_same_lines(tmp_path: Path, reference: Path):
-    one = score.load(reference)
+    one = result_file.load(reference)
     two = _run(tmp_path, jobs=2, count=60)
     assert _lines(tmp_path) == _lines(reference)
     assert one is not None
@@ -141,15 +141,15 @@ def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path
     real = tasks.suite
     monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
     monkeypatch.setattr(cast, "player", fakes.lonely_player)
-    options = campaign.Options(agents=("silent", "frontier"), suite="fake", jobs=1, out=tmp_path)
+    options = intent.Options(agents=("silent", "frontier"), suite="fake", jobs=1, out=tmp_path)
     with pytest.raises(course.InternalFailure, match=r"participant 1: ZeroDivisionError.* 10 of 20 trials are missing"):
         list(campaign.conduct(options, lambda _: progress.Silent()))
-    assert score.load(tmp_path / "frontier").counts.trials == 20
-    assert score.load(tmp_path / "silent") is None
+    assert result_file.load(tmp_path / "frontier").counts.trials == 20
+    assert result_file.load(tmp_path / "silent") is None
     monkeypatch.setattr(cast, "player", fakes.player)
     done = [one.plan.name for one in campaign.conduct(options, lambda _: progress.Silent())]
     assert done == ["silent", "frontier"]
-    assert score.load(tmp_path / "frontier").uplift is not None
+    assert result_file.load(tmp_path / "frontier").uplift is not None
 
 
 def test_a_worker_has_as_long_as_its_agents_deadlines_allow():
@@ -283,7 +283,7 @@ def test_a_run_that_is_killed_again_and_again_ends_up_the_same(tmp_path: Path, r
         _, words = process.communicate(timeout=60)
     assert process.returncode == 0, words
     assert _lines(tmp_path) == _lines(reference)
-    assert score.load(tmp_path).metrics == score.load(reference).metrics
+    assert result_file.load(tmp_path).metrics == result_file.load(reference).metrics
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -16,7 +16,7 @@ from typer.testing import CliRunner, Result
 
 from hthor.cli import app
 from hthor.errors import HthorError, RunError
-from hthor.eval import merge, progress, run, score, session, setup, shard
+from hthor.eval import merge, progress, reading, run, session, setup, shard
 
 COUNT = 57
 _FILES = [".lock", "effort.json", "platform.json", "run.json", "trials.jsonl"]
@@ -76,7 +76,7 @@ def test_merged_shards_are_the_undivided_run(undivided: Path, shards: Sequence[P
     assert (done.trials, done.new, done.gaps) == (COUNT, COUNT, ())
     assert _result(tmp_path / "whole") == _result(undivided)
     assert (tmp_path / "whole" / "run.json").read_bytes() == (undivided / "run.json").read_bytes()
-    there = score.records(undivided, setup.load(undivided))[0]
+    there = reading.records(undivided, setup.load(undivided))[0]
     assert (tmp_path / "whole" / "trials.jsonl").read_bytes() == b"".join(there)
     again = merge.merge([*shards, shards[1]], tmp_path / "whole")
     assert (again.trials, again.new, again.result) == (COUNT, 0, done.result)

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from hthor import tasks
 from hthor.cli.app import app
 from hthor.errors import HthorError, RunError
-from hthor.eval import again, campaign, find, log, mind, mind_picture, mind_timeline, progress, redraw
+from hthor.eval import again, campaign, find, intent, log, mind, mind_picture, mind_timeline, progress, redraw
 from hthor.eval.mind import Stream
 from hthor.eval.pages import filming
 from hthor.eval.record import Record
@@ -31,7 +31,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     smoke = tasks.suite("smoke")
     few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house == "hazel")[:3])
     (folder / "few.json").write_bytes(library.encode(few))
-    options = campaign.Options(
+    options = intent.Options(
         agents=("oracle",), suite=str(folder / "few.json"), participants=1, jobs=1, seed=4, out=folder / "run"
     )
     list(campaign.conduct(options, lambda _: progress.Silent()))

@@ -19,7 +19,7 @@ from rich.console import Console
 
 from hthor import cli, plugins, rules, tasks
 from hthor.errors import HthorError, PeopleError, UnknownName
-from hthor.eval import bracket, campaign, cast, matrix, peoples, progress, report, session, setup
+from hthor.eval import bracket, campaign, cast, intent, matrix, peoples, progress, report, session, setup
 from hthor.eval.peoples import HumansRef
 from hthor.humans import effects, kinds, people, person, population_file, portrait, ranges, registry
 from hthor.humans.parameters import Parameters
@@ -339,7 +339,7 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("fake")
 def test_each_people_is_a_run_of_its_own(files: Path):
     words = (f"{files}/pop.npz", f"slow@{files}/pop.npz")
-    options = campaign.Options(agents=("silent", "frontier"), humans=words, suite="fake", jobs=1, out=files / "out")
+    options = intent.Options(agents=("silent", "frontier"), humans=words, suite="fake", jobs=1, out=files / "out")
     told: list[str] = []
 
     class Watcher(progress.Silent):
@@ -372,7 +372,7 @@ def test_the_bracket_says_what_becomes_of_each_conclusion(files: Path, monkeypat
     monkeypatch.setattr(cast, "player", fakes.leaning_player)
     assert peoples.EXTREMES == bracket.ENDS
     words, agents = (f"bracket@{files}/pop.npz", f"slow@{files}/pop.npz"), ("silent", "frontier")
-    options = campaign.Options(agents=agents, humans=words, suite="fake", jobs=1, out=files / "out")
+    options = intent.Options(agents=agents, humans=words, suite="fake", jobs=1, out=files / "out")
     whole = matrix.of([one.result for one in campaign.conduct(options, lambda _: progress.Silent())])
     assert [ref.name for ref in whole.peoples] == ["greedy@pop", "random@pop", "pop", "slow@pop"]
     assert {(one.better, one.worse, one.metric, one.verdict) for one in whole.conclusions} == {
@@ -401,7 +401,7 @@ def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
         def note(self, text: str) -> None:
             told.append(text)
 
-    options = campaign.Options(
+    options = intent.Options(
         agents=("silent", "frontier"), humans=(f"{files}/pop.npz",), suite="fake", jobs=1, out=files / "out"
     )
     done = list(campaign.conduct(options, lambda _: Watcher()))

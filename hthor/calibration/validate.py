@@ -20,8 +20,9 @@ from hthor.calibration.report.evidence import Evidence
 from hthor.calibration.report.groups import PEOPLE
 from hthor.calibration.table import AGENTS, CONDITIONS, Table
 from hthor.errors import HthorError
-from hthor.eval import campaign, peoples, provenance, score
-from hthor.eval.campaign import RUNS, ClosableWatcher
+from hthor.eval import campaign, intent, peoples, provenance, reading
+from hthor.eval.campaign import ClosableWatcher
+from hthor.eval.intent import RUNS
 from hthor.eval.record import Record
 from hthor.eval.session import people_for
 from hthor.humans import kinds, people
@@ -125,7 +126,7 @@ class _Stage:
     def play(self, word: str, suite: Suite, participants: int) -> Table:
         """The trials of some people on a suite, in every condition."""
         name = people.find(word).name
-        asked = campaign.Options(
+        asked = intent.Options(
             agents=AGENTS,
             humans=(word,),
             suite=SUITE if suite.name == SUITE else self._words[suite.sha256],
@@ -137,7 +138,7 @@ class _Stage:
         runs: dict[str, Sequence[Record]] = {}
         for done in campaign.conduct(asked, lambda title: self._watcher(f"{name} people, {title}")):
             condition = CONDITIONS[AGENTS.index(done.plan.name)]
-            runs[condition] = score.records(done.folder, done.plan)[1]
+            runs[condition] = reading.records(done.folder, done.plan)[1]
             self.notes = self.notes or done.plan.humans.notes
         return trials.table(runs, suite)
 

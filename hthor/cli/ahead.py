@@ -10,8 +10,9 @@ from hthor.cli import screen
 if TYPE_CHECKING:
     import typer
 
-    from hthor.eval.campaign import ClosableWatcher, Intent, Options
+    from hthor.eval.campaign import ClosableWatcher
     from hthor.eval.forecast import Ahead, Forecast
+    from hthor.eval.intent import Intent, Options
 
 _LEFT_OUT = ("json", "quiet", "dry_run", "context")
 _ORIGINS = {"COMMANDLINE": "flag", "ENVIRONMENT": "environment", "DEFAULT": "default", "DEFAULT_MAP": "default"}

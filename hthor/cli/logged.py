@@ -20,7 +20,7 @@ def score(
     json: Json = False,
 ) -> None:
     """Work out a run's metrics again from its log alone; nothing is simulated."""
-    from hthor.eval import report
+    from hthor.eval import report, result_file
     from hthor.eval import score as scoring
 
     plan, result, stored = scoring.rescore(run)
@@ -47,7 +47,7 @@ def score(
     else:
         say(f"the same as {run / 'result.json'}.")
         return
-    scoring.store(run, result)
+    result_file.store(run, result)
 
 
 def replay(

@@ -163,7 +163,7 @@ def evaluate(
     The same command resumes an interrupted run, and only scores a finished one. The same seed gives the same records,
     byte for byte, with any number of jobs.
     """
-    from hthor.eval import campaign, matrix, peoples, progress, remains, report
+    from hthor.eval import campaign, intent, matrix, peoples, progress, remains, report
 
     allowed = remains.allowance(max_faults)
     talk = screen.console(talk=True)
@@ -173,7 +173,7 @@ def evaluate(
             return progress.Silent()
         return progress.Live(talk, name) if screen.live() else progress.Plain(talk, name)
 
-    options = campaign.Options(
+    options = intent.Options(
         agents=tuple(agent or ()),
         robots=robots,
         humans=tuple(humans or ("proxy",)),

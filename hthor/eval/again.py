@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hthor import plugins
 from hthor.errors import HthorError, RunError
-from hthor.eval import cast, crews, provenance, score, setup
+from hthor.eval import cast, crews, provenance, reading, setup
 from hthor.eval.record import Record
 from hthor.types import RobotSeat, TrialSpec
 
@@ -25,7 +25,7 @@ def before(folder: Path, wanted: Record) -> tuple[TrialSpec, ...]:
             "in which people may think otherwise. Play the run again with 'hthor eval', or look with that version."
         )
     spec = wanted.spec
-    _, records = score.records(folder, setup.load(folder))
+    _, records = reading.records(folder, setup.load(folder))
     mine = [one.spec for one in records if one.spec.participant == spec.participant and one.spec.index <= spec.index]
     if [one.index for one in mine] != list(range(spec.index + 1)):
         raise RunError(

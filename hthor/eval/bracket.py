@@ -16,7 +16,7 @@ from typing import Literal
 from msgspec import Struct
 
 from hthor.errors import HthorError
-from hthor.eval.score import Result
+from hthor.eval.result_file import Result
 from hthor.eval.stats import Estimate
 
 ENDS = ("greedy", "random")

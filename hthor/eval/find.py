@@ -8,7 +8,7 @@ from pathlib import Path
 
 from hthor import rules
 from hthor.errors import RunError, UnknownName
-from hthor.eval import score, setup
+from hthor.eval import reading, setup
 from hthor.eval.record import Record
 
 _SHOWN = 10
@@ -25,7 +25,7 @@ def trial(folder: Path, name: str) -> Record:
         UnknownName: when nothing answers to it.
         RunError: when more than one trial does, or the run cannot be read.
     """
-    _, records = score.records(folder, setup.load(folder))
+    _, records = reading.records(folder, setup.load(folder))
     by_task = [record for record in records if record.spec.task.id == name]
     if by_task:
         return _only(by_task, name)
@@ -55,7 +55,7 @@ def first_fault(folder: Path) -> Record:
     Raises:
         LookupError: when it never did.
     """
-    _, records = score.digest(folder, setup.load(folder))
+    _, records = reading.digest(folder, setup.load(folder))
     return next(record for record in records if record.faults)
 
 

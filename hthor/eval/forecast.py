@@ -11,8 +11,8 @@ from typing import Any
 from msgspec import Struct
 
 from hthor.errors import RunError
-from hthor.eval import log, score, setup
-from hthor.eval.campaign import RUNS, Intent, Options, Part
+from hthor.eval import log, result_file, setup
+from hthor.eval.intent import RUNS, Intent, Options, Part
 from hthor.eval.setup import Setup
 from hthor.guest import Isolation
 
@@ -108,7 +108,7 @@ def _pace(part: Part) -> Pace | None:
     found = []
     for folder in _candidates(part.folder):
         try:
-            plan, result = setup.load(folder), score.load(folder)
+            plan, result = setup.load(folder), result_file.load(folder)
         except RunError:
             continue
         if result is None or result.effort is None or not result.effort.trials:

@@ -89,7 +89,7 @@ def player(sources: Sources | None, level: str, hidden: tuple[str, ...]) -> Call
     from hthor import guest
     from hthor.eval import cast
 
-    guest.confine_guests("auto" if level == guest.SERVED else level, hidden)  # of what else there is, beside a server
+    guest.confine_guests(level, hidden)
     return cast.player(sources)
 
 

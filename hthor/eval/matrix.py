@@ -9,7 +9,7 @@ from msgspec import Struct
 from hthor.eval import bracket, peoples
 from hthor.eval.bracket import Conclusion
 from hthor.eval.peoples import HumansRef
-from hthor.eval.score import Result
+from hthor.eval.result_file import Result
 from hthor.eval.setup import SuiteRef
 from hthor.eval.stats import Estimate
 

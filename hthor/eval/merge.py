@@ -10,11 +10,11 @@ from msgspec import Struct
 
 from hthor import jsonio
 from hthor.errors import RunError
-from hthor.eval import command, control, guarded, log, machine, record, score, setup
+from hthor.eval import command, control, guarded, log, machine, reading, record, result_file, score, setup
 from hthor.eval.log import Log, Place
 from hthor.eval.record import Record
+from hthor.eval.result_file import Effort, Result
 from hthor.eval.run import EFFORT
-from hthor.eval.score import Effort, Result
 from hthor.eval.setup import Setup
 from hthor.eval.shard import Shard, whole_folder
 from hthor.guest import Isolation
@@ -102,7 +102,7 @@ def _examine(folder: Path) -> _Part:
         )
     records: dict[tuple[int, int], tuple[Place, str, int]] = {}
     for place, line, one in log.places(folder / "trials.jsonl"):
-        score.check_origin(folder, one, plan)
+        reading.check_origin(folder, one, plan)
         _check_share(folder, one, plan, plan.shard)
         seat, mine = (one.spec.participant, one.spec.index), (place, one.key, record.checksum(line))
         if records.setdefault(seat, mine)[1:] != mine[1:]:
@@ -176,13 +176,13 @@ def _gaps(parts: Sequence[_Part], out: Path, missing: int) -> tuple[Gap, ...]:
 
 def _score(out: Path, plan: Setup, folders: Sequence[Path]) -> Result:
     """The result of the whole, with the effort of the shards: the longest wall time, and all that they cost."""
-    there, records = score.digest(out, plan)
+    there, records = reading.digest(out, plan)
     efforts = [
         msgspec.json.decode((folder / EFFORT).read_bytes(), type=Effort)
         for folder in folders
         if (folder / EFFORT).is_file()
     ]
-    stored = score.load(out)
+    stored = result_file.load(out)
     effort = stored.effort if stored else None
     if efforts:
         effort = Effort(
@@ -194,7 +194,7 @@ def _score(out: Path, plan: Setup, folders: Sequence[Path]) -> Result:
     machine.join(out, folders)
     beside, held = control.beside(out, plan, records), _held(out, folders)
     result = score.summarise(plan, log.fetch(there), records, effort, uplift=beside, isolation=held)
-    score.store(out, result)
+    result_file.store(out, result)
     return result
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from hthor.eval.contrast import Difference
-from hthor.eval.score import Result, Scores
+from hthor.eval.result_file import Result, Scores
 from hthor.eval.setup import REALTIME
 from hthor.eval.stats import Estimate
 

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Protocol
 
 from hthor import jsonio
-from hthor.eval import control, course, engines, guarded, log, machine, record, score, setup
+from hthor.eval import control, course, engines, guarded, log, machine, reading, record, result_file, score, setup
 from hthor.eval.engines import Engine, Make
 from hthor.eval.log import Log
 from hthor.eval.remains import Keeper
-from hthor.eval.score import Effort, Result
+from hthor.eval.result_file import Effort, Result
 from hthor.eval.session import Session
 from hthor.eval.setup import Setup
 from hthor.eval.stopping import Interrupted, stoppable
@@ -120,12 +120,12 @@ def _evaluate(
 
 def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
     """Score what is there, and store that: a whole run's result, or what a shard took."""
-    there, records = score.digest(folder, plan)
+    there, records = reading.digest(folder, plan)
     if plan.shard:
         if effort is not None:
             jsonio.write(folder / EFFORT, jsonio.pretty(effort))
         return score.summarise(plan, log.fetch(there), records, effort)
-    stored = score.load(folder)
+    stored = result_file.load(folder)
     result = score.summarise(
         plan,
         log.fetch(there),
@@ -135,5 +135,5 @@ def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
         isolation=guarded.load(folder),
     )
     if result != stored:
-        score.store(folder, result)
+        result_file.store(folder, result)
     return result

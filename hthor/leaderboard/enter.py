@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 
 from hthor.errors import HthorError, RunError
-from hthor.eval import command, control, guarded, machine, metrics, programme, provenance, score, setup
+from hthor.eval import command, control, guarded, machine, metrics, programme, provenance, reading, score, setup
 from hthor.eval.setup import Setup
 from hthor.leaderboard import files, harness, outcomes, overrides, worth
 from hthor.leaderboard.entry import LOCKSTEP, REALTIME, Agent, Entry, Hashes
@@ -43,7 +43,7 @@ def add(folder: Path, board: Path, submission: Submission | None = None) -> list
 def of(folder: Path, submission: Submission | None = None) -> Entry:
     """The entry of one run."""
     plan = setup.load(folder)
-    lines, kept = score.records(folder, plan)
+    lines, kept = reading.records(folder, plan)
     _whole(folder, plan, len(kept))
     found = overrides.of(plan, _crew(plan))
     if found:

@@ -9,7 +9,7 @@ from msgspec import Meta, Struct
 
 from hthor import jsonio
 from hthor.eval.machine import Platform
-from hthor.eval.score import Counts, Scores
+from hthor.eval.result_file import Counts, Scores
 from hthor.eval.setup import Setup
 from hthor.eval.stats import Estimate
 from hthor.eval.uplift import Uplift

@@ -12,7 +12,7 @@ from msgspec import Struct
 from hthor.eval.compare import Comparison
 from hthor.eval.pages.origin import Origin
 from hthor.eval.pages.singled import Failure, Shown
-from hthor.eval.score import Scores
+from hthor.eval.result_file import Scores
 from hthor.eval.setup import SuiteRef
 from hthor.eval.stats import Estimate
 

@@ -10,7 +10,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor.errors import RunError
-from hthor.eval import control, metrics, score, setup
+from hthor.eval import control, metrics, reading, setup
 from hthor.eval.record import Record
 from hthor.eval.setup import Setup
 
@@ -74,7 +74,7 @@ def with_controls(found: Sequence[Run]) -> list[Run]:
 
 def _read(folder: Path) -> Run:
     plan = setup.load(folder)
-    lines, records = score.records(folder, plan)
+    lines, records = reading.records(folder, plan)
     if not records:
         raise RunError(f"{folder / 'trials.jsonl'} has no trials yet. Finish the run with 'hthor eval' first.")
     fresh = (msgspec.structs.replace(one, metrics=metrics.measure(one.spec, one.log)) for one in records)

@@ -1,0 +1,148 @@
+"""A run's `result.json`: what stands in it, and reading and writing it; knows nothing of how its numbers come about."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from hthor import jsonio
+from hthor.errors import RunError
+from hthor.eval import setup
+from hthor.eval.peoples import HumansRef
+from hthor.eval.setup import AssetsRef, KindRef, SuiteRef
+from hthor.eval.stats import Estimate
+from hthor.eval.uplift import Uplift
+from hthor.guest import Isolation
+from hthor.types import RobotSeat
+
+SCHEMA = "hthor.result/4"
+
+
+class Scores(Struct, frozen=True, kw_only=True):
+    """The run's metrics as fractions, seconds, trust points and counts a trial; see `hthor.eval.metrics`.
+
+    ``work`` has a share for each seat, ``hindered_by`` seconds for each pair, such as "human by robot".
+    """
+
+    sr: Estimate
+    twsr: Estimate
+    adoption: Estimate
+    time_s: Estimate
+    trust: Estimate
+    progress: Estimate
+    idle_s: Estimate
+    in_way: Estimate
+    hindered_s: Estimate
+    sent: Estimate
+    accepted: Estimate
+    declined: Estimate
+    covered: Estimate
+    unanswered: Estimate
+    false_claims: Estimate
+    precision: Estimate
+    first_useful_s: Estimate
+    interruptions_per_min: Estimate
+    work: dict[str, Estimate]
+    hindered_by: dict[str, Estimate]
+
+
+class Counts(Struct, frozen=True, kw_only=True):
+    """How much there is: trials, distinct tasks, successes, messages sent by robots, and trials with a fault.
+
+    ``faults_by_seat`` counts the trials in which the robot of each seat failed, ``faults_by_kind`` all faults by what
+    they were.
+    """
+
+    trials: int
+    tasks: int
+    successes: int
+    messages: int
+    faults: int
+    faults_by_seat: dict[str, int]
+    faults_by_kind: dict[str, int] = {}
+
+
+class Hashes(Struct, frozen=True, kw_only=True):
+    """Hashes of what decides the records, and of the records themselves, whatever their order in the log.
+
+    ``code`` covers everything that ships with hthor; the hashes of a user's own files are with the robots and the kind.
+    """
+
+    run: str
+    human: str
+    rules: str
+    code: str
+    trials: str
+
+
+class Effort(Struct, frozen=True, kw_only=True):
+    """What it took the command that finished the run: time on the wall, CPU time, and how many trials it played.
+
+    ``replays`` counts sessions that began again, as a worker or an agent's process was ended from outside.
+    """
+
+    wall_s: float
+    cpu_s: float
+    trials: int
+    replays: int = 0
+
+
+class Result(Struct, frozen=True, kw_only=True):
+    """The run's `result.json`.
+
+    ``trust_by_trial`` is the rating after the first, second, ... trial of a person's session, empty without a robot.
+    ``uplift`` is None where no whole run without a robot lay beside this one. ``mode`` is "realtime" where thinking
+    took time of the trials, which no second run repeats byte for byte, else "lockstep".
+    """
+
+    schema: str = SCHEMA
+    name: str
+    robots: tuple[RobotSeat, ...]
+    humans: HumansRef
+    suite: SuiteRef
+    kind: KindRef | None = None
+    seed: int
+    mode: str = setup.LOCKSTEP
+    participants: int
+    metrics: Scores
+    by_kind: dict[str, Scores]
+    trust_by_trial: tuple[Estimate, ...] = ()
+    uplift: Uplift | None = None
+    counts: Counts
+    versions: dict[str, str]
+    hashes: Hashes
+    assets: AssetsRef
+    isolation: Isolation | None = None
+    effort: Effort | None = None
+
+
+def load(folder: Path) -> Result | None:
+    """The stored result of a run, None when there is none.
+
+    Raises:
+        RunError: when it cannot be read.
+    """
+    path = folder / "result.json"
+    if not path.is_file():
+        return None
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=Result)
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise RunError(f"{path}: {error}. Delete the file; 'hthor score {folder}' writes it anew.") from None
+
+
+def outdated(path: Path) -> bool:
+    """Whether a file is a result of another version of the format."""
+    try:
+        schema = msgspec.json.decode(path.read_bytes(), type=dict[str, msgspec.Raw]).get("schema", msgspec.Raw(b'""'))
+        name = msgspec.json.decode(schema, type=str)
+    except (OSError, msgspec.DecodeError, UnicodeDecodeError):
+        return False
+    return name != SCHEMA and name.startswith(SCHEMA.partition("/")[0])
+
+
+def store(folder: Path, result: Result) -> None:
+    """Write `result.json`."""
+    jsonio.write(folder / "result.json", jsonio.pretty(result))
