@@ -20,7 +20,7 @@ from benchmarks.table import Row
 from hthor.episode import play
 from hthor.eval import cast, crews
 from hthor.eval.session import Session
-from hthor.guest import Guest, keeper
+from hthor.guest import Guest, cost
 from hthor.types import BodySpec, Briefing, Observation, Pose
 
 STATE_BAR_US, PICTURE_BAR_US, SHARE_BAR = 60.0, 100.0, 15.0
@@ -162,26 +162,12 @@ def _together(one: tuple[cast.Stage, Session], other: tuple[cast.Stage, Session]
             ticks = set()
             for stage, company, trial in ((one[0], mine, first), (other[0], yours, second)):
                 world, robots = stage.world(trial), company.robots()
-                pid = getattr(robots["robot"], "pid", 0)
-                spent = _cpu_s(pid)
-                begin, busy = time.perf_counter(), time.process_time()
+                spent, begin = cost.cpu_s(os.getpid()), time.perf_counter()
                 ticks.add(play(trial, world, company.human, robots).ticks)
                 company.rest()
-                wall, busy = time.perf_counter() - begin, time.process_time() - busy
-                time.sleep(0.05 if pid else 0.0)  # so that its end is counted too
-                took.append((wall, busy + _cpu_s(pid) - spent))
+                wall = time.perf_counter() - begin
+                time.sleep(0.05)  # so that a guest's end is counted too
+                took.append((wall, cost.cpu_s(os.getpid()) - spent))
             if len(ticks) > 1:
                 raise AssertionError(f"the guest did not play the same trial: {sorted(ticks)} ticks")
             yield took[0], took[1]
-
-
-def _cpu_s(pid: int) -> float:
-    """CPU time [s] of a process, of all that it has started, and of those of them that have ended."""
-    if not pid:
-        return 0.0
-    families, line, ticks = keeper._families(), [pid], 0
-    while line:
-        one = line.pop()
-        line += families.get(one, [])
-        ticks += sum(int(word) for word in Path(f"/proc/{one}/stat").read_text().rpartition(")")[2].split()[11:15])
-    return ticks / os.sysconf("SC_CLK_TCK")

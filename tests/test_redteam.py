@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from hthor import guest
-from hthor.guest import Guest, IsolationError, keeper
+from hthor.guest import Guest, IsolationError, clearing
 from tests.redteam import nobody
 from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, Case
 from tests.redteam.nobody import ROOT, runner
@@ -158,7 +158,7 @@ def test_nothing_outlives_a_killed_host(level: str, tmp_path: Path) -> None:
 
 
 def _descendants(pid: int) -> list[int]:
-    families = keeper._families()
+    families = clearing.families()
     line, found = [pid], []
     while line:
         found += families.get(line[-1], [])

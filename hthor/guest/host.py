@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from pathlib import Path
 
-from hthor.guest import reference, wire
+from hthor.guest import affinity, reference, wire
 from hthor.guest.arrival import Arrival
 from hthor.guest.faults import GuestFault
 from hthor.guest.info import GuestInfo
@@ -62,7 +62,7 @@ class Guest:
         memory_mb: int = 4096,
         disk_mb: int = 256,
     ) -> None:
-        self._talk = Talk()
+        self._gathered, self._talk = False, Talk()
         self.reference = reference.read(str(path), cls)
         self._arrival = Arrival(
             self._talk, self.reference, start_s=start_s, isolation=isolation, memory_mb=memory_mb, disk_mb=disk_mb
@@ -82,7 +82,8 @@ class Guest:
         """
         if self._talk.line is None or self._info is None:
             self._info = None
-            self._info = self._arrival.come()
+            with affinity.anywhere():
+                self._info = self._arrival.come()
         return self._info
 
     def begin(self, briefing: Briefing) -> None:
@@ -96,10 +97,12 @@ class Guest:
             self._await_end()
         talk = self._talk
         try:
-            self.load()
+            info = self.load()
         except Unreachable as error:
             raise GuestFault("died", str(error)) from None
-        window = self._process.frames if self._process else None
+        process = self._process
+        self._gathered = process is not None and not info.persistent and process.gather()
+        window = process.frames if process else None
         turns = Turns(talk, step_s=self._step_s, bank_s=self._bank_s, ahead=self._arrival.ahead, window=window)
         talk.send(wire.Begin(briefing=briefing), self._start_s)
         answer, left = talk.receive(self._start_s)
@@ -121,6 +124,7 @@ class Guest:
 
     def finish(self) -> None:
         """The trial is over: its process comes to its end while the caller goes on. Need not be called."""
+        self._scatter()
         turns, self._turns = self._turns, None
         if turns is not None and self._talk.line is not None:
             turns.end()
@@ -153,11 +157,18 @@ class Guest:
     def __del__(self) -> None:
         if getattr(self, "_talk", None) is not None:
             with contextlib.suppress(Exception):  # the interpreter may be half gone
+                self._scatter()
                 self._talk.close()
 
     @property
     def _process(self) -> Process | None:
         return self._talk.line if isinstance(self._talk.line, Process) else None
+
+    def _scatter(self) -> None:
+        """Let this thread run on any CPU again."""
+        if self._gathered:
+            self._gathered = False
+            affinity.leave()
 
     def _await_end(self) -> None:
         """Wait until the last trial's process has come to its end; whoever will not is ended with its keeper."""

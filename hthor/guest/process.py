@@ -8,13 +8,14 @@ import os
 import select
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Mapping
 
-from hthor.guest import cost, ending, frames, keeper, wire
+from hthor.guest import affinity, clearing, cost, ending, frames, wire
 from hthor.guest.confinement import Policy, devices, limits, namespaces, paths
 from hthor.guest.lines import HungUp, TimeIsUp
 from hthor.guest.reference import Reference
@@ -34,7 +35,7 @@ _INSIDE = "/tmp/hthor-guest"
 
 
 class Process:
-    """A running guest. Three pipes: to it, from its trials, from its keeper; one for what it prints; shared frames."""
+    """A running guest. Pipes: to it, from its trials, with its keeper, one for what it prints; shared frames."""
 
     def __init__(self, policy: Policy, scratch: str) -> None:
         self.policy, self._scratch = policy, scratch
@@ -42,7 +43,7 @@ class Process:
         limits.undumpable()
         guest_in, self._out = os.pipe()
         self._words, guest_out = os.pipe()
-        self._keeper, tell = os.pipe()
+        self._keeper, tell = (end.detach() for end in socket.socketpair())
         self._err, printed = os.pipe()
         self.frames = frames.window()
         for handle in (self._out, self._words, self._keeper, self._err):
@@ -84,6 +85,13 @@ class Process:
     def pid(self) -> int:
         return self._process.pid
 
+    def gather(self) -> bool:
+        """Play the trial that begins on one CPU with this thread, if that can be; then `affinity.leave` ends it."""
+        if self.policy.level == "L1" or (cpu := affinity.stay()) < 0:  # at L1 an agent may start processes of its own
+            return False
+        affinity.tell(self._keeper, cpu)
+        return True
+
     def write(self, body: bytes, end: float) -> None:
         """As `Line` says."""
         left = memoryview(wire.framed(body))
@@ -102,7 +110,10 @@ class Process:
                 if (found := self._next(handle, most)) is not None:
                     return handle == self._keeper, found
             for handle in self._wait(self._hear, (self._words, self._keeper), end):
-                chunk = os.read(handle, 1 << 16)
+                try:
+                    chunk = os.read(handle, 1 << 16)
+                except ConnectionResetError:  # a keeper that ended before it had read all
+                    chunk = b""
                 if not chunk:
                     raise HungUp
                 self._buffers[handle] += chunk
@@ -165,7 +176,7 @@ class Process:
         """End everything that the guest has started, close the pipes, and remove what it wrote."""
         with cost.ending(self._process.pid):
             if self.policy.level == "L1":
-                keeper.end_descendants(self._process.pid)
+                clearing.end_descendants(self._process.pid)
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.killpg(self._process.pid, signal.SIGKILL)
             self._process.wait()
@@ -174,7 +185,7 @@ class Process:
         if self.frames is not None:
             self.frames.close()
         if self._scratch:
-            keeper.empty(self._scratch)
+            clearing.empty(self._scratch)
             shutil.rmtree(self._scratch, ignore_errors=True)
 
 
