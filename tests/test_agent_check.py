@@ -84,6 +84,13 @@ def test_what_agent_new_writes_is_sound(check: Any, tmp_path: Path) -> None:
     assert "warning" not in out
 
 
+def test_a_program_is_checked_like_a_file(check: Any) -> None:
+    words = f"cmd:{sys.executable} {Path(__file__).parents[1] / 'examples' / 'wire_agent.py'}"
+    code, out = check("check", words)
+    assert code == 0, out
+    assert f"sound    next:  hthor eval --agent '{words}' --humans proxy" in out
+
+
 @pytest.mark.parametrize("name", AGENTS)
 def test_each_check_finds_what_it_is_there_for(name: str, check: Any, tmp_path: Path) -> None:
     body, expected = AGENTS[name]

@@ -61,6 +61,18 @@ def test_bodies_without_a_mind_take_the_agents_in_turn():
     assert [robot.seat for robot in second.seats] == ["robot"]
 
 
+def test_a_comma_within_an_agent_is_escaped(monkeypatch: pytest.MonkeyPatch):
+    heard: list[str] = []
+
+    def introduce(agent: str) -> crews.Character:
+        heard.append(agent)
+        return fakes.character()
+
+    monkeypatch.setattr(crews, "introduce", introduce)
+    crews.read(r"tall:cmd:tool --at 1\,2,small:oracle", ())
+    assert heard == ["cmd:tool --at 1,2", "oracle"]
+
+
 def test_a_crew_of_nobody_is_one_silent_agent():
     (crew,) = crews.read("tall,small", ("silent",))
     assert pairs(crew) == [("", "", "silent")]

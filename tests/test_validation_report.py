@@ -17,8 +17,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
+from hthor.calibration import rounds, targets, validate
 from hthor.calibration import table as tables
-from hthor.calibration import targets, validate
 from hthor.calibration.report import (
     assemble,
     diagnostics,
@@ -474,9 +474,9 @@ def stage(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str, int]]:
     """Nobody plays; what would have been played is noted."""
     asked: list[tuple[str, str, int]] = []
 
-    def play(self: object, word: str, suite: object, participants: int) -> tables.Table:
-        asked.append((word, getattr(suite, "name", ""), participants))
-        return fakes.trials(participants)
+    def play(self: object, one: rounds.Round) -> tables.Table:
+        asked.append((one.word, one.suite, one.participants))
+        return fakes.trials(one.participants)
 
     monkeypatch.setattr(validate._Stage, "play", play)
     return asked
@@ -500,8 +500,24 @@ def test_the_command_writes_the_report_and_fails_with_its_bars(
 def test_a_quick_run_is_small_and_judges_nothing_played(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
     done = CliRunner().invoke(cli.app, ["humans", "validate", "greedy", "--quick", "--out", str(tmp_path)])
     assert done.exit_code == 0, done.stderr
-    assert [many for _, _, many in stage] == [validate.QUICK]
+    assert [many for _, _, many in stage] == [rounds.QUICK]
     assert "SR no robot" in done.stdout
+
+
+def test_a_dry_run_says_what_would_be_played_and_writes_nothing(tmp_path: Path) -> None:
+    out = tmp_path / "report"
+    words = ["humans", "validate", "greedy", "--participants", "6", "--suite", "smoke", "--dry-run", "--out", str(out)]
+    done = CliRunner().invoke(cli.app, words)
+    assert done.exit_code == 0, done.stderr
+    assert "540 of 540 trials would be played" in done.stdout  # greedy and random, then greedy on smoke
+    told = msgspec.json.decode(CliRunner().invoke(cli.app, [*words, "--json"]).stdout)
+    assert [(one["people"], one["role"], one["suite"]) for one in told["runs"]][::3] == [
+        ("greedy", "judged", "paper"),
+        ("random", "rival", "paper"),
+        ("greedy", "suite", "smoke"),
+    ]
+    assert told["trials"] == sum(one["run"]["trials"] for one in told["runs"])
+    assert not out.exists()
 
 
 def test_kinds_and_suites_are_played_when_asked_for(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
@@ -511,7 +527,7 @@ def test_kinds_and_suites_are_played_when_asked_for(stage: list[tuple[str, str, 
         done = validate.conduct(options, lambda _: pytest.fail("nobody plays"))
     names = [word for word, suite, _ in stage if suite == "paper"]
     assert "cautious" in names
-    assert ("literature", "smoke", validate.QUICK) in stage
+    assert ("literature", "smoke", rounds.QUICK) in stage
     assert "By kind of people" in (tmp_path / "validation.html").read_text()
     assert [one.name for one in done.findings.suites] == ["smoke"]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -60,7 +61,14 @@ def run(
 
 
 def check(
-    agent: Annotated[str, typer.Argument(metavar="FILE", help="The agent: my_agent.py, or my_agent.py:MyClass.")],
+    agent: Annotated[
+        str,
+        typer.Argument(
+            metavar="AGENT",
+            help="A Python file or module, my_agent.py, my_agent.py:MyClass, package.module:MyClass; a program, "
+            "'cmd:node my_agent.js'; or a served agent, ws://host:port.",
+        ),
+    ],
     robot: Annotated[
         str, typer.Option(help="The body it is tried in.", show_default="the first that it is made for, or scout")
     ] = "",
@@ -93,7 +101,8 @@ def _show_check(report: Report) -> None:
     if broken:
         screen.put_line(f"{report.agent}: {broken} broken")
     else:
-        screen.put_line(f"{report.agent}: sound    next:  hthor eval --agent {report.agent} --humans proxy")
+        words = ["hthor", "eval", "--agent", report.agent, "--humans", "proxy"]
+        screen.put_line(f"{report.agent}: sound    next:  {shlex.join(words)}")
 
 
 def _tell(paper: Console, done: Rerun) -> None:

@@ -54,19 +54,20 @@ def _put(found: Forecast) -> None:
         screen.put_line(f"time: as in {folder}/")
     if found.seconds is None:
         screen.put_line("time: unknown, as no finished run here has these robots and people; see docs/speed.md")
-    left = found.trials - found.played
-    screen.put_line(f"{left} of {found.trials} trials would be played{_time(found.seconds)}; nothing was written.")
+    left, about = found.trials - found.played, f", {time(found.seconds)}" if found.seconds is not None else ""
+    screen.put_line(f"{left} of {found.trials} trials would be played{about}; nothing was written.")
 
 
 def _row(one: Ahead) -> tuple[object, ...]:
-    return one.name, f"{one.folder}/", one.trials, one.played, _time(one.seconds).removeprefix(", about ") or "unknown"
+    return one.name, f"{one.folder}/", one.trials, one.played, time(one.seconds) or "unknown"
 
 
-def _time(seconds: float | None) -> str:
+def time(seconds: float | None) -> str:
+    """How long something takes, for people; empty where nobody knows."""
     if seconds is None:
         return ""
     minutes, rest = divmod(round(seconds), 60)
-    return f", about {minutes} min {rest:02d} s" if minutes else f", about {rest} s"
+    return f"about {minutes} min {rest:02d} s" if minutes else f"about {rest} s"
 
 
 def _value(value: object) -> object:

@@ -64,7 +64,7 @@ def evaluate(
         str,
         typer.Option(
             help="Several robots in one trial, each with its own agent: tall:oracle,small:my_agent.py. A body without "
-            "an agent gets the one of --agent.",
+            "an agent gets the one of --agent; a comma within an agent is written \\,.",
             show_default=False,
         ),
     ] = "",

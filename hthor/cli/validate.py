@@ -11,6 +11,7 @@ from hthor.cli import screen
 from hthor.cli.runs import Json
 
 if TYPE_CHECKING:
+    from hthor.calibration.rounds import Options
     from hthor.eval.campaign import ClosableWatcher
 
 
@@ -46,6 +47,9 @@ def validate(
         bool,
         typer.Option("--quick", help="Few people and no simple models: shows that it works, judges nothing played."),
     ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Only say what would be played, and where; write nothing.")
+    ] = False,
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
 ) -> None:
@@ -58,6 +62,7 @@ def validate(
     """
     from hthor.calibration import validate as validation
     from hthor.calibration.report import gates, terminal
+    from hthor.calibration.rounds import Options
     from hthor.eval import progress
 
     talk = screen.console(talk=True)
@@ -67,7 +72,7 @@ def validate(
             return progress.Silent()
         return progress.Live(talk, title) if screen.live() else progress.Plain(talk, title)
 
-    options = validation.Options(
+    options = Options(
         name=name,
         calibration=calibration,
         participants=participants,
@@ -78,6 +83,9 @@ def validate(
         kinds=kinds,
         suites=tuple(suite or ()),
     )
+    if dry_run:
+        _foretell(options, json)
+        return
     done = validation.conduct(options, watcher)
     paper = talk if json else screen.console()
     paper.print(terminal.figures(done.findings))
@@ -93,3 +101,27 @@ def validate(
         listed = ", ".join(gate.name for gate in failed)
         talk.print(f"not cleared: {listed}.", markup=False, highlight=False, soft_wrap=True)
         raise typer.Exit(1)
+
+
+def _foretell(options: Options, json: bool) -> None:
+    from hthor.calibration import rounds
+    from hthor.cli import ahead
+
+    found = list(rounds.ahead(options))
+    trials, played = (sum(getattr(run, name) for _, run in found) for name in ("trials", "played"))
+    times = [run.seconds for _, run in found]
+    seconds = None if None in times else round(sum(filter(None, times)), 1)
+    folder = str(rounds.folder(options))
+    if json:
+        runs = [{"people": one.word, "suite": one.suite, "role": one.role, "run": run} for one, run in found]
+        screen.put_json({"folder": folder, "trials": trials, "played": played, "seconds": seconds, "runs": runs})
+        return
+    screen.put_table(
+        ("people", "as", "suite", "run", "trials", "played", "time"),
+        [
+            (one.word, one.role, one.suite, run.name, run.trials, run.played, ahead.time(run.seconds) or "unknown")
+            for one, run in found
+        ],
+    )
+    about = f", {ahead.time(seconds)}" if seconds is not None else ""
+    screen.put_line(f"{trials - played} of {trials} trials would be played{about}, in {folder}/; nothing was written.")

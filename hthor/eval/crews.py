@@ -125,13 +125,15 @@ def read(robots: str, agents: Sequence[str], detector: str = OWN) -> list[Crew]:
     """The crews that ``--robots`` stands for: one, or, where bodies have no mind of their own, one for each agent.
 
     Args:
-        robots: BODY:AGENT or BODY, separated by commas: "tall:oracle,small:my_agent.py:Careful".
+        robots: BODY:AGENT or BODY, separated by commas: "tall:oracle,small:my_agent.py:Careful". A comma within an
+            agent is written as a backslash and a comma.
         agents: who sits in the bodies that come without a mind.
 
     Raises:
         HthorError: when it cannot be read, or a name in it is unknown.
     """
-    pairs = [_pair(word.strip(), robots) for word in robots.split(",")]
+    words = [word.replace("\\,", ",").strip() for word in re.split(r"(?<!\\),", robots)]
+    pairs = [_pair(word, robots) for word in words]
     bare = [body for body, mind in pairs if not mind]
     if bare and not agents:
         raise HthorError(f"--robots: '{bare[0]}' has no mind. Write {bare[0]}:AGENT, or name one with --agent.")

@@ -115,8 +115,10 @@ def speed(notes: Notes) -> Finding:
     found = figures(notes)
     told = (
         f"median {found['step_ms_median']:.2f} ms a step, 99 % within {found['step_ms_p99']:.2f} ms, "
-        f"{100.0 * found['share']:.0f} % of the trial's time; {found['memory_mb']:.0f} MB"
+        f"{100.0 * found['share']:.0f} % of the trial's time"
     )
+    if found["memory_mb"]:
+        told += f"; {found['memory_mb']:.0f} MB"
     ended_s = notes.actions[-1][0] * rules.TICK_S if notes.actions else 0.0
     if sum(notes.thought_s) <= max(ended_s, rules.TICK_S):
         return Finding(check="fast enough", status="ok", told=told)

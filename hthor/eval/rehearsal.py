@@ -32,7 +32,7 @@ class Notes(Struct, frozen=True, kw_only=True):
         actions: what was done, with the tick at which it was asked for.
         thought_s: seconds of each ``act``, without what its pictures and scans took; ``begin_s`` of ``begin``.
         wall_s: seconds of the whole trial but for ``begin``.
-        memory_mb: the most memory that was seen in use.
+        memory_mb: the most memory that was seen in use; 0 where the agent runs elsewhere.
         motions, refused: how many motions there were, and how many of them did not come to a good end.
         claims, unseen: messages about an object, and how many of these it had not detected before.
         output: the end of what was printed.
