@@ -36,6 +36,7 @@ SEVERAL_THREADS = SAYS_WHERE.replace(
     "        pass",
     "        import threading, time\n        threading.Thread(target=time.sleep, args=(60,), daemon=True).start()",
 )
+KEEPS_ITS_PROCESS = SAYS_WHERE.replace("class Agent:", "class Agent:\n    persistent = True")
 LOOK = Observation(tick=0, pose=Pose(x=0.0, y=0.0, yaw=0.0), idle=True, senses=None)  # type: ignore[arg-type]
 
 
@@ -61,10 +62,14 @@ def _soon(guest: Guest, wanted: set[int]) -> bool:
     return False
 
 
-@pytest.mark.parametrize("level", ["L2", "L3"])
-def test_they_take_turns_on_one_cpu_and_part_after_each_trial(tmp_path: Path, level: str) -> None:
+@pytest.mark.parametrize(
+    ("level", "source"),
+    [("L2", SAYS_WHERE), ("L3", SAYS_WHERE), ("L2", KEEPS_ITS_PROCESS)],
+    ids=["L2", "L3", "it keeps its process"],
+)
+def test_they_take_turns_on_one_cpu_and_part_after_each_trial(tmp_path: Path, level: str, source: str) -> None:
     agent = tmp_path / "agent.py"
-    agent.write_text(SAYS_WHERE)
+    agent.write_text(source)
     everywhere = os.sched_getaffinity(0)
     with Guest(agent, isolation=level) as guest:
         for _ in range(2):
@@ -85,16 +90,11 @@ def test_a_guest_with_threads_runs_everywhere(tmp_path: Path) -> None:
         assert _soon(guest, everywhere)
 
 
-@pytest.mark.parametrize(
-    ("source", "level"),
-    [(SAYS_WHERE, "L1"), (SAYS_WHERE.replace("class Agent:", "class Agent:\n    persistent = True"), "L2")],
-    ids=["it may start processes", "it keeps its process"],
-)
-def test_some_are_left_alone(tmp_path: Path, source: str, level: str) -> None:
+def test_an_agent_that_may_start_processes_is_left_alone(tmp_path: Path) -> None:
     agent = tmp_path / "agent.py"
-    agent.write_text(source)
+    agent.write_text(SAYS_WHERE)
     everywhere = os.sched_getaffinity(0)
-    with Guest(agent, isolation=level) as guest:
+    with Guest(agent, isolation="L1") as guest:
         guest.begin(BRIEFING)
         assert os.sched_getaffinity(0) == everywhere
         assert _where(guest.act(LOOK)) == everywhere

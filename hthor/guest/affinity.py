@@ -76,23 +76,24 @@ def heard(handle: int) -> int:
 
 
 class Joined:
-    """A guest's process that was moved to its evaluation's CPU."""
+    """A guest's process that was moved to its evaluation's CPU, unless it has several threads."""
 
     def __init__(self, pid: int, cpu: int) -> None:
         self._pid = pid
         self._before = frozenset(os.sched_getaffinity(0))
-        self._near = _move(pid, {cpu})
+        self._near = len(self._threads()) == 1 and _move(pid, {cpu})
 
     def part(self) -> None:
         """Let it run everywhere again if it has several threads by now."""
-        if not self._near:
-            return
+        if self._near and len(threads := self._threads()) > 1:
+            self._near = False
+            for thread in threads:
+                _move(thread, self._before)
+
+    def _threads(self) -> list[int]:
         with contextlib.suppress(OSError):
-            threads = os.listdir(f"/proc/{self._pid}/task")
-            if len(threads) > 1:
-                self._near = False
-                for thread in threads:
-                    _move(int(thread), self._before)
+            return [int(name) for name in os.listdir(f"/proc/{self._pid}/task")]
+        return []
 
 
 def _move(thread: int, cpus: frozenset[int] | set[int]) -> bool:

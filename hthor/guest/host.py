@@ -97,11 +97,11 @@ class Guest:
             self._await_end()
         talk = self._talk
         try:
-            info = self.load()
+            self.load()
         except Unreachable as error:
             raise GuestFault("died", str(error)) from None
         process = self._process
-        self._gathered = process is not None and not info.persistent and process.gather()
+        self._gathered = process is not None and process.gather()
         window = process.frames if process else None
         turns = Turns(talk, step_s=self._step_s, bank_s=self._bank_s, ahead=self._arrival.ahead, window=window)
         talk.send(wire.Begin(briefing=briefing), self._start_s)
