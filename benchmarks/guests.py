@@ -35,7 +35,7 @@ class Agent:
         return Action()
 """
 _PICTURES = _STATE.replace("return", "observation.rgb[0, 0], observation.depth[0, 0]\n        return")
-_SAME = "from hthor.agents.frontier import Agent as Frontier\n\n\nclass Agent(Frontier):\n    pass\n"
+_SAME = "from hthor.agents.frontier import Agent as Frontier\n\n\nclass Agent(Frontier):\n    persistent = {}\n"
 _BRIEFING = Briefing(
     seat="robot",
     instruction="Find an apple.",
@@ -86,7 +86,8 @@ def rows(suite: str, steps: int, sessions: int) -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as folder:
         home = Path(folder)
         yield from _steps(home, steps)
-        yield from _trials(home, suite, sessions)
+        for persistent in (False, True):
+            yield from _trials(home, suite, sessions, persistent)
 
 
 def _steps(home: Path, steps: int) -> Iterator[Row]:
@@ -131,10 +132,14 @@ def _timed(mind: Guest, steps: int) -> list[float]:
     return took[steps // 10 :]
 
 
-def _trials(home: Path, suite: str, count: int) -> Iterator[Row]:
-    """The frontier robot as a file of somebody's, beside the built-in one: the same trials, each of them in turn."""
-    path = home / "frontier_as_guest.py"
-    path.write_text(_SAME)
+def _trials(home: Path, suite: str, count: int, persistent: bool) -> Iterator[Row]:
+    """The frontier robot as a file of somebody's, beside the built-in one: the same trials, each of them in turn.
+
+    Args:
+        persistent: whether it keeps its process from trial to trial.
+    """
+    path = home / f"frontier_{'kept' if persistent else 'anew'}.py"
+    path.write_text(_SAME.format(persistent))
     guest = crews.introduce(str(path))
     inside, outside = cast.Stage(), cast.Stage(cast.Sources(minds={"robot": guest.path}))
     ours, theirs = hands(suite, "frontier"), hands(suite, crews.form(["scout"], [guest]))
@@ -142,8 +147,9 @@ def _trials(home: Path, suite: str, count: int) -> Iterator[Row]:
     for number in range(count + 1):  # the first session compiles
         pair = list(_together((inside, ours[number]), (outside, theirs[number])))
         took += pair if number else []
-    what = "a trial of the frontier robot as a guest: more than inside"
-    for kind, name, bar in ((0, "wall", SHARE_BAR), (1, "CPU of all processes", None)):
+    kept = " that keeps its process" if persistent else ""
+    what = f"a trial of the frontier robot as a guest{kept}: more than inside"
+    for kind, name, bar in ((0, "wall", None if persistent else SHARE_BAR), (1, "CPU of all processes", None)):
         before = 1000.0 * sum(one[kind] for one, _ in took) / len(took)
         after = 1000.0 * sum(other[kind] for _, other in took) / len(took)
         remark = f"{name}; {len(took)} trials: {before:.0f} ms inside, {after:.0f} ms as a guest"
