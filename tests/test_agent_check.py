@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from hthor import cli
-from hthor.eval import cast
+from hthor.errors import HthorError
+from hthor.eval import cast, contract
 
 HEAD = "import random, time\nfrom hthor.types import *\n"
 AGENTS = {
@@ -82,6 +83,11 @@ def test_what_agent_new_writes_is_sound(check: Any, tmp_path: Path) -> None:
     assert "sound    next:  hthor eval --agent" in out
     assert "broken" not in out
     assert "warning" not in out
+
+
+def test_what_ships_needs_no_check() -> None:
+    with pytest.raises(HthorError, match="'oracle' ships with hthor"):
+        contract.check("oracle")
 
 
 @pytest.mark.parametrize("name", AGENTS)
