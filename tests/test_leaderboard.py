@@ -308,7 +308,14 @@ def test_the_page_says_what_the_list_says_and_needs_nothing_else(whole: Path):
     text = (whole / "index.html").read_text()
     for stranger in ("http", "src=", "@import", "url(", "fetch"):
         assert stranger not in text
-    for word in ("no robot", "helper", "cannot tell apart", "1–2", "prefers-color-scheme:dark"):
+    for word in (
+        "no robot",
+        "helper",
+        "cannot tell apart",
+        "1–2",
+        "prefers-color-scheme:dark",
+        "n 20, could have seen",
+    ):
         assert word in text
     found = listing.board([files.read(path) for path in files.entry_paths(whole)])
     (section,) = found.sections
