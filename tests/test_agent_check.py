@@ -21,6 +21,10 @@ AGENTS = {
         "        return Action(motion=Rotate(yaw=0.5))\n",
         {"acts": ("broken", "KeyError: 'where'")},
     ),
+    "fails at once": (
+        "class Agent:\n    def begin(self, briefing): ...\n    def act(self, observation):\n        return None\n",
+        {"begins": ("ok", ""), "acts": ("broken", "wrong_type, step 1, after 0.0 s")},
+    ),
     "leaks": (
         "class Agent:\n    persistent = True\n    trials = 0\n    def begin(self, briefing):\n"
         "        Agent.trials += 1\n"
