@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from hthor import cli
-from hthor.eval import cast
+from hthor.errors import HthorError
+from hthor.eval import cast, contract
 
 HEAD = "import random, time\nfrom hthor.types import *\n"
 AGENTS = {
@@ -19,6 +20,10 @@ AGENTS = {
         "        self.steps += 1\n        if self.steps > 9:\n            return {}['where']\n"
         "        return Action(motion=Rotate(yaw=0.5))\n",
         {"acts": ("broken", "KeyError: 'where'")},
+    ),
+    "fails at once": (
+        "class Agent:\n    def begin(self, briefing): ...\n    def act(self, observation):\n        return None\n",
+        {"begins": ("ok", ""), "acts": ("broken", "wrong_type, step 1, after 0.0 s")},
     ),
     "leaks": (
         "class Agent:\n    persistent = True\n    trials = 0\n    def begin(self, briefing):\n"
@@ -89,6 +94,11 @@ def test_a_program_is_checked_like_a_file(check: Any) -> None:
     code, out = check("check", words)
     assert code == 0, out
     assert f"sound    next:  hthor eval --agent '{words}' --humans proxy" in out
+
+
+def test_what_ships_needs_no_check() -> None:
+    with pytest.raises(HthorError, match="'oracle' ships with hthor"):
+        contract.check("oracle")
 
 
 @pytest.mark.parametrize("name", AGENTS)

@@ -13,6 +13,7 @@ import msgspec
 import pytest
 
 from hthor import __version__, cli, tasks
+from hthor.cli import screen
 from hthor.eval import cast, crews
 
 
@@ -315,6 +316,22 @@ def test_a_new_agent_is_not_written_over(hthor, tmp_path: Path):
     path.write_text("changed")
     assert hthor("agent", "new", str(path), "--force").code == 0
     assert path.read_text() == text
+    assert "check '" in hthor("agent", "new", str(tmp_path / "my own.py")).err, "what is to be typed next can be typed"
+
+
+def test_what_looks_like_a_picture_is_a_name(capsys: pytest.CaptureFixture[str]):
+    screen.put_line("two.py:B: sound")
+    assert capsys.readouterr().out == "two.py:B: sound\n"
+
+
+@pytest.mark.parametrize("words", [("--version",), ("agents", "list"), ("agents", "list", "--json")])
+def test_whoever_stops_reading_is_no_failure(words: tuple[str, ...]):
+    process = subprocess.Popen([sys.executable, "-m", "hthor", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert process.stdout is not None
+    assert process.stderr is not None
+    process.stdout.close()
+    assert (process.stderr.read(), process.wait(60)) == (b"", 0)
+    process.stderr.close()
 
 
 def _process(*words: str, **environment: str) -> subprocess.CompletedProcess[str]:

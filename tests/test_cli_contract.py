@@ -123,6 +123,11 @@ def test_every_command_that_has_something_to_tell_tells_programs() -> None:
     assert lacking <= set(WITHOUT_JSON)
 
 
+def test_help_fills_the_screen_that_there_is() -> None:
+    broken = [name for name, one in reference.leaves() if any("\n" in part for part in one.help.split("\n\n"))]
+    assert broken == [], "a docstring's line breaks would show in the middle of a narrower line"
+
+
 def test_the_page_has_every_command(root: Path) -> None:
     text = (root / "docs" / "cli.md").read_text()
     assert text == reference.page(text), f"write it anew: python -m {reference.__name__} docs/cli.md"

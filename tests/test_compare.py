@@ -13,7 +13,20 @@ from hypothesis import strategies as st
 from scipy import stats as scipy_stats
 
 from hthor.errors import HthorError, RunError
-from hthor.eval import compare, contrast, control, pairing, planning, power, progress, result_file, run, score, setup
+from hthor.eval import (
+    compare,
+    contrast,
+    control,
+    pairing,
+    planning,
+    power,
+    progress,
+    report,
+    result_file,
+    run,
+    score,
+    setup,
+)
 
 
 def _run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, make=fakes.player, count: int = 60) -> Path:
@@ -170,8 +183,17 @@ def test_what_cannot_be_is_refused():
             power.need(first, second, correlation=correlation)
     with pytest.raises(HthorError, match="equal"):
         power.need(0.5, 0.5)
+    for rates, difference in (("0.73,1.2", None), ("0.73,0.76", 0.4)):
+        with pytest.raises(HthorError, match="second rate"):
+            planning.plan((), rates, None, difference, 0.8)
     with pytest.raises(HthorError, match="two rates"):
         planning.plan((), "0.5", None, None, 0.8)
+
+
+def test_a_difference_that_cannot_be_is_not_one_that_could_have_been_seen():
+    shares = [report.least(value, 100.0, room=True) for value in (None, 0.0, 0.123, 1.4)]
+    assert shares == ["–", "–", "12.3", "> 100"]
+    assert report.least(1.4, 1.0, room=False) == "1.4"
 
 
 def test_a_plan_from_two_runs_has_their_rates_and_correlation(runs: Path):

@@ -35,6 +35,7 @@ from hthor.leaderboard import (
     publish,
     rescore,
     submission,
+    verify,
     worth,
 )
 from hthor.leaderboard.entry import Entry, Verification
@@ -145,6 +146,20 @@ def test_parts_and_departures_are_refused(runs: Path, tmp_path: Path):
     with mock.patch.object(provenance, "code_sha256", return_value="56" * 32), pytest.raises(RunError, match="code_"):
         enter.add(runs / "helper", tmp_path / "board")
     assert not (tmp_path / "board").exists()
+
+
+def test_what_is_refused_leaves_the_board_as_it_was(runs: Path, tmp_path: Path):
+    with pytest.raises(files.BoardError, match=r"of no suite of hthor's own"):
+        enter.add(runs, tmp_path / "board")
+    assert not (tmp_path / "board").exists()
+
+
+def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
+    for look in (checks.problems, publish.build, rescore.rescore):
+        with pytest.raises(files.BoardError, match="no folder"):
+            look(tmp_path / "board")
+    with pytest.raises(files.BoardError, match="is no file"):
+        verify.verify(whole, whole, verify.Request(word="chance"))
 
 
 # -------------------------------------------------------------------------------------------------- what is changed
@@ -293,7 +308,14 @@ def test_the_page_says_what_the_list_says_and_needs_nothing_else(whole: Path):
     text = (whole / "index.html").read_text()
     for stranger in ("http", "src=", "@import", "url(", "fetch"):
         assert stranger not in text
-    for word in ("no robot", "helper", "cannot tell apart", "1–2", "prefers-color-scheme:dark"):
+    for word in (
+        "no robot",
+        "helper",
+        "cannot tell apart",
+        "1–2",
+        "prefers-color-scheme:dark",
+        "n 20, could have seen",
+    ):
         assert word in text
     found = listing.board([files.read(path) for path in files.entry_paths(whole)])
     (section,) = found.sections

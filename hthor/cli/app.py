@@ -17,6 +17,7 @@ from hthor.cli import (
     completing,
     doctor,
     ending,
+    flowing,
     homes,
     lists,
     logged,
@@ -57,6 +58,7 @@ app.add_typer(people.app, name="humans")
 lists.agent.command("serve")(serving.serve)
 for _name, _group in lists.GROUPS.items():
     app.add_typer(_group, name=_name)
+flowing.flow(app)
 
 
 def _show_version(wanted: bool) -> None:

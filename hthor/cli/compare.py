@@ -42,6 +42,10 @@ def compare(
             for line in versus.lines(pair, len(found.pairs)):
                 screen.put_line(line)
     talk = screen.console(talk=True)
+    if len(found.pairs) > 1 and not json:
+        talk.print(
+            "by kind, split, difficulty and scene: compare two runs, or see --json", markup=False, highlight=False
+        )
     for party in found.runs:
         if party.trials < party.planned:
             lacks = f"{party.name}: {party.planned - party.trials} of {party.planned} trials are not played yet."

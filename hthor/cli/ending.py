@@ -62,13 +62,21 @@ def _perform(command: Callable[[], Any]) -> Any:
     except KeyboardInterrupt:
         _fail("interrupted.", INTERRUPTED)
     except BrokenPipeError:
-        # Whoever read our output has gone, as `head` does. Python would complain once more at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(0)
+        _unread()
+    except SystemExit as error:
+        if isinstance(error.__context__, BrokenPipeError):  # the libraries that parse and print exit with 1 then
+            _unread()
+        raise
     except OSError as error:
         # A place that cannot be read or written, a full disk: the user's to mend, like any wrong input.
         place = f"{error.filename}: " if error.filename else ""
         _fail(f"{place}{error.strerror or error}.", USAGE)
+
+
+def _unread() -> NoReturn:
+    """Whoever read our output has gone, as `head` does. Python would complain once more at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(0)
 
 
 def _fail(words: str, code: int, *, told: bool = False) -> NoReturn:

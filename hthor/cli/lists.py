@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -52,7 +53,8 @@ def new_agent(
     except AgentError as error:  # exit code 4 is for agents that do not load
         raise HthorError(str(error)) from None
     screen.put_files([file], json)
-    sys.stderr.write(f"next:  hthor agent check {file}    hthor eval --agent {file} --humans proxy\n")
+    quoted = shlex.quote(str(file))
+    sys.stderr.write(f"next:  hthor agent check {quoted}    hthor eval --agent {quoted} --humans proxy\n")
 
 
 agent.command("check")(agents_of_mine.check)

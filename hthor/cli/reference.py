@@ -5,14 +5,15 @@ Everything after a page's marker is replaced; what stands before it is written b
 
 from __future__ import annotations
 
-import inspect
 import sys
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import typer.main
 
+_WIDE = 116
 MARK = "<!-- All below is written by: python -m hthor.cli.reference docs/cli.md -->\n"
 
 
@@ -48,7 +49,7 @@ def _section(name: str, command: Any) -> str:
     shown = options(command)
     arguments = [one for one in shown if one.param_type_name == "argument"]
     usage = " ".join([name, *(_metavar(one) for one in arguments)])
-    words = inspect.cleandoc(command.help or "")
+    words = "\n\n".join(textwrap.fill(part, _WIDE) for part in (command.help or "").split("\n\n"))
     lines = [f"## {name}\n", f"`{usage}`\n", f"{words}\n"]
     if shown:
         lines += ["| | | default |\n|---|---|---|", *(_row(one) for one in shown), ""]

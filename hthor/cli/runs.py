@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -194,6 +195,7 @@ def evaluate(
         isolation=isolation,
         require_isolation=require_isolation,
         trial_limit=trial_limit,
+        max_faults=max_faults,
     )
     if dry_run:
         from hthor.cli import ahead
@@ -246,13 +248,14 @@ def _show(console: Console, one: Done) -> None:
             _say(console, f"look:  {again}")
     more = ", suite.json" if (folder / "suite.json").exists() else ""
     if one.plan.shard:
-        base, of = whole_folder(folder), one.plan.shard.of
+        base, of = shlex.quote(str(whole_folder(folder))), one.plan.shard.of
         _say(console, f"shard {one.plan.shard.words} is done: {result.counts.trials} of {one.plan.trials} trials")
         _say(console, f"files: {folder}/run.json, trials.jsonl{more}")
         _say(console, f"next:  hthor merge {base}-shard-*-of-{of} --out {base}")
         return
     _say(console, f"files: {folder}/run.json, trials.jsonl, result.json{more}")
-    _say(console, f"next:  hthor replay {folder} 0    hthor score {folder} --all    hthor leaderboard add {folder}")
+    run = shlex.quote(str(folder))
+    _say(console, f"next:  hthor replay {run} 0    hthor score {run} --all    hthor leaderboard add {run}")
 
 
 def _compare_peoples(console: Console, whole: Matrix) -> None:

@@ -24,7 +24,7 @@ def console(*, talk: bool = False) -> Console:
 
     stream: TextIO = sys.stderr if talk else sys.stdout
     wide = None if stream.isatty() or "COLUMNS" in os.environ else _PIPE_COLUMNS
-    return Console(file=stream, width=wide)
+    return Console(file=stream, width=wide, emoji=False)  # agent.py:B: is no blood group
 
 
 def live() -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from typing import Annotated
 
@@ -26,5 +27,6 @@ def serve(
     sys.stdout.write(f"{serving.address(server)}\n")
     sys.stdout.flush()
     sys.stderr.write(f"serves {agent}; stop it with Ctrl-C\n")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C, for who stops it from a script
     with server:
         server.serve_forever()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -37,7 +38,7 @@ def salt(
 
     salts.fresh(out)
     screen.put_files([out], json)
-    sys.stderr.write(f"next:  hthor suite make NAME --salt-file {out}\n")
+    sys.stderr.write(f"next:  hthor suite make NAME --salt-file {shlex.quote(str(out))}\n")
 
 
 @app.command("make")
@@ -71,7 +72,7 @@ def make(
     sys.stdout.write(f"{folder}: {made.tasks} tasks in {made.houses} houses, suite {made.suite_sha256[:10]}\n")
     sys.stdout.write(f"publish now:    {path} (salt {made.salt[:10]})\n")
     sys.stdout.write(f"keep to yourself until the season is over: {salt_file}, and the rest of {folder}\n")
-    sys.stderr.write(f"next:  hthor eval --suite {folder} --agent my_agent.py\n")
+    sys.stderr.write(f"next:  hthor eval --suite {shlex.quote(str(folder))} --agent my_agent.py\n")
 
 
 @app.command("reveal")
@@ -81,7 +82,7 @@ def reveal(folder: Folder, salt_file: SaltFile, json: Json = False) -> None:
 
     path = commitment.reveal(folder, _salt(salt_file, folder))
     screen.put_files([path], json)
-    sys.stderr.write(f"next:  hthor suite verify {folder}\n")
+    sys.stderr.write(f"next:  hthor suite verify {shlex.quote(str(folder))}\n")
 
 
 @app.command("verify")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,31 +12,36 @@ from hthor.eval.shard import whole_folder
 from hthor.types import RobotSeat
 
 
-def of(folder: Path, plan: Setup) -> str:
-    """The command that finishes a run, or a shard of one."""
-    parts = [f"hthor eval{_who(plan.robots)} --humans {plan.humans.source}"]
+def of(folder: Path, plan: Setup, out: Path | None = None) -> str:
+    """The command that finishes a run, or a shard of one, as a shell takes it.
+
+    Args:
+        out: the folder that it names, when that is not the run's own.
+    """
+    out = out or folder
+    words = ["hthor", "eval", *_who(plan.robots), "--humans", plan.humans.source]
     if plan.kind is not None and plan.kind.sha256:
-        parts.append(f"--kind {plan.kind.name}.py")
-        parts += [] if (folder / "suite.json").exists() else [f"--suite {plan.suite.name}"]
+        words += ["--kind", f"{plan.kind.name}.py"]
+        words += [] if (folder / "suite.json").exists() else ["--suite", plan.suite.name]
     else:
-        parts.append(f"--suite {plan.suite.name}" + (f" --kind {plan.kind.name}" if plan.kind else ""))
-    parts += [] if plan.assets.name == PROCEDURAL else [f"--assets {plan.assets.name}"]
+        words += ["--suite", plan.suite.name, *(("--kind", plan.kind.name) if plan.kind else ())]
+    words += [] if plan.assets.name == PROCEDURAL else ["--assets", plan.assets.name]
     detector = next((robot.detector for robot in plan.seats), OWN)
-    parts += [] if detector == OWN else [f"--detector {detector}"]
-    parts += ["--realtime"] if plan.realtime else []
-    parts.append(f"--seed {plan.seed} --participants {plan.participants}")
-    parts.append(f"--shard {plan.shard.words} --out {whole_folder(folder)}" if plan.shard else f"--out {folder}")
-    return " ".join(parts)
+    words += [] if detector == OWN else ["--detector", detector]
+    words += ["--realtime"] if plan.realtime else []
+    words += ["--seed", str(plan.seed), "--participants", str(plan.participants)]
+    words += ["--shard", plan.shard.words] if plan.shard else []
+    return shlex.join([*words, "--out", str(whole_folder(out) if plan.shard else out)])
 
 
-def _who(robots: Sequence[RobotSeat]) -> str:
+def _who(robots: Sequence[RobotSeat]) -> list[str]:
     """The options that name these robots."""
     minds = [
         robot.agent.name if robot.agent.source.startswith("hthor.agents.") else robot.agent.source for robot in robots
     ]
     bodies = [f"{robot.robot}.py" if robot.robot_sha256 else robot.robot for robot in robots]
     if len(robots) == 1:
-        return f" --agent {minds[0]}" + (f" --robot {bodies[0]}" if bodies[0] else "")
+        return ["--agent", minds[0], *(("--robot", bodies[0]) if bodies[0] else ())]
     # a mind that wants no robot may have been asked for with any body
     pairs = (f"{body or 'scout'}:{mind}" for body, mind in zip(bodies, minds, strict=True))
-    return f" --robots {','.join(pairs)}"
+    return ["--robots", ",".join(pairs)]

@@ -10,6 +10,7 @@ import time
 
 from msgspec import Struct
 
+from hthor import plugins
 from hthor.errors import AgentError, HthorError
 from hthor.eval import crews, points
 from hthor.eval.crews import Character
@@ -47,6 +48,8 @@ def check(agent: str, *, robot: str = "", isolation: str = "auto") -> Report:
     Raises:
         IsolationError: when the level cannot be had.
     """
+    if agent in plugins.names("agent"):
+        raise HthorError(f"'{agent}' ships with hthor; give an agent of your own, such as my_agent.py.")
     confine_guests(isolation)
     began = time.perf_counter()
     try:

@@ -46,6 +46,7 @@ class Options(Struct, frozen=True, kw_only=True):
     isolation: str = "auto"
     require_isolation: str = ""
     trial_limit: float | None = None
+    max_faults: str = "0"
 
 
 class Part(Struct, frozen=True, kw_only=True):

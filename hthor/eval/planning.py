@@ -37,7 +37,7 @@ def plan(
         HthorError: when it is neither, or what is wanted is impossible.
     """
     if bool(folders) == bool(rates) or len(folders) not in (0, 2):
-        raise HthorError("name two runs, or two rates with --rates 0.73,0.76; not both.")
+        raise HthorError("name two runs, hthor power RUN RUN, or two rates, hthor power --rates 0.73,0.76; not both.")
     if folders:
         first, second, measured = _measured(folders)
         correlation = measured if correlation is None else correlation
@@ -45,6 +45,7 @@ def plan(
         first, second = _rates(rates)
     if difference is not None:
         second = first + difference
+    power.possible(first, second)
     if correlation is None:
         correlation = min(USUAL, power.correlation_range(first, second)[1])
     elif folders:  # as measured, but for rates that may be others

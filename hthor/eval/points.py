@@ -52,7 +52,7 @@ def plays(notes: Notes, agent: str) -> list[Finding]:
     """Whether it began, and acted to the trial's end."""
     if notes.faults:
         fault = notes.faults[0]
-        began = bool(notes.actions or notes.thought_s or fault.tick)
+        began = bool(notes.asked or fault.tick)
         broken = _broken("acts" if began else "begins", fault, agent, len(notes.actions) + 1)
         return [Finding(check="begins", status="ok"), broken] if began else [broken]
     slow = notes.begin_s > _SLOW_BEGIN_S

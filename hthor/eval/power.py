@@ -41,6 +41,17 @@ def correlation_range(first: float, second: float) -> tuple[float, float]:
     )
 
 
+def possible(first: float, second: float) -> None:
+    """Do nothing when these can be rates.
+
+    Raises:
+        HthorError: naming the one that is not.
+    """
+    for name, rate in (("first", first), ("second", second)):
+        if not 0.0 <= rate <= 1.0:
+            raise HthorError(f"the {name} rate is {rate:g}, but must be from 0 to 1.")
+
+
 def need(first: float, second: float, *, correlation: float = 0.0, power: float = stats.POWER) -> Need:
     """What it takes to tell two success rates apart, two-sided at 5 %, with tasks that are done once each.
 
@@ -51,9 +62,7 @@ def need(first: float, second: float, *, correlation: float = 0.0, power: float 
     Raises:
         HthorError: when a rate or the correlation is impossible.
     """
-    for name, rate in (("first", first), ("second", second)):
-        if not 0.0 <= rate <= 1.0:
-            raise HthorError(f"the {name} rate is {rate:g}, but must be from 0 to 1.")
+    possible(first, second)
     low, high = correlation_range(first, second)
     if not low - 1e-9 <= correlation <= high + 1e-9:
         raise HthorError(
@@ -63,7 +72,9 @@ def need(first: float, second: float, *, correlation: float = 0.0, power: float 
     variance = variance_of_difference(first, second, correlation)
     trials = trials_for(second - first, variance, power=power)
     if trials is None:
-        raise HthorError("the two rates are equal, and no number of trials can tell them apart. Give two rates.")
+        raise HthorError(
+            "the two rates are equal, and no number of trials can tell them apart. Give two rates, or --difference."
+        )
     return Need(
         difference=round(second - first, 6),
         correlation=round(correlation, 6),

@@ -29,7 +29,7 @@ class Notes(Struct, frozen=True, kw_only=True):
 
     Attributes:
         line: the record as it would be written.
-        actions: what was done, with the tick at which it was asked for.
+        asked: how often it was asked to act. actions: what was done, with the tick at which it was asked for.
         thought_s: seconds of each ``act``, without what its pictures and scans took; ``begin_s`` of ``begin``.
         wall_s: seconds of the whole trial but for ``begin``.
         memory_mb: the most memory that was seen in use; 0 where the agent runs elsewhere.
@@ -40,6 +40,7 @@ class Notes(Struct, frozen=True, kw_only=True):
 
     line: bytes
     faults: tuple[Fault, ...]
+    asked: int
     actions: tuple[tuple[int, Action], ...]
     thought_s: tuple[float, ...]
     begin_s: float
@@ -88,6 +89,7 @@ class Rehearsal:
         return Notes(
             line=record.encode(record.of(trial, log)),
             faults=log.faults,
+            asked=len(noted.looks),
             actions=tuple(done),
             thought_s=tuple(noted.thought_s),
             begin_s=noted.begin_s,

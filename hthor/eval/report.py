@@ -59,7 +59,7 @@ def result_table(result: Result, *, everything: bool = False) -> RenderableType:
     title = f"{result.name}: {result.suite.name}, {result.counts.trials} trials, {result.humans.name} people"
     table = _table(title + (", in real time" if result.mode == REALTIME else ""))
     for heading in ("mean", "95 % interval", "could have seen", "trials"):
-        table.add_column(heading, justify="right")
+        table.add_column(heading, justify="right", overflow="fold")
     later = enumerate(result.trust_by_trial if everything else (), 1)
     rated = ((f"trust after a person's trial {number}", "", estimate) for number, estimate in later)
     for title, unit, estimate in (*_rows(result.metrics, everything), *rated):
@@ -68,8 +68,8 @@ def result_table(result: Result, *, everything: bool = False) -> RenderableType:
     for name, title, unit in _UPLIFT if result.uplift else ():
         gain: Difference = getattr(result.uplift, name)
         ends = "–" if gain.ci95 is None else " … ".join(_gain(end, unit) for end in gain.ci95)
-        least = "–" if gain.mde80 is None else _gain(gain.mde80, unit).removeprefix("+")
-        table.add_row(f"uplift: {title}", f"{_gain(gain.difference, unit)} {unit}", ends, least, str(gain.n))
+        seen = least(gain.mde80, 100.0 if unit == "points" else 1.0, room=unit == "points")
+        table.add_row(f"uplift: {title}", f"{_gain(gain.difference, unit)} {unit}", ends, seen, str(gain.n))
     return _doubted(table, [result.humans])
 
 
@@ -77,7 +77,7 @@ def kinds_table(result: Result) -> Table:
     """One run of several kinds of task: a column a kind, the main metrics with their intervals below."""
     table = _table(f"{result.name}: by kind of task (95 % interval)")
     for kind in result.by_kind:
-        table.add_column(kind.replace("_", " "), justify="right")
+        table.add_column(kind.replace("_", " "), justify="right", overflow="fold")
     for name, title, unit in _MAIN:
         estimates = [getattr(scores, name) for scores in result.by_kind.values()]
         if any(estimate.n for estimate in estimates) or name not in _ONLY_WHERE_KNOWN:
@@ -91,7 +91,7 @@ def comparison_table(results: Sequence[Result]) -> RenderableType:
     title = f"{first.suite.name}, {first.counts.trials} trials, {first.humans.name} people (95 % interval)"
     table = _table(title)
     for result in results:
-        table.add_column(result.name, justify="right")
+        table.add_column(result.name, justify="right", overflow="fold")
     for name, title, unit in _MAIN:
         estimates = [getattr(result.metrics, name) for result in results]
         if any(estimate.n for estimate in estimates) or name not in _ONLY_WHERE_KNOWN:
@@ -108,7 +108,7 @@ def peoples_table(matrix: Matrix) -> RenderableType:
     table = _table(f"{matrix.suite.name}, {matrix.trials} trials with each people")
     for agent in matrix.agents:
         for heading in (f"{agent}\nsuccess %", "\nTWSR %", "\nadoption %"):
-            table.add_column(heading, justify="right")
+            table.add_column(heading, justify="right", overflow="fold")
     for people in matrix.peoples:
         cells: list[str] = []
         for agent, cell in matrix.cells[people.name].items():
@@ -158,7 +158,20 @@ def interval(estimate: Estimate, unit: str) -> str:
 
 def detectable(estimate: Estimate, unit: str) -> str:
     """The smallest difference from a given number that these trials could have seen."""
-    return "–" if estimate.mde80 is None else _scaled(estimate.mde80, unit)
+    return least(estimate.mde80, 100.0 if unit in ("%", "points") else 1.0, room=unit in ("%", "points"))
+
+
+def least(mde80: float | None, scale: float, *, room: bool) -> str:
+    """A smallest difference as a number.
+
+    A dash where the trials are too few to tell, or all alike and no measure of chance.
+
+    Args:
+        room: whether it is a share, of which no two are further apart than 100 points.
+    """
+    if not mde80:
+        return "–"
+    return "> 100" if room and mde80 > 1.0 else f"{scale * mde80:.1f}"
 
 
 def _gain(value: float, unit: str) -> str:
@@ -194,5 +207,5 @@ def _table(title: str) -> Table:
     from rich.table import Table
 
     table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("")
+    table.add_column("", overflow="fold")
     return table

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from hthor.eval import report
 from hthor.eval.contrast import UNITS, Difference
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def table(pair: Comparison) -> Table:
     """A row a metric."""
     made = _table(f"{pair.second} against {pair.first}: {pair.tasks} tasks, {pair.people} people")
     for heading in (pair.first, pair.second, "difference", "95 % interval", "could have seen", "p", "trials"):
-        made.add_column(heading, justify="right")
+        made.add_column(heading, justify="right", overflow="fold")
     for metric, found in pair.differences.items():
         made.add_row(_TITLES[metric], *_cells(found, UNITS[metric]))
     return made
@@ -36,7 +37,7 @@ def groups_table(pair: Comparison, by: str) -> Table:
     """Success by kind, split, difficulty or scene."""
     made = _table(f"success rate [%], by {by}")
     for heading in (pair.first, pair.second, "difference", "95 % interval", "could have seen", "p", "trials"):
-        made.add_column(heading, justify="right")
+        made.add_column(heading, justify="right", overflow="fold")
     for name, found in pair.groups[by].items():
         made.add_row(name.replace("_", " "), *_cells(found, "points"))
     return made
@@ -47,8 +48,7 @@ def lines(pair: Comparison, among: int) -> Iterator[str]:
     mcnemar, tally = pair.mcnemar, pair.tally
     yield (
         f"success in one of the two only: {mcnemar.only_second} times {pair.second}, {mcnemar.only_first} times "
-        f"{pair.first}; exact McNemar p "
-        f"{'< 0.001' if mcnemar.p < 0.001 else f'= {mcnemar.p:.3f}'}"
+        f"{pair.first}; exact McNemar p {_chance(mcnemar.p)}"
     )
     yield (
         f"{pair.second} was better in time-weighted success in {tally.wins} trials, the same in {tally.ties}, worse in "
@@ -56,8 +56,8 @@ def lines(pair: Comparison, among: int) -> Iterator[str]:
     )
     if any(pair.dropped):
         yield f"without a partner: {pair.dropped[0]} trials of {pair.first}, {pair.dropped[1]} of {pair.second}"
-    if among > 1:
-        yield f"p among {among} comparisons (Holm): {pair.p_holm:.3g}"
+    if pair.p_holm is not None and among > 1:
+        yield f"among {among} comparisons (Holm) p {_chance(pair.p_holm)}"
     yield pair.sentence
 
 
@@ -72,9 +72,13 @@ def difference(found: Difference, unit: str) -> str:
 def _cells(found: Difference, unit: str) -> Iterator[str]:
     yield from (_plain(found.first, unit), _plain(found.second, unit), _signed(found.difference, unit))
     yield "–" if found.ci95 is None else " … ".join(_signed(end, unit) for end in found.ci95)
-    yield "–" if found.mde80 is None else _plain(found.mde80, unit)
+    yield report.least(found.mde80, 100.0 if unit == "points" else 1.0, room=unit == "points")
     yield "–" if found.p is None else ("< 0.001" if found.p < 0.001 else f"{found.p:.3f}")
     yield str(found.n)
+
+
+def _chance(p: float) -> str:
+    return "< 0.001" if p < 0.001 else f"= {p:.3f}"
 
 
 def _plain(value: float, unit: str) -> str:
@@ -90,5 +94,5 @@ def _table(title: str) -> Table:
     from rich.table import Table
 
     table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("")
+    table.add_column("", overflow="fold")
     return table

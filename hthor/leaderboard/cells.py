@@ -7,6 +7,7 @@ from html import escape
 from msgspec import Struct
 
 from hthor.eval.contrast import Difference
+from hthor.eval.report import least
 from hthor.eval.stats import Estimate
 from hthor.leaderboard.board import Row, Section, Standing
 
@@ -52,7 +53,7 @@ def share(one: Estimate) -> Cell:
     if one.mean is None:
         return Cell(NOTHING, -1.0)
     low, high = (f"{100 * end:.1f}" for end in one.ci95 or (one.mean, one.mean))
-    return Cell(f"{100 * one.mean:.1f}<small class='soft'>{low}–{high}</small>", one.mean)
+    return Cell(f"{100 * one.mean:.1f}{_small(f'{low}–{high}', one, 100.0)}", one.mean)
 
 
 def amount(one: Estimate, digits: int = 1) -> Cell:
@@ -60,7 +61,7 @@ def amount(one: Estimate, digits: int = 1) -> Cell:
     if one.mean is None:
         return Cell(NOTHING, -1.0)
     low, high = (f"{end:.{digits}f}" for end in one.ci95 or (one.mean, one.mean))
-    return Cell(f"{one.mean:.{digits}f}<small class='soft'>{low}–{high}</small>", one.mean)
+    return Cell(f"{one.mean:.{digits}f}{_small(f'{low}–{high}', one, 1.0)}", one.mean)
 
 
 def gain(one: Difference | None) -> Cell:
@@ -68,9 +69,8 @@ def gain(one: Difference | None) -> Cell:
     if one is None:
         return Cell(NOTHING, -_LAST)
     low, high = (f"{100 * end:+.1f}" for end in one.ci95 or (one.difference, one.difference))
-    return Cell(
-        f"{_signed(100 * one.difference)}<small class='soft'>{_minus(low)} to {_minus(high)}</small>", one.difference
-    )
+    ends = f"{_minus(low)} to {_minus(high)}"
+    return Cell(f"{_signed(100 * one.difference)}{_small(ends, one, 100.0)}", one.difference)
 
 
 def checked(one: Row) -> Cell:
@@ -100,6 +100,12 @@ def ties(section: Section) -> str:
         if id in {later.id for later in section.rows[place + 1 :]}
     ]
     return f"These data cannot tell apart in success: {'; '.join(pairs)}." if pairs else ""
+
+
+def _small(ends: str, one: Estimate | Difference, scale: float) -> str:
+    """The interval; pointing at it tells how many trials it is of, and what they could have seen."""
+    told = f"n {one.n}, could have seen {least(one.mde80, scale, room=scale > 1.0)}"
+    return f"<small class='soft' title='{told}'>{ends}</small>"
 
 
 def _signed(value: float) -> str:

@@ -32,7 +32,7 @@ def problems(board: Path, paths: Sequence[Path] = (), *, submissions: Path | Non
         board: its other entries are where controls are looked for. submissions: where agents' files lie, if they do.
     """
     found: list[Problem] = []
-    wanted = list(paths) or files.entry_paths(board)
+    wanted = list(paths) or files.entry_paths(files.seen(board))
     beside = [path for path in files.entry_paths(board) if path.resolve() not in {one.resolve() for one in wanted}]
     held, trusted = [], []
     for path in wanted:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 import msgspec
@@ -10,7 +12,7 @@ import msgspec
 from hthor.errors import HthorError, RunError
 from hthor.eval import command, control, guarded, machine, metrics, programme, provenance, reading, score, setup
 from hthor.eval.setup import Setup
-from hthor.leaderboard import files, harness, outcomes, overrides, worth
+from hthor.leaderboard import checks, files, harness, outcomes, overrides, worth
 from hthor.leaderboard.entry import LOCKSTEP, REALTIME, Agent, Entry, Hashes
 from hthor.leaderboard.files import BoardError
 from hthor.leaderboard.submission import Submission
@@ -26,7 +28,8 @@ def add(folder: Path, board: Path, submission: Submission | None = None) -> list
 
     Raises:
         RunError: when there is no run, it is not whole, or has no control.
-        BoardError: when it was played with settings that depart from the benchmark's.
+        BoardError: when it was played with settings that depart from the benchmark's, or its entry is not in order;
+            then nothing is written.
     """
     made: dict[Path, Entry] = {}
     for run in _runs(folder):
@@ -35,8 +38,10 @@ def add(folder: Path, board: Path, submission: Submission | None = None) -> list
         for each in (run, *([beside] if beside else [])):
             made[each] = made.get(each) or of(each, submission if each == run else None)
     added = {entry.id: (entry, board / files.ENTRIES / f"{entry.id}.json") for entry in made.values()}
-    for entry, path in added.values():
-        files.write(path, _verified(entry, path))
+    made_now = {path: _verified(entry, path) for entry, path in added.values()}
+    _refuse(board, made_now)
+    for path, entry in made_now.items():
+        files.write(path, entry)
     return list(added.values())
 
 
@@ -87,6 +92,16 @@ def _runs(folder: Path) -> list[Path]:
             f"{folder} is no run's folder, nor a folder of runs: no run.json is there. 'hthor eval' makes one."
         )
     return found
+
+
+def _refuse(board: Path, made: Mapping[Path, Entry]) -> None:
+    """Judge entries before they are on the board: one that is not in order would keep the board from being built."""
+    with tempfile.TemporaryDirectory() as drafts:
+        drawn = {Path(drafts) / path.name: path for path in made}
+        for draft, path in drawn.items():
+            files.write(draft, made[path])
+        found = checks.problems(board, tuple(drawn))
+    files.refuse(msgspec.structs.replace(one, file=str(drawn[Path(one.file)])) for one in found)
 
 
 def _whole(folder: Path, plan: Setup, there: int) -> None:

@@ -52,6 +52,17 @@ def entry_paths(board: Path) -> list[Path]:
     return sorted((board / ENTRIES).glob("*.json"))
 
 
+def seen(board: Path) -> Path:
+    """The board's folder.
+
+    Raises:
+        BoardError: when there is none: a board that is looked for in the wrong place is not in order.
+    """
+    if not board.is_dir():
+        raise BoardError(f"{board} is no folder. Name the board with --board; 'hthor leaderboard add' begins one.")
+    return board
+
+
 def read(path: Path) -> Entry:
     """An entry from its file.
 

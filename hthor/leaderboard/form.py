@@ -45,7 +45,10 @@ def _by_schema(path: Path) -> Iterator[Problem]:
         raise MissingExtra("checking entries", "leaderboard") from None
     try:
         document = json.loads(path.read_bytes(), parse_constant=_no_number)
-    except (ValueError, OSError) as error:
+    except OSError as error:
+        yield Problem(file=str(path), field="$", problem=f"cannot be read: {error.strerror}")
+        return
+    except ValueError as error:
         yield Problem(file=str(path), field="$", problem=f"is not JSON: {error}")
         return
     errors: Any = Draft202012Validator(schema.of("Entry")).iter_errors(document)

@@ -42,7 +42,8 @@ _HOW = (
     "cannot be told from at least one other. References (ref.) are hthor's own agents; they are there to be measured "
     "against and have no rank.",
     "Intervals are 95 %, for new tasks and new people of the same population. Points are percentage points over the "
-    "same people at the same tasks without a robot.",
+    "same people at the same tasks without a robot. Point at an interval for n, the number of trials, and the smallest "
+    "difference that these could have seen in four of five cases; leaderboard.json has both.",
     "Verified says what came of playing trials again that were drawn after the entry was handed in: V1 byte for byte "
     "on the same platform, V2 by outcomes on another, V3 statistically. An entry that was refuted has no rank.",
 )

@@ -18,7 +18,7 @@ def rescore(board: Path) -> list[Path]:
         BoardError: when an entry cannot be read.
         Unreadable: when a column of its trials cannot.
     """
-    held = [(path, files.read(path)) for path in files.entry_paths(board)]
+    held = [(path, files.read(path)) for path in files.entry_paths(files.seen(board))]
     changed = []
     for path, entry in held:
         named = entry.uplift.control if entry.uplift else ""

@@ -54,7 +54,7 @@ def problems(folder: Path) -> Iterator[Problem]:
     if not _NAME.fullmatch(name):
         rule = "takes a to z, 0 to 9, - and _, begins with a letter or digit, and has at most 40 characters"
         yield Problem(file=shown, field="$", problem=f"'{name}' cannot be a submission's name, which {rule}")
-    for path in sorted(folder.rglob("*")):
+    for path in sorted(folder.iterdir()):  # what lies in a folder that is not taken goes without saying
         yield from _file(path, path.relative_to(folder).as_posix())
     for needed, what in ((MIND, "a file with a class Agent, see docs/agents.md"), (ABOUT, _LEAST)):
         if not (folder / needed).is_file():

@@ -41,6 +41,8 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
     """
     if not request.word:
         raise HthorError("--draw is empty; it takes public chance, such as the hash of a commit made after submission.")
+    if not path.is_file():
+        raise files.BoardError(f"{path} is no file; an entry is one, such as leaderboard/entries/NAME.json.")
     files.refuse(checks.problems(board, [path]))
     entry = files.read(path)
     drawn = draw.sample(request.word, entry.digest, entry.trials.count, request.sample)

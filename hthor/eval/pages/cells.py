@@ -60,7 +60,7 @@ def robots(arms: tuple[Arm, ...]) -> tuple[Arm, ...]:
 
 
 def _note(n: int, mde80: float | None, scale: float, digits: int) -> str:
-    if mde80 is None:
+    if not mde80:  # too few, or all alike: no measure of chance
         return f"n {n}"
     if abs(scale) == _PER_CENT and mde80 >= 1.0:
         return f"n {n} · mde > 100"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import msgspec
 from msgspec import Struct
 
@@ -86,7 +88,7 @@ def of(run: Run) -> Origin:
         versions=plan.versions,
         isolation=guarded.load(run.folder),
         platforms=_platforms(run),
-        command=command.of(run.folder, plan).replace(f"--out {run.folder}", f"--out {run.name}"),
+        command=command.of(run.folder, plan, Path(run.name)),
         run_sha256=plan.sha256,
         rules_sha256=plan.rules_sha256,
         code_sha256=plan.code_sha256,
