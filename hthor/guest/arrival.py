@@ -14,6 +14,12 @@ from hthor.guest.talk import Talk
 _ENTER_S = 120.0
 """Seconds until a process must say what holds it: the start of an interpreter, and the libraries an agent names."""
 
+_REFUSED = "operation not permitted"
+_ONE_PROGRAM = (
+    " A held program may start no other: name the one that runs in the end, such as an interpreter itself instead of "
+    "a script that calls it."
+)
+
 
 class Arrival:
     """Brings an agent up, and up again after it has failed. The arguments are those of `Guest`."""
@@ -44,7 +50,8 @@ class Arrival:
             ready = talk.receive(self._start_s)[0]
         except GuestFault as fault:
             kind = AgentKilled if fault.kind == KILLED else AgentError
-            raise kind(f"{agent.text}: loading it failed ({fault}).\n{fault.log}".rstrip()) from None
+            hint = _ONE_PROGRAM if agent.words and _REFUSED in fault.log.lower() else ""
+            raise kind(f"{agent.text}: loading it failed ({fault}).{hint}\n{fault.log}".rstrip()) from None
         if not isinstance(ready, wire.Ready):
             talk.close()
             raise AgentError(ready.detail if isinstance(ready, wire.Failed) else f"unexpected {type(ready).__name__}")

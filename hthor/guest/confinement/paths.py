@@ -15,7 +15,7 @@ PACKAGE = Path(__file__).resolve().parents[2]
 _OURS = ("types", "guest", "agents", "navigation", "comms", "catalog")
 """Parts of this package that minds are made with. Houses, tasks, people and worlds are no business of theirs."""
 _LIBRARIES = ("site-packages", "dist-packages")
-_SYSTEM = ("/usr", "/lib", "/lib64", "/lib32", "/etc/ld.so.cache", "/etc/localtime", "/etc/ssl")
+_SYSTEM = ("/usr", "/bin", "/lib", "/lib64", "/lib32", "/etc/ld.so.cache", "/etc/localtime", "/etc/ssl")
 _FACTS = ("/sys/devices/system/cpu", "/proc/cpuinfo", "/proc/meminfo")
 DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
 _NEVER = (".git", "runs")
