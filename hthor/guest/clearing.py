@@ -42,6 +42,7 @@ def families() -> dict[int, list[int]]:
 def empty(folder: str) -> None:
     """Remove all that is in a folder, however deep and however it was locked; nothing that a link leads to."""
     if os.path.islink(folder):
+        os.unlink(folder)
         return
     with contextlib.suppress(OSError):
         os.chmod(folder, 0o700)
