@@ -139,12 +139,26 @@ def test_where_nobody_serves_the_run_does_not_begin_and_a_trial_has_a_fault() ->
         Guest(url).load()
 
 
+def test_a_server_that_never_listens_runs_out_of_time() -> None:
+    """It answers looks that it has not read; what is sent to it piles up until nothing more fits."""
+
+    def deaf(connection: Any) -> None:
+        while True:
+            connection.send(wire.encode(wire.Acted(action=Action())))
+
+    words = look(room="r" * 8000)
+    with lying(deaf) as url, Guest(url, step_s=1.0, bank_s=0.0) as mind:
+        mind.begin(BRIEFING)
+        with pytest.raises(GuestFault, match="timeout: the agent read nothing for 1 s"):
+            all(mind.act(words) for _ in range(20_000))
+
+
 def test_what_says_what_cannot_be_is_refused() -> None:
     for ready, told in (
         (wire.Ready(privileges=("x_ray",)), "names? 'x_ray'. Valid: house_map"),
         (wire.Ready(wire=7), "version 7 of the wire"),
         (wire.Ready(gpus=-1.0), "gpus must be"),
-        (wire.Done(), "unexpected Done"),
+        (wire.Done(), "it said Done before"),
     ):
         made = server.serve(lambda connection, said=ready: connection.send(wire.encode(said)), "127.0.0.1", 0)
         with running(made) as url, pytest.raises(AgentError, match=told):

@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -188,7 +189,6 @@ class Agent:
         print(SEEN, os.getpid(), hasattr(wire, "leak"))
         (FOLDER / "deep" / "deeper").mkdir(parents=True)
         (FOLDER / "deep" / "deeper" / "note").write_text("x")
-        os.chmod(FOLDER / "deep", 0)
         np.leak = wire.leak = 1
         return Action()
 """
@@ -209,3 +209,67 @@ def test_a_trial_leaves_nothing_to_the_next(level: str, tmp_path: Path) -> None:
         lines = [line.split() for line in mind.log.splitlines()]
     assert [(line[0], line[-1]) for line in lines] == [("[]", "False")] * 3, lines
     assert len({line[1] for line in lines}) == 3, "each trial has a process of its own"
+
+
+HALF_SAID = """
+import os, sys, threading
+from hthor.types import *
+READ, WRITE = int(sys.orig_argv[-4]), int(sys.orig_argv[-2])
+class Agent:
+    def begin(self, briefing):
+        print(os.get_blocking(READ), os.get_blocking(WRITE), os.get_blocking(1), flush=True)
+    def act(self, observation):
+        def late():
+            for pipe in (READ, WRITE, 1):
+                os.set_blocking(pipe, False)
+            os.write(WRITE, bytes([255, 0]))
+        threading.Timer(0.05, late).start()
+        return Action()
+"""
+
+
+@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+def test_the_next_trial_finds_the_wire_as_it_was(level: str, tmp_path: Path) -> None:
+    try:
+        guest.in_force(level)
+    except IsolationError as error:
+        pytest.skip(str(error))
+    path = tmp_path / "late.py"
+    path.write_text(HALF_SAID)
+    with Guest(path, isolation=level) as mind:
+        for _ in range(2):
+            mind.begin(BRIEFING)
+            mind.act(look())
+            time.sleep(0.2)
+        mind.finish()
+        assert mind.log.split() == ["True"] * 6
+
+
+CLEARED = """
+import os, sys
+from hthor.guest import clearing
+top = sys.argv[1]
+scratch, foreign = top + "/scratch", top + "/foreign"
+os.makedirs(scratch + "/deep/deeper")
+os.mkdir(foreign)
+open(foreign + "/kept", "w").close()
+os.chmod(foreign + "/kept", 0o400)
+os.symlink(foreign, scratch + "/link")
+os.symlink(foreign, scratch + "/deep/link")
+os.chmod(scratch + "/deep", 0)
+os.chmod(scratch, 0o500)
+clearing.empty(scratch)
+print(os.listdir(scratch), os.listdir(foreign), oct(os.stat(foreign + "/kept").st_mode & 0o777))
+os.symlink(foreign, top + "/instead")
+clearing.empty(top + "/instead")
+print(os.listdir(foreign))
+"""
+
+
+def test_what_is_cleared_up_ends_at_links() -> None:
+    python, how = runner()
+    with tempfile.TemporaryDirectory() as folder:
+        if "user" in how:
+            os.chown(folder, how["user"], how["group"])
+        done = subprocess.run([*python, "-P", "-c", CLEARED, folder], capture_output=True, text=True, **how)
+    assert done.stdout.splitlines() == ["[] ['kept'] 0o400", "['kept']"], done.stderr

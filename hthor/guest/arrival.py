@@ -9,6 +9,7 @@ from hthor.guest.faults import GuestFault
 from hthor.guest.info import GuestInfo
 from hthor.guest.process import Process
 from hthor.guest.reference import Reference
+from hthor.guest.showing import shown
 from hthor.guest.talk import Talk
 
 _ENTER_S = 120.0
@@ -54,7 +55,7 @@ class Arrival:
             raise kind(f"{agent.text}: loading it failed ({fault}).{hint}\n{fault.log}".rstrip()) from None
         if not isinstance(ready, wire.Ready):
             talk.close()
-            raise AgentError(ready.detail if isinstance(ready, wire.Failed) else f"unexpected {type(ready).__name__}")
+            raise AgentError(_instead(agent, ready))
         try:
             found = info.describe(agent, digest, ready, held)
         except AgentError:
@@ -115,3 +116,12 @@ class Arrival:
             return said
         self._talk.close()
         return said.detail if isinstance(said, wire.Failed) else f"unexpected {type(said).__name__}"
+
+
+def _instead(agent: Reference, said: object) -> str:
+    """What came in place of what an agent says of itself."""
+    if isinstance(said, wire.Failed):
+        return shown(said.detail)
+    if isinstance(said, wire.Over):
+        return f"{agent.text}: its process ended before it had said what it is."
+    return f"{agent.text}: it said {type(said).__name__} before it had said what it is."

@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import sys
 
-from hthor.guest import loading, program, wire
+from hthor.guest import loading, program, showing, wire
 from hthor.guest.confinement import holding, seccomp
 from hthor.guest.confinement.holding import Refused
 from hthor.guest.confinement.landlock import Ruleset
@@ -53,7 +53,7 @@ def serve(pipe: Pipe, order: wire.Load, held: Ruleset | None, *, first: bool, wa
     try:
         cls, ready = loading.load(order)
     except loading.Refusal as error:
-        pipe.send(wire.Failed(kind="contract", detail=str(error)))
+        pipe.send(wire.Failed(kind="contract", detail=showing.shown(str(error))[-wire.TEXT_MAX :]))
         return
     if first:
         pipe.send(ready)

@@ -67,14 +67,19 @@ def start(
     for rung in ladder:
         missing = _missing.get(rung) or (namespaces.unavailable() if rung == "L3" else "")
         if not missing:
-            one = process.start(agent, rung, hidden=_Terms.hidden, memory_mb=memory_mb, disk_mb=disk_mb, gpus=gpus)
+            try:
+                one = process.start(agent, rung, hidden=_Terms.hidden, memory_mb=memory_mb, disk_mb=disk_mb, gpus=gpus)
+            except OSError as error:  # such as too many files beside this agent to name one by one
+                reason = reason or f"{rung}: its process could not be started: {error.strerror}"
+                continue
             said = enter(one)
             if isinstance(said, wire.Confined):
                 return _described(rung, said, memory_mb, reason)
             missing = namespaces.excuse(said) if rung == "L3" else said
         _missing[rung] = missing
         reason = reason or f"{rung}: {missing}"
-    raise IsolationError(f"isolation {level} cannot be had on this machine: {_missing[ladder[-1]]}. {_HINT}")
+    why = _missing.get(ladder[-1], reason)
+    raise IsolationError(f"isolation {level} cannot be had on this machine: {why}. {_HINT}")
 
 
 def _described(level: str, said: wire.Confined, memory_mb: int, reason: str) -> Isolation:

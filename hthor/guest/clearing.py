@@ -40,14 +40,20 @@ def families() -> dict[int, list[int]]:
 
 
 def empty(folder: str) -> None:
-    """Remove all that is in a folder, however deep."""
+    """Remove all that is in a folder, however deep and however it was locked; nothing that a link leads to."""
+    if os.path.islink(folder):
+        os.unlink(folder)
+        return
+    with contextlib.suppress(OSError):
+        os.chmod(folder, 0o700)
     with contextlib.suppress(OSError):
         for entry in os.scandir(folder):
+            deep = entry.is_dir(follow_symlinks=False)
             with contextlib.suppress(OSError, RecursionError):
-                if entry.is_dir(follow_symlinks=False):
+                if deep:
                     shutil.rmtree(entry.path)
                 else:
                     os.unlink(entry.path)
-            if os.path.lexists(entry.path):  # too deep for Python, or locked by its owner
+            if deep and os.path.lexists(entry.path):  # too deep for Python, or locked by its owner
                 for words in (["chmod", "-R", "u+rwX"], ["rm", "-rf"]):
                     subprocess.run([*words, "--", entry.path], stderr=subprocess.DEVNULL, check=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 from pathlib import Path
 
@@ -15,7 +16,10 @@ def of_file(path: Path) -> str:
         AgentError: when it cannot be read.
     """
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
+        if path.exists() and not path.is_file():  # which could be read without end, or never
+            raise OSError(errno.EINVAL, "it is no file")
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
         hint = "Write one to start from: hthor agent new my_agent.py"
         raise AgentError(f"cannot read the agent's file {path}: {error.strerror}. {hint}") from None

@@ -51,6 +51,7 @@ def _forked(pipe: Pipe, secret: tuple[int, ...], order: wire.Load, held: Ruleset
         limits.die_with(me)
         for handle in secret:
             os.close(handle)
+        pipe.own()
         child.serve(pipe, order, held, first=first, wait=wait)
         os._exit(child.ORDERLY)
     finally:

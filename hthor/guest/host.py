@@ -177,3 +177,5 @@ class Guest:
             answer, _ = self._talk.receive(self._step_s)
             if not isinstance(answer, wire.Over):
                 self._talk.close()
+            elif self._process is not None:
+                self._process.forget()

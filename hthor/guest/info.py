@@ -12,6 +12,7 @@ from hthor.errors import AgentError
 from hthor.guest import wire
 from hthor.guest.confinement import Isolation
 from hthor.guest.reference import Reference
+from hthor.guest.showing import is_name, shown
 
 
 class GuestInfo(Struct, frozen=True, kw_only=True):
@@ -43,11 +44,15 @@ def describe(reference: Reference, sha256: str, ready: wire.Ready, held: Isolati
     unknown = [name for name in ready.privileges if name not in wire.PRIVILEGES]
     if unknown:
         valid = ", ".join(wire.PRIVILEGES)
-        raise AgentError(f"{reference.text}: its privileges name '{unknown[0][:80]}'. Valid: {valid}.")
+        raise AgentError(f"{reference.text}: its privileges name '{shown(unknown[0][:80])}'. Valid: {valid}.")
     if ready.wire != wire.VERSION:
         raise AgentError(f"{reference.text}: it speaks version {ready.wire} of the wire, valid is {wire.VERSION}.")
     if not math.isfinite(ready.gpus) or ready.gpus < 0:
         raise AgentError(f"{reference.text}: gpus must be a number from 0 on, got {ready.gpus}.")
+    for name in (ready.name, *ready.robots):
+        if not is_name(name, wire.NAME_MAX):
+            most = f"at most {wire.NAME_MAX} characters that can be seen"
+            raise AgentError(f"{reference.text}: a name has {most}, got '{shown(name[:80])}'.")
     python = reference.form in ("file", "module")
     served = reference.form == "served"
     return GuestInfo(
@@ -58,7 +63,7 @@ def describe(reference: Reference, sha256: str, ready: wire.Ready, held: Isolati
         robots=ready.robots,
         absent=ready.absent,
         persistent=ready.persistent or served,
-        doc=ready.doc[: wire.TEXT_MAX],
+        doc=shown(ready.doc)[: wire.TEXT_MAX],
         gpus=ready.gpus,
         isolation=held,
     )

@@ -10,7 +10,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from hthor.guest import wire
+from hthor.guest import showing, wire
 
 _MODULE = "hthor_guest_agent"  # not the file's name, which could hide a module of the standard library
 
@@ -38,7 +38,7 @@ def load(order: wire.Load) -> tuple[type[Any], wire.Ready]:
         robots=_names(cls, "robots", path),
         absent=bool(getattr(cls, "absent", False)),
         persistent=bool(getattr(cls, "persistent", False)),
-        doc=(cls.__doc__ or module.__doc__ or "").strip()[: wire.TEXT_MAX],
+        doc=showing.shown(str(cls.__doc__ or module.__doc__ or "").strip())[: wire.TEXT_MAX],
         ahead=True,
         gpus=_gpus(cls, path),
     )
@@ -119,4 +119,4 @@ def shown(error: BaseException) -> str:
     trace = error.__traceback__
     while trace is not None and trace.tb_frame.f_code.co_filename.startswith(ours):
         trace = trace.tb_next
-    return "".join(traceback.format_exception(type(error), error, trace))[-wire.TEXT_MAX :]
+    return showing.shown("".join(traceback.format_exception(type(error), error, trace)))[-wire.TEXT_MAX :]

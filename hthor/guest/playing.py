@@ -9,6 +9,7 @@ import msgspec
 
 from hthor.guest import loading, wire
 from hthor.guest.senses import Gone, RemoteSenses, Wire
+from hthor.guest.showing import shown
 from hthor.types import Action, Message
 
 
@@ -33,7 +34,7 @@ def _act(pipe: Wire, agent: Any, look: wire.Look) -> wire.Acted | wire.Failed:
     senses.expire()
     if not isinstance(action, Action):
         detail = f"act must return an hthor.types.Action, got {type(action).__name__}: {repr(action)[:200]}"
-        return wire.Failed(kind="wrong_type", detail=detail)
+        return wire.Failed(kind="wrong_type", detail=shown(detail))
     try:
         message = wire.Acted(action=wire.plain(action), read=senses.read)
     except wire.Unfit as error:
@@ -51,5 +52,5 @@ def _with_image(message: Message, senses: RemoteSenses) -> Message:
 
 
 def _failed(error: BaseException) -> wire.Failed:
-    detail = traceback.format_exception_only(error)[-1].strip()[: wire.TEXT_MAX]
+    detail = shown(traceback.format_exception_only(error)[-1].strip())[: wire.TEXT_MAX]
     return wire.Failed(kind="raised", detail=detail, traceback=loading.shown(error))

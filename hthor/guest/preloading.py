@@ -16,6 +16,8 @@ from pathlib import Path
 from hthor.guest.confinement import paths
 
 _MINDS = "hthor.agents"
+_MOST_BYTES = 1 << 20
+"""Longest file that is looked into."""
 _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "hthor.catalog", "hthor.rules")
 
 
@@ -60,6 +62,8 @@ def _installed(name: str) -> bool:
 def _named(path: Path) -> list[tuple[str, list[str]]]:
     """Modules that a file imports by name at its top level, and what it wants of each."""
     try:
+        if path.stat().st_size > _MOST_BYTES:  # nothing bounds what it takes to read it here
+            return []
         tree = ast.parse(path.read_bytes())
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
         return []

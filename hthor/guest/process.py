@@ -19,6 +19,7 @@ from hthor.guest import affinity, clearing, cost, ending, frames, wire
 from hthor.guest.confinement import Policy, devices, limits, namespaces, paths
 from hthor.guest.lines import HungUp, TimeIsUp
 from hthor.guest.reference import Reference
+from hthor.guest.showing import shown
 
 _PASSED_ON = ("PATH", "LANG", "LC_ALL", "TZ", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -71,6 +72,9 @@ class Process:
                 env=env,
                 start_new_session=True,
             )
+        except OSError:
+            self._close()
+            raise
         finally:
             for handle in (guest_in, tell, guest_out, printed):
                 os.close(handle)
@@ -118,6 +122,13 @@ class Process:
                     raise HungUp
                 self._buffers[handle] += chunk
 
+    def forget(self) -> None:
+        """Drop what a trial that has ended left half said."""
+        with contextlib.suppress(BlockingIOError):
+            while os.read(self._words, 1 << 16):
+                pass  # however much it is
+        self._buffers[self._words] = b""
+
     def _next(self, handle: int, most: int) -> bytes | int | None:
         buffer = self._buffers[handle]
         if len(buffer) < 4:
@@ -136,7 +147,7 @@ class Process:
             ready = [handle for handle, _ in poll.poll(max(0.0, end - time.monotonic()) * 1000.0)]
             if found := [handle for handle in wanted if handle in ready]:
                 return found
-            if not ready:
+            if not ready or time.monotonic() > end:  # a flood of words does not lengthen it
                 raise TimeIsUp
             if not self._drain():
                 time.sleep(0.001)  # the log was closed; do not spin on it
@@ -150,7 +161,7 @@ class Process:
     def log(self) -> str:
         """The end of what was printed, 16 KiB at most."""
         self._drain()
-        return self._log.decode(errors="replace")
+        return shown(self._log.decode(errors="replace"))
 
     def _drain(self) -> bool:
         """Take in what was printed, as much of it as has come by now; false when nothing more can come."""
@@ -180,6 +191,9 @@ class Process:
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.killpg(self._process.pid, signal.SIGKILL)
             self._process.wait()
+        self._close()
+
+    def _close(self) -> None:
         for handle in (self._out, self._words, self._keeper, self._err):
             os.close(handle)
         if self.frames is not None:

@@ -87,7 +87,10 @@ def read(text: str, cls: str | None = None) -> Reference:
 
 
 def _file(file: Path, cls: str, colon: str) -> Reference:
-    path = file.resolve()
+    try:
+        path = file.resolve()
+    except RuntimeError:
+        raise AgentError(f"cannot read the agent's file {file}: its link leads back to itself.") from None
     tail = f":{cls}" if colon or cls else ""
     return Reference(
         form="file",

@@ -7,6 +7,9 @@ is not known here, so its isolation is "served", which is less than any level.
 from __future__ import annotations
 
 import contextlib
+import fcntl
+import sys
+import termios
 import threading
 import time
 from typing import TYPE_CHECKING, Any
@@ -20,7 +23,7 @@ if TYPE_CHECKING:
 
 ISOLATION = Isolation(level=SERVED, reason_not_higher="it is served from elsewhere, where nothing of ours holds it")
 _AT_ONCE = 16 << 10
-"""Bytes that a connection takes without waiting for its other end."""
+"""Bytes that a connection takes without waiting for its other end, if that has taken all before."""
 _TOO_BIG = 1009
 EXTRA = "served"
 
@@ -84,8 +87,9 @@ class Served:
 
     def write(self, body: bytes, end: float) -> None:
         """As `Line` says."""
-        watch = threading.Timer(max(0.0, end - time.monotonic()), self._hang_up) if len(body) > _AT_ONCE else None
-        if watch:
+        watch: threading.Timer | None = None
+        if len(body) > _AT_ONCE or self._clogged():
+            watch = threading.Timer(max(0.0, end - time.monotonic()), self._hang_up)
             watch.start()
         try:
             self._connection.send(body)
@@ -117,6 +121,14 @@ class Served:
         """As `Line` says; the server goes on."""
         with contextlib.suppress(Exception):
             self._connection.__exit__(None, None, None)
+
+    def _clogged(self) -> bool:
+        """Whether the other end has not taken all that was sent before, or nobody can tell."""
+        if sys.platform != "linux":
+            return True
+        with contextlib.suppress(OSError, ValueError):  # it is closed
+            return any(fcntl.ioctl(self._connection.socket, termios.TIOCOUTQ, bytes(4)))
+        return True
 
     def _hang_up(self) -> None:
         self._late = True

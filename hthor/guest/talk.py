@@ -12,6 +12,7 @@ import msgspec
 from hthor.guest import wire
 from hthor.guest.faults import GuestFault
 from hthor.guest.lines import HungUp, Line, TimeIsUp
+from hthor.guest.showing import shown
 
 _guests_words = msgspec.msgpack.Decoder(wire.ToHost)
 _keepers_words = msgspec.msgpack.Decoder(wire.KeeperToHost)
@@ -32,18 +33,21 @@ class Talk:
         """Talk to this guest from now on."""
         self.line, self.loaded = line, False
 
-    def send(self, message: wire.ToGuest, seconds: float) -> None:
-        """Say something.
+    def send(self, message: wire.ToGuest, seconds: float) -> float:
+        """Say something, and say what is left of the time.
 
         Raises:
             GuestFault: when it is not taken in time.
         """
+        body = wire.encode(message)
+        end = time.monotonic() + seconds
         try:
-            self._running().write(wire.encode(message), time.monotonic() + seconds)
+            self._running().write(body, end)
         except TimeIsUp:
-            raise self.fault("timeout", f"the agent read nothing for {seconds:g} s") from None
+            raise self.fault("timeout", f"the agent read nothing for {seconds:.3g} s") from None
         except HungUp:
             raise self.fault(*self._running().obituary()) from None
+        return max(0.0, end - time.monotonic())
 
     def receive(self, seconds: float) -> tuple[wire.ToHost | wire.Over, float]:
         """The next message of the guest or its keeper, and what is left of the time.
@@ -63,7 +67,7 @@ class Talk:
         message: wire.ToHost | wire.Over
         try:
             message = _keepers_words.decode(body) if keepers else _guests_words.decode(body)
-        except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
             raise self.fault("garbage", f"what came is no message: {error}") from None
         if isinstance(message, wire.Failed) and (self.loaded or keepers):
             kind = message.kind if keepers or message.kind in wire.OWN_FAULTS else "garbage"
@@ -81,7 +85,7 @@ class Talk:
         log = self.log
         self.close()
         kind = kind if kind in wire.FAULTS else "garbage"
-        return GuestFault(kind, detail[: wire.TEXT_MAX], traceback[-wire.TEXT_MAX :], log)
+        return GuestFault(kind, shown(detail)[: wire.TEXT_MAX], shown(traceback)[-wire.TEXT_MAX :], log)
 
     @property
     def log(self) -> str:

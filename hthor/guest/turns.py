@@ -50,12 +50,12 @@ class Turns:
         ahead = self._sensed(habits.ahead, observation) if habits else {}
         if self._window is not None:
             self._window.clear()
-        talk.send(wire.Look(observation=bare, ahead=ahead), self._step_s)
-        left = granted = self._step_s + self._bank
+        granted = self._step_s + self._bank
+        left = talk.send(wire.Look(observation=bare, ahead=ahead), granted)
         for _ in range(_ASKS):
             said, left = talk.receive(left)
             if isinstance(said, wire.Ask):
-                talk.send(self._given(observation, said), self._step_s)
+                left = talk.send(self._given(observation, said), left)
                 if habits:
                     habits.read(said.what)
             elif isinstance(said, wire.Acted):

@@ -21,6 +21,8 @@ MOST_BYTES = 64 << 10
 """Longest frame that a guest may send."""
 NAME_MAX = 200
 """Longest id, seat or thing's name in an action, in characters."""
+NUMBER_MAX = 1e12
+"""Greatest number in an action, either way: what is beyond that is infinite a multiplication later."""
 TEXT_MAX = 8000
 """Longest text that a guest may say of itself or of a failure, in characters."""
 PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
@@ -210,6 +212,8 @@ def objection(action: Action) -> tuple[str, str] | None:
             numbers = value if isinstance(value, tuple) else (value,)
             if any(isinstance(number, float) and not math.isfinite(number) for number in numbers):
                 return "not_finite", f"{field} must be finite, got {value}"
+            if any(isinstance(number, float) and abs(number) > NUMBER_MAX for number in numbers):
+                return "garbage", f"{field} must lie within {NUMBER_MAX:g} of zero, got {value}"
             if isinstance(value, str) and name != "text" and len(value) > NAME_MAX:
                 return "oversized", f"{field} has {len(value)} characters, at most {NAME_MAX} are taken"
     return None

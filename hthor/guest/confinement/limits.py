@@ -17,6 +17,7 @@ _MOST_FILES = 10_000
 _OPEN_FILES = 256
 _MORE_PROCESSES = 1024
 _CAPSET, _CAPBSET_DROP = 126, 24
+_HELD = ("VmRSS", "VmPTE", "VmSwap")
 _PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
@@ -68,6 +69,18 @@ def resident_mb(pid: int) -> float:
         return 0.0
 
 
+def held_mb(pid: int) -> float:
+    """All that a process keeps in memory [MB], with what was swapped out and the tables of its pages.
+
+    The tables can be many times as large as the pages: one that was only read takes none, but a place in a table.
+    """
+    with contextlib.suppress(OSError, ValueError, IndexError):
+        lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+        facts = {name: words for name, _, words in (line.partition(":") for line in lines)}
+        return sum(int(facts[name].split()[0]) for name in _HELD if name in facts) / 1024
+    return 0.0
+
+
 def written_mb(pid: int) -> float:
     """What a process has written to disks so far [MB], files included that have no name any more."""
     try:
@@ -78,14 +91,18 @@ def written_mb(pid: int) -> float:
 
 
 def crowd(folder: str) -> tuple[float, int]:
-    """Size of all files in a folder [MB] and their number; stops counting at `_MOST_FILES`."""
+    """Size of all files in a folder [MB] and their number; stops counting at `_MOST_FILES`.
+
+    Raises:
+        OSError: when a folder in there cannot be looked into, though it is there.
+    """
     size = count = 0
     left = [folder]
     while left and count <= _MOST_FILES:
-        with contextlib.suppress(OSError), os.scandir(left.pop()) as entries:
+        with contextlib.suppress(FileNotFoundError, NotADirectoryError), os.scandir(left.pop()) as entries:
             for entry in entries:
                 count += 1
-                with contextlib.suppress(OSError):
+                with contextlib.suppress(FileNotFoundError):
                     size += entry.stat(follow_symlinks=False).st_blocks * 512
                     if entry.is_dir(follow_symlinks=False):
                         left.append(entry.path)
@@ -96,10 +113,13 @@ def crowd(folder: str) -> tuple[float, int]:
 
 def excess(pid: int, scratch: str, memory_mb: int, disk_mb: int) -> tuple[str, str] | None:
     """What a process has too much of, as a fault's kind and detail; None while it keeps within its bounds."""
-    held = resident_mb(pid)
+    held = held_mb(pid)
     if held > memory_mb:
         return "memory", f"the agent held {held:.0f} MB of memory, {memory_mb} MB are allowed"
-    size, count = crowd(scratch)
+    try:
+        size, count = crowd(scratch)
+    except OSError as error:
+        return "disk", f"a folder of the agent's cannot be looked into: {error.strerror}"
     size = max(size, written_mb(pid))
     if size > disk_mb:
         return "disk", f"the agent wrote {size:.0f} MB in a trial, {disk_mb} MB are allowed"

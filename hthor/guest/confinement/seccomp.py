@@ -72,7 +72,11 @@ DENIED = {
     "semctl": 66,
     "msgget": 68,
     "msgsnd": 69,
+    "msgrcv": 70,
+    "msgctl": 71,
+    "semtimedop": 220,
     "mq_open": 240,
+    "mq_unlink": 241,
     "memfd_secret": 447,
     "add_key": 248,
     "request_key": 249,
@@ -91,6 +95,8 @@ DENIED = {
     "fsmount": 432,
     "fspick": 433,
     "mount_setattr": 442,
+    "quotactl_fd": 443,
+    "open_tree_attr": 467,
     "name_to_handle_at": 303,
     "open_by_handle_at": 304,
     "mknod": 133,
@@ -101,6 +107,21 @@ DENIED = {
     "quotactl": 179,
     "swapon": 167,
     "swapoff": 168,
+    # what the rules for files say nothing of: they would let a process change every file of its user
+    "truncate": 76,
+    "chown": 92,
+    "fchown": 93,
+    "lchown": 94,
+    "fchownat": 260,
+    "setxattr": 188,
+    "lsetxattr": 189,
+    "fsetxattr": 190,
+    "setxattrat": 463,
+    "removexattr": 197,
+    "lremovexattr": 198,
+    "fremovexattr": 199,
+    "removexattrat": 466,
+    "file_setattr": 469,
     # the kernel and the machine
     "bpf": 321,
     "perf_event_open": 298,
@@ -130,6 +151,19 @@ DENIED = {
 }
 _ABSENT = {"clone3": 435, "memfd_create": 319}
 """Said not to exist, so that libraries take the older way: clone3 hides what it does behind a pointer."""
+_UNSUPPORTED = {"fallocate": 285}
+"""Said not to be supported: libraries then write, which is counted while it happens."""
+_IDLE = {
+    "chmod": 90,
+    "fchmod": 91,
+    "fchmodat": 268,
+    "fchmodat2": 452,
+    "utime": 132,
+    "utimes": 235,
+    "futimesat": 261,
+    "utimensat": 280,
+}
+"""Said to be done, and not done: whoever copies a file calls these, and no rule for files says whose it may be."""
 _EXECVE, _UNREAD = 59, 3
 _WORD = struct.Struct("<3Q")
 _CLONE, _KILL_CALL, _TGKILL, _PRLIMIT, _FCNTL, _IOCTL = 56, 62, 234, 302, 72, 16
@@ -186,6 +220,10 @@ def program(me: int, word: bytes = b"") -> bytes:
         lines += _on(number, [refuse])
     for number in _ABSENT.values():
         lines += _on(number, [absent])
+    for number in _UNSUPPORTED.values():
+        lines += _on(number, [_no(errno.EOPNOTSUPP)])
+    for number in _IDLE.values():
+        lines += _on(number, [_no(0)])
     lines += _on(_EXECVE, _spoken(word, refuse) if word else [refuse])
     lines += _on(_CLONE, [_argument(0), (_ANY_BIT, 1, 0, _CLONE_THREAD), refuse, _YES])
     for number in (_KILL_CALL, _TGKILL):
