@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from hthor.errors import HthorError
+from hthor.errors import HthorError, UnknownName
 from hthor.types import DetectorSpec
 
 OWN = "own"
@@ -29,6 +29,9 @@ def read(text: str) -> DetectorSpec:
     rates: dict[str, float] = {}
     for word in text.split(","):
         name, equals, number = (part.strip() for part in word.partition("="))
+        if not equals and "," not in text:
+            hint = "Or rates, such as miss=0.2,false_alarm=0.05,position_sigma=0.03."
+            raise UnknownName("detector", text, (OWN, *_NAMED), hint)
         if not equals or name not in _RATES or name in rates:
             raise HthorError(f"unknown detector '{text}': '{word.strip()}' is no rate. Valid: {_VALID}.")
         rates[name] = _rate(name, number)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -10,8 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
-from hthor.errors import AgentError
+from hthor import agents
+from hthor.cli import app as cli
+from hthor.errors import AgentError, HthorError
 from hthor.eval import guarded
 from hthor.guest import Guest, GuestFault, IsolationError, Unreachable, serving, wire
 from hthor.types import Action, Move, Wait
@@ -163,3 +167,12 @@ def test_what_says_what_cannot_be_is_refused() -> None:
         made = server.serve(lambda connection, said=ready: connection.send(wire.encode(said)), "127.0.0.1", 0)
         with running(made) as url, pytest.raises(AgentError, match=told):
             Guest(url).load()
+
+
+def test_a_port_that_is_taken_is_told_so(tmp_path: Path) -> None:
+    agents.write_template(tmp_path / "mine.py")
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = str(other.getsockname()[1])
+        done = CliRunner().invoke(cli.app, ["agent", "serve", str(tmp_path / "mine.py"), "--port", port])
+    assert isinstance(done.exception, HthorError)
+    assert f"cannot listen at 127.0.0.1:{port}: Address already in use. Give another --port" in str(done.exception)

@@ -230,6 +230,7 @@ def _show(console: Console, one: Done) -> None:
     """A run's table, its first fault, where its files are, and what to do with them."""
     from hthor.eval import find, remains, report
     from hthor.eval.shard import whole_folder
+    from hthor.leaderboard import overrides
 
     result, folder = one.result, one.folder
     console.print(report.result_table(result))
@@ -255,7 +256,8 @@ def _show(console: Console, one: Done) -> None:
         return
     _say(console, f"files: {folder}/run.json, trials.jsonl, result.json{more}")
     run = shlex.quote(str(folder))
-    _say(console, f"next:  hthor replay {run} 0    hthor score {run} --all    hthor leaderboard add {run}")
+    ranked = "" if overrides.of(one.plan) else f"    hthor leaderboard add {run}"
+    _say(console, f"next:  hthor replay {run} 0    hthor score {run} --all{ranked}")
 
 
 def _compare_peoples(console: Console, whole: Matrix) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from typing import Annotated
@@ -21,9 +22,14 @@ def serve(
 
     It runs in this process, with everything that this machine has, and nothing holds it.
     """
+    from hthor.errors import HthorError
     from hthor.guest import serving
 
-    server = serving.serve(agent, host, port)
+    try:
+        server = serving.serve(agent, host, port)
+    except OSError as error:
+        words = os.strerror(error.errno) if error.errno else str(error)
+        raise HthorError(f"cannot listen at {host}:{port}: {words}. Give another --port, or 0 for any.") from None
     sys.stdout.write(f"{serving.address(server)}\n")
     sys.stdout.flush()
     sys.stderr.write(f"serves {agent}; stop it with Ctrl-C\n")
