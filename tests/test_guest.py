@@ -251,6 +251,14 @@ def test_the_hosts_own_time_is_not_charged(started: Callable[..., Guest]) -> Non
     assert guest.act(look(senses=Slow())) == Action()
 
 
+def test_a_fault_does_not_tell_what_a_clock_said(started: Callable[..., Guest]) -> None:
+    guest = started(agent("time.sleep(60.0 if observation.tick else 0.3)\nreturn Action()"), step_s=0.2, bank_s=0.4)
+    guest.act(look())
+    with pytest.raises(GuestFault) as fault:
+        guest.act(look(1))
+    assert fault.value.detail == "the agent gave no answer within 0.2 s and what was left of 0.4 s more"
+
+
 def test_a_slow_step_is_paid_for_from_the_bank(started: Callable[..., Guest]) -> None:
     guest = started(agent("time.sleep(2.0 if observation.tick else 0)\nreturn Action()"), step_s=0.5, bank_s=2.5)
     assert [guest.act(look(tick)) for tick in (0, 1, 0)] == [Action()] * 3

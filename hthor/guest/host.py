@@ -107,7 +107,7 @@ class Guest:
         talk.send(wire.Begin(briefing=briefing), self._start_s)
         answer, left = talk.receive(self._start_s)
         if isinstance(answer, wire.Ready) and self.reference.words:  # a program says so whenever it is started
-            answer, _ = talk.receive(left)
+            answer, _ = talk.receive(left, f"{self._start_s:g} s")
         if not isinstance(answer, wire.Done):
             raise talk.wrong("begin", answer)
         self._turns = turns

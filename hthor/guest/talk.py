@@ -33,8 +33,11 @@ class Talk:
         """Talk to this guest from now on."""
         self.line, self.loaded = line, False
 
-    def send(self, message: wire.ToGuest, seconds: float) -> float:
+    def send(self, message: wire.ToGuest, seconds: float, allowed: str = "") -> float:
         """Say something, and say what is left of the time.
+
+        Args:
+            allowed: what a fault is to say that it had, where ``seconds`` are the rest of that.
 
         Raises:
             GuestFault: when it is not taken in time.
@@ -44,13 +47,16 @@ class Talk:
         try:
             self._running().write(body, end)
         except TimeIsUp:
-            raise self.fault("timeout", f"the agent read nothing for {seconds:.3g} s") from None
+            raise self.fault("timeout", f"the agent read nothing for {allowed or f'{seconds:g} s'}") from None
         except HungUp:
             raise self.fault(*self._running().obituary()) from None
         return max(0.0, end - time.monotonic())
 
-    def receive(self, seconds: float) -> tuple[wire.ToHost | wire.Over, float]:
+    def receive(self, seconds: float, allowed: str = "") -> tuple[wire.ToHost | wire.Over, float]:
         """The next message of the guest or its keeper, and what is left of the time.
+
+        Args:
+            allowed: as in `send`. A fault is part of a record, so it does not tell what a clock said.
 
         Raises:
             GuestFault: when there is none, or it is none.
@@ -59,7 +65,7 @@ class Talk:
         try:
             keepers, body = self._running().read(wire.MOST_BYTES, end)
         except TimeIsUp:
-            raise self.fault("timeout", f"the agent gave no answer within {seconds:.3g} s") from None
+            raise self.fault("timeout", f"the agent gave no answer within {allowed or f'{seconds:g} s'}") from None
         except HungUp:
             raise self.fault(*self._running().obituary()) from None
         if isinstance(body, int):

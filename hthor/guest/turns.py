@@ -34,6 +34,7 @@ class Turns:
     def __init__(self, talk: Talk, *, step_s: float, bank_s: float, ahead: bool, window: Window | None) -> None:
         self._talk, self._window = talk, window
         self._step_s, self._bank = step_s, bank_s
+        self._allowed = f"{step_s:g} s" + (f" and what was left of {bank_s:g} s more" if bank_s else "")
         self._habits = answering.Habits() if ahead else None
         if window is not None:
             window.wipe()
@@ -51,11 +52,11 @@ class Turns:
         if self._window is not None:
             self._window.clear()
         granted = self._step_s + self._bank
-        left = talk.send(wire.Look(observation=bare, ahead=ahead), granted)
+        left = talk.send(wire.Look(observation=bare, ahead=ahead), granted, self._allowed)
         for _ in range(_ASKS):
-            said, left = talk.receive(left)
+            said, left = talk.receive(left, self._allowed)
             if isinstance(said, wire.Ask):
-                left = talk.send(self._given(observation, said), left)
+                left = talk.send(self._given(observation, said), left, self._allowed)
                 if habits:
                     habits.read(said.what)
             elif isinstance(said, wire.Acted):

@@ -112,17 +112,19 @@ def crowd(folder: str) -> tuple[float, int]:
 
 
 def excess(pid: int, scratch: str, memory_mb: int, disk_mb: int) -> tuple[str, str] | None:
-    """What a process has too much of, as a fault's kind and detail; None while it keeps within its bounds."""
-    held = held_mb(pid)
-    if held > memory_mb:
-        return "memory", f"the agent held {held:.0f} MB of memory, {memory_mb} MB are allowed"
+    """What a process has too much of, as a fault's kind and detail; None while it keeps within its bounds.
+
+    How much it had when it was looked at is chance, and no part of the detail.
+    """
+    if held_mb(pid) > memory_mb:
+        return "memory", f"the agent held more than {memory_mb} MB of memory"
     try:
         size, count = crowd(scratch)
     except OSError as error:
         return "disk", f"a folder of the agent's cannot be looked into: {error.strerror}"
     size = max(size, written_mb(pid))
     if size > disk_mb:
-        return "disk", f"the agent wrote {size:.0f} MB in a trial, {disk_mb} MB are allowed"
+        return "disk", f"the agent wrote more than {disk_mb} MB in a trial"
     if count > _MOST_FILES:
         return "disk", f"the agent made more than {_MOST_FILES} files in a trial"
     return None
