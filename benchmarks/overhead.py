@@ -17,7 +17,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from hthor.eval import campaign, cast, control, intent, log, progress, record, result_file, run, setup
+from hthor.eval import campaign, cast, control, course, intent, log, progress, record, result_file, run, setup
 from hthor.eval.record import Record
 from hthor.eval.session import Session
 
@@ -41,8 +41,8 @@ def main(folder: Path) -> None:
     results = [result_file.load(path) for path in (folder, folder / control.FOLDER)]
     trials_s = sum(one.effort.cpu_s for one in results if one is not None and one.effort is not None)
     spent: dict[str, float] = {}
-    for name in ("_play", "_finish"):
-        setattr(run, name, _timed(getattr(run, name), name, spent))
+    for place, name in ((course, "play"), (run, "_finish")):
+        setattr(place, name, _timed(getattr(place, name), name, spent))
     cast.player = functools.partial(player, folder.resolve())  # type: ignore[assignment]
     with tempfile.TemporaryDirectory() as scratch:
         options = intent.Options(
@@ -59,7 +59,7 @@ def main(folder: Path) -> None:
     whole = time.process_time()
     rows = {
         "imports, resolving, sessions": whole - sum(spent.values()),
-        "handing out, writing, progress": spent["_play"],
+        "handing out, writing, progress": spent["play"],
         "scores, intervals, storing": spent["_finish"],
         "the harness": whole,
         "the trials that RUN simulated": trials_s,
