@@ -26,7 +26,8 @@ SMOKE = tasks.suite("smoke").tasks
 @given(st.integers(1, len(SMOKE) - 1))
 def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
     some, more = selection.choose(SMOKE, count), selection.choose(SMOKE, count + 1)
-    assert len(some) == count and set(some) < set(more)
+    assert len(some) == count
+    assert set(some) < set(more)
     assert list(some) == [task for task in SMOKE if task in some], "in the suite's order"
 
 
@@ -43,8 +44,11 @@ def test_a_choice_is_spread_over_houses_and_kinds(count: int) -> None:
 def test_a_limited_run_has_other_tasks_and_says_so() -> None:
     whole = programme.choose("smoke", "")
     some = programme.shorten(whole, 10)
-    assert some.limit == 10 and len(some.suite.tasks) == 10 and some.suite.name == "smoke"
-    assert some.suite.sha256 != whole.suite.sha256 and "no result for the leaderboard" in some.notes[-1]
+    assert some.limit == 10
+    assert len(some.suite.tasks) == 10
+    assert some.suite.name == "smoke"
+    assert some.suite.sha256 != whole.suite.sha256
+    assert "no result for the leaderboard" in some.notes[-1]
     assert programme.shorten(whole, len(whole.suite.tasks)) is whole, "all of them is the whole suite"
     with pytest.raises(HthorError, match=rf"--limit 999: the suite 'smoke' has {len(SMOKE)} tasks"):
         programme.shorten(whole, 999)
@@ -60,18 +64,22 @@ def plan(**more: object) -> setup.Setup:
 
 def test_both_are_part_of_a_run_and_of_the_command_that_plays_it() -> None:
     bare, short = plan(), plan(limit=30, step_limit_s=2.5)
-    assert bare.sha256 != short.sha256 and b"limit" not in msgspec.json.encode(bare)
+    assert bare.sha256 != short.sha256
+    assert b"limit" not in msgspec.json.encode(bare)
     assert "-30-" in short.folder_name
     words = command.of(Path("runs/x"), short)
-    assert "--limit 30" in words and "--step-limit 2.5" in words
-    assert overrides.of(bare) == {} and overrides.of(short) == {"limit": "30", "step_limit": "2.5"}
+    assert "--limit 30" in words
+    assert "--step-limit 2.5" in words
+    assert overrides.of(bare) == {}
+    assert overrides.of(short) == {"limit": "30", "step_limit": "2.5"}
 
 
 def test_a_deadline_is_part_of_the_trials_of_submitted_agents_alone() -> None:
     for who, there in ((submitted(), 2.5), (crews.form(["scout"], ["oracle"]), msgspec.UNSET)):
         trial = session.sessions(suite(10), agent=who, human=persons(), step_limit_s=2.5)[0].trials[0]
         usual = session.sessions(suite(10), agent=who, human=persons())[0].trials[0]
-        assert trial.step_limit_s == there and usual.step_limit_s is msgspec.UNSET
+        assert trial.step_limit_s == there
+        assert usual.step_limit_s is msgspec.UNSET
         assert (record.key(trial) == record.key(usual)) == (there is msgspec.UNSET)
         assert pairing.occasion(trial) == pairing.occasion(usual), "the person's day is the same"
 
@@ -119,5 +127,7 @@ def test_the_control_of_a_limited_run_has_the_same_tasks(tmp_path: Path) -> None
         intent.Options(agents=("oracle",), suite="smoke", limit=12, control=True, out=tmp_path / "run")
     )
     control = asked.control_of[tmp_path / "run"].plan
-    assert control.limit == 12 and control.trials == 12 and control.suite == asked.parts[0].plan.suite
+    assert control.limit == 12
+    assert control.trials == 12
+    assert control.suite == asked.parts[0].plan.suite
     assert asked.parts[0].plan.participants == 2
