@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hthor.cli import screen
+from hthor.cli import export, screen
+from hthor.cli.export import Format, Shape
 from hthor.cli.runs import Json
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hthor.eval.compare import Comparison
 
 _WORSE_EXIT = 6
 
@@ -23,6 +29,7 @@ def compare(
     fail_if_worse: Annotated[
         bool, typer.Option("--fail-if-worse", help="Exit with 6 when a run is worse in success than the first one.")
     ] = False,
+    shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
     """Say which run is better and by how much, trial by trial, or that these data cannot tell."""
@@ -30,17 +37,18 @@ def compare(
     from hthor.eval import versus
 
     found = comparing.runs(runs)
-    if json:
+    if json := export.asks_json(json, shape):
         screen.put_json(found)
+    elif shape is Format.CSV:
+        screen.put_records([row for pair in found.pairs for row in _rows(pair)])
     else:
-        paper = screen.console()
         for pair in found.pairs:
-            paper.print(versus.table(pair))
+            screen.put_rich(versus.table(pair), shape)
             if len(found.pairs) == 1:
                 for by in pair.groups:
-                    paper.print(versus.groups_table(pair, by))
+                    screen.put_rich(versus.groups_table(pair, by), shape)
             for line in versus.lines(pair, len(found.pairs)):
-                screen.put_line(line)
+                screen.put_line(line, shape)
     talk = screen.console(talk=True)
     if len(found.pairs) > 1 and not json:
         talk.print(
@@ -52,6 +60,16 @@ def compare(
             talk.print(lacks, markup=False, highlight=False, soft_wrap=True)
     if fail_if_worse and found.worse:
         raise typer.Exit(_WORSE_EXIT)
+
+
+def _rows(pair: Comparison) -> Iterator[dict[str, object]]:
+    """A comparison for a spreadsheet: a row a metric, then success by kind, split, difficulty and scene."""
+    names = {"run": pair.second, "baseline": pair.first}
+    for metric, found in pair.differences.items():
+        yield {**names, "by": "", "group": "", "metric": metric, **export.flat(found)}
+    for by, groups in pair.groups.items():
+        for group, found in groups.items():
+            yield {**names, "by": by, "group": group, "metric": "sr", **export.flat(found)}
 
 
 def power(
@@ -70,17 +88,18 @@ def power(
         float | None, typer.Option(help="Another difference than the two runs have: 0.03.", show_default=False)
     ] = None,
     wanted: Annotated[float, typer.Option("--power", min=0.5, max=0.99, help="Probability of seeing it.")] = 0.8,
+    shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
     """Say how many tasks and people it takes to see a difference in success, paired and not."""
     from hthor.eval import planning
 
     found = planning.plan(tuple(runs or ()), rates, correlation, difference, wanted)
-    if json:
+    if export.asks_json(json, shape):
         screen.put_json(found)
         return
     rows = [
         (name, need.trials, need.people) for name, need in (("paired", found.paired), ("not paired", found.unpaired))
     ]
-    screen.put_table(("", "tasks, once each, for either robot", "people, ten tasks each"), rows)
-    screen.put_line(found.sentence)
+    screen.put_table(("", "tasks, once each, for either robot", "people, ten tasks each"), rows, shape)
+    screen.put_line(found.sentence, shape)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hthor.cli import screen
+from hthor.cli import export, screen
+from hthor.cli.export import Format, Shape
 from hthor.cli.runs import Json
 
 if TYPE_CHECKING:
@@ -32,16 +33,16 @@ def _group() -> None:
 
 
 @app.command("list")
-def list_houses(json: Json = False) -> None:
+def list_houses(shape: Shape = Format.TABLE, json: Json = False) -> None:
     """The houses that ship with hthor."""
     from hthor import houses
 
     rows = [{"name": name, **_size(house), "sha256": house.sha256} for name, house in _own(houses)]
-    if json:
+    if export.asks_json(json, shape):
         screen.put_json(rows)
         return
     table = [[row["name"], len(row["rooms"]), f"{row['area_m2']:.0f}", row["things"], row["rooms"]] for row in rows]
-    screen.put_table(["name", "rooms", "m2", "things", "which"], table)
+    screen.put_table(["name", "rooms", "m2", "things", "which"], table, shape)
 
 
 @app.command("check")
@@ -145,6 +146,7 @@ def census(
     ] = None,
     generated: Annotated[int, typer.Option(min=0, help="Make and count so many houses of 4 to 7 rooms.")] = 0,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the first house that is made.")] = 0,
+    shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
     """Count rooms, doors, things and ways, side by side: of houses made, of hthor's own, and of those given."""
@@ -158,13 +160,13 @@ def census(
     columns.append(counting.census("hthor's own", [counting.measure(house) for _, house in _own(houses)]))
     if files:
         columns.append(counting.census("given", [counting.measure(houses.load(file)) for file in files]))
-    if json:
+    if export.asks_json(json, shape):
         screen.put_json(columns)
         return
     headings = ["10 % - median - 90 %", *(f"{column.name} ({column.houses})" for column in columns)]
     labels = list(dict.fromkeys(label for column in columns for label in column.figures))
     rows = [[label, *(_spread(column.figures.get(label)) for column in columns)] for label in labels]
-    screen.put_table(headings, rows)
+    screen.put_table(headings, rows, shape)
 
 
 def _own(houses: Any) -> list[tuple[str, HouseSpec]]:

@@ -11,7 +11,8 @@ from typing import Annotated, Any
 import typer
 
 from hthor.cli import agents as agents_of_mine
-from hthor.cli import screen
+from hthor.cli import export, screen
+from hthor.cli.export import Format, Shape
 from hthor.cli.runs import Json
 
 agents = typer.Typer(no_args_is_help=True, help="Robots' minds that ship with hthor.")
@@ -25,7 +26,7 @@ for _group in GROUPS.values():
 
 
 @agents.command("list")
-def list_agents(json: Json = False) -> None:
+def list_agents(shape: Shape = Format.TABLE, json: Json = False) -> None:
     """The robots' minds that ship with hthor, and the privileges that they declare."""
     from hthor import plugins
 
@@ -35,7 +36,7 @@ def list_agents(json: Json = False) -> None:
         made = _loaded("agent", name)
         row["privileges"] = list(getattr(made, "privileges", ()))
         rows.append(row)
-    _put(rows, json)
+    _put(rows, json, shape)
 
 
 @agent.command("new")
@@ -62,7 +63,7 @@ agent.command("run")(agents_of_mine.run)
 
 
 @robots.command("list")
-def list_robots(json: Json = False) -> None:
+def list_robots(shape: Shape = Format.TABLE, json: Json = False) -> None:
     """The robots' bodies."""
     from hthor import plugins
     from hthor.eval import crews
@@ -82,7 +83,7 @@ def list_robots(json: Json = False) -> None:
                 "can": sorted(spec.capabilities),
             }
         )
-    _put(rows, json)
+    _put(rows, json, shape)
 
 
 def _loaded(sort: str, name: str) -> Any:
@@ -96,10 +97,10 @@ def _loaded(sort: str, name: str) -> Any:
         return None
 
 
-def _put(rows: Sequence[dict[str, Any]], json: bool, short: Sequence[str] = ()) -> None:
-    """Rows as JSON in full, or as a table with long hashes cut short."""
-    if json:
+def _put(rows: Sequence[dict[str, Any]], json: bool, shape: Format) -> None:
+    """Rows as JSON, or as a table."""
+    if export.asks_json(json, shape):
         screen.put_json(rows)
         return
     headings = list(rows[0]) if rows else ["nothing"]
-    screen.put_table(headings, [[row[name][:10] if name in short else row[name] for name in headings] for row in rows])
+    screen.put_table(headings, [[row[name] for name in headings] for row in rows], shape)

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hthor.cli import screen
+from hthor.cli import export, screen
+from hthor.cli.export import Format, Shape
 from hthor.cli.runs import Json, Run
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hthor.eval.result_file import Result
 
 
 def score(
@@ -17,6 +23,7 @@ def score(
         bool,
         typer.Option("--all", help="With messages, idle time, bodies in the way, and shares of the work."),
     ] = False,
+    shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
     """Work out a run's metrics again from its log alone; nothing is simulated."""
@@ -29,13 +36,14 @@ def score(
     def say(text: str) -> None:
         talk.print(text, markup=False, highlight=False, soft_wrap=True)
 
-    if json:
+    if export.asks_json(json, shape):
         screen.put_json(result)
+    elif shape is Format.CSV:
+        screen.put_records(list(_rows(result, everything)))
     else:
-        paper = screen.console()
-        paper.print(report.result_table(result, everything=everything))
+        screen.put_rich(report.result_table(result, everything=everything), shape)
         if everything and len(result.by_kind) > 1:
-            paper.print(report.kinds_table(result))
+            screen.put_rich(report.kinds_table(result), shape)
     missing = plan.trials - result.counts.trials
     if missing:
         say(f"{missing} of {plan.trials} trials are missing, so this is no result yet and was not stored.")
@@ -48,6 +56,25 @@ def score(
         say(f"the same as {run / 'result.json'}.")
         return
     result_file.store(run, result)
+
+
+def _rows(result: Result, everything: bool) -> Iterator[dict[str, object]]:
+    """A result for a spreadsheet: a row a metric, of all tasks and then of each kind; rates are shares, not percent."""
+    from hthor.eval import metrics, report
+
+    names = metrics.NAMES if everything else report.MAIN
+    parts = {"": result.metrics, **(result.by_kind if len(result.by_kind) > 1 else {})}
+    for kind, scores in parts.items():
+        for name in names:
+            estimate = export.flat(getattr(scores, name))
+            yield {"run": result.name, "people": result.humans.name, "kind": kind, "metric": name, **estimate}
+    if result.uplift:
+        for name in ("sr", "twsr", "time_s"):
+            gain = export.flat(getattr(result.uplift, name))
+            mean = gain.pop("difference")
+            known = {key: gain.get(key) for key in ("n", "ci95_low", "ci95_high", "mde80")}
+            whose = {"run": result.name, "people": result.humans.name, "kind": ""}
+            yield {**whose, "metric": f"uplift_{name}", "mean": mean, **known}
 
 
 def replay(

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hthor.cli import screen, validate
+from hthor.cli import export, screen, validate
+from hthor.cli.export import Format, Shape
 from hthor.cli.runs import Json
 
 if TYPE_CHECKING:
@@ -39,17 +40,17 @@ def _group() -> None:
 
 
 @app.command("list")
-def list_humans(json: Json = False) -> None:
+def list_humans(shape: Shape = Format.TABLE, json: Json = False) -> None:
     """Everybody whom --humans knows by name."""
     rows = _everybody()
-    if json:
+    if export.asks_json(json, shape):
         screen.put_json(rows)
         return
     screen.put_table(
-        ("name", "sort", "purpose", "sha256"), [(*list(row.values())[:3], row["sha256"][:10]) for row in rows]
+        ("name", "sort", "purpose", "sha256"), [(*list(row.values())[:3], row["sha256"][:10]) for row in rows], shape
     )
     screen.put_line(
-        "proxy is the model that populations are of; without more it has the population " + _default() + "."
+        "proxy is the model that populations are of; without more it has the population " + _default() + ".", shape
     )
 
 

@@ -90,6 +90,15 @@ def evaluate(
             min=1, help="How many people, ten tasks each.", show_default="so many that every task is done once"
         ),
     ] = None,
+    limit: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            help="Play only so many of the suite's tasks, always the same ones, spread over its houses and kinds of "
+            "task. Such a run is not ranked.",
+            show_default="all of them",
+        ),
+    ] = None,
     jobs: Annotated[
         int | None, typer.Option("--jobs", "-j", min=1, help="Worker processes.", show_default="one a CPU")
     ] = None,
@@ -121,6 +130,17 @@ def evaluate(
             min=1.0,
             help="Seconds that a worker may play a trial; one that takes longer is ended, its session played again.",
             show_default="600, and with agents of your own as long as their deadlines allow",
+        ),
+    ] = None,
+    step_limit: Annotated[
+        float | None,
+        typer.Option(
+            min=0.01,
+            max=3600.0,
+            metavar="SECONDS",
+            help="The time that an agent of your own has for each action; one that takes longer has failed in the "
+            "trial. Such a run is not ranked.",
+            show_default="5, and in each trial 60 more for all actions together",
         ),
     ] = None,
     control: Annotated[
@@ -192,6 +212,8 @@ def evaluate(
         address=address,
         control=control,
         realtime=realtime,
+        limit=limit,
+        step_limit=step_limit,
         isolation=isolation,
         require_isolation=require_isolation,
         trial_limit=trial_limit,
@@ -256,7 +278,11 @@ def _show(console: Console, one: Done) -> None:
         return
     _say(console, f"files: {folder}/run.json, trials.jsonl, result.json{more}")
     run = shlex.quote(str(folder))
-    ranked = "" if overrides.of(one.plan) else f"    hthor leaderboard add {run}"
+    unranked = overrides.of(one.plan)
+    ranked = "" if unranked else f"    hthor leaderboard add {run}"
+    if unranked:
+        why = ", ".join(f"{name.replace('_', '-')} is {value}" for name, value in unranked.items())
+        _say(console, f"not for the leaderboard: {why}")
     _say(console, f"next:  hthor replay {run} 0    hthor score {run} --all{ranked}")
 
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TextIO
 
+from hthor.cli import export
+from hthor.cli.export import Format
+
 if TYPE_CHECKING:
-    from rich.console import Console
+    from rich.console import Console, RenderableType
 
 _PIPE_COLUMNS = 120
 documents: list[int] = []
@@ -50,13 +53,37 @@ def put_files(paths: Sequence[object], json: bool, **more: Any) -> None:
         sys.stdout.write("".join(f"{path}\n" for path in paths))
 
 
-def put_line(text: str) -> None:
-    """Write a paragraph to standard output, broken where somebody sees how wide the screen is."""
-    console().print(text, markup=False, highlight=False, soft_wrap=not sys.stdout.isatty())
+def put_line(text: str, shape: Format = Format.TABLE) -> None:
+    """Write a paragraph to standard output, broken where somebody sees how wide the screen is.
+
+    Where tables have another ``shape`` than the terminal's, standard output has these alone, and words go to standard
+    error.
+    """
+    talk = shape is not Format.TABLE
+    stream = sys.stderr if talk else sys.stdout
+    console(talk=talk).print(text, markup=False, highlight=False, soft_wrap=not stream.isatty())
 
 
-def put_table(headings: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+def put_rich(shown: RenderableType, shape: Format = Format.TABLE) -> None:
+    """Write tables that rich can print to standard output, in this shape."""
+    if shape is Format.TABLE:
+        console().print(shown)
+        return
+    for number, (title, headings, rows) in enumerate(export.tables(shown)):
+        gap = "\n" if number else ""
+        sys.stdout.write(gap + export.render(headings, rows, shape, title))
+
+
+def put_records(rows: Sequence[Mapping[str, object]]) -> None:
+    """Write rows to standard output as CSV, a column a name."""
+    sys.stdout.write(export.render(*export.records(rows), Format.CSV))
+
+
+def put_table(headings: Sequence[str], rows: Iterable[Sequence[object]], shape: Format = Format.TABLE) -> None:
     """Write a table to standard output."""
+    if shape is not Format.TABLE:
+        sys.stdout.write(export.render(headings, rows, shape))
+        return
     from rich import box
     from rich.table import Table
     from rich.text import Text

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from hthor.cli import screen
+from hthor.cli import export, screen
+from hthor.cli.export import Format, Shape
 from hthor.cli.runs import Json
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ def list_tasks(
     target: Annotated[str, typer.Option(help="Only tasks with this target.")] = "",
     difficulty: Annotated[Literal["easy", "medium", "hard"] | None, typer.Option(help="Only tasks so hard.")] = None,
     split: Annotated[Literal["seen", "new"] | None, typer.Option(help="Only tasks in houses so known.")] = None,
+    shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
     """The suites, or the tasks of one."""
@@ -60,17 +62,17 @@ def list_tasks(
             given = next(name for name, value in wanted.items() if value)
             raise typer.BadParameter("name the suite whose tasks are meant", param_hint=f"--{given}")
         rows = [_suite_row(rooms.suite(name)) for name in rooms.suites()]
-        screen.put_json(rows) if json else _put(rows, short=("sha256",))
+        screen.put_json(rows) if export.asks_json(json, shape) else _put(rows, ("sha256",), shape)
         return
     found = rooms.suite(suite)
     rows = [row for row in map(_task_row, found.tasks) if _fits(row, wanted)]
-    if json:
+    if export.asks_json(json, shape):
         screen.put_json(rows)
         return
-    _put([{name: row[name] for name in _told(rows)} for row in rows])
+    _put([{name: row[name] for name in _told(rows)} for row in rows], shape=shape)
     part = f"{len(rows)} of " if any(wanted.values()) else ""
     whole = f"{len(found.tasks)} tasks, suite {found.name}, version {found.version}, {found.sha256[:10]}"
-    sys.stdout.write(f"{part}{whole}\n")
+    (sys.stdout if shape is Format.TABLE else sys.stderr).write(f"{part}{whole}\n")
 
 
 @app.command("show")
@@ -249,10 +251,11 @@ def _pose(pose: Any) -> str:
     return f"({pose.x:.2f}, {pose.y:.2f}) m, heading {pose.yaw:.2f} rad"
 
 
-def _put(rows: Sequence[dict[str, Any]], short: Sequence[str] = ()) -> None:
+def _put(rows: Sequence[dict[str, Any]], short: Sequence[str] = (), shape: Format = Format.TABLE) -> None:
     """Rows as a table, long hashes cut short."""
     headings = list(rows[0]) if rows else ["nothing"]
-    screen.put_table(headings, [[row[name][:10] if name in short else row[name] for name in headings] for row in rows])
+    cells = [[row[name][:10] if name in short else row[name] for name in headings] for row in rows]
+    screen.put_table(headings, cells, shape)
 
 
 @contextmanager

@@ -88,7 +88,7 @@ def conduct(
 
 
 def _engine(options: Options, chosen: Programme, crew: Crew) -> engines.Engine:
-    limit_s = options.trial_limit or waiting.limit(chosen.suite.tasks, len(crew.minds))
+    limit_s = options.trial_limit or waiting.limit(chosen.suite.tasks, len(crew.minds), options.step_limit)
     return engines.find(options.engine, jobs=options.jobs, address=options.address, gpus=crew.gpus, limit_s=limit_s)
 
 
@@ -111,6 +111,7 @@ def _perform(
         kind_sha256=plan.kind.sha256 if plan.kind else "",
         assets_sha256=plan.assets.sha256 if options.assets else "",
         realtime=bool(plan.realtime),
+        step_limit_s=plan.step_limit_s or None,
     )
     for note in (*chosen.notes, *(f"{note}." for note in plan.humans.notes)):
         if note not in told:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -74,7 +75,8 @@ class Stage:
     def enter(self, session: Session) -> Company:
         """The person and the robots of a session, new to one another."""
         first = session.trials[0]
-        return Company(self._persons(first).make(first.seed, first.participant), first.robots, self._mind)
+        mind = functools.partial(self._mind, step_limit_s=first.step_limit_s or None)
+        return Company(self._persons(first).make(first.seed, first.participant), first.robots, mind)
 
     def world(self, trial: TrialSpec) -> World:
         """The world of a trial; the one of an earlier trial where house, robots, detectors and objects are the same."""
@@ -138,14 +140,14 @@ class Stage:
         _unchanged(path, seat.robot_sha256)
         return plugins.load("robot", path or seat.robot)
 
-    def _mind(self, seat: RobotSeat) -> Mind:
+    def _mind(self, seat: RobotSeat, step_limit_s: float | None) -> Mind:
         path = self._sources.minds.get(seat.seat, "")
         if not path:
             mind: Mind = plugins.load("agent", seat.agent.name)()
             return mind
         from hthor.guest import Guest, Unreachable
 
-        guest = Guest(path)
+        guest = Guest(path) if step_limit_s is None else Guest(path, step_s=step_limit_s, bank_s=0.0)
         try:
             changed = guest.load().sha256 != seat.agent.sha256
         except Unreachable:  # a server that is gone for a while costs its trials, not the run

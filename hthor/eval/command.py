@@ -29,6 +29,8 @@ def of(folder: Path, plan: Setup, out: Path | None = None) -> str:
     detector = next((robot.detector for robot in plan.seats), OWN)
     words += [] if detector == OWN else ["--detector", detector]
     words += ["--realtime"] if plan.realtime else []
+    words += ["--limit", str(plan.limit)] if plan.limit else []
+    words += ["--step-limit", f"{plan.step_limit_s:g}"] if plan.step_limit_s else []
     words += ["--seed", str(plan.seed), "--participants", str(plan.participants)]
     words += ["--shard", plan.shard.words] if plan.shard else []
     return shlex.join([*words, "--out", str(whole_folder(out) if plan.shard else out)])

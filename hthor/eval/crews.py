@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import msgspec
 from msgspec import Struct
 
 from hthor import plugins
@@ -100,6 +101,11 @@ class Crew(Struct, frozen=True, kw_only=True):
     def _by_seat(self) -> list[tuple[str, tuple[Shape, Character]]]:
         pairs = zip(self.listed, self.robots, strict=True)
         return [(robot.seat, pair) for robot, pair in pairs if robot.seat]
+
+
+def step_limit(crew: Crew, seconds: float | None) -> float | msgspec.UnsetType:
+    """The deadline of each action as a trial has it: only where an agent is submitted, and not the usual one [s]."""
+    return float(seconds) if seconds is not None and crew.minds else msgspec.UNSET
 
 
 def form(bodies: Sequence[str | Shape], minds: Sequence[str | Character], detector: str = OWN) -> Crew:

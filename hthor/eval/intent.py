@@ -43,6 +43,8 @@ class Options(Struct, frozen=True, kw_only=True):
     address: str = ""
     control: bool = False
     realtime: bool = False
+    limit: int | None = None
+    step_limit: float | None = None
     isolation: str = "auto"
     require_isolation: str = ""
     trial_limit: float | None = None
@@ -93,7 +95,7 @@ def settle(options: Options) -> Intent:
     detector = detectors.tidy(options.detector)
     pack = cast.furnish(options.assets)
     shown = setup.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
-    chosen = programme.choose(options.suite, options.kind)
+    chosen = programme.shorten(programme.choose(options.suite, options.kind), options.limit)
     parts = _parts(options, chosen, _crews(options, chosen, detector), whom, shown)
     controls = _controls(options, chosen, parts) if options.control and not options.shard else {}
     minds = sorted({mind for part in parts for mind in part.crew.minds.values()})
@@ -122,6 +124,7 @@ def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dic
             participants=options.participants,
             kind=chosen.kind,
             assets=assets,
+            limit=chosen.limit,
         )
         if options.out is None:
             folder = RUNS / plan.folder_name
@@ -152,6 +155,8 @@ def _parts(
                 kind=chosen.kind,
                 assets=shown,
                 realtime=options.realtime,
+                limit=chosen.limit,
+                step_limit_s=options.step_limit,
             )
             title = plan.name if len(whom) == 1 else f"{plan.name}, {people.name} people"
             folder = _folder(options, plan, len(found), len(whom))

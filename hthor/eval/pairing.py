@@ -43,9 +43,10 @@ def occasion(spec: TrialSpec) -> str:
     """The name of what a trial was but for the robots: this person, on this day, at this task.
 
     It is the key of the trial without a robot. Equal occasions meet equal draws of chance. A furniture pack is left
-    out, because only robots see its pictures, and so is real time, which is theirs alone.
+    out, because only robots see its pictures, and so are real time and an action's deadline, which are theirs alone.
     """
-    return record.key(msgspec.structs.replace(spec, robots=(), assets_sha256="", realtime=msgspec.UNSET))
+    of_robots = {"realtime": msgspec.UNSET, "step_limit_s": msgspec.UNSET}
+    return record.key(msgspec.structs.replace(spec, robots=(), assets_sha256="", **of_robots))
 
 
 def difference(one: Setup, other: Setup) -> str:

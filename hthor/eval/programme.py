@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import msgspec
 from msgspec import Struct
 
 from hthor import houses, plugins, seeds, tasks
 from hthor.errors import HthorError, UnknownName
+from hthor.eval import selection
 from hthor.eval.setup import KindRef
 from hthor.tasks import library
 from hthor.tasks.kind import TaskKind
@@ -24,7 +26,7 @@ class Programme(Struct, frozen=True, kw_only=True):
 
     ``kind`` is what the suite was narrowed to, None for all of it; ``path`` the file of a user's own kind, and
     ``drawn`` whether the tasks were made for this run; ``crew`` the robots' bodies that all the tasks' kinds agree on,
-    empty when they do not.
+    empty when they do not. ``limit`` is how many of the tasks were chosen, None where all of them are there.
     """
 
     suite: Suite
@@ -33,6 +35,7 @@ class Programme(Struct, frozen=True, kw_only=True):
     drawn: bool = False
     crew: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    limit: int | None = None
 
 
 def choose(suite: str, kind: str) -> Programme:
@@ -58,6 +61,22 @@ def choose(suite: str, kind: str) -> Programme:
     if len(chosen.tasks) == len(whole.tasks):
         return _whole(whole)
     return Programme(suite=chosen, kind=KindRef(name=known.name), crew=tuple(known.crew))
+
+
+def shorten(whole: Programme, limit: int | None) -> Programme:
+    """The programme with only so many of its tasks, chosen by `hthor.eval.selection`; all of them for None.
+
+    Raises:
+        HthorError: when there are not so many.
+    """
+    if limit is None or limit == len(whole.suite.tasks):
+        return whole
+    if limit > len(whole.suite.tasks):
+        raise HthorError(f"--limit {limit}: the suite '{whole.suite.name}' has {len(whole.suite.tasks)} tasks here.")
+    suite = whole.suite
+    some = library.frozen(suite.name, suite.version, selection.choose(suite.tasks, limit))
+    note = f"{limit} of the {len(suite.tasks)} tasks of '{suite.name}' are played: no result for the leaderboard."
+    return msgspec.structs.replace(whole, suite=some, limit=limit, notes=(*whole.notes, note))
 
 
 def find(name: str) -> TaskKind:

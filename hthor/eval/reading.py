@@ -60,6 +60,7 @@ def check_origin(folder: Path, record: Record, plan: Setup) -> None:
         "robots": (spec.robots, plan.seats),
         "kind_sha256": (spec.kind_sha256, plan.kind.sha256 if plan.kind else ""),
         "realtime": (bool(spec.realtime), bool(plan.realtime)),
+        "step_limit_s": (spec.step_limit_s, plan.step_limit_s),
     }
     for field, (here, there) in pairs.items():
         if here != there:

@@ -48,6 +48,8 @@ _UPLIFT = (
     ("time_s", "time spent", "s"),
 )
 _ONLY_WHERE_KNOWN = ("progress",)
+MAIN = tuple(name for name, _, _ in _MAIN)
+"""The metrics that every table of results has."""
 
 
 def result_table(result: Result, *, everything: bool = False) -> RenderableType:

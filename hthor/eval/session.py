@@ -42,6 +42,7 @@ def sessions(
     kind_sha256: str = "",
     assets_sha256: str = "",
     realtime: bool = False,
+    step_limit_s: float | None = None,
 ) -> tuple[Session, ...]:
     """The sessions of a run.
 
@@ -56,6 +57,7 @@ def sessions(
         kind_sha256: hash of the file of the tasks' kind, for a kind that is not one of ours.
         assets_sha256: hash of the furniture pack that pictures show, if any.
         realtime: whether robots' thinking takes time of the trial.
+        step_limit_s: seconds that submitted agents have for each action; None for the usual deadline.
     """
     crew = crews.form([robot], [agent], detector) if isinstance(agent, str) else agent
     who = people.find(human) if isinstance(human, str) else human
@@ -76,6 +78,7 @@ def sessions(
             assets_sha256=assets_sha256,
             kind_sha256=kind_sha256,
             realtime=realtime or msgspec.UNSET,
+            step_limit_s=crews.step_limit(crew, step_limit_s),
         )
 
     hands = people_for(len(suite.tasks))

@@ -13,7 +13,7 @@ from msgspec import Struct
 
 from hthor import jsonio, rules
 from hthor.errors import HthorError, RunError
-from hthor.eval import peoples, provenance, session
+from hthor.eval import crews, peoples, provenance, session
 from hthor.eval.crews import Crew
 from hthor.eval.peoples import HumansRef
 from hthor.eval.session import people_for
@@ -23,7 +23,7 @@ from hthor.humans.people import PROXY, People
 from hthor.tasks import Suite
 from hthor.types import RobotSeat
 
-SCHEMA = "hthor.run/3"
+SCHEMA = "hthor.run/4"
 LOCKSTEP, REALTIME = "lockstep", "realtime"
 _NAME_MAX = 100
 _MADE_FIRST = (".lock", "trials.jsonl", ".run.json.*", "control")  # a command that was killed early leaves these alone
@@ -61,7 +61,8 @@ class Setup(Struct, frozen=True, kw_only=True):
     ``robots`` lists every robot with its body, mind and detector; a mind that wants no robot stands there without a
     seat. ``kind`` is None when every task of the suite is played. ``trials`` is how many there are in a whole run.
     ``shard`` is there only in a run that was divided among machines, ``realtime`` only where robots' thinking took time
-    of the trials.
+    of the trials, ``limit`` only where so many tasks were chosen from the suite, and ``step_limit_s`` only where
+    submitted agents had another deadline for each action than usual [s].
     """
 
     schema: str = SCHEMA
@@ -77,6 +78,8 @@ class Setup(Struct, frozen=True, kw_only=True):
     versions: dict[str, str]
     assets: AssetsRef
     realtime: bool | msgspec.UnsetType = msgspec.UNSET
+    limit: int | msgspec.UnsetType = msgspec.UNSET
+    step_limit_s: float | msgspec.UnsetType = msgspec.UNSET
     shard: Shard | msgspec.UnsetType = msgspec.UNSET
 
     @property
@@ -110,6 +113,8 @@ class Setup(Struct, frozen=True, kw_only=True):
         played = Path(self.suite.name).name
         if self.kind is not None and self.kind.name != played:
             played = f"{played}-{self.kind.name}"
+        if self.limit:
+            played = f"{played}-{self.limit}"
         whose = "" if self.humans.name == PROXY else f"-{self.humans.name}"
         whose += f"-{REALTIME}" if self.realtime else ""
         return f"{self.name}-{played}{whose}-{self.whole.sha256[:10]}"
@@ -133,10 +138,14 @@ def settle(
     kind: KindRef | None = None,
     assets: AssetsRef | None = None,
     realtime: bool = False,
+    limit: int | None = None,
+    step_limit_s: float | None = None,
 ) -> Setup:
     """The configuration of a run, every default resolved; ``human`` as `hthor.humans.people` reads it.
 
     ``realtime`` says whether robots' thinking takes time of the trials; without a robot it makes no difference.
+    ``limit`` is how many tasks were chosen for ``suite``; None where it is whole. ``step_limit_s`` is the deadline of
+    an action [s]; it makes no difference where all agents are built in.
     """
     hands = people_for(len(suite.tasks))
     count = hands if participants is None else participants
@@ -155,6 +164,8 @@ def settle(
         versions=provenance.versions(),
         assets=assets or AssetsRef(sha256=provenance.code_sha256()),
         realtime=(realtime and bool(crew.seats)) or msgspec.UNSET,
+        limit=limit or msgspec.UNSET,
+        step_limit_s=crews.step_limit(crew, step_limit_s),
     )
 
 

@@ -20,17 +20,20 @@ BEAT_S = 0.05
 """After so long without news [s] an engine tells that there is none, so that its listener may look around."""
 LIMIT_S = 600.0
 """How long [s] a worker may play a trial. It takes a hundredth of that, but a first one also builds a world."""
-_GUEST_S, _GUEST_STEP_S = 300.0, 6.0
+_GUEST_S, _GUEST_STEP_S, _SLACK_S = 300.0, 5.0, 1.0
 _LEAP_S = 1.0
 
 
-def limit(tasks: Sequence[TaskSpec], guests: int) -> float:
+def limit(tasks: Sequence[TaskSpec], guests: int, step_limit_s: float | None = None) -> float:
     """How long [s] a worker may play a trial at most, when so many of its agents are submitted ones.
 
     Those have deadlines of their own, which are to end first: a submitted agent that takes its time is no stuck worker.
+
+    Args:
+        step_limit_s: the deadline of an action [s], None for the usual one.
     """
     ticks = max((task.time_limit for task in tasks), default=0.0) / rules.TICK_S
-    return LIMIT_S + guests * (_GUEST_S + _GUEST_STEP_S * ticks)
+    return LIMIT_S + guests * (_GUEST_S + (max(_GUEST_STEP_S, step_limit_s or 0.0) + _SLACK_S) * ticks)
 
 
 class Queue:

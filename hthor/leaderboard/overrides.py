@@ -16,6 +16,10 @@ def of(plan: Setup, crew: tuple[str, ...] = ()) -> dict[str, str]:
     found: dict[str, str] = {}
     if plan.participants != people_for(plan.trials):
         found["participants"] = str(plan.participants)
+    if plan.limit:
+        found["limit"] = str(plan.limit)
+    if plan.step_limit_s:
+        found["step_limit"] = f"{plan.step_limit_s:g}"
     if plan.kind is not None:
         found["kind"] = plan.kind.name
     if plan.assets.name != PROCEDURAL:

@@ -155,7 +155,8 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
 
     ``assets_sha256`` is the hash of the furniture pack that the robots' pictures show, empty for our own furniture;
     ``kind_sha256`` that of a user's own file of the task's kind, empty for a kind that ships with hthor. ``realtime``
-    is there only where robots' thinking took time of the trial.
+    is there only where robots' thinking took time of the trial, ``step_limit_s`` only where submitted agents had
+    another deadline for each action than usual [s].
     """
 
     task: TaskSpec
@@ -171,3 +172,4 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
     assets_sha256: str = ""
     kind_sha256: str = ""
     realtime: bool | msgspec.UnsetType = msgspec.UNSET
+    step_limit_s: float | msgspec.UnsetType = msgspec.UNSET
