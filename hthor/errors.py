@@ -14,6 +14,30 @@ class HthorError(Exception):
 
     exit_code = 2
 
+    @classmethod
+    def in_file(cls, file: str, field: str, problem: str) -> HthorError:
+        """The error of this class about a field of a file."""
+        return cls(f"{file}: {field}: {problem}")
+
+
+class FileError(HthorError):
+    """A file that cannot be used: names the file and the field.
+
+    Args:
+        file: the file's name as the user gave it.
+        field: path of the field, such as ``walls[3].polygon[0].x``; ``$`` for the file as a whole.
+        problem: what is wrong there, what was found, what is expected.
+    """
+
+    def __init__(self, file: str, field: str, problem: str) -> None:
+        self.file, self.field, self.problem = file, field, problem
+        super().__init__(f"{file}: {field}: {problem}")
+
+    @classmethod
+    def in_file(cls, file: str, field: str, problem: str) -> HthorError:
+        """The error itself."""
+        return cls(file, field, problem)
+
 
 class UnknownName(HthorError):
     """A name that nothing answers to.
@@ -35,34 +59,16 @@ class UnknownName(HthorError):
         super().__init__(f"unknown {what} '{given}'.{guess} Valid: {listed}.{' ' + hint if hint else ''}")
 
 
-class HouseError(HthorError):
-    """A house file that cannot be used: names the file and the field.
-
-    Args:
-        file: the file's name as the user gave it.
-        field: path of the field, such as ``walls[3].polygon[0].x``; ``$`` for the file as a whole.
-        problem: what is wrong there, what was found, what is expected.
-    """
-
-    def __init__(self, file: str, field: str, problem: str) -> None:
-        self.file, self.field, self.problem = file, field, problem
-        super().__init__(f"{file}: {field}: {problem}")
+class HouseError(FileError):
+    """A house file that cannot be used."""
 
 
-class TaskError(HthorError):
-    """A suite or task file that cannot be used: names the file and the field."""
-
-    def __init__(self, file: str, field: str, problem: str) -> None:
-        self.file, self.field, self.problem = file, field, problem
-        super().__init__(f"{file}: {field}: {problem}")
+class TaskError(FileError):
+    """A suite or task file that cannot be used."""
 
 
-class PeopleError(HthorError):
-    """A file of people, a population or a kind, that cannot be used: names the file and the field."""
-
-    def __init__(self, file: str, field: str, problem: str) -> None:
-        self.file, self.field, self.problem = file, field, problem
-        super().__init__(f"{file}: {field}: {problem}")
+class PeopleError(FileError):
+    """A file of people, a population or a kind, that cannot be used."""
 
 
 class AgentError(HthorError):

@@ -17,6 +17,8 @@ import msgspec
 from hthor import jsonio
 from hthor.calibration.identity import Identity
 from hthor.calibration.sitting import Sat
+from hthor.documents import Unreadable, guarded
+from hthor.documents import read as read_document
 from hthor.errors import RunError
 from hthor.eval import log
 
@@ -84,13 +86,15 @@ def read(path: Path) -> Iterator[Sat]:
             body, tail = line[:-_TAIL_LENGTH], line[-_TAIL_LENGTH:]
             try:
                 if tail != _TAIL % zlib.crc32(body):
-                    raise RunError("its checksum is wrong")
-                yield _decoder.decode(line)
-            except (msgspec.DecodeError, UnicodeDecodeError, RunError) as error:
+                    raise Unreadable("check", "is not the line's checksum")
+                with guarded():
+                    session = _decoder.decode(line)
+            except Unreadable as error:
                 raise RunError(
                     f"{path}, line {number}: {error}. The file was changed after it was written. Delete that line to "
                     "have its session played again by the same command."
                 ) from None
+            yield session
 
 
 def _examine(folder: Path, identity: Identity) -> None:
@@ -99,10 +103,8 @@ def _examine(folder: Path, identity: Identity) -> None:
     if not path.exists() or not sessions.exists() or not sessions.stat().st_size:
         jsonio.write(path, jsonio.pretty(identity))
         return
-    try:
-        there = msgspec.json.decode(path.read_bytes(), type=Identity)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise RunError(f"{path}: {error}. The file was changed after it was written; delete the folder.") from None
+    hint = "the file was changed after it was written; delete the folder"
+    there = read_document(path, Identity, RunError, hint=hint)
     if changed := there.differences(identity):
         more = f" and {len(changed) - _NAMED} more" if len(changed) > _NAMED else ""
         raise RunError(

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import msgspec
 from msgspec import Struct
 
+from hthor import documents
 from hthor.errors import HouseError
 from hthor.types import Vec3
 
@@ -158,12 +158,7 @@ def read(path: Path) -> dict[str, Asset]:
     Raises:
         HouseError: when the file is absent or is no such database.
     """
-    try:
-        types: dict[str, list[_Row]] = msgspec.json.decode(path.read_bytes(), type=dict[str, list[_Row]])
-    except OSError as error:
-        raise HouseError(str(path), "$", f"cannot read the asset database: {error.strerror or error}") from None
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise HouseError(str(path), "$", f"not a ProcTHOR asset database: {error}") from None
+    types = documents.read(path, dict[str, list[_Row]], HouseError, hint="expected a ProcTHOR asset database")
     rows = (row for group in types.values() for row in group)
     return {row.asset_id: _asset(path, row, row.bounding_box) for row in rows if row.bounding_box is not None}
 

@@ -10,8 +10,7 @@ from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import msgspec
-
+from hthor import documents
 from hthor.errors import RunError
 from hthor.guest import Isolation, IsolationError
 from hthor.guest.confinement import known, suffices
@@ -78,10 +77,8 @@ def load(folder: Path) -> Isolation | None:
     path = folder / NAME
     if not path.is_file():
         return None
-    try:
-        return msgspec.json.decode(path.read_bytes(), type=Isolation)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise RunError(f"{path}: {error}. It says how the agents were held; evaluate the run anew.") from None
+    hint = "it says how the agents were held; evaluate the run again, into another folder"
+    return documents.read(path, Isolation, RunError, hint=hint)
 
 
 def player(sources: Sources | None, level: str, hidden: tuple[str, ...]) -> Callable[[Session], Iterator[Record]]:

@@ -9,9 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-import msgspec
-
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.errors import RunError
 from hthor.eval import fingerprint
 
@@ -44,7 +42,5 @@ def load(folder: Path) -> tuple[Platform, ...]:
     path = folder / NAME
     if not path.is_file():
         return ()
-    try:
-        return msgspec.json.decode(path.read_bytes(), type=tuple[Platform, ...])
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise RunError(f"{path}: {error}. Delete the file; the run is then of unknown platforms.") from None
+    hint = "delete the file; the run is then of unknown platforms"
+    return documents.read(path, tuple[Platform, ...], RunError, hint=hint)

@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.errors import RunError
 from hthor.eval import command, control, guarded, log, machine, reading, record, result_file, score, setup
 from hthor.eval.log import Log, Place
@@ -178,7 +178,7 @@ def _score(out: Path, plan: Setup, folders: Sequence[Path]) -> Result:
     """The result of the whole, with the effort of the shards: the longest wall time, and all that they cost."""
     there, records = reading.digest(out, plan)
     efforts = [
-        msgspec.json.decode((folder / EFFORT).read_bytes(), type=Effort)
+        documents.read(folder / EFFORT, Effort, RunError, hint="it only says what the run cost: delete it, and go on")
         for folder in folders
         if (folder / EFFORT).is_file()
     ]

@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 from msgspec import Struct
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.episode import EpisodeLog, Fault
 from hthor.eval.metrics import TrialMetrics, measure
 from hthor.types import Event, TrialSpec
@@ -44,12 +44,8 @@ class Record(Struct, frozen=True, kw_only=True):
 _decoder = msgspec.json.Decoder(Record)
 
 
-class Damaged(ValueError):
-    """A line that is not the record it was. ``field`` names the place, ``problem`` what is wrong there."""
-
-    def __init__(self, field: str, problem: str) -> None:
-        self.field, self.problem = field, problem
-        super().__init__(f"{field}: {problem}")
+Damaged = documents.Unreadable
+"""A line that is not the record it was. ``field`` names the place, ``problem`` what is wrong there."""
 
 
 def key(spec: TrialSpec) -> str:
@@ -83,11 +79,8 @@ def decode(line: bytes) -> Record:
         Damaged: names the field that is not as it was written.
     """
     body, check = line[:-_CHECK_LENGTH], line[-_CHECK_LENGTH:]
-    try:
+    with documents.guarded():
         record = _decoder.decode(line)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:  # ValidationError is a DecodeError
-        problem, _, place = str(error).partition(" - at `")
-        raise Damaged(place.rstrip("`") or "$", problem) from None
     if check != _CHECK % zlib.crc32(body):
         raise Damaged("check", f"{check[10:18].decode('ascii', 'replace')} is not the line's checksum")
     if record.key != key(record.spec):

@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 from msgspec import Struct
 
-from hthor import jsonio, rules
+from hthor import documents, jsonio, rules
 from hthor.episode import Fault
 from hthor.errors import HthorError, RunError
 from hthor.eval.watched import Watched
@@ -144,10 +144,7 @@ def load(path: Path) -> Remains:
     Raises:
         RunError: when it cannot be read.
     """
-    try:
-        return msgspec.json.decode(path.read_bytes(), type=Remains)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise RunError(f"{path}: {error}. It only tells of faults; delete it, and go on.") from None
+    return documents.read(path, Remains, RunError, hint="it only describes faults: delete it, and go on")
 
 
 def command(folder: Path, key: str) -> str:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import msgspec
 from msgspec import Struct
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.errors import RunError
 from hthor.eval import setup
 from hthor.eval.peoples import HumansRef
@@ -127,19 +126,13 @@ def load(folder: Path) -> Result | None:
     path = folder / "result.json"
     if not path.is_file():
         return None
-    try:
-        return msgspec.json.decode(path.read_bytes(), type=Result)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise RunError(f"{path}: {error}. Delete the file; 'hthor score {folder}' writes it anew.") from None
+    hint = f"delete the file, and 'hthor score {folder}' writes it again"
+    return documents.read(path, Result, RunError, schema=SCHEMA, hint=hint)
 
 
 def outdated(path: Path) -> bool:
     """Whether a file is a result of another version of the format."""
-    try:
-        schema = msgspec.json.decode(path.read_bytes(), type=dict[str, msgspec.Raw]).get("schema", msgspec.Raw(b'""'))
-        name = msgspec.json.decode(schema, type=str)
-    except (OSError, msgspec.DecodeError, UnicodeDecodeError):
-        return False
+    name = documents.schema_of(path)
     return name != SCHEMA and name.startswith(SCHEMA.partition("/")[0])
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 from msgspec import Struct
 
-from hthor import jsonio, rules
+from hthor import documents, jsonio, rules
 from hthor.errors import HthorError, RunError
 from hthor.eval import crews, peoples, provenance, session
 from hthor.eval.crews import Crew
@@ -193,14 +193,8 @@ def load(folder: Path) -> Setup:
     path = folder / "run.json"
     if not path.is_file():
         raise RunError(f"{folder} is not a run's folder: it has no run.json.{_guess(folder)} 'hthor eval' makes one.")
-    data = path.read_bytes()
-    try:
-        schema = msgspec.json.decode(data, type=_Versioned).schema
-        if schema != SCHEMA:
-            raise RunError(f"{path}: schema is '{schema}', this version reads '{SCHEMA}'. Evaluate it anew.")
-        return msgspec.json.decode(data, type=Setup)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise RunError(f"{path}: {error}. The file was changed after it was written.") from None
+    hint = "evaluate it again, into another folder"
+    return documents.read(path, Setup, RunError, schema=SCHEMA, hint=hint)
 
 
 def _guess(folder: Path) -> str:
@@ -208,10 +202,6 @@ def _guess(folder: Path) -> str:
     beside = sorted(path.parent.name for path in folder.parent.glob("*/run.json"))
     near = difflib.get_close_matches(folder.name, beside, n=1, cutoff=0.5)
     return f" Did you mean '{folder.parent / near[0]}'?" if near else ""
-
-
-class _Versioned(Struct):
-    schema: str
 
 
 def examine(folder: Path, plan: Setup) -> None:

@@ -153,14 +153,16 @@ def read(path: Path, file: str) -> tuple[Any, HouseFile]:
 
 def convert(document: Any, file: str) -> HouseFile:
     """A house's JSON document as records; errors as those of `read`, naming ``file``."""
-    for where, number in _numbers(document, ""):
-        if not abs(number) < _LIMIT:
-            raise HouseError(file, where, f"must be a finite number, got {number!r:.24}")
-    _check_version(document, file)
     try:
+        for where, number in _numbers(document, ""):
+            if not abs(number) < _LIMIT:
+                raise HouseError(file, where, f"must be a finite number, got {number!r:.24}")
+        _check_version(document, file)
         return msgspec.convert(document, HouseFile)
     except msgspec.ValidationError as error:
         raise _structural(str(error), file) from None
+    except RecursionError:
+        raise HouseError(file, "$", "not a house file: it is nested too deeply") from None
 
 
 def _document(path: Path, file: str) -> Any:

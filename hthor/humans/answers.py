@@ -14,7 +14,7 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
-from hthor import jsonio
+from hthor import documents, jsonio
 
 
 class Asked(Struct, frozen=True, kw_only=True):
@@ -85,7 +85,8 @@ class Answers:
                     break
                 self._read += len(line)
                 try:
-                    asked = _decoder.decode(line)
-                except (msgspec.DecodeError, UnicodeDecodeError):
+                    with documents.guarded():
+                        asked = _decoder.decode(line)
+                except documents.Unreadable:
                     continue
                 self._known.setdefault(asked.key, asked.answer)

@@ -15,6 +15,7 @@ from urllib.parse import urlsplit
 import msgspec
 from msgspec import Struct
 
+from hthor import documents
 from hthor.errors import HthorError
 from hthor.humans import llm
 from hthor.humans.person import Person
@@ -127,7 +128,7 @@ class Endpoint:
             said = error.read(_SHOWN).decode("utf-8", "replace")
             error.close()
             raise self._failed(f"HTTP {error.code}: {said}") from None
-        except (OSError, ValueError) as error:  # a DecodeError is a ValueError
+        except (OSError, ValueError) as error:  # Unreadable is a ValueError
             raise self._failed(str(error)) from None
 
     def _failed(self, why: str) -> HthorError:
@@ -150,5 +151,5 @@ class _Reply(Struct):
 
 
 def _text(data: bytes) -> str:
-    choices = msgspec.json.decode(data, type=_Reply).choices
+    choices = documents.decode(data, _Reply).choices
     return (choices[0].message.content if choices else "") or ""

@@ -14,7 +14,7 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
-from hthor import rules
+from hthor import documents, rules
 from hthor.errors import HthorError
 from hthor.humans.jobs import todo
 from hthor.types import HUMAN, Briefing, Close, Drop, Event, Motion, Open, Pick, Place, Pose, TrialSpec
@@ -114,8 +114,9 @@ def _read(path: str) -> dict[int, list[Past]]:
         if not line.endswith(b"\n"):
             break  # a run that was stopped
         try:
-            past = decoder.decode(line)
-        except msgspec.DecodeError as error:
+            with documents.guarded():
+                past = decoder.decode(line)
+        except documents.Unreadable as error:
             raise HthorError(f"{path}, line {number}: {error}. {_HINT}") from None
         found.setdefault(past.spec.participant, []).append(past)
     if not found:

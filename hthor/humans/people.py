@@ -13,10 +13,9 @@ import re
 from pathlib import Path
 from typing import Any
 
-import msgspec
 from msgspec import Struct
 
-from hthor import jsonio, plugins
+from hthor import documents, jsonio, plugins
 from hthor.errors import PeopleError, UnknownName
 from hthor.humans import kinds, population_file
 from hthor.humans.kinds import Kind
@@ -176,9 +175,4 @@ def _anywhere(word: str) -> str:
 
 def _schema(word: str) -> str:
     """The schema that a JSON file names, empty for anything else."""
-    if not word.endswith(".json"):
-        return ""
-    try:
-        return str(msgspec.json.decode(Path(word).read_bytes(), type=dict[str, Any]).get("schema", ""))
-    except (OSError, msgspec.DecodeError, UnicodeDecodeError):
-        return ""
+    return documents.schema_of(Path(word)) if word.endswith(".json") else ""

@@ -12,11 +12,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 from msgspec import Struct
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.errors import PeopleError, UnknownName
 from hthor.humans import ranges
 from hthor.humans.parameters import Parameters
@@ -165,22 +164,9 @@ def _read(path: Path) -> Population:
     )
 
 
-class _Versioned(Struct):
-    schema: str = ""
-
-
 def _document(path: Path) -> Document:
     data = _bytes(path, "a population has two files, NAME.npz and NAME.json, side by side")
-    try:
-        schema = msgspec.json.decode(data, type=_Versioned).schema
-        if schema != SCHEMA:
-            raise PeopleError(str(path), "schema", f"it is '{schema}', a population's is '{SCHEMA}'")
-        return msgspec.json.decode(data, type=Document)
-    except msgspec.ValidationError as error:
-        problem, _, field = str(error).partition(" - at `$")
-        raise PeopleError(str(path), field.strip("`.") or "$", problem) from None
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise PeopleError(str(path), "$", f"is not JSON: {error}; {_DAMAGED}") from None
+    return documents.parse(data, Document, PeopleError, shown=str(path), schema=SCHEMA, hint=_DAMAGED)
 
 
 def _arrays(path: Path, document: Document) -> tuple[Any, Any]:

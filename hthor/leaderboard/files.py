@@ -6,10 +6,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TypeVar
 
-import msgspec
 from msgspec import Struct
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.errors import HthorError
 from hthor.leaderboard.entry import Entry
 from hthor.tasks import commitment
@@ -69,7 +68,7 @@ def read(path: Path) -> Entry:
     Raises:
         BoardError: when it cannot be read, naming the field.
     """
-    return parse(path.read_bytes(), str(path), Entry)
+    return documents.read(path, Entry, BoardError)
 
 
 def parse(data: bytes, shown: str, sort: type[_T]) -> _T:
@@ -78,13 +77,7 @@ def parse(data: bytes, shown: str, sort: type[_T]) -> _T:
     Raises:
         BoardError: when it is none, naming the field.
     """
-    try:
-        return msgspec.json.decode(data, type=sort)
-    except msgspec.ValidationError as error:
-        problem, _, field = str(error).partition(" - at `")
-        raise BoardError(f"{shown}: {field.strip('`').removeprefix('$.') or '$'}: {problem}") from None
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise BoardError(f"{shown}: $: is not JSON: {error}") from None
+    return documents.parse(data, sort, BoardError, shown=shown)
 
 
 def write(path: Path, document: object) -> None:

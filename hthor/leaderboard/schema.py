@@ -13,7 +13,8 @@ from hthor.eval.setup import Setup
 from hthor.leaderboard.board import Board
 from hthor.leaderboard.entry import Entry
 
-_NEVER = "shard"  # an entry is a whole run
+NEVER = "shard"
+"""The one field of a run that no entry has: an entry is a whole run."""
 _MAYBE = {field.name for field in msgspec.structs.fields(Setup) if field.default is msgspec.UNSET}
 _HASH = {"pattern": "^([0-9a-f]{64})?$"}
 _MORE: dict[tuple[str, str], dict[str, Any]] = {
@@ -27,6 +28,12 @@ _MORE: dict[tuple[str, str], dict[str, Any]] = {
     **{("Counts", name): {"minimum": 0} for name in ("trials", "tasks", "successes", "messages", "faults")},
 }
 """Further demands on a record's fields."""
+
+
+def demands(record: str, field: str) -> dict[str, Any]:
+    """What a field of a record must satisfy beyond its type, in words of JSON schema; empty for nothing."""
+    more = _MORE.get((record, field), {})
+    return more | _HASH if field == "sha256" or field.endswith("_sha256") else more
 
 
 def document() -> dict[str, Any]:
@@ -49,7 +56,7 @@ def of(kind: str) -> dict[str, Any]:
 
 def _strict(name: str, record: dict[str, Any]) -> dict[str, Any]:
     """A record in which every field must be there and no other may."""
-    held = {field: _demanding(name, field, one) for field, one in record["properties"].items() if field != _NEVER}
+    held = {field: _demanding(name, field, one) for field, one in record["properties"].items() if field != NEVER}
     about = {"description": record["description"].split("\n")[0]} if "description" in record else {}
     return {
         "title": record["title"],
@@ -63,9 +70,7 @@ def _strict(name: str, record: dict[str, Any]) -> dict[str, Any]:
 
 def _demanding(name: str, field: str, schema: dict[str, Any]) -> dict[str, Any]:
     made = {key: value for key, value in schema.items() if key != "default"}
-    if made.get("type") == "string" and (field == "sha256" or field.endswith("_sha256")):
-        made |= _HASH
-    more = _MORE.get((name, field), {})
+    more = demands(name, field)
     if "anyOf" in made:
         return {**made, "anyOf": [one | more if one.get("type") != "null" else one for one in made["anyOf"]]}
     return made | more

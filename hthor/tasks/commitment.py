@@ -9,17 +9,15 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TypeVar
 
-import msgspec
 from msgspec import Struct
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.errors import TaskError
 from hthor.tasks.salt import Salt
 
 COMMITMENT, REVEALED = "commitment.json", "revealed.json"
-_T = TypeVar("_T")
+_COMMITTED, _PUBLISHED = "hthor.commitment/1", "hthor.revealed/1"
 
 
 class Commitment(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -30,7 +28,7 @@ class Commitment(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     versions of what made them.
     """
 
-    schema: str = "hthor.commitment/1"
+    schema: str = _COMMITTED
     name: str
     salt: str
     houses: int
@@ -43,7 +41,7 @@ class Commitment(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class Revealed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The salt of a suite, published."""
 
-    schema: str = "hthor.revealed/1"
+    schema: str = _PUBLISHED
     name: str
     salt: str
 
@@ -59,7 +57,7 @@ def load(path: Path) -> Commitment:
     Raises:
         TaskError: when it cannot be read, or is none.
     """
-    return _load(path, Commitment, "'hthor suite make' writes one")
+    return documents.read(path, Commitment, TaskError, schema=_COMMITTED, hint="'hthor suite make' writes one")
 
 
 def revealed(folder: Path) -> Salt | None:
@@ -71,7 +69,7 @@ def revealed(folder: Path) -> Salt | None:
     path = folder / REVEALED
     if not path.exists():
         return None
-    held = _load(path, Revealed, "'hthor suite reveal' writes one")
+    held = documents.read(path, Revealed, TaskError, schema=_PUBLISHED, hint="'hthor suite reveal' writes one")
     try:
         return Salt(held.salt)
     except UnicodeEncodeError:
@@ -102,15 +100,3 @@ def changes(folder: Path, held: Commitment) -> Iterator[tuple[str, str]]:
     for there in sorted((folder / "houses").glob("*")):
         if (path := there.relative_to(folder).as_posix()) not in held.files:
             yield path, "is none of the files that were committed to"
-
-
-def _load(path: Path, sort: type[_T], hint: str) -> _T:
-    try:
-        return msgspec.json.decode(path.read_bytes(), type=sort)
-    except OSError as error:
-        raise TaskError(str(path), "$", f"cannot be read: {error.strerror}; {hint}") from None
-    except msgspec.ValidationError as error:
-        problem, _, field = str(error).partition(" - at `$")
-        raise TaskError(str(path), field.strip("`.") or "$", f"{problem}; {hint}") from None
-    except msgspec.DecodeError as error:
-        raise TaskError(str(path), "$", f"is not JSON: {error}") from None

@@ -5,10 +5,9 @@ from __future__ import annotations
 import difflib
 from pathlib import Path
 
-import msgspec
 from msgspec import Struct
 
-from hthor import houses, jsonio
+from hthor import documents, houses, jsonio
 from hthor.errors import TaskError, UnknownName
 from hthor.types import TaskSpec
 
@@ -126,14 +125,4 @@ def _locate(name_or_path: str | Path) -> tuple[Path, str]:
 
 
 def _decode(path: Path, shown: str) -> Suite:
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise TaskError(shown, "$", f"cannot be read: {error.strerror}") from None
-    try:
-        return msgspec.json.decode(data, type=Suite)
-    except msgspec.ValidationError as error:
-        problem, _, field = str(error).partition(" - at `$")
-        raise TaskError(shown, field.strip("`.") or "$", problem) from None
-    except msgspec.DecodeError as error:
-        raise TaskError(shown, "$", f"is not JSON: {error}") from None
+    return documents.read(path, Suite, TaskError, shown=shown)

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import msgspec
 from msgspec import Struct
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.calibration.table import CONDITIONS
 from hthor.errors import RunError
 
@@ -215,10 +214,4 @@ def load(path: Path) -> Evidence:
     file = path / FILE if path.is_dir() else path
     if not file.is_file():
         raise RunError(f"{path}: there is no {FILE}. Finish the calibration with 'hthor calibrate --out {path}'.")
-    try:
-        found = msgspec.json.decode(file.read_bytes(), type=Evidence)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise RunError(f"{file}: {error}. Make it anew with 'hthor calibrate'.") from None
-    if found.schema != SCHEMA:
-        raise RunError(f"{file}: schema is '{found.schema}', this version reads '{SCHEMA}'. Make it anew.")
-    return found
+    return documents.read(file, Evidence, RunError, schema=SCHEMA, hint="make it again with 'hthor calibrate'")

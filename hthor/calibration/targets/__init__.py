@@ -11,7 +11,7 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.errors import HthorError, UnknownName
 
 SCHEMA = "hthor.targets/1"
@@ -121,13 +121,7 @@ def load(name_or_path: str | Path) -> Targets:
     if path.suffix != ".json" and not path.exists():
         hint = "A path to a file (.json) works too, and so do the logs of sessions (trials.jsonl, or a run's folder)."
         raise UnknownName("targets", str(name_or_path), names(), hint)
-    try:
-        found = msgspec.json.decode(path.read_bytes(), type=_Strict)
-    except OSError as error:
-        raise HthorError(f"{path}: cannot be read: {error.strerror}.") from None
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        problem, _, field = str(error).partition(" - at `$")
-        raise HthorError(f"{path}: {field.strip('`.') or '$'}: {problem}; see {_FOLDER / 'paper.json'}.") from None
+    found = documents.read(path, _Strict, HthorError, hint=f"see {_FOLDER / 'paper.json'}")
     _check(path, found)
     return Targets(**{name: getattr(found, name) for name in Targets.__struct_fields__})
 

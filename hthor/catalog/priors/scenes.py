@@ -14,9 +14,9 @@ import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
-import msgspec
 from msgspec import Struct
 
+from hthor import documents
 from hthor.catalog.priors import Origin
 from hthor.catalog.procthor import KIND_OF
 from hthor.errors import HthorError, MissingExtra
@@ -73,8 +73,8 @@ def read(wheel: Path | None = None) -> Scenes:
     """
     version, data = _installed() if wheel is None else _of_wheel(wheel)
     try:
-        rooms = msgspec.json.decode(data, type=dict[str, tuple[Scene, ...]])
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        rooms = documents.decode(data, dict[str, tuple[Scene, ...]])
+    except documents.Unreadable as error:
         raise HthorError(f"{FILE} of {PACKAGE} {version} has another form than expected: {error}.") from None
     scenes = tuple(scene for group in rooms.values() for scene in group)
     origin = Origin(

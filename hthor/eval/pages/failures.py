@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import msgspec
 from msgspec import Struct
 
-from hthor import rules
+from hthor import documents, rules
 from hthor.eval.pages import chosen
 from hthor.eval.pages.gather import Run
 from hthor.eval.pages.singled import Failure
@@ -68,6 +67,6 @@ def _remains(run: Run, record: Record) -> _Remains:
     """What the run kept of a trial; nothing where it kept none, or what nobody can read: no number depends on it."""
     path = run.folder / _FOLDER / f"{record.key}.json"
     try:
-        return msgspec.json.decode(path.read_bytes(), type=_Remains)
-    except (OSError, msgspec.DecodeError, UnicodeDecodeError):
+        return documents.decode(path.read_bytes(), _Remains)
+    except (OSError, documents.Unreadable):
         return _Remains()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import msgspec
 from msgspec import Struct
 
+from hthor import documents
 from hthor.errors import RunError
 from hthor.eval import command, guarded
 from hthor.eval.pages.gather import Run
@@ -100,7 +100,5 @@ def _platforms(run: Run) -> tuple[Platform, ...]:
     path = run.folder / _PLATFORM
     if not path.is_file():
         return ()
-    try:
-        return tuple(dict.fromkeys(msgspec.json.decode(path.read_bytes(), type=list[Platform])))
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise RunError(f"{path}: {error}. Delete the file; the run is then of unknown platforms.") from None
+    hint = "delete the file; the run is then of unknown platforms"
+    return tuple(dict.fromkeys(documents.read(path, list[Platform], RunError, hint=hint)))

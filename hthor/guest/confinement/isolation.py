@@ -41,6 +41,15 @@ class Isolation(Struct, frozen=True, kw_only=True):
     memory: str = ""
     reason_not_higher: str = ""
 
+    def __post_init__(self) -> None:
+        """Refuse a level that does not exist, also one that is read from a file.
+
+        Raises:
+            ValueError: when there is no such level.
+        """
+        if self.level not in (SERVED, *LEVELS):
+            raise ValueError(f"level is '{self.level}', valid are {', '.join((SERVED, *LEVELS))}")
+
 
 def known(level: str, *, auto: bool = True) -> str:
     """The same level, if there is one of this name.

@@ -12,6 +12,7 @@ from typing import Literal
 import msgspec
 from msgspec import Struct
 
+from hthor import documents
 from hthor.errors import PeopleError, UnknownName
 from hthor.humans import ranges
 from hthor.humans.parameters import Parameters
@@ -89,17 +90,7 @@ def load(name_or_path: str | Path) -> Kind:
 
 
 def _read(path: Path) -> Kind:
-    try:
-        kind = msgspec.json.decode(path.read_bytes(), type=Kind)
-    except OSError as error:
-        raise PeopleError(str(path), "$", f"cannot be read: {error.strerror}") from None
-    except msgspec.ValidationError as error:
-        problem, _, field = str(error).partition(" - at `$")
-        raise PeopleError(str(path), field.strip("`.") or "$", problem) from None
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise PeopleError(str(path), "$", f"is not JSON: {error}") from None
-    if kind.schema != SCHEMA:
-        raise PeopleError(str(path), "schema", f"it is '{kind.schema}', a kind's is '{SCHEMA}'")
+    kind = documents.read(path, Kind, PeopleError, schema=SCHEMA)
     if kind.name != path.stem:
         raise PeopleError(str(path), "name", f"it is '{kind.name}', but must be the file's name, '{path.stem}'")
     for number, change in enumerate(kind.changes):

@@ -14,10 +14,10 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 from msgspec import Struct
 
+from hthor import documents
 from hthor.errors import HthorError, UnknownName
 from hthor.looks.mesh import Material, Mesh, Piece
 from hthor.looks.pack import fitting
@@ -84,12 +84,8 @@ class Pack:
         self.folder = folder
         data = _read(folder / LIST)
         self.sha256 = hashlib.sha256(data).hexdigest()
-        try:
-            self.contents = msgspec.json.decode(data, type=Contents)
-        except (msgspec.DecodeError, UnicodeDecodeError) as error:
-            raise PackError(f"{folder / LIST}: {error}. Build the pack again: hthor assets build.") from None
-        if self.contents.schema != SCHEMA:
-            raise PackError(f"{folder / LIST}: schema is '{self.contents.schema}', this version reads '{SCHEMA}'.")
+        hint = "build the pack again: hthor assets build"
+        self.contents = documents.parse(data, Contents, PackError, shown=str(folder / LIST), schema=SCHEMA, hint=hint)
         self.name = self.contents.name
         self._models: dict[str, list[Model]] = {}
         for model in self.contents.models:

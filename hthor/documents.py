@@ -1,0 +1,112 @@
+"""Reads the JSON files that hthor writes: a typed record, or an error of the caller's class naming file and field.
+
+Whatever a damaged file holds, text that is not JSON, bytes that are not UTF-8, nesting too deep, or the wrong record,
+ends in that one error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TypeVar
+
+import msgspec
+from msgspec import Struct
+
+from hthor.errors import HthorError
+
+WHOLE = "$"
+"""The field that stands for the file as a whole."""
+_MESSAGE_MAX = 300
+_T = TypeVar("_T")
+
+
+class Unreadable(ValueError):
+    """Bytes that are not the JSON document they should be.
+
+    Args:
+        field: where, such as ``tasks[3].goal``; ``$`` for the document as a whole.
+        problem: what is wrong there.
+    """
+
+    def __init__(self, field: str, problem: str) -> None:
+        self.field, self.problem = field, problem
+        super().__init__(f"{field}: {problem}")
+
+
+class _Versioned(Struct):
+    schema: str = ""
+
+
+def read(
+    path: Path, kind: type[_T], error: type[HthorError], *, schema: str = "", shown: str = "", hint: str = ""
+) -> _T:
+    """The record in a JSON file.
+
+    Args:
+        kind: the record's type, as msgspec takes it.
+        error: class of what is raised when the file cannot be used.
+        schema: what the document's ``schema`` must be; empty for any.
+        shown: what to call the file in the error, by default its path.
+        hint: what to do next; ends the error.
+
+    Raises:
+        HthorError: of the class ``error``, naming the file and the field.
+    """
+    shown = shown or str(path)
+    try:
+        data = path.read_bytes()
+    except OSError as problem:
+        said = f"cannot be read: {problem.strerror or problem}"
+        raise error.in_file(shown, WHOLE, _with(said, hint)) from None
+    return parse(data, kind, error, shown=shown, schema=schema, hint=hint)
+
+
+def parse(data: bytes, kind: type[_T], error: type[HthorError], *, shown: str, schema: str = "", hint: str = "") -> _T:
+    """The record in the bytes of a file that is called ``shown``; otherwise like `read`."""
+    try:
+        return decode(data, kind, schema=schema)
+    except Unreadable as problem:
+        raise error.in_file(shown, problem.field, _with(problem.problem, hint)) from None
+
+
+def decode(data: bytes, kind: type[_T], *, schema: str = "") -> _T:
+    """The record in some bytes of JSON.
+
+    Raises:
+        Unreadable: when they are not such a record, or its ``schema`` is another.
+    """
+    with guarded():
+        if schema and (found := msgspec.json.decode(data, type=_Versioned).schema) != schema:
+            raise Unreadable("schema", f"is '{found}', this version reads '{schema}'")
+        return msgspec.json.decode(data, type=kind)
+
+
+def schema_of(path: Path) -> str:
+    """The schema that a JSON file names; empty for a file that names none or cannot be read."""
+    try:
+        return decode(path.read_bytes(), _Versioned).schema
+    except (OSError, Unreadable):
+        return ""
+
+
+@contextmanager
+def guarded() -> Iterator[None]:
+    """Turn everything that decoding JSON can raise into `Unreadable`; for those who have a decoder of their own."""
+    try:
+        yield
+    except msgspec.ValidationError as error:
+        problem, _, field = str(error).rpartition(" - at `") if " - at `" in str(error) else (str(error), "", "")
+        field = field.rstrip("`").removeprefix(WHOLE).removeprefix(".")
+        raise Unreadable(field or WHOLE, problem[:_MESSAGE_MAX]) from None
+    except msgspec.DecodeError as error:
+        raise Unreadable(WHOLE, f"is not JSON: {error}"[:_MESSAGE_MAX]) from None
+    except UnicodeDecodeError as error:
+        raise Unreadable(WHOLE, f"is not JSON: a text in it is not UTF-8 ({error.reason})") from None
+    except RecursionError:
+        raise Unreadable(WHOLE, "is not JSON of ours: it is nested too deeply") from None
+
+
+def _with(problem: str, hint: str) -> str:
+    return f"{problem}; {hint}" if hint else problem

@@ -1,0 +1,199 @@
+"""Whatever a damaged file holds, its reader raises its own error, which names the file."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hthor import documents, jsonio
+from hthor.calibration import ledger, targets
+from hthor.calibration.report import evidence
+from hthor.catalog import procthor
+from hthor.errors import HouseError, HthorError, PeopleError, RunError, TaskError
+from hthor.eval import guarded, log, machine, remains, result_file, setup
+from hthor.eval.pages import origin
+from hthor.guest import Isolation
+from hthor.houses import schema as house_file
+from hthor.humans import kinds, past, people, population_file
+from hthor.leaderboard import files as board_files
+from hthor.leaderboard import form, schema, submission
+from hthor.leaderboard.files import BoardError
+from hthor.looks.pack import PackError, store
+from hthor.tasks import commitment, library
+
+DEEP = 100_000
+DAMAGES = {
+    "nothing": b"",
+    "no JSON": b"{",
+    "no UTF-8": b'{"schema": "\xff\xfe"}',
+    "nothing but bytes": bytes(range(256)),
+    "nested arrays": b"[" * DEEP + b"]" * DEEP,
+    "nested objects": b'{"a":' * DEEP + b"0" + b"}" * DEEP,
+    "a little too deep": b"[" * 1500 + b"]" * 1500,
+    "a number": b"1e999",
+    "NaN": b'{"schema": NaN}',
+    "another record": b'{"schema": "hthor.other/1"}',
+    "no text": b'{"schema": 3}',
+}
+
+
+def _lines(read: Callable[[Path], Any]) -> Callable[[Path], Any]:
+    """A reader of a file of lines, given a line that is whole."""
+
+    def reader(path: Path) -> Any:
+        path.write_bytes(path.read_bytes().replace(b"\n", b" ") + b"\n")
+        return read(path)
+
+    return reader
+
+
+READERS: dict[str, tuple[str, type[HthorError], Callable[[Path], Any]]] = {
+    "run": ("run.json", RunError, lambda path: setup.load(path.parent)),
+    "result": ("result.json", RunError, lambda path: result_file.load(path.parent)),
+    "trials": ("trials.jsonl", RunError, _lines(lambda path: list(log.read(path)))),
+    "isolation": ("isolation.json", RunError, lambda path: guarded.load(path.parent)),
+    "platform": ("platform.json", RunError, lambda path: machine.load(path.parent)),
+    "platform of a report": ("platform.json", RunError, lambda path: origin._platforms(_Run(path.parent))),
+    "faults": ("faults.json", RunError, remains.load),
+    "population": ("pop.json", PeopleError, lambda path: population_file._document(path)),
+    "people": ("pop.json", HthorError, lambda path: people.find(str(path))),
+    "kind of people": ("quick.json", PeopleError, kinds.load),
+    "past trials": ("past.jsonl", HthorError, _lines(lambda path: past._read(str(path)))),
+    "suite": ("suite.json", TaskError, library.read),
+    "commitment": ("commitment.json", TaskError, commitment.load),
+    "revealed": ("revealed.json", TaskError, lambda path: commitment.revealed(path.parent)),
+    "house": ("house.json", HouseError, lambda path: house_file.read(path, str(path))),
+    "asset database": ("assets.json", HouseError, procthor.read),
+    "pack": (store.LIST, PackError, lambda path: store.Pack(path.parent)),
+    "entry": ("entry.json", BoardError, board_files.read),
+    "targets": ("targets.json", HthorError, targets.load),
+    "evidence": ("validation.json", RunError, evidence.load),
+    "sessions": ("sessions.jsonl", RunError, _lines(lambda path: list(ledger.read(path)))),
+}
+
+
+class _Run:
+    """As much of a report's run as is asked for its platforms."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+@pytest.mark.parametrize("reader", READERS)
+def test_every_reader_refuses_damage_with_its_own_error(reader: str, damage: str, tmp_path: Path):
+    name, error, read = READERS[reader]
+    path = tmp_path / name
+    path.write_bytes(DAMAGES[damage])
+    with pytest.raises(error) as caught:
+        read(path)
+    assert path.stem in str(caught.value)
+    assert len(str(caught.value)) < 1000
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_damaged_entries_and_submissions_are_problems(damage: str, tmp_path: Path):
+    path = tmp_path / "entry.json"
+    path.write_bytes(DAMAGES[damage])
+    assert [one.file for one in form.problems(path)] == [str(path)]
+    handed = tmp_path / "mine"
+    handed.mkdir()
+    (handed / "agent.py").write_text("class Agent: ...\n")
+    (handed / "submission.json").write_bytes(DAMAGES[damage])
+    assert {one.file for one in submission.problems(handed)} >= {str(handed / "submission.json")}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_damage_that_is_only_looked_at_raises_nothing(damage: str, tmp_path: Path):
+    path = tmp_path / "result.json"
+    path.write_bytes(DAMAGES[damage])
+    assert not result_file.outdated(path)
+    assert documents.schema_of(path) in ("", "hthor.other/1")
+
+
+def test_a_level_of_isolation_that_does_not_exist_is_refused(tmp_path: Path):
+    (tmp_path / "isolation.json").write_text('{"level": "L9"}')
+    with pytest.raises(RunError, match=r"isolation\.json: .*level is 'L9', valid are served, L1, L2, L3"):
+        guarded.load(tmp_path)
+    with pytest.raises(RunError, match="L9"):
+        guarded.weakest(tmp_path, Isolation(level="L1"), "L2")
+
+
+def test_the_error_names_file_and_field(tmp_path: Path):
+    path = tmp_path / "kind.json"
+    path.write_text('{"schema": "hthor.kind/1", "name": 3}')
+    with pytest.raises(PeopleError) as caught:
+        documents.read(path, kinds.Kind, PeopleError)
+    assert caught.value.file == str(path)
+    assert caught.value.field == "name"
+    assert re.search("Expected `str`", caught.value.problem)
+
+
+def test_every_file_is_read_by_the_one_reader(root: Path):
+    """A decoder that is called elsewhere would not be guarded: what does not decode files of ours is listed."""
+    listed = {
+        "hthor/documents.py",
+        "hthor/catalog/priors/__init__.py",  # these ship with hthor
+        "hthor/tasks/judgement.py",
+        "hthor/eval/health/sameness.py",
+        "hthor/tasks/official.py",  # made a moment before
+        "hthor/eval/health/probe.py",  # the output of a process of ours
+        "hthor/houses/schema.py",  # names line and column
+    }
+    found = {
+        path.relative_to(root).as_posix()
+        for path in (root / "hthor").rglob("*.py")
+        if re.search(r"msgspec\.json\.decode\(|json\.loads?\(", path.read_text())
+    }
+    assert found <= listed
+
+
+# ------------------------------------------------------------------------------------------- the schema of entries
+
+
+def _places(document: Any, where: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """The path of every value of a document."""
+    parts = (
+        document.items() if isinstance(document, dict) else enumerate(document) if isinstance(document, list) else ()
+    )
+    return [where, *(place for name, part in parts for place in _places(part, (*where, name)))]
+
+
+_VALUES = (None, 0, -1, 1.5, 2**70, "", "x", "L9", "served", [], {}, True, "0" * 64)
+
+
+@settings(max_examples=150, deadline=None)
+@given(data=st.data())
+def test_the_schema_is_kept_without_a_library_for_schemas(
+    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+):
+    root = Path(__file__).parent.parent
+    source = sorted((root / "leaderboard" / "entries").glob("*.json"))[0]
+    document = json.loads(source.read_bytes())
+    place = data.draw(st.sampled_from(_places(document)[1:]))
+    changed = copy.deepcopy(document)
+    holder = changed
+    for step in place[:-1]:
+        holder = holder[step]
+    how = data.draw(st.sampled_from(("set", "drop", "add")))
+    if how == "set":
+        holder[place[-1]] = data.draw(st.sampled_from(_VALUES))
+    elif how == "drop":
+        del holder[place[-1]]
+    elif isinstance(holder, dict):
+        holder["more"] = 1
+    path = tmp_path_factory.mktemp("entries") / source.name
+    path.write_bytes(jsonio.pretty(changed))
+    valid = jsonschema.Draft202012Validator(schema.of("Entry")).is_valid(changed)
+    assert valid <= (not [one for one in form.problems(path) if one.field not in ("id", form.SPELLING)])
+    if not valid:
+        assert list(form.problems(path))
