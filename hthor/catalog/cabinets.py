@@ -14,6 +14,8 @@ from hthor.types import Joint, Part, Rgba, Surface, Vec3
 
 _DOORS_M = 1.2
 """A pair of doors is at most this wide; the rest of a longer cabinet is closed for good."""
+_NARROW_M = 0.7
+"""A base cabinet that is narrower than this has no doors."""
 
 
 def _top(size: Vec3) -> Surface:
@@ -40,9 +42,16 @@ def _pair(
 
 
 def counter(size: Vec3, *, body: Rgba, top: Rgba) -> Form:
-    """A kitchen base cabinet under a worktop, with a toe kick; a pair of doors at its left end, the rest closed."""
+    """A kitchen base cabinet under a worktop, with a toe kick; a pair of doors at its left end, the rest closed.
+
+    One that is too narrow for a pair of doors is closed: it stands in a corner or ends a row.
+    """
     w, d, h = size
     t, toe, leaf = min(0.04, 0.2 * h), min(0.1, 0.2 * h), min(0.02, 0.05 * d)
+    if w < _NARROW_M:
+        closed = box(size, (0.0, 0.0, toe), (w, d - 2 * leaf, h - t), body)
+        kick = box(size, (0.0, 0.0, 0.0), (w, 0.88 * d, toe), IRON)
+        return Form(parts=(box(size, (0.0, 0.0, h - t), (w, d, h), top), kick, closed), surfaces=(_top(size),))
     wide, wall, low = min(w, _DOORS_M), min(0.018, 0.05 * h, 0.05 * w), h - t
     front, lip = d - 3 * leaf, min(0.015, 0.5 * leaf)
     doors, joints = _pair(size, (0.0, front, toe), (wide, front + leaf, low), lip, body, STEEL)

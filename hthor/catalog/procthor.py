@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -123,13 +124,20 @@ KIND_OF = {
 }
 """Object types without a row become "object" when they can be picked up, else "furniture"."""
 
+_ROUND_CORNERS = re.compile(r"Countertop_([LC])_")
+"""ProcTHOR names its worktops by their outline: I and Island are straight, L and C go round corners."""
+
 
 class Asset(Struct, frozen=True, kw_only=True):
-    """A foreign asset: the kind that stands in for it, and its size (width, depth, height) [m], and variant."""
+    """A foreign asset: the kind that stands in for it, and its size (width, depth, height) [m], and variant.
+
+    ``plan`` is its outline seen from above where that is no rectangle: "L" or "C", see `hthor.houses.worktops`.
+    """
 
     kind: str
     size: Vec3
     variant: int = 0
+    plan: str = ""
 
 
 class _Box(Struct):
@@ -168,4 +176,6 @@ def _asset(path: Path, row: _Row, box: Any) -> Asset:
     if not all(0.0 < extent < 100.0 for extent in size):
         problem = f"a size must be positive and below 100 m, got {size}"
         raise HouseError(str(path), f"{row.object_type}: {row.asset_id}.boundingBox", problem)
-    return Asset(kind=kind_of(row.object_type, pickable=row.primary_property == "CanPickup"), size=size)
+    kind = kind_of(row.object_type, pickable=row.primary_property == "CanPickup")
+    plan = _ROUND_CORNERS.match(row.asset_id) if kind == "counter_top" else None
+    return Asset(kind=kind, size=size, plan=plan[1] if plan else "")

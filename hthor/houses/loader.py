@@ -14,7 +14,7 @@ from typing import Any, Literal
 from hthor import jsonio
 from hthor.errors import HouseError, UnknownName
 from hthor.geometry import signed_area, wrap
-from hthor.houses import schema, validate
+from hthor.houses import laying, schema, validate, worktops
 from hthor.houses.assets import Assets
 from hthor.houses.schema import Agent, HouseFile, OpeningRow, RoomRow, WallRow
 from hthor.houses.validate import EXTERIOR, ROOM_KINDS
@@ -100,7 +100,7 @@ def _build(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) 
     found = validate.start(house)
     if found is None:
         raise HouseError(file, "metadata.agent", "is missing")
-    return HouseSpec(
+    spec = HouseSpec(
         id=name,
         sha256=sha256,
         rooms=_rooms(house.rooms),
@@ -113,6 +113,7 @@ def _build(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) 
         height=max(high for _, high in map(validate.wall_heights, house.walls)),
         start=_pose(found[1]),
     )
+    return laying.lay(spec)
 
 
 def _rooms(rows: list[RoomRow]) -> tuple[Room, ...]:
@@ -169,23 +170,24 @@ def _opening(row: OpeningRow, wall: WallRow, *, door: bool) -> Opening:
 
 def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
     rooms = [(room.id, validate.floor(room)) for room in house.rooms]
-    things = []
+    things: list[Thing] = []
+    units: dict[str, tuple[Thing, ...]] = {}
     for where, row, parent in validate.objects(house):
         asset = assets.find(row.asset_id, file, f"{where}.assetId")
         at = row.position
-        things.append(
-            Thing(
-                id=row.id,
-                kind=asset.kind,
-                asset=row.asset_id,
-                variant=asset.variant,
-                centre=(at.x, at.z, at.y),
-                size=asset.size,
-                yaw=wrap(0.0 - math.radians(row.rotation.y)),
-                room=validate.room_at((at.x, at.z), rooms) or "",
-                parent=parent,
-            )
+        thing = Thing(
+            id=row.id,
+            kind=asset.kind,
+            asset=row.asset_id,
+            variant=asset.variant,
+            centre=(at.x, at.z, at.y),
+            size=asset.size,
+            yaw=wrap(0.0 - math.radians(row.rotation.y)),
+            room=validate.room_at((at.x, at.z), rooms) or "",
+            parent=worktops.beneath((at.x, at.z), units[parent]).id if parent in units else parent,
         )
+        units[row.id] = worktops.units(thing, asset.plan)
+        things += units[row.id]
     return tuple(things)
 
 

@@ -44,7 +44,10 @@ def overlaps(house: HouseSpec) -> Iterator[Finding]:
 
 
 def floats(house: HouseSpec) -> Iterator[Finding]:
-    """``thing-floats``: a thing that neither stands on the floor, nor lies on its support, nor hangs on a wall."""
+    """``thing-floats``: a thing that neither stands on the floor, nor lies on its support, nor hangs on a wall.
+
+    What lies on a support is judged by the height that the house's file gives it.
+    """
     things = {thing.id: thing for thing in house.things}
     for thing in house.things:
         bottom = thing.centre[2] - thing.size[2] / 2
@@ -54,8 +57,9 @@ def floats(house: HouseSpec) -> Iterator[Finding]:
             if below is None:
                 problem = f"the {named(thing.kind)} lies over no surface of '{support.id}' ({named(support.kind)})"
                 yield warning("thing-floats", thing.id, problem)
-            elif abs(below[1]) > FLOAT_M:
-                above = f"{abs(below[1]):.3f} m {'above' if below[1] > 0 else 'below'} the {below[0].name}"
+            elif abs(below[1] + thing.lift) > FLOAT_M:
+                gap = below[1] + thing.lift
+                above = f"{abs(gap):.3f} m {'above' if gap > 0 else 'below'} the {below[0].name}"
                 yield warning("thing-floats", thing.id, f"the {named(thing.kind)} lies {above} of '{support.id}'")
         elif catalog.kind(thing.kind).wall_mounted:
             gap = _off_wall(thing, house)

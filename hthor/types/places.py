@@ -69,10 +69,11 @@ class Joint(Struct, frozen=True, kw_only=True):
 
 
 class Thing(Struct, frozen=True, kw_only=True):
-    """A piece of furniture or a small object of a house, as its file places it.
+    """A piece of furniture or a small object of a house, where it stands, or lies on its support.
 
     ``centre`` [m] house frame is the middle of the bounding box, ``size`` [m] its extents along the thing's local
-    x (width), y (depth) and z (height) axes. ``variant`` picks one of its kind's finishes; it changes looks only.
+    x (width), y (depth) and z (height) axes. ``variant`` picks one of its kind's finishes; it changes looks only. ``lift`` [m] is how much higher the house's
+    file has it: what its heights were before it was laid down (`hthor.houses.laying`).
     """
 
     id: str
@@ -84,6 +85,7 @@ class Thing(Struct, frozen=True, kw_only=True):
     yaw: float
     room: str = ""
     parent: str = ""
+    lift: float = 0.0
 
 
 class Room(Struct, frozen=True, kw_only=True):

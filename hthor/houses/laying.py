@@ -1,0 +1,137 @@
+"""Small things laid on the surfaces that they lie on: one arrangement of a house for its tasks, checks and worlds.
+
+A house file gives heights measured on furniture of other shapes than ours, so a cup of it would hang above the table or
+stand in the shelf. Whoever loads a house gets it laid down. What lies in a way that no real thing could (deeper than
+`SUNK_M` in its neighbour or in the ceiling, or over no surface at all) stays where the file puts it and does not move.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+
+import msgspec
+import numpy as np
+
+from hthor import catalog, geometry
+from hthor.houses import solids
+from hthor.houses.solids import Slab
+from hthor.types import HouseSpec, Thing, Vec3
+
+SUNK_M = 0.005
+"""How deep a small thing may be in another one and still count as free to move."""
+ROUNDING_M = 1e-4
+"""A height that is this near to the surface's is the surface's, rounded: the file's number is kept."""
+_SNAP_M = 0.30
+"""How far above or below a surface a house file may place what lies on it."""
+
+
+def lay(house: HouseSpec) -> HouseSpec:
+    """The house with every small thing on its surface; `Thing.lift` keeps how much higher the file has it.
+
+    A house that is laid down already stays as it is.
+    """
+    laid = {thing.id: thing for thing in movable(house)}
+    things = tuple(_laid(thing, laid.get(thing.id, thing)) for thing in house.things)
+    return msgspec.structs.replace(house, things=things)
+
+
+def movable(house: HouseSpec) -> tuple[Thing, ...]:
+    """The small things that rest freely on a surface, exactly on it, in the house's order.
+
+    Of two that are in one another the first is free. What lies on another small thing lies on it where that is laid.
+    """
+    small = {thing.id for thing in house.things if catalog.kind(thing.kind).pickable}
+    standing = (thing for thing in house.things if thing.id not in small or not thing.parent)
+    crowd = _Crowd([*solids.walls(house), *(slab for thing in standing for slab in slabs(thing))])
+    supports = {thing.id: thing for thing in house.things}
+    found = []
+    for thing in house.things:
+        if thing.id not in small or not thing.parent:
+            continue
+        laid = _on_surface(thing, supports.get(thing.parent))
+        if laid is None or not _fits(laid, house.height, crowd):
+            crowd.add(slabs(thing))
+            continue
+        crowd.add([_body(laid)])
+        supports[thing.id] = laid
+        found.append(laid)
+    return tuple(found)
+
+
+def slabs(thing: Thing) -> Iterator[Slab]:
+    """Every part of a thing, closed, as an upright box."""
+    for part in catalog.kind(thing.kind).parts(thing.size):
+        x, y, z = geometry.to_house(part.centre, thing.centre, thing.yaw)
+        yield Slab((x, y), (2 * part.half[0], 2 * part.half[1]), thing.yaw, z - part.half[2], z + part.half[2])
+
+
+def _laid(thing: Thing, laid: Thing) -> Thing:
+    lift = thing.centre[2] - laid.centre[2]
+    if abs(lift) <= ROUNDING_M:
+        return thing
+    return msgspec.structs.replace(thing, centre=laid.centre, lift=thing.lift + lift)
+
+
+def _on_surface(thing: Thing, support: Thing | None) -> Thing | None:
+    """The thing on the surface of ``support`` that is nearest below or above it, None where none is near."""
+    x, y, z = thing.centre
+    low = z - thing.size[2] / 2
+    heights = [] if support is None else _heights(support, thing.centre)
+    height = min(heights, key=lambda height: abs(height - low), default=None)
+    if height is None or abs(height - low) > _SNAP_M:
+        return None
+    return msgspec.structs.replace(thing, centre=(x, y, height + thing.size[2] / 2))
+
+
+def _heights(support: Thing, point: Vec3) -> list[float]:
+    """Heights [m] of the surfaces that the point is above or below."""
+    local = geometry.to_local(point, support.centre, support.yaw)
+    return [
+        support.centre[2] + surface.centre[2]
+        for surface in catalog.kind(support.kind).surfaces(support.size)
+        if all(abs(local[axis] - surface.centre[axis]) <= surface.half[axis] for axis in (0, 1))
+    ]
+
+
+def _fits(thing: Thing, ceiling: float, crowd: _Crowd) -> bool:
+    body = _body(thing)
+    return body.high <= ceiling + SUNK_M and not crowd.holds(body)
+
+
+def _body(thing: Thing) -> Slab:
+    (x, y, z), (w, d, h) = thing.centre, thing.size
+    return Slab((x, y), (w, d), thing.yaw, z - h / 2, z + h / 2)
+
+
+class _Crowd:
+    """Solids that grow in number, and whether one more is deep in any of them."""
+
+    def __init__(self, first: Iterable[Slab]) -> None:
+        self._slabs = list(first)
+        self._rows = np.array([_row(slab) for slab in self._slabs], dtype=float).reshape(-1, 5)
+        self._late: list[Slab] = []
+
+    def add(self, more: Iterable[Slab]) -> None:
+        """These stand there, too."""
+        self._late += more
+
+    def holds(self, body: Slab) -> bool:
+        """Whether the body is deeper than `SUNK_M` in any of them."""
+        x, y, radius, low, high = _row(body)
+        rows = self._rows
+        near = np.minimum(rows[:, 4], high) - np.maximum(rows[:, 3], low) > SUNK_M
+        near &= np.hypot(rows[:, 0] - x, rows[:, 1] - y) < rows[:, 2] + radius
+        rivals = [self._slabs[number] for number in np.flatnonzero(near)]
+        return any(_deep(body, other) for other in (*rivals, *self._late))
+
+
+def _row(slab: Slab) -> tuple[float, float, float, float, float]:
+    return (*slab.centre, math.hypot(*slab.size) / 2, slab.low, slab.high)
+
+
+def _deep(one: Slab, two: Slab) -> bool:
+    """Whether two boxes are deeper in one another than may be."""
+    if min(one.high, two.high) - max(one.low, two.low) <= SUNK_M:
+        return False
+    return solids.overlap(one, two) > SUNK_M
