@@ -196,7 +196,7 @@ def test_without_any_back_end_it_says_what_to_install(monkeypatch: pytest.Monkey
         raise ImportError(f"no lib{name}")
 
     monkeypatch.setattr(opengl, "_open", fail)
-    monkeypatch.setattr(opengl, "_forget", lambda: None)
+    monkeypatch.setattr(opengl, "_forget", lambda loaded: None)
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     with pytest.raises(RenderingUnavailable, match=r"egl: no libegl; osmesa: no libosmesa; glfw.*libegl1"):
         opengl.context(8, 8)

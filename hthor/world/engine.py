@@ -1,15 +1,19 @@
 """The one place that imports MuJoCo and dm_control, without waking OpenGL; knows nothing of houses.
 
 Both packages look for a display when they are imported and complain when there is none. Here they are told not to
-look: a trial needs no picture, and `rendering` makes its own context when someone asks for one.
+look yet: a trial needs no picture, and `rendering` makes its own context when someone asks for one. A program that
+draws with either of them itself still can, see `late_opengl`.
 """
 
 from __future__ import annotations
 
 import os
+import sys
+
+from hthor.world import late_opengl
 
 _VARIABLE = "MUJOCO_GL"
-_before = os.environ.get(_VARIABLE)
+_before, _loaded = os.environ.get(_VARIABLE), tuple(sys.modules)
 os.environ[_VARIABLE] = "disable"
 try:
     import mujoco
@@ -20,5 +24,6 @@ finally:
         del os.environ[_VARIABLE]
     else:
         os.environ[_VARIABLE] = _before
+late_opengl.choose_later(_loaded)
 
 __all__ = ["Arena", "Entity", "Environment", "composer", "mjcf", "mujoco"]

@@ -11,7 +11,7 @@ import importlib
 import os
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from typing import Any
 
 from hthor.errors import RenderingUnavailable
@@ -34,12 +34,13 @@ def context(width: int, height: int) -> Any:
     wanted = os.environ.get(_VARIABLE, "").strip().lower()
     order = (wanted,) if wanted in _BACKENDS else _BACKENDS
     failures = []
+    loaded = frozenset(sys.modules)
     for name in order:
         try:
             return _open(name, width, height)
         except Exception as error:  # each back end fails in ways of its own
             failures.append(f"{name}: {str(error).splitlines()[0] if str(error) else type(error).__name__}")
-            _forget()
+            _forget(loaded)
     raise RenderingUnavailable(f"no OpenGL back end could draw ({'; '.join(failures)}). {_CURE}")
 
 
@@ -67,16 +68,17 @@ def _open(name: str, width: int, height: int) -> Any:
     return context
 
 
-def _forget() -> None:
-    """Undo a failed import: PyOpenGL settles on one platform the first time it is imported."""
+def _forget(loaded: Container[str]) -> None:
+    """Undo a failed import: PyOpenGL settles on one platform the first time it is imported.
+
+    Modules that were ``loaded`` before are someone else's and stay.
+    """
     if os.environ.get(_PLATFORM) in _BACKENDS and _PLATFORM not in _given:
         del os.environ[_PLATFORM]
-    for module in [name for name in sys.modules if name.split(".")[0] == "OpenGL"]:
-        del sys.modules[module]
-    for name in _BACKENDS:
-        for module in [known for known in sys.modules if known.startswith(f"mujoco.{name}")]:
-            with contextlib.suppress(KeyError):
-                del sys.modules[module]
+    ours = ("OpenGL", *(f"mujoco.{name}" for name in _BACKENDS))
+    for module in [name for name in sys.modules if name not in loaded]:
+        if any(module == package or module.startswith(f"{package}.") for package in ours):
+            del sys.modules[module]
 
 
 _given = frozenset({_PLATFORM} & set(os.environ))

@@ -1,0 +1,77 @@
+"""Importing hthor leaves MuJoCo's and dm_control's own rendering as it is."""
+
+from __future__ import annotations
+
+import functools
+import os
+import subprocess
+import sys
+import tempfile
+
+import pytest
+
+BALL = '<mujoco><worldbody><light pos="0 0 3"/><geom size=".3" rgba="1 0 0 1"/></worldbody></mujoco>'
+MUJOCO = f"""
+import mujoco
+model = mujoco.MjModel.from_xml_string('{BALL}')
+data = mujoco.MjData(model)
+mujoco.mj_forward(model, data)
+renderer = mujoco.Renderer(model, 48, 64)
+renderer.update_scene(data)
+print(renderer.render().shape, int(renderer.render().sum()))
+"""
+DM_CONTROL = f"""
+from dm_control import mujoco as dm
+print(dm.Physics.from_xml_string('{BALL}').render(48, 64).sum())
+"""
+NICE = """
+from hthor.world import World
+print(World("hazel").human.rgb((8, 8), profile="nice").shape)
+"""
+OURS = "import hthor.world.world"
+
+
+def run(*parts: str, backend: str | None = "egl") -> str:
+    """What a fresh process prints; its complaint when it fails."""
+    given = {name: value for name, value in os.environ.items() if name not in ("MUJOCO_GL", "PYOPENGL_PLATFORM")}
+    environment = given | ({} if backend is None else {"MUJOCO_GL": backend})
+    command = [sys.executable, "-c", "\n".join(parts)]
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run(command, env=environment, cwd=folder, capture_output=True, text=True, timeout=300)
+    return done.stdout if done.returncode == 0 else f"failed: {done.stderr.strip().splitlines()[-1]}"
+
+
+@functools.cache
+def alone(part: str) -> str:
+    """What it prints without hthor; skips where that does not work."""
+    found = run(part)
+    if found.startswith("failed"):
+        pytest.skip(f"EGL does not draw on this machine: {found[:120]}")
+    return found
+
+
+@pytest.mark.parametrize("part", [MUJOCO, DM_CONTROL], ids=["mujoco", "dm_control"])
+@pytest.mark.parametrize("order", ["before", "after"])
+def test_rendering_works_whichever_is_imported_first(part: str, order: str) -> None:
+    imports = "import mujoco, dm_control.mujoco"
+    first, second = (OURS, imports) if order == "before" else (imports, OURS)
+    assert run(first, second, part) == alone(part)
+
+
+def test_rendering_works_beside_pictures_of_our_own() -> None:
+    assert run(NICE, MUJOCO, DM_CONTROL, NICE) == f"(8, 8, 3)\n{alone(MUJOCO)}{alone(DM_CONTROL)}(8, 8, 3)\n"
+
+
+def test_the_back_end_is_chosen_at_first_use() -> None:
+    late = "import os; os.environ['MUJOCO_GL'] = 'egl'"
+    assert run(OURS, late, MUJOCO, backend=None) == alone(MUJOCO)
+
+
+def test_nobody_is_asked_for_a_display_meanwhile() -> None:
+    question = "import sys; print([name for name in sys.modules if name.split('.')[0] in ('OpenGL', 'glfw')])"
+    assert run(OURS, question) == "[]\n"
+
+
+def test_opengl_that_was_switched_off_stays_off() -> None:
+    question = "import mujoco; print(hasattr(mujoco, 'GLContext'))"
+    assert run(OURS, question, backend="disable") == run(question, backend="disable") == "False\n"
