@@ -146,6 +146,27 @@ def test_whose_agent_is_a_file_needs_the_file(run: Path) -> None:
         again.sources(run, spec, (), "")
 
 
+def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> None:
+    """What the agent raised names its file; the log has it without the folder, and so must the second time."""
+    agent = tmp_path / "clumsy.py"
+    agent.write_text(
+        "from hthor.types import Action, Move\n\n\nclass Agent:\n    def begin(self, briefing): ...\n\n"
+        "    def act(self, observation):\n        if observation.tick > 20:\n            raise RuntimeError('lost')\n"
+        "        return Action(motion=Move(forward=0.3))\n"
+    )
+    one = library.frozen("one", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == "hazel")[:1])
+    (tmp_path / "one.json").write_bytes(library.encode(one))
+    options = intent.Options(
+        agents=(str(agent),), suite=str(tmp_path / "one.json"), jobs=1, out=tmp_path / "run", max_faults="100%"
+    )
+    list(campaign.conduct(options, lambda _: progress.Silent()))
+    faulty = find.trial(tmp_path / "run", "0")
+    assert "clumsy.py" in faulty.faults[0].detail
+    assert str(tmp_path) not in faulty.faults[0].detail
+    assert mind.listen(tmp_path / "run", faulty, agents=(str(agent),)).same
+    assert filming.film(tmp_path / "run", faulty, [0], agents=(str(agent),)).keys() == {0}
+
+
 def test_forgetting_and_misses_have_their_marks() -> None:
     events = (
         Event(tick=0, seat=HUMAN, kind="aim", data={"about": "begin"}),

@@ -69,11 +69,14 @@ def _show_version(wanted: bool) -> None:
 
 @app.callback()
 def root(
-    version: Annotated[
+    version: Annotated[  # noqa: ARG001
         bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
     ] = False,
 ) -> None:
     """Evaluate robots that help people in a shared house."""
+    from hthor.eval import provenance
+
+    provenance.keep_compiled()  # here, so that no command can miss it
 
 
 def _open_streams() -> None:

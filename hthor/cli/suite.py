@@ -182,7 +182,7 @@ def _each(jobs: int | None, total: int) -> Each:
         if count == 1:
             yield from watched(map(work, items))
             return
-        os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))  # compiled code of this version alone
+        provenance.keep_compiled()
         with ProcessPoolExecutor(count, get_context("spawn")) as pool:
             yield from watched(pool.map(work, items))
 

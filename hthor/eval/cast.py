@@ -107,11 +107,15 @@ class Stage:
             garbage.keep()
         return self._worlds[key]
 
-    def play(self, company: Company, trial: TrialSpec) -> Record:
-        """The company's next trial. A mind that failed is let go, and what is left of it laid down."""
+    def play(self, company: Company, trial: TrialSpec, world: Any = None) -> Record:
+        """The company's next trial. A mind that failed is let go, and what is left of it laid down.
+
+        Args:
+            world: stands for the trial's world, for somebody who looks on.
+        """
         from hthor.eval import impersonal, record, remains
 
-        log = _play(self, company, trial)
+        log = _play(world or self.world(trial), company, trial)
         company.rest()
         if not log.faults:
             return record.of(trial, log)
@@ -227,11 +231,10 @@ def player(sources: Sources | None = None) -> Callable[[Session], Iterator[Recor
     return perform
 
 
-def _play(stage: Stage, company: Company, trial: TrialSpec) -> EpisodeLog:
+def _play(world: Any, company: Company, trial: TrialSpec) -> EpisodeLog:
     """One trial; a failure in a user's own kind of task is theirs to mend, and told as such."""
     from hthor.episode import play
 
-    world = stage.world(trial)
     try:
         return play(trial, world, company.human, company.robots())
     except Exception as error:

@@ -12,7 +12,7 @@ from msgspec import Struct
 
 from hthor import plugins
 from hthor.errors import AgentError, HthorError
-from hthor.eval import crews, points
+from hthor.eval import crews, points, provenance
 from hthor.eval.crews import Character
 from hthor.eval.points import Finding
 from hthor.eval.rehearsal import Rehearsal
@@ -51,6 +51,7 @@ def check(agent: str, *, robot: str = "", isolation: str = "auto") -> Report:
     if agent in plugins.names("agent"):
         raise HthorError(f"'{agent}' ships with hthor; give an agent of your own, such as my_agent.py.")
     confine_guests(isolation)
+    provenance.keep_compiled()
     began = time.perf_counter()
     try:
         character = crews.introduce(agent)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -90,7 +89,7 @@ def settle(options: Options) -> Intent:
             "name an agent with --agent, or robots and their agents with --robots tall:oracle,small:oracle."
         )
     guest.confine_guests(options.isolation, hidden(options))
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))  # for what agents import of ours
+    provenance.keep_compiled()
     whom = peoples.expand(options.humans)
     detector = detectors.tidy(options.detector)
     pack = cast.furnish(options.assets)

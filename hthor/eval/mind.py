@@ -13,9 +13,9 @@ from typing import Any
 
 from msgspec import Struct
 
-from hthor.episode import EpisodeLog, play
+from hthor import guest
 from hthor.errors import HthorError
-from hthor.eval import again, cast, record
+from hthor.eval import again, cast, provenance, record
 from hthor.eval.record import Record
 from hthor.eval.session import Session
 from hthor.types import HUMAN, Action, Briefing, Event, Observation
@@ -97,29 +97,28 @@ def listen(folder: Path, wanted: Record, *, agents: Sequence[str] = (), humans: 
         RunError: when trials before it are missing, or another version of hthor played them.
         HthorError: when a file is needed, or the person is one whose mind cannot be looked into.
     """
+    provenance.keep_compiled()
     spec = wanted.spec
     session = Session(participant=spec.participant, trials=again.before(folder, wanted))
+    guest.confine_guests(hidden=(str(folder.resolve()),))
     stage = cast.Stage(again.sources(folder, spec, agents, humans))
     with stage.enter(session) as company:
-        person = Listened(company.human)
-        if not all(hasattr(type(company.human), name) for name in ("about", "listener")):
+        company.human = person = Listened(company.human)
+        if not all(hasattr(type(person.human), name) for name in ("about", "listener")):
             raise HthorError(
                 f"the people of this run, '{spec.human}', have no mind to look into. --mind takes runs whose people "
                 "are the proxy, or a model made of it."
             )
         for trial in session.trials:
             person.listening = trial == spec
-            log = play(trial, stage.world(trial), person, company.robots())
-            for seat in dict.fromkeys(fault.seat for fault in log.faults):
-                company.dismiss(seat)
-        traits = {name: getattr(company.human.traits, name) for name in company.human.traits.__struct_fields__}
-    return _stream(wanted, log, person.thoughts, traits)
+            done = stage.play(company, trial)
+        traits = {name: getattr(person.human.traits, name) for name in person.human.traits.__struct_fields__}
+    return _stream(wanted, done, person.thoughts, traits)
 
 
-def _stream(wanted: Record, log: EpisodeLog, thoughts: Sequence[Event], traits: dict[str, float]) -> Stream:
-    again = record.of(wanted.spec, log)
-    written = [event for event in again.journal if event.kind in _JOURNAL]
-    said = [event for event in again.events if event.kind in ("shown", "confirmed", "declined", "covered")]
+def _stream(wanted: Record, done: Record, thoughts: Sequence[Event], traits: dict[str, float]) -> Stream:
+    written = [event for event in done.journal if event.kind in _JOURNAL]
+    said = [event for event in done.events if event.kind in ("shown", "confirmed", "declined", "covered")]
     events = sorted([*thoughts, *written, *said], key=lambda event: event.tick)
-    same = record.encode(again) == record.encode(wanted)
+    same = record.encode(done) == record.encode(wanted)
     return Stream(key=wanted.key, same=same, traits=traits, events=tuple(events))

@@ -13,6 +13,7 @@ from hthor.episode import Fault
 from hthor.eval import impersonal
 from hthor.eval.crews import Character
 from hthor.eval.rehearsal import Notes
+from hthor.humans.parameters import Parameters
 
 Status = Literal["ok", "broken", "warning", "skipped"]
 _ADVICE = {
@@ -27,6 +28,11 @@ _ADVICE = {
     "not_finite": "Look for a division by zero, or a mean of nothing, on the way to that number.",
 }
 _SLOW_LOAD_S, _SLOW_BEGIN_S, _LOUD = 5.0, 1.0, 15_000
+_ON_ONE_SPOT = 0.5
+"""Share of a trial that an agent may spend on one spot before it is warned; our choice."""
+_A_FEW, _TAKES_S = 2, 2.0 * Parameters().t_read
+"""Messages that a person takes: these, and one more in this time [s], in which the median person reads and answers."""
+_READING = "A person takes some 3 s to read a message, and each new one covers the one before."
 
 
 class Finding(Struct, frozen=True, kw_only=True):
@@ -105,7 +111,7 @@ def figures(notes: Notes) -> dict[str, float]:
         "begin_s": notes.begin_s,
         "step_ms_median": 1000.0 * statistics.median(ordered),
         "step_ms_p99": 1000.0 * ordered[math.ceil(0.99 * len(ordered)) - 1],
-        "share": sum(ordered) / notes.wall_s,
+        "share": sum(ordered) / max(notes.lasted_s, rules.TICK_S),
         "memory_mb": notes.memory_mb,
     }
 
@@ -115,12 +121,11 @@ def speed(notes: Notes) -> Finding:
     found = figures(notes)
     told = (
         f"median {found['step_ms_median']:.2f} ms a step, 99 % within {found['step_ms_p99']:.2f} ms, "
-        f"{100.0 * found['share']:.0f} % of the trial's time"
+        f"{100.0 * found['share']:.1f} % of the trial's {notes.lasted_s:.0f} s"
     )
     if found["memory_mb"]:
         told += f"; {found['memory_mb']:.0f} MB"
-    ended_s = notes.actions[-1][0] * rules.TICK_S if notes.actions else 0.0
-    if sum(notes.thought_s) <= max(ended_s, rules.TICK_S):
+    if found["share"] <= 1.0:
         return Finding(check="fast enough", status="ok", told=told)
     advice = "It thinks longer than the trial lasts: 'hthor eval --realtime' would charge that."
     return Finding(check="fast enough", status="warning", told=told, advice=advice)
@@ -131,19 +136,39 @@ def warnings(trials: tuple[Notes, ...], character: Character) -> list[Finding]:
     found: list[tuple[str, str]] = []
     if any(len(one.output) > _LOUD for one in trials):
         found.append(("it prints much", "Only the last 16 KiB are kept, and printing costs time."))
-    if not any(one.motions for one in trials):
-        found.append(("it never moved", "Return Action(motion=Move(...)) or Rotate(...) when observation.idle."))
+    found += _moving(trials)
     refused, motions = sum(one.refused for one in trials), sum(one.motions for one in trials)
     if motions and refused > motions / 2:
         found.append(
             (f"{refused} of {motions} motions failed", "observation.outcome says why: blocked, out of reach ...")
         )
-    if not any(one.sent for one in trials):
-        found.append(
-            ("it never sent a message", "Without Send(text, object, position) the person learns nothing from it.")
-        )
+    found += _speaking(trials)
     unseen, claims = sum(one.unseen for one in trials), sum(one.claims for one in trials)
     if unseen and "object_poses" not in character.ref.privileges:
         advice = "Claims are scored, and false ones cost trust: say what was detected."
         found.append((f"{unseen} of {claims} messages were about what it had not detected", advice))
     return [Finding(check="note", status="warning", told=told, advice=advice) for told, advice in found]
+
+
+def _moving(trials: tuple[Notes, ...]) -> list[tuple[str, str]]:
+    """Of an agent that leaves its robot where it is."""
+    if not any(one.motions for one in trials):
+        return [("it never moved", "Return Action(motion=Move(...)) or Rotate(...) when observation.idle.")]
+    longest = max(trials, key=lambda one: one.spot_s)
+    if longest.spot_s <= _ON_ONE_SPOT * longest.lasted_s:
+        return []
+    told = f"it stood on one spot for {longest.spot_s:.0f} of {longest.lasted_s:.0f} s"
+    return [(told, "What it has not seen it cannot tell: go on exploring, and look at observation.outcome.")]
+
+
+def _speaking(trials: tuple[Notes, ...]) -> list[tuple[str, str]]:
+    """Of an agent that never speaks, or more than a person can take."""
+    if not any(one.sent for one in trials):
+        return [("it never sent a message", "Without Send(text, object, position) the person learns nothing from it.")]
+    loudest = max(trials, key=lambda one: one.sent)
+    if loudest.sent > _A_FEW + loudest.lasted_s / _TAKES_S:
+        parts = ((loudest.covered, "covered by the next one"), (loudest.repeated, "the same as the one before"))
+        counted = ", ".join(f"{count} {what}" for count, what in parts if count)
+        told = f"it sent {loudest.sent} messages in {loudest.lasted_s:.0f} s" + (f": {counted}" if counted else "")
+        return [(told, f"{_READING} Send what is new, once, and again only after observation.receipt says declined.")]
+    return []

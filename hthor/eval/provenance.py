@@ -42,6 +42,14 @@ def compiled() -> Path:
     return Path(cache) / "hthor" / f"compiled-{code_sha256()[:16]}"
 
 
+def keep_compiled() -> None:
+    """Have this process, and those that it starts, keep compiled loops in `compiled`, unless the user chose a place.
+
+    Whatever plays trials calls this first: without it every process, the agents' too, compiles for 20 s.
+    """
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(compiled()))
+
+
 def _files() -> Iterator[Path]:
     for path in sorted(PACKAGE.rglob("*")):
         name = path.relative_to(PACKAGE).as_posix()

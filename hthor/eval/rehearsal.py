@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import msgspec
 from msgspec import Struct
 
-from hthor import tasks
+from hthor import rules, tasks
 from hthor.episode import Fault, play
-from hthor.eval import cast, crews, record
+from hthor.eval import cast, conduct, crews, record
 from hthor.eval.crews import Character
 from hthor.eval.session import Session, sessions
 from hthor.eval.watched import Watched
@@ -31,9 +31,12 @@ class Notes(Struct, frozen=True, kw_only=True):
         line: the record as it would be written.
         asked: how often it was asked to act. actions: what was done, with the tick at which it was asked for.
         thought_s: seconds of each ``act``, without what its pictures and scans took; ``begin_s`` of ``begin``.
-        wall_s: seconds of the whole trial but for ``begin``.
         memory_mb: the most memory that was seen in use; 0 where the agent runs elsewhere.
+        lasted_s: seconds of the trial, as they are counted in the house.
         motions, refused: how many motions there were, and how many of them did not come to a good end.
+        spot_s: the longest time that it stayed on one spot before the person confirmed a message.
+        sent, covered, repeated: messages, how many of them were covered by its next one, and how many said the same as
+            the one before although the person had not declined that.
         claims, unseen: messages about an object, and how many of these it had not detected before.
         output: the end of what was printed.
     """
@@ -44,11 +47,14 @@ class Notes(Struct, frozen=True, kw_only=True):
     actions: tuple[tuple[int, Action], ...]
     thought_s: tuple[float, ...]
     begin_s: float
-    wall_s: float
     memory_mb: float
+    lasted_s: float
     motions: int
     refused: int
+    spot_s: float
     sent: int
+    covered: int
+    repeated: int
     claims: int
     unseen: int
     output: str
@@ -79,25 +85,27 @@ class Rehearsal:
         human = self._stage.enter(Session(participant=trial.participant, trials=(trial,))).human
         noted, world = _Noted(guest), self._stage.world(trial)
         seat = trial.robots[0].seat
-        began = time.perf_counter()
         log = play(trial, world, human, {seat: noted})
-        wall_s = time.perf_counter() - began - noted.begin_s
         done = [(look.tick, action) for look, action in noted.looks if action is not None]
         says = [(action.say, seen) for (_, action), seen in zip(done, noted.seen, strict=False)]
         about = [(say.object, seen) for say, seen in says if isinstance(say, Send) and say.object]
         ended = [look.outcome for look, _ in noted.looks if look.idle and look.outcome is not None]
+        kept = record.of(trial, log)
         return Notes(
-            line=record.encode(record.of(trial, log)),
+            line=record.encode(kept),
             faults=log.faults,
             asked=len(noted.looks),
             actions=tuple(done),
             thought_s=tuple(noted.thought_s),
             begin_s=noted.begin_s,
-            wall_s=wall_s,
             memory_mb=noted.memory_mb,
+            lasted_s=log.ticks * rules.TICK_S,
             motions=sum(not isinstance(action.motion, Wait) for _, action in done),
             refused=sum(not outcome.ok for outcome in ended),
-            sent=sum(isinstance(say, Send) for say, _ in says),
+            spot_s=conduct.on_one_spot_s(log, seat),
+            sent=kept.metrics.sent or 0,
+            covered=kept.metrics.covered or 0,
+            repeated=conduct.repeated(log, seat),
             claims=len(about),
             unseen=0 if noted.looked else sum(name not in seen for name, seen in about),
             output=noted.output,

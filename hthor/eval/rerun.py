@@ -14,7 +14,7 @@ from msgspec import Struct
 
 from hthor import guest, plugins
 from hthor.errors import HthorError
-from hthor.eval import again, crews, guarded, record, remains, setup
+from hthor.eval import again, crews, guarded, provenance, record, remains, setup
 from hthor.eval.cast import Sources
 from hthor.eval.crews import Character
 from hthor.eval.record import Record
@@ -52,6 +52,7 @@ def play(folder: Path, wanted: Record, files: Files, isolation: str = "auto") ->
         HthorError: when a file is needed and not given.
     """
     guest.confine_guests(isolation, (str(folder.resolve()),))
+    provenance.keep_compiled()
     specs = again.before(folder, wanted)
     minds = _minds(wanted.spec, files.agents)
     robots = tuple(_seated(seat, minds) for seat in wanted.spec.robots)

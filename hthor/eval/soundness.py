@@ -67,7 +67,7 @@ def verdicts(tasks: Sequence[TaskSpec], *, jobs: int) -> Generator[Verdict, None
     chunks = _chunks(tasks)
     before = dict(os.environ)
     os.environ.update(worker.ONE_THREAD, PYTHONHASHSEED="0")
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))
+    provenance.keep_compiled()
     count, known = min(jobs, max(1, len(chunks))), (os.getpid(), houses.shelves())
     pool = ProcessPoolExecutor(count, get_context("spawn"), initializer=_begin, initargs=known)
     try:

@@ -6,7 +6,6 @@ A person remembers earlier trials, so those before a wanted one in the same sess
 from __future__ import annotations
 
 import functools
-import os
 from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
@@ -106,7 +105,7 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
 
 def _make(suite: str, crew: Crew, who: People, required: str) -> Make:
     """What plays a session, as in the run that the entry is of."""
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))  # for what agents import of ours
+    provenance.keep_compiled()
     own = bool(suite) and Path(suite).exists() and bool(library.own_houses(suite))
     folder = Path(suite) if Path(suite).is_dir() else Path(suite).parent
     houses = str((folder / "houses").resolve()) if own else ""

@@ -153,7 +153,7 @@ def _quiet_environment() -> Iterator[None]:
     before = dict(os.environ)
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     os.environ.update(worker.ONE_THREAD, PYTHONHASHSEED="0")
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))
+    provenance.keep_compiled()
     try:
         yield
     finally:

@@ -5,7 +5,6 @@ Records come back trial by trial, so that a machine that is lost costs only the 
 
 from __future__ import annotations
 
-import os
 import signal
 import socket
 from collections.abc import Generator, Iterator, Sequence
@@ -211,7 +210,7 @@ class Actor:
     """A worker on some machine."""
 
     def __init__(self, make: Make) -> None:
-        os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))
+        provenance.keep_compiled()
         self._player = Player(make)
 
     def greet(self) -> tuple[str, str, dict[str, str]]:

@@ -12,12 +12,11 @@ from typing import Any
 import msgspec
 
 from hthor import guest
-from hthor.episode import EpisodeLog, play
 from hthor.errors import RunError
 from hthor.eval import again, cast, record
 from hthor.eval.record import Record
 from hthor.eval.session import Session
-from hthor.types import Event, TaskSpec, TrialSpec
+from hthor.types import Event, TaskSpec
 
 SIZE = (400, 300)
 _FINER = 2
@@ -86,10 +85,8 @@ def film(
     with stage.enter(session) as company:
         for trial in session.trials:
             world = Filmed(stage.world(trial), ticks if trial == spec else (), profile)
-            log = play(trial, world, company.human, company.robots())
-            for seat in dict.fromkeys(fault.seat for fault in log.faults):
-                company.dismiss(seat)
-        if _course(spec, log) != _course(spec, wanted.log):
+            done = stage.play(company, trial, world)
+        if _course(done) != _course(wanted):
             raise RunError(
                 f"{folder}: trial {wanted.key} went otherwise than it was logged, so its views would be of another "
                 "trial. An agent that does not repeat itself, or another machine, does that; 'hthor replay' draws it "
@@ -105,7 +102,7 @@ def _averaged(picture: Any) -> Any:
     return parts.mean(axis=(1, 3)).round().astype("uint8")
 
 
-def _course(spec: TrialSpec, log: EpisodeLog) -> bytes:
+def _course(done: Record) -> bytes:
     """Everything that happened, but for the words of a fault, which are the agent's own."""
-    plain = tuple(msgspec.structs.replace(fault, detail="") for fault in log.faults)
-    return record.encode(record.of(spec, msgspec.structs.replace(log, faults=plain)))
+    plain = tuple(msgspec.structs.replace(fault, detail="") for fault in done.faults)
+    return record.encode(msgspec.structs.replace(done, faults=plain))

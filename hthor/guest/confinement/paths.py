@@ -11,6 +11,8 @@ import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from hthor.guest.confinement import hiding
+
 PACKAGE = Path(__file__).resolve().parents[2]
 _OURS = ("types", "guest", "agents", "navigation", "comms", "catalog")
 """Parts of this package that minds are made with. Houses, tasks, people and worlds are no business of theirs."""
@@ -18,7 +20,6 @@ _LIBRARIES = ("site-packages", "dist-packages")
 _SYSTEM = ("/usr", "/bin", "/lib", "/lib64", "/lib32", "/etc/ld.so.cache", "/etc/localtime", "/etc/ssl")
 _FACTS = ("/sys/devices/system/cpu", "/proc/cpuinfo", "/proc/meminfo")
 DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
-_NEVER = (".git", "runs")
 
 
 def libraries() -> list[str]:
@@ -40,7 +41,7 @@ def readable(agent: str, root: str, hidden: Sequence[str]) -> tuple[str, ...]:
         found += _open(Path(place), secret)
     if root:
         folder = Path(root)
-        found += _open(folder, [*secret, *(folder / name for name in _NEVER if (folder / name).exists())])
+        found += _open(folder, [*secret, *hiding.below(folder.resolve(), agent)])
     found.append(agent)
     return _tops(found)
 

@@ -1,0 +1,101 @@
+"""Finds what below an agent's folder it may not read: runs, logs, suites, people, boards and salts of hthor.
+
+They are known by their content, wherever they lie and whatever they are called. The walk is bounded: folders that it
+did not come to are hidden as well.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import time
+from collections import deque
+from collections.abc import Iterator
+from pathlib import Path
+
+_NEVER = (".git", "runs")
+_RUN = ("run.json", "trials.jsonl", "sessions.jsonl")
+"""Any of these, if it is hthor's, marks a folder that is hidden with everything in it."""
+_FAULTS = "faults"
+_OURS = re.compile(rb'"schema":\s?"hthor\.|"floorPolygon"|"sha256":\s?"[0-9a-f]{64}",\s?"version":\s?\d+,\s?"tasks":')
+"""In a document of hthor's: a schema of ours, the rooms of a house, the head of a suite."""
+_LINE = re.compile(rb'"(human_sha256|rules_sha256)"|"check":"[0-9a-f]{8}"\}\n')
+"""In a line of a log."""
+_SALT = re.compile(rb"[0-9a-f]{64}\s*")
+_SALT_BYTES = range(64, 68)
+_READ_BYTES, _ENTRIES_MAX, _BYTES_MAX = 1 << 18, 250_000, 1 << 28
+_FRESH_S = 30.0
+"""A folder is looked through again after this time: runs may come to lie there meanwhile."""
+_known: dict[tuple[str, str], tuple[float, tuple[Path, ...]]] = {}
+
+
+def below(root: Path, agent: str = "") -> tuple[Path, ...]:
+    """Files and folders below ``root`` that no agent may read.
+
+    Args:
+        agent: the agent's own file. Of the folders that it lies in, only the files that are hthor's are hidden.
+    """
+    key, now = (str(root), agent), time.monotonic()
+    if key not in _known or now - _known[key][0] > _FRESH_S:
+        _known[key] = now, tuple(_Walk(agent).hidden(root))
+    return _known[key][1]
+
+
+class _Walk:
+    """One look through a folder, breadth first."""
+
+    def __init__(self, agent: str) -> None:
+        self._agent = Path(agent) if agent else None
+        self._entries, self._bytes = 0, 0
+
+    def hidden(self, root: Path) -> Iterator[Path]:
+        """What is to be hidden in a folder and below."""
+        left = deque([root])
+        while left:
+            folder = left.popleft()
+            if self._entries > _ENTRIES_MAX or self._bytes > _BYTES_MAX:
+                yield folder
+                continue
+            try:
+                with os.scandir(folder) as entries:
+                    found = sorted(entries, key=lambda one: one.name)
+            except OSError:
+                continue
+            self._entries += len(found)
+            yield from self._members(folder, found, left, top=folder == root)
+
+    def _members(self, folder: Path, found: list[os.DirEntry[str]], left: deque[Path], *, top: bool) -> Iterator[Path]:
+        documents = [Path(one.path) for one in found if one.is_file(follow_symlinks=False) and self._is_ours(one)]
+        names = {path.name for path in documents}
+        holds_agent = self._agent is not None and self._agent.is_relative_to(folder)
+        if names.intersection(_RUN) and not holds_agent and not top:
+            yield folder
+            return
+        yield from documents
+        tables = {path.with_suffix(".npz") for path in documents}
+        yield from (Path(one.path) for one in found if Path(one.path) in tables)
+        for one in found:
+            if one.is_dir(follow_symlinks=False):
+                of_run = one.name == _FAULTS and names.intersection(_RUN)
+                if of_run or (top and one.name in _NEVER):
+                    yield Path(one.path)
+                else:
+                    left.append(Path(one.path))
+
+    def _is_ours(self, entry: os.DirEntry[str]) -> bool:
+        """Whether a file is one of hthor's that an agent may not read."""
+        try:
+            if entry.name.endswith((".json", ".jsonl")):
+                pattern = _OURS if entry.name.endswith(".json") else _LINE
+                return pattern.search(self._head(entry.path)) is not None
+            if entry.stat(follow_symlinks=False).st_size in _SALT_BYTES:
+                return _SALT.fullmatch(self._head(entry.path)) is not None
+        except OSError:  # what cannot be read here, an agent cannot read either
+            return False
+        return False
+
+    def _head(self, path: str) -> bytes:
+        with open(path, "rb") as file:
+            head = file.read(_READ_BYTES)
+        self._bytes += len(head)
+        return head
