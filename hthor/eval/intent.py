@@ -128,7 +128,7 @@ def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dic
             assets=assets,
             limit=chosen.limit,
         )
-        if options.out is None:
+        if options.out is None and not options.name:
             folder = RUNS / plan.folder_name
         else:
             folder = part.folder / control.FOLDER if len(same) == 1 else part.folder.parent / plan.crew
