@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from hthor.eval.campaign import ClosableWatcher
     from hthor.eval.forecast import Ahead, Forecast
     from hthor.eval.intent import Intent, Options
+    from hthor.eval.pace import Pace
 
 _LEFT_OUT = ("json", "quiet", "dry_run", "context")
 _ORIGINS = {"COMMANDLINE": "flag", "ENVIRONMENT": "environment", "DEFAULT": "default", "DEFAULT_MAP": "default"}
@@ -25,9 +26,13 @@ def show(options: Options, watcher: Callable[[str], ClosableWatcher], context: t
     names = [str(one.name) for one in context.command.params if one.name in context.params]
     origins = {name: _origin(context, name) for name in names if name not in _LEFT_OUT}
     found: list[Forecast] = []
+    talk = screen.console(talk=True)
+
+    def say(text: str) -> None:
+        talk.print(text, markup=False, highlight=False, soft_wrap=True)
 
     def agree(intent: Intent) -> bool:
-        found.append(forecast.of(options, intent, origins))
+        found.append(forecast.of(options, intent, origins, say))
         return False
 
     for _ in campaign.conduct(options, watcher, agree):
@@ -50,12 +55,19 @@ def _put(found: Forecast) -> None:
     held = found.isolation
     why = f" ({held.reason_not_higher})" if held and held.reason_not_higher else ""
     screen.put_line(f"isolation: {held.level if held else 'none, as all agents are built in'}{why}")
-    for folder in dict.fromkeys(one.pace.folder for one in found.runs if one.pace):
-        screen.put_line(f"time: as in {folder}/")
+    for words in dict.fromkeys(_source(one.pace) for one in found.runs if one.pace):
+        screen.put_line(f"time: {words}")
     if found.seconds is None:
-        screen.put_line("time: unknown, as no finished run here has these robots and people; see docs/speed.md")
+        screen.put_line("time: unknown where no finished run here has the same robots, and their trial took too long")
     left, about = found.trials - found.played, f", {time(found.seconds)}" if found.seconds is not None else ""
     screen.put_line(f"{left} of {found.trials} trials would be played{about}; nothing was written.")
+
+
+def _source(pace: Pace) -> str:
+    """How it is known what a trial takes."""
+    if pace.folder:
+        return f"as in {pace.folder}/"
+    return f"estimated from {pace.played} trial{'s' * (pace.played != 1)} played for it, which are kept nowhere"
 
 
 def _row(one: Ahead) -> tuple[object, ...]:

@@ -18,6 +18,7 @@ from hthor.cli import (
     doctor,
     ending,
     flowing,
+    folders,
     homes,
     lists,
     logged,
@@ -48,6 +49,7 @@ app.command("report")(reports.report)
 app.command("case")(reports.case)
 app.command("calibrate")(calibrate.calibrate)
 app.command("doctor")(doctor.doctor)
+app.add_typer(folders.app, name="runs")
 app.add_typer(boards.app, name="leaderboard")
 app.add_typer(assets.app, name="assets")
 app.add_typer(homes.app, name="houses")

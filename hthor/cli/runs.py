@@ -109,6 +109,14 @@ def evaluate(
             show_default="runs/NAME-SUITE-HASH",
         ),
     ] = None,
+    name: Annotated[
+        str,
+        typer.Option(
+            help="A name of your own for the run, in tables and as its folder, runs/NAME; of several agents the folder "
+            "of their folders. It changes no trial.",
+            show_default="the agent's",
+        ),
+    ] = "",
     shard: Annotated[
         str,
         typer.Option(
@@ -212,6 +220,7 @@ def evaluate(
         address=address,
         control=control,
         realtime=realtime,
+        name=name,
         limit=limit,
         step_limit=step_limit,
         isolation=isolation,

@@ -15,11 +15,12 @@ from hthor import guest, jsonio
 from hthor.eval import cast, engines, guarded, intent, run, setup, waiting
 from hthor.eval.course import InternalFailure, Unfinished
 from hthor.eval.crews import Crew
+from hthor.eval.engines import Make
 from hthor.eval.intent import Intent, Options, Part
 from hthor.eval.programme import Programme
 from hthor.eval.result_file import Result
 from hthor.eval.run import Watcher
-from hthor.eval.session import sessions
+from hthor.eval.session import Session, sessions
 from hthor.eval.setup import Setup
 from hthor.guest import Isolation
 from hthor.tasks import library
@@ -102,9 +103,34 @@ def _perform(
 ) -> Result:
     """One run. What was ``told`` of an earlier one is not told again."""
     crew, plan, folder = part.crew, part.plan, part.folder
+    for note in (*chosen.notes, *(f"{note}." for note in plan.humans.notes)):
+        if note not in told:
+            told.add(note)
+            watch.note(note)
+    own = own_houses(options)
+    extra = {f"houses/{name}": data for name, data in own.items()}  # so that the run can be drawn by itself
+    if chosen.drawn:
+        extra["suite.json"] = library.encode(chosen.suite)
+    if held is not None:
+        extra[guarded.NAME] = jsonio.pretty(guarded.weakest(folder, held, options.require_isolation))
+    return run.evaluate(
+        plan,
+        deal(options, chosen, part),
+        maker(options, chosen, part, held, houses=folder / "houses" if own else None),
+        folder=folder,
+        engine=_engine(options, chosen, crew),
+        watch=watch,
+        extra=extra,
+        again=_again(options, chosen, part),
+    )
+
+
+def deal(options: Options, chosen: Programme, part: Part) -> tuple[Session, ...]:
+    """The sessions of a run, or of its shard."""
+    plan = part.plan
     dealt = sessions(
         chosen.suite,
-        agent=crew,
+        agent=part.crew,
         human=part.people,
         seed=options.seed,
         participants=plan.participants,
@@ -113,39 +139,34 @@ def _perform(
         realtime=bool(plan.realtime),
         step_limit_s=plan.step_limit_s or None,
     )
-    for note in (*chosen.notes, *(f"{note}." for note in plan.humans.notes)):
-        if note not in told:
-            told.add(note)
-            watch.note(note)
-    own = library.own_houses(options.suite) if options.suite and Path(options.suite).exists() else {}
-    extra = {f"houses/{name}": data for name, data in own.items()}  # so that the run can be drawn by itself
-    if chosen.drawn:
-        extra["suite.json"] = library.encode(chosen.suite)
+    return plan.shard.share(dealt) if plan.shard else dealt
+
+
+def maker(options: Options, chosen: Programme, part: Part, held: Isolation | None, houses: Path | None) -> Make:
+    """What makes a worker's player.
+
+    Args:
+        held: how the run's agents are held, None where all are built in.
+        houses: the folder with the suite's own houses, None where it has none.
+    """
     sources = cast.Sources(
-        minds=crew.minds,
-        bodies=crew.bodies,
+        minds=part.crew.minds,
+        bodies=part.crew.bodies,
         kind=chosen.path,
         assets=options.assets,
-        houses=str((folder / "houses").resolve()) if own else "",
+        houses=str(houses.resolve()) if houses else "",
         people=part.people.word,
     )
-    make = functools.partial(cast.player, sources)
-    if held is not None:
-        hidden = (*intent.hidden(options), str(folder.resolve()))
-        level = options.isolation if held.level == guest.SERVED else held.level  # of whoever is beside the served one
-        make = functools.partial(guarded.player, sources, level, hidden)
-        extra[guarded.NAME] = jsonio.pretty(guarded.weakest(folder, held, options.require_isolation))
-    mine = plan.shard.share(dealt) if plan.shard else dealt
-    return run.evaluate(
-        plan,
-        mine,
-        make,
-        folder=folder,
-        engine=_engine(options, chosen, crew),
-        watch=watch,
-        extra=extra,
-        again=_again(options, chosen, part),
-    )
+    if held is None:
+        return functools.partial(cast.player, sources)
+    hidden = (*intent.hidden(options), str(part.folder.resolve()))
+    level = options.isolation if held.level == guest.SERVED else held.level  # of whoever is beside the served one
+    return functools.partial(guarded.player, sources, level, hidden)
+
+
+def own_houses(options: Options) -> dict[str, bytes]:
+    """The house files that the suite brings with it, by name; none for a suite of ours."""
+    return library.own_houses(options.suite) if options.suite and Path(options.suite).exists() else {}
 
 
 def _again(options: Options, chosen: Programme, part: Part) -> str:

@@ -28,6 +28,7 @@ def of(folder: Path, plan: Setup, out: Path | None = None) -> str:
     words += [] if plan.assets.name == PROCEDURAL else ["--assets", plan.assets.name]
     detector = next((robot.detector for robot in plan.seats), OWN)
     words += [] if detector == OWN else ["--detector", detector]
+    words += ["--name", plan.title] if plan.title else []
     words += ["--realtime"] if plan.realtime else []
     words += ["--limit", str(plan.limit)] if plan.limit else []
     words += ["--step-limit", f"{plan.step_limit_s:g}"] if plan.step_limit_s else []

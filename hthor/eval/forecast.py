@@ -4,32 +4,23 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator, Mapping
-from pathlib import Path
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from msgspec import Struct
 
-from hthor.errors import RunError
-from hthor.eval import log, result_file, setup
-from hthor.eval.intent import RUNS, Intent, Options, Part
+from hthor.eval import log, pace
+from hthor.eval.intent import Intent, Options, Part
 from hthor.eval.setup import Setup
 from hthor.guest import Isolation
 
-SCHEMA = "hthor.dry-run/1"
-
-
-class Pace(Struct, frozen=True, kw_only=True):
-    """What a trial took in a finished run like this one: CPU time [s], and that run's folder."""
-
-    cpu_s: float
-    folder: str
+SCHEMA = "hthor.dry-run/2"
 
 
 class Ahead(Struct, frozen=True, kw_only=True):
     """A run that would be played: ``played`` of its ``trials`` are there already; ``seconds`` for the rest of them.
 
-    ``seconds`` is None where no finished run tells what a trial takes.
+    ``pace`` is what a trial takes, and how that is known; ``seconds`` is None where nothing tells.
     """
 
     name: str
@@ -38,7 +29,7 @@ class Ahead(Struct, frozen=True, kw_only=True):
     played: int
     control: bool
     seconds: float | None
-    pace: Pace | None
+    pace: pace.Pace | None
     plan: Setup
 
 
@@ -62,16 +53,22 @@ class Forecast(Struct, frozen=True, kw_only=True):
     seconds: float | None
 
 
-def of(options: Options, intent: Intent, origins: Mapping[str, str]) -> Forecast:
+def of(
+    options: Options, intent: Intent, origins: Mapping[str, str], say: Callable[[str], None] | None = None
+) -> Forecast:
     """Look ahead.
 
     Args:
         intent: what the options stand for. origins: where each option's value is from, by its name.
+        say: is told what is tried out. Where it is given, a few trials are played for runs like which none was played
+            before, to see what one takes; they are kept nowhere.
     """
     workers = options.jobs or len(os.sched_getaffinity(0))
+    sampler = pace.Sampler(options, intent, say) if say is not None else None
+    worlds = len({(one.house, tuple((it.id, it.kind) for it in one.objects)) for one in intent.chosen.suite.tasks})
     runs = [
-        *(_ahead(part, workers, control=True) for part in intent.controls),
-        *(_ahead(part, workers, control=False) for part in intent.parts),
+        *(_ahead(part, workers, worlds, sampler, control=True) for part in intent.controls),
+        *(_ahead(part, workers, worlds, sampler, control=False) for part in intent.parts),
     ]
     left = [one.seconds for one in runs]
     return Forecast(
@@ -84,13 +81,16 @@ def of(options: Options, intent: Intent, origins: Mapping[str, str]) -> Forecast
     )
 
 
-def _ahead(part: Part, workers: int, *, control: bool) -> Ahead:
+def _ahead(part: Part, workers: int, houses: int, sampler: pace.Sampler | None, *, control: bool) -> Ahead:
     plan = part.plan
     trials = plan.shard.trials if plan.shard else plan.trials
     played = len({record.key for _, record in log.read(part.folder / "trials.jsonl")})
-    pace = _pace(part)
-    busy = max(1, min(workers, math.ceil((trials - played) / 10)))  # a session's ten trials are played by one worker
-    seconds = 0.0 if played >= trials else None if pace is None else round((trials - played) * pace.cpu_s / busy, 1)
+    left = trials - played
+    known = pace.earlier(part)
+    if known is None and left and sampler is not None:
+        known = sampler.play(part)
+    busy = max(1, min(workers, math.ceil(left / 10)))  # a session's ten trials are played by one worker
+    seconds = 0.0 if not left else None if known is None else known.seconds(left, workers=busy, houses=houses)
     return Ahead(
         name=part.title,
         folder=str(part.folder),
@@ -98,36 +98,9 @@ def _ahead(part: Part, workers: int, *, control: bool) -> Ahead:
         played=played,
         control=control,
         seconds=seconds,
-        pace=pace,
+        pace=known,
         plan=plan,
     )
-
-
-def _pace(part: Part) -> Pace | None:
-    """Of the first finished run with the same robots and people that lies about, of the same suite if there is one."""
-    found = []
-    for folder in _candidates(part.folder):
-        try:
-            plan, result = setup.load(folder), result_file.load(folder)
-        except RunError:
-            continue
-        if result is None or result.effort is None or not result.effort.trials:
-            continue
-        if _minds(plan) == _minds(part.plan) and plan.humans.name == part.plan.humans.name:
-            pace = Pace(cpu_s=round(result.effort.cpu_s / result.effort.trials, 4), folder=str(folder))
-            found.append((plan.suite != part.plan.suite, pace))
-    return min(found, key=lambda one: one[0])[1] if found else None
-
-
-def _minds(plan: Setup) -> list[tuple[str, str]]:
-    return [(robot.robot, robot.agent.name) for robot in plan.seats]
-
-
-def _candidates(folder: Path) -> Iterator[Path]:
-    """Folders of runs here and beside, and where runs usually are."""
-    roots = (folder, folder.parent, RUNS)
-    found = [path for root in roots for path in (root, *sorted(root.glob("*")), *sorted(root.glob("*/control")))]
-    yield from (path for path in dict.fromkeys(found) if (path / "result.json").is_file())
 
 
 def _settings(options: Options, intent: Intent, workers: int, origins: Mapping[str, str]) -> Iterator[Setting]:

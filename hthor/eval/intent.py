@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import msgspec
 from msgspec import Struct
 
 from hthor import detectors, guest
@@ -20,7 +21,7 @@ RUNS = Path("runs")
 
 
 class Options(Struct, frozen=True, kw_only=True):
-    """What the user asked for, empty where the default depends on the rest.
+    """What the user asked for, empty where the default depends on the rest. ``name`` is the user's own for the run.
 
     With ``control``, the same people also do the same tasks without a robot, unless such a run lies there already.
     """
@@ -42,6 +43,7 @@ class Options(Struct, frozen=True, kw_only=True):
     address: str = ""
     control: bool = False
     realtime: bool = False
+    name: str = ""
     limit: int | None = None
     step_limit: float | None = None
     isolation: str = "auto"
@@ -125,10 +127,10 @@ def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dic
             assets=assets,
             limit=chosen.limit,
         )
-        if options.out is None:
+        if options.out is None and not options.name:
             folder = RUNS / plan.folder_name
         else:
-            folder = part.folder / control.FOLDER if len(same) == 1 else part.folder.parent / plan.name
+            folder = part.folder / control.FOLDER if len(same) == 1 else part.folder.parent / plan.crew
         title = part.title.replace(part.plan.name, "control, no robot", 1)
         found[part.folder] = Part(crew=crew, people=part.people, plan=plan, folder=folder, title=title)
     return found
@@ -157,6 +159,9 @@ def _parts(
                 limit=chosen.limit,
                 step_limit_s=options.step_limit,
             )
+            if options.name:
+                own = setup.check_title(options.name) + (f"-{plan.crew}" if len(found) > 1 else "")
+                plan = msgspec.structs.replace(plan, title=own)
             title = plan.name if len(whom) == 1 else f"{plan.name}, {people.name} people"
             folder = _folder(options, plan, len(found), len(whom))
             if options.shard:
@@ -197,7 +202,8 @@ def _crews(options: Options, chosen: Programme, detector: str) -> list[Crew]:
 
 def _folder(options: Options, plan: Setup, crews: int, whom: int) -> Path:
     """Where a run is written: peoples have folders of their own, and agents have theirs in these."""
-    if options.out is None:
+    base = options.out or (RUNS / options.name if options.name else None)
+    if base is None:
         return RUNS / plan.folder_name
-    folder = options.out if whom == 1 else options.out / plan.humans.name
-    return folder if crews == 1 else folder / plan.name
+    folder = base if whom == 1 else base / plan.humans.name
+    return folder if crews == 1 else folder / plan.crew

@@ -123,8 +123,8 @@ def _check_share(folder: Path, one: Record, plan: Setup, mine: Shard) -> None:
 
 def _same_run(first: _Part, part: _Part) -> None:
     there, here = first.plan, part.plan
-    if there.whole != here.whole:
-        told = "; ".join(setup.differences(there.whole, here.whole))
+    if there.whole.untitled != here.whole.untitled:
+        told = "; ".join(setup.differences(there.whole.untitled, here.whole.untitled))
         raise RunError(f"{part.folder} is a shard of another run than {first.folder}: {told}.")
 
 

@@ -88,6 +88,7 @@ def _evaluate(
 ) -> Result:
     began = time.monotonic()
     setup.examine(folder, plan)
+    plan = setup.titled(folder, plan)
     with Log(folder) as book:
         setup.write(folder, plan)
         for name, data in (extra or {}).items():

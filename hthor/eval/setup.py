@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import fnmatch
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ from hthor.types import RobotSeat
 SCHEMA = "hthor.run/4"
 LOCKSTEP, REALTIME = "lockstep", "realtime"
 _NAME_MAX = 100
+_TITLE = re.compile(r"\w[\w.+-]{0,59}")
 _MADE_FIRST = (".lock", "trials.jsonl", ".run.json.*", "control")  # a command that was killed early leaves these alone
 
 
@@ -58,14 +60,16 @@ class KindRef(Struct, frozen=True, kw_only=True):
 class Setup(Struct, frozen=True, kw_only=True):
     """A run's configuration.
 
-    ``robots`` lists every robot with its body, mind and detector; a mind that wants no robot stands there without a
-    seat. ``kind`` is None when every task of the suite is played. ``trials`` is how many there are in a whole run.
+    ``title`` is the name that the user gave the run; it changes no trial, and two runs that differ only in it are the
+    same. ``robots`` lists every robot with its body, mind and detector; a mind that wants no robot stands there without
+    a seat. ``kind`` is None when every task of the suite is played. ``trials`` is how many there are in a whole run.
     ``shard`` is there only in a run that was divided among machines, ``realtime`` only where robots' thinking took time
     of the trials, ``limit`` only where so many tasks were chosen from the suite, and ``step_limit_s`` only where
     submitted agents had another deadline for each action than usual [s].
     """
 
     schema: str = SCHEMA
+    title: str | msgspec.UnsetType = msgspec.UNSET
     robots: tuple[RobotSeat, ...]
     humans: HumansRef
     suite: SuiteRef
@@ -84,8 +88,13 @@ class Setup(Struct, frozen=True, kw_only=True):
 
     @property
     def sha256(self) -> str:
-        """Hash of the whole configuration."""
-        return jsonio.sha256(self)
+        """Hash of the whole configuration, but for the title."""
+        return jsonio.sha256(self.untitled)
+
+    @property
+    def untitled(self) -> Setup:
+        """The run without its title: all that decides its records."""
+        return msgspec.structs.replace(self, title=msgspec.UNSET)
 
     @property
     def whole(self) -> Setup:
@@ -104,12 +113,20 @@ class Setup(Struct, frozen=True, kw_only=True):
 
     @property
     def name(self) -> str:
-        """What to call the run among others."""
+        """What to call the run among others: what the user does, or what its robots' minds are called."""
+        return self.title or self.crew
+
+    @property
+    def crew(self) -> str:
+        """What to call the robots and their minds."""
         return crew_name(self.robots)
 
     @property
     def folder_name(self) -> str:
-        """The run's folder when none is given: equal configurations share one, so that the same command resumes."""
+        """The run's folder when neither it nor a name is given.
+
+        Equal configurations share one, so that the same command resumes.
+        """
         played = Path(self.suite.name).name
         if self.kind is not None and self.kind.name != played:
             played = f"{played}-{self.kind.name}"
@@ -117,7 +134,7 @@ class Setup(Struct, frozen=True, kw_only=True):
             played = f"{played}-{self.limit}"
         whose = "" if self.humans.name == PROXY else f"-{self.humans.name}"
         whose += f"-{REALTIME}" if self.realtime else ""
-        return f"{self.name}-{played}{whose}-{self.whole.sha256[:10]}"
+        return f"{self.crew}-{played}{whose}-{self.whole.sha256[:10]}"
 
 
 def crew_name(robots: Sequence[RobotSeat]) -> str:
@@ -221,11 +238,35 @@ def examine(folder: Path, plan: Setup) -> None:
             raise RunError(f"{folder} is not empty and holds no run ({listed}). Choose another folder with --out.")
         return
     there = load(folder)
-    if there != plan:
+    if there.untitled != plan.untitled:
         raise RunError(
-            f"{folder} holds another run: {'; '.join(differences(there, plan))}. "
-            "Choose another folder with --out, or delete this one."
+            f"{folder} holds another run: {'; '.join(differences(there.untitled, plan.untitled))}. "
+            "Choose another folder with --out or --name, or delete this one."
         )
+    if plan.title and there.title != plan.title:
+        called = f"is called '{there.title}'" if there.title else "has no name"
+        raise RunError(f"the run in {folder} {called}; a run keeps the name that it began with. Leave out --name.")
+
+
+def titled(folder: Path, plan: Setup) -> Setup:
+    """The configuration with the title of the run that lies in the folder already, if one does."""
+    if not (folder / "run.json").exists():
+        return plan
+    return msgspec.structs.replace(plan, title=load(folder).title)
+
+
+def check_title(title: str) -> str:
+    """A name that a user gave a run, if it can also be a folder's.
+
+    Raises:
+        HthorError: when it cannot.
+    """
+    if not _TITLE.fullmatch(title):
+        raise HthorError(
+            f"--name '{title}': a run's name has 1 to 60 letters, digits, '.', '_', '+' or '-', and begins with a "
+            "letter or a digit, such as baseline-2."
+        )
+    return title
 
 
 def write(folder: Path, plan: Setup) -> None:

@@ -62,14 +62,14 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
     result = score.summarise(plan, lines, records, uplift=gain, isolation=held)
     columns = outcomes.of(records, map(outcomes.leaf, lines))
     whose = worth.people(len(records), plan.participants)
-    agent = submission.agent if submission else Agent(name=plan.name)
+    agent = submission.agent if submission else Agent(name=plan.crew)
     _same_file(folder, plan, submission)
     return Entry(
         id=f"{_slug(agent.name)}-{_slug(Path(plan.suite.name).name)}-{plan.sha256[:10]}",
         reference=all(robot.agent.source.startswith(OURS) for robot in plan.robots),
         agent=agent,
         submission=submission.name if submission else "",
-        run=plan,
+        run=plan.untitled,
         hashes=Hashes(run=plan.sha256, trials=result.hashes.trials, merkle=columns.merkle),
         harness=harness.here(),
         mode=REALTIME if getattr(result, "mode", "") == REALTIME else LOCKSTEP,
