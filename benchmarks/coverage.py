@@ -13,6 +13,7 @@ from statistics import NormalDist
 
 import numpy as np
 
+from benchmarks import bounded
 from hthor.eval import contrast, spread, stats
 
 NORMAL = NormalDist()
@@ -81,7 +82,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=2000, help="data sets a row")
     parser.add_argument("--bootstrap", type=int, default=200, help="of which the bootstrap is tried on so many")
+    parser.add_argument("--bounded", action="store_true", help="of times, ratings and weighted successes instead")
     wanted = parser.parse_args()
+    if wanted.bounded:
+        for line in bounded.table(wanted.repeats):
+            print(line, flush=True)
+        return
     print(f"{'design':30} rate  sd task/person   rate held  width | difference held | bootstrap held")
     for name, (tasks, people) in designs().items():
         repeats = min(wanted.repeats, 2_000_000 // len(tasks))

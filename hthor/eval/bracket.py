@@ -29,14 +29,14 @@ Verdict = Literal["holds", "vanishes", "flips"]
 class Gap(Struct, frozen=True, kw_only=True):
     """How much better the one robot did than the other, as a fraction, with these people.
 
-    ``noise`` is the half width of a cautious 95 % interval: both runs' own intervals added in quadrature, as if they
-    had nothing in common. They share people and tasks, so the true one is narrower.
+    ``ci95`` is a cautious 95 % interval: both runs' own intervals put together as if they had nothing in common
+    (Newcombe's, which stays within -1 and 1). They share people and tasks, so the true one is narrower.
     """
 
     people: str
     better: float
     worse: float
-    noise: float
+    ci95: tuple[float, float]
 
     @property
     def mean(self) -> float:
@@ -46,7 +46,7 @@ class Gap(Struct, frozen=True, kw_only=True):
     @property
     def beyond_noise(self) -> bool:
         """Whether chance alone would hardly give such a difference."""
-        return abs(self.mean) > self.noise
+        return self.ci95[0] > 0.0 or self.ci95[1] < 0.0
 
 
 class Conclusion(Struct, frozen=True, kw_only=True):
@@ -161,7 +161,7 @@ def _gap(people: str, runs: Sequence[Result], pair: tuple[int, int], metric: str
         people=people,
         better=_mean(better, metric),
         worse=_mean(worse, metric),
-        noise=round(math.hypot(_half(_estimate(better, metric)), _half(_estimate(worse, metric))), 6),
+        ci95=_apart(_estimate(better, metric), _estimate(worse, metric)),
     )
 
 
@@ -174,5 +174,16 @@ def _mean(result: Result, metric: str) -> float:
     return _estimate(result, metric).mean or 0.0
 
 
-def _half(estimate: Estimate) -> float:
-    return 0.0 if estimate.ci95 is None else (estimate.ci95[1] - estimate.ci95[0]) / 2.0
+def _apart(better: Estimate, worse: Estimate) -> tuple[float, float]:
+    """Newcombe's interval of the difference of two means that have intervals of their own."""
+    (over_better, under_better), (over_worse, under_worse) = _arms(better), _arms(worse)
+    gap = (better.mean or 0.0) - (worse.mean or 0.0)
+    low, high = gap - math.hypot(under_better, over_worse), gap + math.hypot(over_better, under_worse)
+    return round(low, 6), round(high, 6)
+
+
+def _arms(one: Estimate) -> tuple[float, float]:
+    """How far the interval reaches above the mean and below it."""
+    if one.mean is None or one.ci95 is None:
+        return 0.0, 0.0
+    return one.ci95[1] - one.mean, one.mean - one.ci95[0]

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 from msgspec import Struct
 
-from hthor.eval import power, spread, stats
+from hthor.eval import bounds, power, spread, stats
 from hthor.eval.pairing import Pair
 from hthor.eval.spread import Spread
 
@@ -62,8 +62,8 @@ class McNemar(Struct, frozen=True, kw_only=True):
     p: float
 
 
-def of(pairs: Sequence[Pair], metric: str) -> Difference | None:
-    """The difference in a metric; None where no trial has it with both."""
+def of(pairs: Sequence[Pair], metric: str, *, level: float = stats.LEVEL) -> Difference | None:
+    """The difference in a metric with an interval of this level; None where no trial has it with both."""
     held = [
         (getattr(pair.one.metrics, metric), getattr(pair.other.metrics, metric), pair.one.spec)
         for pair in pairs
@@ -73,23 +73,38 @@ def of(pairs: Sequence[Pair], metric: str) -> Difference | None:
         return None
     first, second = (np.array([row[k] for row in held], dtype=np.float64) for k in (0, 1))
     tasks, people = spread.codes([row[2].task.id for row in held]), spread.codes([row[2].participant for row in held])
-    return between(first, second, tasks, people, share=metric in SHARES)
+    limit_s = bounds.mean_limit([row[2].task.time_limit for row in held])
+    return between(first, second, tasks, people, share=metric in SHARES, room=bounds.room(metric, limit_s), level=level)
 
 
-def between(first: np.ndarray, second: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, share: bool) -> Difference:
-    """The difference of two rows of values, (N,) each, of the same trials; `spread_of` says what ``share`` does."""
+def between(
+    first: np.ndarray,
+    second: np.ndarray,
+    tasks: np.ndarray,
+    people: np.ndarray,
+    *,
+    share: bool,
+    room: float = math.inf,
+    level: float = stats.LEVEL,
+) -> Difference:
+    """The difference of two rows of values, (N,) each, of the same trials.
+
+    Args:
+        share: as `spread_of` has it. room: as `ends` has it.
+        level: of the interval, two-sided; more than 95 % where it is one of several.
+    """
     count = len(first)
     found = spread_of((second - first)[None], tasks, people, share=share)
     raw, freedom = float(found.mean[0]), float(found.freedom[0])
     known = math.isfinite(float(found.variance[0]))
-    low, high = (float(end[0]) for end in ends(found, share=share))
+    low, high = (float(end[0]) for end in ends(found, share=share, room=room, level=(1.0 + level) / 2.0))
     needed = float(stats.detectable(found, count)[0])
     return Difference(
         n=count,
         first=_rounded(float(first.mean())),
         second=_rounded(float(second.mean())),
         difference=_rounded(raw),
-        ci95=(_rounded(low), _rounded(high)) if known else None,
+        ci95=(_rounded(min(low, raw)), _rounded(max(high, raw))) if known else None,
         p=p_value(raw, float(null(found, share=share)[0]), freedom) if known else None,
         mde80=_rounded(needed) if known else None,
         correlation=_correlation(first, second),
@@ -122,19 +137,39 @@ def null(found: Spread, *, share: bool) -> np.ndarray:
     return found.variance * (1.0 + found.mean**2 / found.single) if share else found.variance
 
 
-def ends(found: Spread, *, share: bool, level: float = (1.0 + stats.LEVEL) / 2.0) -> tuple[np.ndarray, np.ndarray]:
-    """The 95 % interval: every difference from which the one that was found is not told apart by `null`'s variance.
+def ends(
+    found: Spread, *, share: bool, room: float = 1.0, level: float = (1.0 + stats.LEVEL) / 2.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """The 95 % interval: every true difference from which the one that was found is not told apart.
+
+    What a true difference would have as its variance is `null`'s, but about that difference instead of 0, and never
+    more than is possible: differences between -``room`` and ``room`` whose mean is d vary by room² - d² at most. So
+    the interval never leaves these bounds, and it holds 0 exactly when `p_value` does not refuse it.
 
     Args:
+        room: the largest difference that there can be, 1 of shares; infinite where there is no bound.
         level: of the quantile, one-sided.
     """
     quantile = stats.student(found.freedom, level)
-    if not share:
-        half = quantile * np.sqrt(found.variance)
-        return found.mean - half, found.mean + half
-    left = 1.0 - quantile**2 * found.variance / found.single
-    half = np.where(left > 0.0, quantile * np.sqrt(found.variance / np.where(left > 0.0, left, 1.0)), 2.0)
-    return np.maximum(found.mean - half, -1.0), np.minimum(found.mean + half, 1.0)
+    some = quantile**2 * found.variance
+    half = np.sqrt(some)
+    if share:
+        left = 1.0 - some / found.single
+        half = np.where(left > 0.0, np.sqrt(some / np.where(left > 0.0, left, 1.0)), np.inf)
+    low, high = found.mean - half, found.mean + half
+    return (low, high) if math.isinf(room) else _inside(found, some, room, low, high)
+
+
+def _inside(
+    found: Spread, some: np.ndarray, room: float, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The part of an interval in which differences need not vary more than they can: a score interval, as Wilson's."""
+    known = np.isfinite(some) & (found.single > 0.0)
+    worth = np.where(known, some / np.where(known, found.single, 1.0), 0.0)
+    mean = np.clip(found.mean / room, -1.0, 1.0)
+    half = np.sqrt(worth * (1.0 - mean**2 + worth))
+    least, most = room * (mean - half) / (1.0 + worth), room * (mean + half) / (1.0 + worth)
+    return np.where(known, np.maximum(low, least), low), np.where(known, np.minimum(high, most), high)
 
 
 def p_value(centre: float, variance: float, freedom: float) -> float:

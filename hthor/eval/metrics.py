@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import msgspec
 from msgspec import Struct
 
@@ -71,13 +69,6 @@ BY_SEAT = ("work", "hindered_by")
 """Metrics that have several values, by name of a seat or of a pair of seats."""
 NAMES = tuple(name for name in TrialMetrics.__struct_fields__ if name not in BY_SEAT)
 """Metrics that have one value."""
-AMOUNT = (0.0, math.inf)
-"""The range of every metric that is not in `RANGES`."""
-RANGES = {
-    **dict.fromkeys(("sr", "twsr", "adoption", "progress", "precision", "work"), (0.0, 1.0)),
-    "trust": (float(rules.TRUST_MIN), float(rules.TRUST_MAX)),
-}
-"""The least and the greatest value of the metrics that have bounds."""
 
 
 def measure(spec: TrialSpec, log: EpisodeLog) -> TrialMetrics:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import msgspec
 
-from hthor.eval import control, guarded, metrics, reading, result_file, setup, stats
+from hthor.eval import bounds, control, guarded, metrics, reading, result_file, setup, stats
 from hthor.eval.metrics import TrialMetrics
 from hthor.eval.record import Record
 from hthor.eval.result_file import Counts, Effort, Hashes, Result, Scores
@@ -113,7 +113,7 @@ def _score(records: Sequence[Record], name: str, value: Callable[[TrialMetrics],
         [found for found, _ in held],
         [spec.task.id for _, spec in held],
         [spec.participant for _, spec in held],
-        within=metrics.RANGES.get(name, metrics.AMOUNT),
+        within=bounds.among(name, [found for found, _ in held], [spec.task.time_limit for _, spec in held]),
     )
 
 

@@ -15,6 +15,8 @@ NORMAL = 1.959964
 """The quantile of the normal distribution that goes with it."""
 POWER = 0.8
 _DIGITS = 6
+_EDGE = 1e-12
+"""A mean this near to a bound, as a share of the range, lies on it."""
 Range = tuple[float, float]
 ANY: Range = (-math.inf, math.inf)
 SHARE: Range = (0.0, 1.0)
@@ -39,9 +41,10 @@ NOTHING = Estimate(mean=None, ci95=None, n=0)
 def estimate(values: Sequence[float], tasks: Sequence[str], people: Sequence[int], *, within: Range = ANY) -> Estimate:
     """Mean of ``values`` with an interval for new tasks and new people of the same populations.
 
-    Trials that share a task or a person are not independent; `hthor.eval.spread` says how much that matters. Between
-    two bounds the interval is Wilson's, with as many trials as these are worth, else the mean and some standard errors;
-    both with quantiles of Student's t. docs/statistics.md has how often they hold the truth.
+    Trials that share a task or a person are not independent; `hthor.eval.spread` says how much that matters. With
+    bounds the interval is a score interval, which never leaves them: Wilson's between two, for as many trials as these
+    are worth, and Poisson's above one. Without bounds it is the mean and some standard errors. All use quantiles of
+    Student's t. docs/statistics.md has how often they hold the truth.
 
     Args:
         values: one number a trial. tasks: the trial's task. people: the trial's person.
@@ -65,15 +68,29 @@ def interval(found: spread.Spread, count: int, within: Range = ANY) -> tuple[np.
     """Lower and upper ends of the 95 % intervals of means over ``count`` trials."""
     low, high = within
     quantile = student(_freedom(found, within), (1.0 + LEVEL) / 2.0)
-    if not math.isfinite(high - low):
+    if math.isinf(low):
         half = quantile * np.sqrt(found.variance)
-        return np.maximum(found.mean - half, low), np.minimum(found.mean + half, high)
+        return found.mean - half, found.mean + half
+    if math.isinf(high):
+        return _above(found, low, quantile)
     share = np.clip((found.mean - low) / (high - low), 0.0, 1.0)
     some = quantile**2 * _inverse_worth(found, count, within)
     centre = (share + some / 2.0) / (1.0 + some)
     half = np.sqrt(some * share * (1.0 - share) + some**2 / 4.0) / (1.0 + some)
     ends = (np.maximum(centre - half, 0.0), np.minimum(centre + half, 1.0))
     return low + (high - low) * ends[0], low + (high - low) * ends[1]
+
+
+def _above(found: spread.Spread, low: float, quantile: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The score interval of an amount that has only a least value: its variance grows with its mean, as a count's."""
+    mean = np.maximum(found.mean - low, 0.0)
+    some = quantile**2 * np.where(mean > 0.0, found.variance / np.where(mean > 0.0, mean, 1.0), found.variance)
+    half = np.sqrt(some * mean + some**2 / 4.0)
+    upper = mean + some / 2.0 + half
+    lower = np.where(
+        upper > 0.0, mean**2 / np.where(upper > 0.0, upper, 1.0), 0.0
+    )  # their product is the mean's square
+    return low + lower, low + upper
 
 
 def detectable(found: spread.Spread, count: int, within: Range = ANY) -> np.ndarray:
@@ -109,7 +126,8 @@ def _inverse_worth(found: spread.Spread, count: int, within: Range) -> np.ndarra
     low, high = within
     most = (found.mean - low) * (high - found.mean)
     plain = np.full_like(found.mean, 1.0 / count)  # all at a bound: nothing is known of how they hang together
-    worth: np.ndarray = np.where(most > 0.0, found.variance / np.where(most > 0.0, most, 1.0), plain)
+    inside = most > _EDGE * (high - low) ** 2
+    worth: np.ndarray = np.where(inside, found.variance / np.where(inside, most, 1.0), plain)
     return np.where(np.isfinite(worth), worth, plain)
 
 

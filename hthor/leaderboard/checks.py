@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from msgspec import Struct
+from msgspec import UNSET, Struct
 
 from hthor import plugins, tasks
 from hthor.errors import HthorError
+from hthor.eval import bounds
 from hthor.leaderboard import files, form, invariants, listing, outcomes
 from hthor.leaderboard.entry import Entry
 from hthor.leaderboard.files import Problem
@@ -87,7 +88,11 @@ def _suite(entry: Entry, sizes: dict[str, int]) -> invariants.Found:
     suite = entry.run.suite
     if suite.name in tasks.suites():
         ours = library.read(suite.name)
-        count = len(ours.tasks) if ours.sha256 == suite.sha256 else entry.run.trials
+        same = ours.sha256 == suite.sha256
+        count = len(ours.tasks) if same else entry.run.trials
+        limit_s = bounds.mean_limit([one.time_limit for one in ours.tasks])
+        if same and entry.trials.time_limit_s not in (UNSET, limit_s):
+            yield "trials.time_limit_s", f"is {entry.trials.time_limit_s}, but that of the suite is {limit_s}"
     elif suite.sha256 in sizes:
         count = sizes[suite.sha256]
     else:

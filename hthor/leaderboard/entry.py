@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Final, Literal
 
 import msgspec
-from msgspec import Meta, Struct
+from msgspec import UNSET, Meta, Struct, UnsetType
 
 from hthor import jsonio
 from hthor.eval.machine import Platform
@@ -70,7 +70,8 @@ class Trials(Struct, frozen=True, kw_only=True):
 
     Bits: ``met`` the goal was met, ``adopted`` a message was confirmed, ``faulty`` an agent failed. Numbers: ``twsr``
     in millionths (3 bytes), ``time`` in tenths of a second (2 bytes), ``trust`` (1 byte, 0 for none). ``leaves`` are
-    the first 8 bytes of the SHA-256 of each line of the log.
+    the first 8 bytes of the SHA-256 of each line of the log. ``time_limit_s`` is the mean time limit of the tasks [s],
+    the largest mean that the time spent can have.
     """
 
     count: Annotated[int, Meta(ge=1)]
@@ -82,6 +83,7 @@ class Trials(Struct, frozen=True, kw_only=True):
     trust: Base64
     leaves: Base64
     labels: dict[str, Labels]
+    time_limit_s: Annotated[float, Meta(gt=0)] | UnsetType = UNSET
 
 
 class Group(Struct, frozen=True, kw_only=True):

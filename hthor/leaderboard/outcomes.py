@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
-from msgspec import Struct
+from msgspec import UNSET, Struct
 
 from hthor import rules
+from hthor.eval import bounds
 from hthor.eval.record import Record
 from hthor.leaderboard import merkle, packing
 from hthor.leaderboard.entry import Labels, Trials
@@ -37,7 +38,8 @@ class Unreadable(ValueError):
 class Outcomes(Struct, frozen=True, kw_only=True):
     """Columns of equal length: bool, or whole numbers as `hthor.leaderboard.entry.Trials` has them.
 
-    ``labels`` holds, for each property, its values and each trial's as an index.
+    ``labels`` holds, for each property, its values and each trial's as an index. ``time_limit_s`` is the mean time
+    limit [s], None where it is not known.
     """
 
     met: np.ndarray
@@ -48,6 +50,7 @@ class Outcomes(Struct, frozen=True, kw_only=True):
     trust: np.ndarray
     leaves: list[bytes]
     labels: dict[str, tuple[tuple[str, ...], np.ndarray]]
+    time_limit_s: float | None = None
 
     @property
     def rows(self) -> list[bytes]:
@@ -80,6 +83,7 @@ def of(records: Sequence[Record], leaves: Iterable[bytes]) -> Outcomes:
         trust=np.array([one.trust or 0 for one in values], dtype=np.int64),
         leaves=list(leaves),
         labels={name: _labels([value(one) or "unknown" for one in records]) for name, value in PROPERTIES.items()},
+        time_limit_s=bounds.mean_limit([one.spec.task.time_limit for one in records]) if records else None,
     )
 
 
@@ -102,6 +106,7 @@ def pack(held: Outcomes) -> Trials:
         labels={
             name: Labels(names=names, of=packing.digits(codes.tolist())) for name, (names, codes) in held.labels.items()
         },
+        time_limit_s=UNSET if held.time_limit_s is None else held.time_limit_s,
     )
 
 
@@ -126,6 +131,7 @@ def unpack(trials: Trials) -> Outcomes:
             name: (one.names, _read(f"labels.{name}.of", packing.undigits, one.of, count, len(one.names)))
             for name, one in trials.labels.items()
         },
+        time_limit_s=trials.time_limit_s or None,
     )
 
 

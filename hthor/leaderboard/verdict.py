@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from msgspec import Struct
 
-from hthor.eval import metrics, stats
+from hthor.eval import stats
 from hthor.eval.stats import Estimate
 from hthor.leaderboard import outcomes
 from hthor.leaderboard.outcomes import Outcomes
@@ -137,4 +137,4 @@ def _mean(twsr: np.ndarray) -> float:
 
 def _estimate(values: list[float], people: Sequence[int]) -> Estimate:
     tasks = [str(place) for place in range(len(values))]
-    return stats.estimate(values, tasks, people, within=metrics.RANGES["sr"])
+    return stats.estimate(values, tasks, people, within=stats.SHARE)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hthor import rules
-from hthor.eval import contrast, metrics, session, stats
+from hthor.eval import bounds, contrast, metrics, session, stats
 from hthor.eval.stats import Estimate
 from hthor.eval.uplift import Uplift
 from hthor.leaderboard.entry import Entry, Group
@@ -40,7 +40,9 @@ def people(count: int, participants: int) -> list[int]:
 
 def scores(held: Outcomes, whose: Sequence[int], *, alone: bool) -> dict[str, Estimate]:
     """Means and intervals of all that is `MEASURED`."""
-    return {metric: _estimate(values(held, metric, alone=alone), whose, metric) for metric in MEASURED}
+    return {
+        metric: _estimate(values(held, metric, alone=alone), whose, metric, held.time_limit_s) for metric in MEASURED
+    }
 
 
 def splits(held: Outcomes, whose: Sequence[int]) -> dict[str, dict[str, Group]]:
@@ -67,13 +69,14 @@ def uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes) -> U
             tasks,
             whose,
             share=metric in contrast.SHARES,
+            room=bounds.room(metric, held.time_limit_s),
         )
         for metric in ("sr", "twsr", "time_s")
     }
     return Uplift(control=control.hashes.run, **found)
 
 
-def _estimate(some: np.ndarray, whose: Sequence[int], metric: str) -> Estimate:
+def _estimate(some: np.ndarray, whose: Sequence[int], metric: str, limit_s: float | None = None) -> Estimate:
     row = some.tolist()
     tasks = [str(place) for place in range(len(row))]
-    return stats.estimate(row, tasks, whose[: len(row)], within=metrics.RANGES.get(metric, metrics.AMOUNT))
+    return stats.estimate(row, tasks, whose[: len(row)], within=bounds.of(metric, limit_s))
