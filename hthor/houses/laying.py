@@ -11,7 +11,6 @@ import math
 from collections.abc import Iterable, Iterator
 
 import msgspec
-import numpy as np
 
 from hthor import catalog, geometry
 from hthor.houses import solids
@@ -105,33 +104,23 @@ def _body(thing: Thing) -> Slab:
 
 
 class _Crowd:
-    """Solids that grow in number, and whether one more is deep in any of them."""
+    """Solids that grow in number, and whether one more is deep in any of them. Plain floats: loading needs no numpy."""
 
     def __init__(self, first: Iterable[Slab]) -> None:
-        self._slabs = list(first)
-        self._rows = np.array([_row(slab) for slab in self._slabs], dtype=float).reshape(-1, 5)
-        self._late: list[Slab] = []
+        self._rows: list[tuple[float, float, float, float, float, Slab]] = []
+        self.add(first)
 
     def add(self, more: Iterable[Slab]) -> None:
         """These stand there, too."""
-        self._late += more
+        self._rows += [(*slab.centre, math.hypot(*slab.size) / 2, slab.low, slab.high, slab) for slab in more]
 
     def holds(self, body: Slab) -> bool:
         """Whether the body is deeper than `SUNK_M` in any of them."""
-        x, y, radius, low, high = _row(body)
-        rows = self._rows
-        near = np.minimum(rows[:, 4], high) - np.maximum(rows[:, 3], low) > SUNK_M
-        near &= np.hypot(rows[:, 0] - x, rows[:, 1] - y) < rows[:, 2] + radius
-        rivals = [self._slabs[number] for number in np.flatnonzero(near)]
-        return any(_deep(body, other) for other in (*rivals, *self._late))
-
-
-def _row(slab: Slab) -> tuple[float, float, float, float, float]:
-    return (*slab.centre, math.hypot(*slab.size) / 2, slab.low, slab.high)
-
-
-def _deep(one: Slab, two: Slab) -> bool:
-    """Whether two boxes are deeper in one another than may be."""
-    if min(one.high, two.high) - max(one.low, two.low) <= SUNK_M:
-        return False
-    return solids.overlap(one, two) > SUNK_M
+        (x, y), radius = body.centre, math.hypot(*body.size) / 2
+        low, high = body.low + SUNK_M, body.high - SUNK_M
+        return any(
+            solids.overlap(body, slab) > SUNK_M
+            for u, v, r, bottom, top, slab in self._rows
+            if bottom < high and top > low and (u - x) ** 2 + (v - y) ** 2 < (r + radius) ** 2
+            if min(body.high, top) - max(body.low, bottom) > SUNK_M
+        )

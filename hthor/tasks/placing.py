@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
+import numpy as np
 from msgspec import Struct
 
 from hthor import catalog
 from hthor.geometry import distance_to_rectangle, inside, rectangle, to_house, to_local
+from hthor.houses.laying import slabs
 from hthor.houses.solids import Slab, overlap
 from hthor.types import HouseSpec, Placement, Surface, Thing, Vec2, Vec3
 
@@ -52,7 +54,11 @@ class Shelves:
     def __init__(self, house: HouseSpec) -> None:
         self.all = tuple(rest for thing in house.things for rest in rests_of(thing))
         self.rests = tuple(rest for rest in self.all if LOW_M <= rest.centre[2] <= HIGH_M)
-        self._solids = tuple(slab for thing in house.things for slab in _slabs(thing))
+        owned = [(thing.id, slab) for thing in house.things for slab in slabs(thing)]
+        self._solids = tuple(slab for _, slab in owned)
+        self._owners = tuple(id for id, _ in owned)
+        rows = [(*slab.centre, math.hypot(*slab.size) / 2) for slab in self._solids]
+        self._x, self._y, self._radius = np.array(rows, dtype=float).reshape(-1, 3).T
 
     @staticmethod
     @functools.lru_cache(maxsize=32)
@@ -71,11 +77,22 @@ class Shelves:
         in_room = any(all(inside(corner, room.polygon) for corner in corners) for room in house.rooms)
         return in_room and abs(body.low - _LIFT_M) <= _ALOFT_M and self._clear(placement, others)
 
+    def within(self, placement: Placement, deep: float) -> str:
+        """Id of a thing of the house that the object is more than ``deep`` [m] in, empty for none."""
+        body = footprint(placement)
+        rivals = (number for number in self._about(body) if _depth(body, self._solids[number]) > deep)
+        return next((self._owners[number] for number in rivals), "")
+
     def _clear(self, placement: Placement, others: Iterable[Placement]) -> bool:
         body = footprint(placement, GAP_M)
-        reach = math.hypot(*body.size) / 2
-        rivals = [slab for slab in self._solids if _near(slab, body.centre, reach)]
+        rivals = [self._solids[number] for number in self._about(body)]
         return not any(overlap(body, rival) > 0.0 for rival in [*rivals, *(footprint(other) for other in others)])
+
+    def _about(self, body: Slab) -> list[int]:
+        """Numbers of the solids that may touch a box: a circle round each meets a circle round it."""
+        reach = math.hypot(*body.size) / 2 + _LIFT_M
+        gaps = np.hypot(self._x - body.centre[0], self._y - body.centre[1])
+        return list(map(int, np.flatnonzero(gaps < reach + self._radius)))
 
 
 def rests_of(thing: Thing) -> tuple[Rest, ...]:
@@ -145,11 +162,6 @@ def gap_to(point: Vec2, thing: Thing) -> float:
     return distance_to_rectangle(point, (thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw)
 
 
-def _slabs(thing: Thing) -> Iterator[Slab]:
-    for part in catalog.kind(thing.kind).parts(thing.size):
-        x, y, z = to_house(part.centre, thing.centre, thing.yaw)
-        yield Slab((x, y), (2 * part.half[0], 2 * part.half[1]), thing.yaw, z - part.half[2], z + part.half[2])
-
-
-def _near(slab: Slab, centre: Vec2, reach: float) -> bool:
-    return math.hypot(slab.centre[0] - centre[0], slab.centre[1] - centre[1]) < reach + math.hypot(*slab.size) / 2
+def _depth(one: Slab, two: Slab) -> float:
+    """How deep [m] two boxes are in one another, by the least shift that parts them, sideways or upward."""
+    return min(overlap(one, two), min(one.high, two.high) - max(one.low, two.low))

@@ -1,9 +1,15 @@
-"""Can every task of a suite be run? The first thing that is wrong, by file and field; knows nothing of generation."""
+"""Can every task of a suite be run? All that is wrong, by task and field, as far as the floor plan says.
+
+What only an engine can tell, `hthor tasks check` proves.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+import shlex
+from collections.abc import Iterator, Sequence
+
+from msgspec import Struct
 
 from hthor import catalog, houses, plugins
 from hthor.errors import HouseError, HthorError, TaskError, UnknownName
@@ -16,28 +22,57 @@ from hthor.tasks.placing import Shelves, as_thing, footprint, rests_of, stands
 from hthor.types import HouseSpec, Placement, TaskSpec
 
 _ALOFT_M = 0.01
-"""How far an object's bottom may be from the surface it claims to rest on."""
+"""How far an object may be above or below the surface it claims to rest on, or in another thing."""
+_LISTED = 20
+"""Tasks that an error names before it only counts the rest."""
+
+
+class Unsound(Struct, frozen=True, kw_only=True):
+    """One thing that is wrong with a task of a suite: its place in the suite, its id, the field and the problem."""
+
+    index: int
+    task: str
+    field: str
+    problem: str
 
 
 def validate(suite: Suite, file: str) -> None:
     """Check every task against its kind, its house and the catalogue.
 
     Raises:
-        TaskError: for the first fault.
+        TaskError: naming the first fault, every task that has one, and the command that shows them all.
     """
     if not suite.tasks:
         raise TaskError(file, "tasks", "is empty; a suite needs at least one task")
+    found = tuple(unsound(suite))
+    if found:
+        raise TaskError(file, f"tasks[{found[0].index}].{found[0].field}", _words(found, suite, file))
+
+
+def unsound(suite: Suite) -> Iterator[Unsound]:
+    """Everything that is wrong with the tasks of a suite, in its order."""
     seen: set[str] = set()
-    loaded: dict[str, HouseSpec] = {}
+    loaded: dict[str, HouseSpec | str] = {}
     for index, task in enumerate(suite.tasks):
-        where = f"tasks[{index}]"
-        if task.id in seen:
-            raise TaskError(file, f"{where}.id", f"'{task.id}' is the id of an earlier task; ids must be distinct")
-        seen.add(task.id)
         if task.house not in loaded:
-            loaded[task.house] = _house(task.house, file, where)
-        for field, problem in faults(task, loaded[task.house]):
-            raise TaskError(file, f"{where}.{field}", problem)
+            loaded[task.house] = _house(task.house)
+        house = loaded[task.house]
+        rows = [("house", house)] if isinstance(house, str) else list(faults(task, house))
+        if task.id in seen:
+            rows.insert(0, ("id", f"'{task.id}' is the id of an earlier task; ids must be distinct"))
+        seen.add(task.id)
+        for field, problem in rows:
+            yield Unsound(index=index, task=task.id, field=field, problem=problem)
+
+
+def _words(found: Sequence[Unsound], suite: Suite, file: str) -> str:
+    """The first problem, then all the tasks that have one."""
+    ids = list(dict.fromkeys(one.task for one in found))
+    if len(ids) == 1:
+        return found[0].problem
+    listed = ", ".join(ids[:_LISTED]) + (f" and {len(ids) - _LISTED} more" if len(ids) > _LISTED else "")
+    many = f"{len(ids)} of the suite's {len(suite.tasks)} tasks cannot be run as they are: {listed}."
+    return f"{found[0].problem}. {many} 'hthor tasks check {shlex.quote(file)}' says what is wrong with each."
 
 
 def faults(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
@@ -53,11 +88,12 @@ def faults(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
             yield field, f"must be a positive number of seconds, got {value}"
 
 
-def _house(name: str, file: str, where: str) -> HouseSpec:
+def _house(name: str) -> HouseSpec | str:
+    """The house of that name, or why there is none."""
     try:
         return houses.load(name)
     except (UnknownName, HouseError) as error:
-        raise TaskError(file, f"{where}.house", str(error)) from None
+        return str(error)
 
 
 def _objects(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
@@ -76,6 +112,8 @@ def _objects(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
         if not kind.pickable:
             yield f"{where}.kind", f"'{placement.kind}' cannot be picked up, so it cannot be an object of a task"
         yield from _support(where, placement, shelves, task, house)
+        if crowd := shelves.within(placement, _ALOFT_M):
+            yield f"{where}.position", f"'{placement.id}' and '{crowd}' of the house are in one another"
         for other in task.objects[:number]:
             if other.kind in catalog.names() and _crowded(placement, other):
                 yield f"{where}.position", f"'{placement.id}' and '{other.id}' are in one another"
