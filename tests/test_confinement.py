@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from hthor.errors import UnknownName
-from hthor.guest.confinement import LEVELS, SERVED, Policy, devices, known, namespaces, paths, seccomp, suffices
+from hthor.guest.confinement import LEVELS, SERVED, Policy, calls, devices, known, namespaces, paths, seccomp, suffices
 
 
 def covered(path: Path, allowed: tuple[str, ...]) -> bool:
@@ -69,44 +69,86 @@ def verdict(code: bytes, number: int, *values: int, machine: int = 0xC000003E) -
         if operation == 0x20:
             (word,) = struct.unpack_from("<I", data, value)
             continue
+        if operation == 0x54:
+            word &= value
+            continue
         holds = {0x15: word == value, 0x35: word >= value, 0x45: bool(word & value)}[operation]
         at += then if holds else otherwise
 
 
-def test_the_filter_does_what_it_says() -> None:
+ALLOW, REFUSE, ABSENT, DONE, NO_TERMINAL, KILL = 0x7FFF0000, 0x50001, 0x50026, 0x50000, 0x50019, 0x80000000
+CALLS = {
+    ALLOW: [
+        (0,),
+        (1,),
+        (9,),
+        (53, 1, 0x80801),
+        (56, 0x3D0F00),
+        (62, 77, 0),
+        (62, 77, 14),
+        (234, 77, 78, 6),
+        (302, 0),
+        (302, 77, 7, 0),
+        (302, 0, 7, 0x7FFF12345678),
+        (302, 0, 0, 0),
+        (72, 3, 4),
+        (72, 3, 1030),
+        (157, 15),
+        (327, 3, 1, 1, 0, 0, 0),
+        (28, 0, 1, 4),
+        (16, 0, 0x5421),
+    ],
+    REFUSE: [
+        (53, 1, 2),
+        (53, 1, 5),
+        (53, 1, 0x80802),
+        (53, 2, 1),
+        (56, 0x1200011),
+        (62, 76),
+        (62, 2**32 - 1),
+        *((62, 77, number) for number in (1, 2, 3, 9, 15)),
+        *((234, 77, 78, number) for number in (1, 2, 3, 9, 15)),
+        (234, 76),
+        (302, 5),
+        (302, 0, 0, 0x7FFF12345678),
+        (302, 77, 0, 0x7FFF00000000),
+        (302, 0, 15, 1),
+        *((72, 3, command) for command in (8, 10, 15, 1024, 1026, 1031, 1033, 1036, 1038, 1040)),
+        (157, 1, 0),
+        (157, 4, 0),
+    ],
+    DONE: [(73, 3, 2), (72, 3, 6), (72, 3, 7), (72, 3, 37), (72, 3, 38), (162,), (221, 3), (28, 0, 1, 21)],
+    ABSENT: [(435,), (319,), (27,), (451,)],
+    NO_TERMINAL: [(16, 0, 0x5412), (16, 3, 0x40086602), (16, 3, 0x40087602), (16, 3, 0x4004667F)],
+    0x5005F: [(327, 3, 1, 1, 0, 0, 8), (285,)],
+    KILL: [(0x40000000 | 39,)],
+}
+
+
+@pytest.mark.parametrize("answer", CALLS)
+def test_the_filter_does_what_it_says(answer: int) -> None:
     code = seccomp.program(77)
-    allow, refuse, absent, kill = 0x7FFF0000, 0x50001, 0x50026, 0x80000000
-    assert {verdict(code, number) for number in seccomp.DENIED.values()} == {refuse}
-    expected = {
-        allow: [
-            (0,),
-            (1,),
-            (9,),
-            (53,),
-            (56, 0x3D0F00),
-            (62, 77, 9),
-            (234, 77, 78, 6),
-            (302, 0),
-            (302, 77),
-            (72, 3, 4),
-        ],
-        refuse: [
-            (56, 0x1200011),
-            (62, 76),
-            (62, 2**32 - 1),
-            (234, 76),
-            (302, 5),
-            (72, 3, 8),
-            (72, 3, 10),
-            (16, 0, 0x5412),
-        ],
-        absent: [(435,), (319,)],
-        kill: [(0x40000000 | 39,)],
-    }
-    for what, calls in expected.items():
-        for call in calls:
-            assert verdict(code, *call) == what, call
-    assert verdict(code, 0, machine=0x40000003) == kill
+    for call in CALLS[answer]:
+        assert verdict(code, *call) == answer, call
+
+
+def test_every_call_of_the_tables_is_answered_as_they_say() -> None:
+    code = seccomp.program(77)
+    assert {verdict(code, number) for number in calls.DENIED.values()} == {REFUSE}
+    assert {verdict(code, number) for number in calls.IDLE.values()} == {DONE}
+    assert verdict(code, 0, machine=0x40000003) == KILL
+
+
+@pytest.mark.parametrize("driven", [False, True])
+@given(command=st.integers(0, 2**32 - 1))
+def test_no_command_changes_what_stays_with_a_file_or_a_terminal(driven: bool, command: int) -> None:
+    answer = verdict(seccomp.program(77, driven=driven), 16, 3, command)
+    if (command >> 8 & 0xFF) in calls.FILE_IOCTLS or command in calls.TERMINAL_IOCTLS:
+        assert answer == NO_TERMINAL
+    elif driven or command in calls.IOCTLS:
+        assert answer == ALLOW
+    else:
+        assert answer == NO_TERMINAL
 
 
 @settings(max_examples=60, deadline=None)
@@ -115,10 +157,10 @@ def test_a_program_is_started_by_a_word_and_by_no_other(word: bytes, bit: int) -
     spoken = struct.unpack("<3Q", word)
     wrong = struct.unpack("<3Q", (int.from_bytes(word, "little") ^ 1 << bit).to_bytes(24, "little"))
     code = seccomp.program(77, word)
-    assert verdict(code, 59, 1, 2, 3, *spoken) == 0x7FFF0000
-    assert verdict(code, 59, 1, 2, 3, *wrong) == 0x50001
-    assert verdict(code, 322, 1, 2, 3, *spoken) == 0x50001, "execveat has no word"
-    assert verdict(seccomp.program(77), 59, 1, 2, 3, *spoken) == 0x50001, "without a word nothing is started"
+    assert verdict(code, 59, 1, 2, 3, *spoken) == ALLOW
+    assert verdict(code, 59, 1, 2, 3, *wrong) == REFUSE
+    assert verdict(code, 322, 1, 2, 3, *spoken) == REFUSE, "execveat has no word"
+    assert verdict(seccomp.program(77), 59, 1, 2, 3, *spoken) == REFUSE, "without a word nothing is started"
 
 
 def test_gpus_are_let_through_where_they_are_asked_for(tmp_path: Path) -> None:

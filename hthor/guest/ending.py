@@ -5,8 +5,8 @@ from __future__ import annotations
 import signal
 
 from hthor.errors import KILLED
+from hthor.guest.confinement.calls import FROM_OUTSIDE
 
-_FROM_OUTSIDE = frozenset({signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGKILL, signal.SIGTERM})
 _SHELLS = 128
 
 
@@ -14,11 +14,11 @@ def told(code: int) -> tuple[str, str]:
     """Kind and words for an exit code as `subprocess` has it.
 
     By some signals only a machine or a person ends a process, one that ran out of memory or is going down, so what
-    they end is "killed" and may be tried again. An agent that sends itself such a signal does so every time.
+    they end is "killed" and may be tried again. From L2 on an agent cannot send itself such a signal.
     """
     if code >= 0:
         return "died", f"exited with status {code}"
-    return KILLED if -code in _FROM_OUTSIDE else "died", f"killed by {_name(-code)}"
+    return KILLED if -code in FROM_OUTSIDE else "died", f"killed by {_name(-code)}"
 
 
 def unwrapped(code: int) -> int:

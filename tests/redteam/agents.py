@@ -12,6 +12,16 @@ from pathlib import Path
 from typing import NamedTuple
 
 NO_FAULT = "no fault"
+PIPE = """
+def pipe():
+    frame = sys._getframe()
+    while frame:
+        for value in frame.f_locals.values():
+            if type(value).__name__ == "Pipe":
+                return value
+        frame = frame.f_back
+"""
+"""How an agent finds its end of the wire."""
 HEAD = """
 import ctypes, fcntl, glob, mmap, os, resource, signal, socket, struct, subprocess, sys, tempfile, threading, time
 from pathlib import Path

@@ -51,7 +51,7 @@ def confine(policy: Policy, held: Ruleset | None, word: bytes = b"") -> None:
         return
     held.put_on()
     held.close()
-    seccomp.put_on(os.getpid(), word)
+    seccomp.put_on(os.getpid(), word, driven=bool(policy.devices))
     _prove()
 
 
