@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import csv
+import io
+import json
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
@@ -11,10 +15,26 @@ import test_guest
 from eval_fakes import persons, suite
 from hypothesis import given
 from hypothesis import strategies as st
+from test_cli_contract import run
+from typer.testing import CliRunner
 
 from hthor import tasks
-from hthor.errors import HthorError
-from hthor.eval import cast, command, crews, intent, pairing, programme, record, selection, session, setup, waiting
+from hthor.cli import app
+from hthor.errors import HthorError, RunError
+from hthor.eval import (
+    cast,
+    command,
+    crews,
+    intent,
+    pace,
+    pairing,
+    programme,
+    record,
+    selection,
+    session,
+    setup,
+    waiting,
+)
 from hthor.eval.session import Session
 from hthor.guest import GuestFault
 from hthor.leaderboard import overrides
@@ -131,3 +151,131 @@ def test_the_control_of_a_limited_run_has_the_same_tasks(tmp_path: Path) -> None
     assert control.trials == 12
     assert control.suite == asked.parts[0].plan.suite
     assert asked.parts[0].plan.participants == 2
+
+
+# ------------------------------------------------------------------------------------------------------ names and lists
+
+
+def test_a_name_is_a_folder_and_a_heading_and_changes_no_trial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    one = intent.settle(intent.Options(agents=("oracle",), control=True, name="first-try"))
+    bare = intent.settle(intent.Options(agents=("oracle",)))
+    (part,), (plain,) = one.parts, bare.parts
+    assert part.folder == Path("runs/first-try")
+    assert part.plan.name == part.title == "first-try"
+    assert part.plan.crew == plain.plan.name == "oracle"
+    assert (part.plan.sha256, part.plan.untitled) == (plain.plan.sha256, plain.plan)
+    assert one.control_of[part.folder].folder == Path("runs/first-try/control"), "where it is found again"
+    several = intent.settle(intent.Options(agents=("oracle", "frontier"), name="both"))
+    assert [str(each.folder) for each in several.parts] == ["runs/both/oracle", "runs/both/frontier"]
+    assert [each.plan.name for each in several.parts] == ["both-oracle", "both-frontier"]
+
+
+@pytest.mark.parametrize("name", ["", "-x", "a/b", "..", "a b", "x" * 61])
+def test_a_name_that_is_no_folders_is_refused(name: str) -> None:
+    with pytest.raises(HthorError, match="letters, digits"):
+        setup.check_title(name)
+
+
+def test_a_run_keeps_the_name_that_it_began_with(tmp_path: Path) -> None:
+    named = msgspec.structs.replace(plan(), title="first")
+    setup.write(tmp_path / "run", named)
+    setup.examine(tmp_path / "run", plan())
+    assert setup.titled(tmp_path / "run", plan()) == named
+    with pytest.raises(RunError, match="is called 'first'"):
+        setup.examine(tmp_path / "run", msgspec.structs.replace(plan(), title="second"))
+
+
+@pytest.fixture(scope="module")
+def shelf(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of runs: one that is whole, one with faults that was interrupted, and three that cannot be read."""
+    folder = tmp_path_factory.mktemp("shelf")
+    words = ("eval", "--suite", "fake", "--no-control", "--max-faults", "100%")
+    assert run(*words, "--agent", "helper", "--name", "good", "--out", str(folder / "whole"))[0] == 0
+    assert run(*words, "--agent", "clumsy", "--out", str(folder / "deep" / "half"))[0] == 0
+    log = folder / "deep" / "half" / "trials.jsonl"
+    log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:12]))
+    (folder / "deep" / "half" / "result.json").unlink()
+    for name, text in {"torn": '{"schema": "hthor.r', "old": '{"schema": "hthor.run/1"}', "deep/not": "\udcff"}.items():
+        (folder / name).mkdir()
+        (folder / name / "run.json").write_text(text, errors="surrogateescape")
+    return folder
+
+
+def told(*words: str) -> dict[str, Any]:
+    """The document of a command that is run in this process."""
+    found = CliRunner().invoke(app.app, [*words, "--json"], catch_exceptions=False)
+    assert found.exit_code == 0
+    return json.loads(found.stdout)
+
+
+def test_runs_are_listed_even_beside_broken_ones(shelf: Path) -> None:
+    document = told("runs", "list", str(shelf))
+    found = {one["folder"]: one for one in document["runs"]}
+    assert set(found) == {"whole", "deep/half", "torn", "old", "deep/not"}
+    whole, half = found["whole"], found["deep/half"]
+    assert (whole["name"], whole["agents"], whole["done"], whole["total"]) == ("good", ["helper"], 20, 20)
+    assert (half["name"], half["done"], half["total"], half["suite"]) == ("clumsy", 12, 20, "fake")
+    assert 0.0 <= half["success"] <= 1.0
+    assert half["faults"] > 0
+    assert all(found[name]["problem"] for name in ("torn", "old", "deep/not"))
+    shown = CliRunner().invoke(app.app, ["runs", "list", str(shelf)])
+    assert "12 of 20" in shown.stdout
+    assert "old: cannot be read" in shown.stdout
+    rows = list(
+        csv.reader(io.StringIO(CliRunner().invoke(app.app, ["runs", "list", str(shelf), "--format", "csv"]).stdout))
+    )
+    assert len(rows) == 6
+
+
+def test_a_folder_without_runs_says_so(tmp_path: Path) -> None:
+    assert "there is no run below" in CliRunner().invoke(app.app, ["runs", "list", str(tmp_path)]).stdout
+    with pytest.raises(RunError, match=r"none is no folder\."):
+        CliRunner().invoke(app.app, ["runs", "list", str(tmp_path / "none")], catch_exceptions=False)
+
+
+def test_a_run_is_viewed_with_what_to_do_next(shelf: Path) -> None:
+    document = told("runs", "view", str(shelf / "deep" / "half"))
+    assert document["result"] is None, "trials are missing"
+    assert len(document["trials"]) == 12
+    assert document["next"][0].startswith("hthor eval --agent clumsy")
+    whole = told("runs", "view", str(shelf / "whole"))
+    assert whole["result"]["name"] == "good"
+    assert whole["next"] == [f"hthor replay {shelf}/whole 0", f"hthor report {shelf}/whole"]
+
+
+def test_trials_are_chosen_by_what_they_are(shelf: Path) -> None:
+    def numbers(*words: str) -> list[int]:
+        return [one["number"] for one in told("runs", "view", str(shelf / "whole"), *words)["trials"]]
+
+    every, met, failed = numbers(), numbers("--met"), numbers("--failed")
+    assert every == sorted(met + failed) == list(range(20))
+    assert met
+    assert numbers("--faulty") == []
+    assert 0 < len(numbers("--house", "barn")) < 20
+    assert 0 < len(numbers("--participant", "1")) < 20
+    one = numbers("--task", "t003")
+    assert len(one) == 1
+    shown = CliRunner().invoke(app.app, ["runs", "view", str(shelf / "whole"), "--house", "barn"]).stdout
+    assert f"{len(numbers('--house', 'barn'))} of 20 trials" in shown
+
+
+def test_a_first_dry_run_plays_a_few_trials_and_keeps_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    words = ("eval", "--agent", "helper", "--suite", "fake", "--dry-run", "--out", str(tmp_path / "new"))
+    code, document, said = run(*words, play="slow_player:0.02")
+    assert code == 0
+    assert list(tmp_path.iterdir()) == []
+    assert "3 trials are played to see what they take" in said
+    (one,) = (one for one in document["runs"] if not one["control"])
+    assert one["pace"]["played"] == 3
+    assert one["pace"]["folder"] == ""
+    assert document["seconds"] >= 2 * 10 * 0.02, "twenty trials without and with a robot, by two workers at most"
+
+
+def test_a_pace_counts_starts_and_houses_once() -> None:
+    known = pace._pace([5.0, 7.0, 7.5])
+    assert known == pace.Pace(trial_s=0.5, start_s=3.0, house_s=1.5, played=3)
+    assert known.seconds(100, workers=2, houses=10) == 3.0 + 50 * 0.5 + 10 * 1.5
+    assert known.seconds(4, workers=2, houses=10) == 3.0 + 2 * 0.5 + 2 * 1.5
+    assert pace._pace([4.0]) == pace.Pace(trial_s=4.0, played=1)
+    assert pace._pace([]) is None
