@@ -22,7 +22,7 @@ from hthor.eval.result_file import Result
 from hthor.eval.run import Watcher
 from hthor.eval.session import Session, sessions
 from hthor.eval.setup import Setup
-from hthor.guest import Isolation
+from hthor.guest import Isolation, given
 from hthor.tasks import library
 
 
@@ -151,6 +151,7 @@ def maker(options: Options, chosen: Programme, part: Part, held: Isolation | Non
     """
     sources = cast.Sources(
         minds=part.crew.minds,
+        manifests=part.crew.manifests,
         bodies=part.crew.bodies,
         kind=chosen.path,
         assets=options.assets,
@@ -161,7 +162,8 @@ def maker(options: Options, chosen: Programme, part: Part, held: Isolation | Non
         return functools.partial(cast.player, sources)
     hidden = (*intent.hidden(options), str(part.folder.resolve()))
     level = options.isolation if held.level == guest.SERVED else held.level  # of whoever is beside the served one
-    return functools.partial(guarded.player, sources, level, hidden)
+    more = given.read(options.agent_args, options.readable)
+    return functools.partial(guarded.player, sources, level, hidden, more)
 
 
 def own_houses(options: Options) -> dict[str, bytes]:
