@@ -12,7 +12,7 @@ from typing import Protocol
 from msgspec import Struct
 
 from hthor import guest, jsonio
-from hthor.eval import cast, engines, guarded, intent, run, setup, waiting
+from hthor.eval import cast, engines, guarded, intent, opened, run, setup, waiting
 from hthor.eval.course import InternalFailure, Unfinished
 from hthor.eval.crews import Crew
 from hthor.eval.engines import Make
@@ -122,6 +122,7 @@ def _perform(
         watch=watch,
         extra=extra,
         again=_again(options, chosen, part),
+        check=functools.partial(opened.check, crew.minds) if plan.agents else None,
     )
 
 
@@ -183,6 +184,9 @@ def _again(options: Options, chosen: Programme, part: Part) -> str:
         words += ["--humans", part.people.word]
     if options.isolation != "auto" and part.crew.minds:
         words += ["--isolation", options.isolation]
+    if part.crew.minds:
+        words += [word for one in options.agent_args for word in ("--agent-args", one)]
+        words += [word for one in options.readable for word in ("--readable", str(one))]
     return shlex.join([*words, _near(str(part.folder))])
 
 

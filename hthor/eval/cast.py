@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 class Sources(Struct, frozen=True, kw_only=True):
     """Where that lies which is not ours: files of minds and of bodies by their seats, what these minds consist of,
-    the file of a kind of task, the name of the furniture pack that pictures show, the folder of the suite's own houses, and the word that finds the
-    people again (empty: the name in the trial does).
+    the file of a kind of task, the name of the furniture pack that pictures show, the folder of the suite's own houses,
+    and the word that finds the people again (empty: the name in the trial does).
     """
 
     minds: dict[str, str] = {}

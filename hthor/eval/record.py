@@ -23,8 +23,8 @@ _CHECK_LENGTH = len(_CHECK % 0)
 class Record(Struct, frozen=True, kw_only=True):
     """A trial's specification, everything that happened in it, and its metrics. ``key`` is the hash of ``spec``.
 
-    ``files`` has, by seat, what an agent opened of its own that ``agents`` in `run.json` does not list; it is there only
-    where there is such.
+    ``files`` has, by seat, what an agent opened of its own that ``agents`` in `run.json` does not list; it is there
+    only where there is such.
     """
 
     key: str

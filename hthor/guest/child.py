@@ -8,6 +8,8 @@ from __future__ import annotations
 import functools
 import os
 import sys
+from collections.abc import Callable
+from typing import Any
 
 import msgspec
 
@@ -62,7 +64,7 @@ def serve(pipe: Pipe, order: wire.Load, held: Ruleset | None, *, first: bool, wa
         return
     if first:
         pipe.send(msgspec.structs.replace(ready, files=recorder.take() if recorder else ()))
-    make = functools.partial(cls, **arguments.fit(cls, order.args))
+    make: Callable[[], Any] = functools.partial(cls, **arguments.fit(cls, order.args))
     while isinstance(begin := pipe.receive(), wire.Begin):
         play(pipe, make, begin, recorder)
         if not ready.persistent:

@@ -14,6 +14,7 @@ from hthor import rules
 from hthor.errors import AgentError
 from hthor.guest import command, digests, manifest, scanning
 from hthor.guest.faults import GuestFault
+from hthor.guest.given import Given
 from hthor.guest.grounds import Grounds
 from hthor.guest.host import Guest
 from hthor.guest.manifest import File, Manifest
@@ -38,13 +39,24 @@ def settle(guest: Guest, name: str) -> Manifest:
         return Manifest(name=name, source=info.source, sha256=info.sha256, files=info.manifest, claimed=True)
     if not info.absent and not agent.words:
         _try_beginning(guest, info.privileges)
-    first = [str(path) for path in _first(agent)]
-    for value in guest.given.args.values():
-        first += [value] if os.path.isfile(value) and os.path.isabs(value) else []
-    opened = [str(path) for path in _real(guest.take_opened(), grounds)]
-    paths = {*scanning.closure([*first, *opened], grounds), *_readable(grounds)}
     args = {key: _shown(value, grounds) for key, value in guest.given.args.items()}
-    return manifest.of(name, info.source, args, (_file(path, grounds) for path in sorted(paths)))
+    return manifest.of(name, info.source, args, files_of(agent, guest.given, grounds, guest.take_opened()))
+
+
+def files_of(agent: Reference, given: Given, grounds: Grounds, opened: Iterable[str]) -> tuple[File, ...]:
+    """The files of an agent, with their hashes, sorted.
+
+    Args:
+        opened: names of files that it has said it opened.
+
+    Raises:
+        AgentError: when a file cannot be read.
+    """
+    first = [str(path) for path in _first(agent)]
+    first += [value for value in given.args.values() if os.path.isabs(value) and os.path.isfile(value)]
+    first += [str(path) for path in _real(opened, grounds)]
+    paths = {*scanning.closure(first, grounds), *_readable(grounds)}
+    return tuple(sorted({_file(path, grounds) for path in paths}))
 
 
 def later(names: Iterable[str], known: Manifest, grounds: Grounds) -> tuple[File, ...]:

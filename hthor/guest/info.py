@@ -20,8 +20,8 @@ class GuestInfo(Struct, frozen=True, kw_only=True):
     """What an agent says of itself. ``robots`` names the bodies it is made for (empty: any); ``absent`` means none.
 
     ``persistent`` agents keep one process for all their trials. ``sha256`` is the hash of the file alone; what else
-    it consists of is in its `Manifest`. Of a served agent it is the hash of what the server says of it, ``manifest``. ``isolation`` is what held
-    the agent while it was asked. ``gpus`` is how much of a GPU it asks for.
+    it consists of is in its `Manifest`. Of a served agent it is the hash of what the server says of it, ``manifest``
+    included. ``isolation`` is what held the agent while it was asked. ``gpus`` is how much of a GPU it asks for.
     """
 
     name: str

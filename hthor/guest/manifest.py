@@ -26,7 +26,8 @@ class Manifest(Struct, frozen=True, kw_only=True):
 
     Attributes:
         name, source: as in `AgentRef`.
-        sha256: what `AgentRef` has: the hash of source, arguments and files; of a served agent, of what its server says.
+        sha256: what `AgentRef` has: the hash of source, arguments and files; of a served agent, of what its server
+            says.
         args: what ``--agent-args`` gave it; files stand there by their path in ``files``.
         files: sorted by path.
         claimed: whether nobody but the agent's server says so.
