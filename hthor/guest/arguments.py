@@ -6,7 +6,7 @@ import difflib
 import inspect
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from hthor.errors import HthorError
@@ -63,6 +63,12 @@ def fit(cls: type[Any], given: Mapping[str, str]) -> dict[str, Any]:
     if missing:
         raise Unfit(f"{cls.__name__} needs the argument '{missing[0]}'. Give it: --agent-args {missing[0]}=VALUE")
     return {key: _typed(key, value, named.get(key)) for key, value in given.items()}
+
+
+def maker(cls: type[Any], given: Mapping[str, str]) -> Callable[[], Any]:
+    """What makes new agents with these arguments, which fit."""
+    values = fit(cls, given)
+    return lambda: cls(**values)
 
 
 def _typed(key: str, value: str, parameter: inspect.Parameter | None) -> Any:

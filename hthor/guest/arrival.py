@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from hthor.errors import KILLED, AgentError, AgentKilled
-from hthor.guest import arguments, choosing, info, parking, served, wire
-from hthor.guest.confinement import Isolation
+from hthor.guest import arguments, choosing, hiding, info, parking, served, wire
+from hthor.guest.confinement import Isolation, Policy
 from hthor.guest.faults import GuestFault
 from hthor.guest.grounds import Grounds
 from hthor.guest.info import GuestInfo
@@ -44,6 +44,7 @@ class Arrival:
         self._memory_mb, self._disk_mb = memory_mb, disk_mb
         self._gpus = 0.0
         self.ahead = False
+        self.policy: Policy | None = None
 
     def come(self) -> GuestInfo:
         """Bring it up, and say what it is; ``ahead`` is then what it says of itself.
@@ -56,6 +57,7 @@ class Arrival:
         if waiting := parking.take(self._key(digest)):
             talk.open(waiting.process)
             talk.loaded, self.ahead = True, waiting.ahead
+            self.policy = waiting.process.policy
             return waiting.info
         held = self._connected() if agent.url else self._started()
         try:
@@ -66,7 +68,9 @@ class Arrival:
             raise kind(f"{agent.text}: loading it failed ({fault}).{hint}\n{fault.log}".rstrip()) from None
         if not isinstance(ready, wire.Ready):
             talk.close()
-            raise AgentError(_instead(agent, ready))
+            said = _instead(agent, ready)
+            why = hiding.reason(said, self.policy, agent.root) if self.policy else ""
+            raise AgentError(f"{said}\n{why}".rstrip())
         try:
             found = info.describe(agent, digest, ready, held)
         except AgentError:
@@ -114,6 +118,7 @@ class Arrival:
     def _enter(self, process: Process) -> wire.Confined | str:
         """What a process that has just started says of its confinement, or why it has none."""
         self._talk.open(process)
+        self.policy = process.policy
         agent = self._agent
         load = wire.Load(
             path=agent.path,

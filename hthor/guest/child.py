@@ -5,11 +5,8 @@ All that a submitted file ever does, it does here, and nothing of it lasts: the 
 
 from __future__ import annotations
 
-import functools
 import os
 import sys
-from collections.abc import Callable
-from typing import Any
 
 import msgspec
 
@@ -64,7 +61,7 @@ def serve(pipe: Pipe, order: wire.Load, held: Ruleset | None, *, first: bool, wa
         return
     if first:
         pipe.send(msgspec.structs.replace(ready, files=recorder.take() if recorder else ()))
-    make: Callable[[], Any] = functools.partial(cls, **arguments.fit(cls, order.args))
+    make = arguments.maker(cls, order.args)
     while isinstance(begin := pipe.receive(), wire.Begin):
         play(pipe, make, begin, recorder)
         if not ready.persistent:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from pathlib import Path
 
-from hthor.guest import affinity, choosing, grounds, reference, wire
+from hthor.guest import affinity, choosing, grounds, hiding, reference, wire
 from hthor.guest.arrival import Arrival
 from hthor.guest.faults import GuestFault
 from hthor.guest.given import Given
@@ -127,7 +127,10 @@ class Guest:
         window = process.frames if process else None
         turns = Turns(talk, step_s=self._step_s, bank_s=self._bank_s, ahead=self._arrival.ahead, window=window)
         talk.send(wire.Begin(briefing=briefing), self._start_s)
-        answer, left = talk.receive(self._start_s)
+        try:
+            answer, left = talk.receive(self._start_s)
+        except GuestFault as fault:
+            raise self._explained(fault) from None
         if isinstance(answer, wire.Ready) and self.reference.words:  # a program says so whenever it is started
             answer, _ = talk.receive(left, f"{self._start_s:g} s")
         if not isinstance(answer, wire.Done):
@@ -142,7 +145,10 @@ class Guest:
         """
         if self._turns is None or self._talk.line is None:
             raise GuestFault("died", "the agent has no trial: begin was not called, or it failed before")
-        return self._turns.act(observation)
+        try:
+            return self._turns.act(observation)
+        except GuestFault as fault:
+            raise self._explained(fault) from None
 
     def finish(self) -> None:
         """The trial is over: its process comes to its end while the caller goes on. Need not be called."""
@@ -187,6 +193,11 @@ class Guest:
             with contextlib.suppress(Exception):  # the interpreter may be half gone
                 self._scatter()
                 self._talk.close()
+
+    def _explained(self, fault: GuestFault) -> GuestFault:
+        """The fault, with what isolation has to do with it."""
+        policy = self._arrival.policy
+        return hiding.explained(fault, policy, self.reference.root) if policy else fault
 
     @property
     def _process(self) -> Process | None:

@@ -222,7 +222,7 @@ def start(
     policy = Policy(
         level=level,
         read=(*paths.readable(agent.path, agent.root, hidden, readable), *more),
-        listed=(*paths.listed(agent.root), *readable),
+        listed=(*paths.listed(agent.root), *(place for place in readable if os.path.isdir(place))),
         scratch=scratch or _INSIDE,
         memory_mb=memory_mb,
         disk_mb=disk_mb,

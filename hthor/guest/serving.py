@@ -7,7 +7,6 @@ agent trusts it.
 from __future__ import annotations
 
 import contextlib
-import functools
 import logging
 import sys
 from collections.abc import Callable
@@ -96,7 +95,7 @@ def serve(text: str, host: str, port: int, given: Given | None = None) -> Server
     ready = msgspec.structs.replace(ready, name=agent.name, version=version, persistent=True)
 
     opened = recorder.take()
-    make: Callable[[], Any] = functools.partial(cls, **arguments.fit(cls, more.args))
+    make = arguments.maker(cls, more.args)
 
     def talk(connection: ServerConnection) -> None:
         files = identity.files_of(agent, more, ground, opened)
