@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hthor.errors import KILLED, AgentError, AgentKilled
-from hthor.guest import arguments, choosing, hiding, info, parking, served, wire
+from hthor.guest import arguments, choosing, explaining, info, parking, served, wire
 from hthor.guest.confinement import Isolation, Policy
 from hthor.guest.faults import GuestFault
 from hthor.guest.grounds import Grounds
@@ -69,7 +69,7 @@ class Arrival:
         if not isinstance(ready, wire.Ready):
             talk.close()
             said = _instead(agent, ready)
-            why = hiding.reason(said, self.policy, agent.root) if self.policy else ""
+            why = explaining.reason(said, self.policy, agent.root) if self.policy else ""
             raise AgentError(f"{said}\n{why}".rstrip())
         try:
             found = info.describe(agent, digest, ready, held)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from pathlib import Path
 
-from hthor.guest import affinity, choosing, grounds, hiding, reference, wire
+from hthor.guest import affinity, choosing, explaining, grounds, reference, wire
 from hthor.guest.arrival import Arrival
 from hthor.guest.faults import GuestFault
 from hthor.guest.given import Given
@@ -197,7 +197,7 @@ class Guest:
     def _explained(self, fault: GuestFault) -> GuestFault:
         """The fault, with what isolation has to do with it."""
         policy = self._arrival.policy
-        return hiding.explained(fault, policy, self.reference.root) if policy else fault
+        return explaining.explained(fault, policy, self.reference.root) if policy else fault
 
     @property
     def _process(self) -> Process | None:

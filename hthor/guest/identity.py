@@ -13,6 +13,7 @@ from pathlib import Path
 from hthor import rules
 from hthor.errors import AgentError
 from hthor.guest import command, digests, manifest, scanning
+from hthor.guest.confinement import hiding
 from hthor.guest.faults import GuestFault
 from hthor.guest.given import Given
 from hthor.guest.grounds import Grounds
@@ -172,14 +173,20 @@ def _readable(grounds: Grounds) -> Iterator[str]:
     for place in grounds.readable:
         if os.path.isfile(place):
             yield place
+            continue
+        hidden = [str(path) for path in hiding.below(Path(place).resolve())]
         for folder, inner, names in os.walk(place):
             inner[:] = sorted(
                 name for name in inner if name not in _SKIPPED and not os.path.isfile(os.path.join(folder, name, _RUN))
             )
             for name in sorted(names):
                 path = os.path.join(folder, name)
-                if os.path.isfile(path) and not grounds.owns(path):
+                if os.path.isfile(path) and not grounds.owns(path) and not _below_any(path, hidden):
                     yield path
+
+
+def _below_any(path: str, folders: Iterable[str]) -> bool:
+    return any(Path(path).is_relative_to(folder) for folder in folders)
 
 
 def _file(path: str, grounds: Grounds) -> File:
