@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hthor.cli import screen
+from hthor.cli.giving import AgentArgs, Readable
 from hthor.cli.runs import Json, Run
 
 if TYPE_CHECKING:
@@ -33,6 +34,8 @@ def run(
         list[str] | None,
         typer.Option(help="The file of an agent that is not built in; it may have been mended.", show_default=False),
     ] = None,
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
     robot: Annotated[
         list[str] | None, typer.Option(help="The file of a body of your own, if any.", show_default=False)
     ] = None,
@@ -47,11 +50,12 @@ def run(
     """
     from hthor import houses
     from hthor.eval import find, rerun
+    from hthor.guest import given
 
     houses.shelve(run / "houses")  # where the suite brought its own
     wanted = find.trial(run, trial)
     files = rerun.Files(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
-    done = rerun.play(run, wanted, files, isolation)
+    done = rerun.play(run, wanted, files, isolation, given.read(agent_args or (), readable or ()))
     if json:
         screen.put_json(done)
     else:
@@ -69,6 +73,8 @@ def check(
             "'cmd:node my_agent.js'; or a served agent, ws://host:port.",
         ),
     ],
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
     robot: Annotated[
         str, typer.Option(help="The body it is tried in.", show_default="the first that it is made for, or scout")
     ] = "",
@@ -80,8 +86,10 @@ def check(
     Exit code 4 when something is broken; warnings cost nothing.
     """
     from hthor.eval import contract
+    from hthor.guest import given
 
-    report = contract.check(agent, robot=robot, isolation=isolation)
+    more = given.read(agent_args or (), readable or ())
+    report = contract.check(agent, robot=robot, isolation=isolation, given=more)
     if json:
         screen.put_json(report)
     else:

@@ -9,6 +9,7 @@ import typer
 
 from hthor.cli import export, screen
 from hthor.cli.export import Format, Shape
+from hthor.cli.giving import AgentArgs, Readable
 from hthor.cli.runs import Json, Run
 
 if TYPE_CHECKING:
@@ -93,6 +94,8 @@ def replay(
         list[str] | None,
         typer.Option(help="With --mind: the file of an agent that is not built in.", show_default=False),
     ] = None,
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
     humans: Annotated[str, typer.Option(help="With --mind: the people's file, if any.", show_default=False)] = "",
     json: Annotated[
         bool, typer.Option("--json", help="What was written as JSON; with --mind: the thoughts, and no picture.")
@@ -101,8 +104,9 @@ def replay(
     """Draw one trial from above: the paths, the messages and what came of them."""
     if mind:
         from hthor.cli import minds
+        from hthor.guest import given
 
-        minds.replay(run, trial, out, agent or (), humans, json)
+        minds.replay(run, trial, out, agent or (), humans, given.read(agent_args or (), readable or ()), json)
         return
     from hthor import houses
     from hthor.eval import find, redraw

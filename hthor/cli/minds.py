@@ -5,11 +5,17 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from hthor.cli import screen
 
+if TYPE_CHECKING:
+    from hthor.guest import Given
 
-def replay(run: Path, trial: str, out: Path | None, agents: Sequence[str], humans: str, json: bool) -> None:
+
+def replay(
+    run: Path, trial: str, out: Path | None, agents: Sequence[str], humans: str, given: Given, json: bool
+) -> None:
     """Play a person's session again up to one trial, and draw or print what went on in their mind."""
     from hthor import houses
     from hthor.eval import find, mind, mind_picture, redraw
@@ -17,7 +23,7 @@ def replay(run: Path, trial: str, out: Path | None, agents: Sequence[str], human
     houses.shelve(run / "houses")  # where the suite brought its own
     record = find.trial(run, trial)
     house = redraw.house(record)
-    stream = mind.listen(run, record, agents=agents, humans=humans)
+    stream = mind.listen(run, record, agents=agents, humans=humans, given=given)
     if not stream.same:
         talk = screen.console(talk=True)
         talk.print(

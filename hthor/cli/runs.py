@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hthor.cli import screen
+from hthor.cli.giving import AgentArgs, Readable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -32,6 +33,8 @@ def evaluate(
             show_default=False,
         ),
     ] = None,
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
     humans: Annotated[
         list[str] | None,
         typer.Option(
@@ -227,6 +230,8 @@ def evaluate(
         require_isolation=require_isolation,
         trial_limit=trial_limit,
         max_faults=max_faults,
+        agent_args=tuple(agent_args or ()),
+        readable=tuple(readable or ()),
     )
     if dry_run:
         from hthor.cli import ahead

@@ -9,12 +9,16 @@ from typing import Annotated
 
 import typer
 
+from hthor.cli.giving import AgentArgs, Readable
+
 
 def serve(
     agent: Annotated[
         str,
         typer.Argument(metavar="AGENT", help="A Python agent: my_agent.py, my_agent.py:Class, package.module:Class."),
     ],
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="The port to listen at; 0 takes any free one.")] = 8765,
     host: Annotated[str, typer.Option(help="The address to listen at; 0.0.0.0 lets other machines in.")] = "127.0.0.1",
 ) -> None:
@@ -23,10 +27,10 @@ def serve(
     It runs in this process, with everything that this machine has, and nothing holds it.
     """
     from hthor.errors import HthorError
-    from hthor.guest import serving
+    from hthor.guest import given, serving
 
     try:
-        server = serving.serve(agent, host, port)
+        server = serving.serve(agent, host, port, given.read(agent_args or (), readable or ()))
     except OSError as error:
         words = os.strerror(error.errno) if error.errno else str(error)
         raise HthorError(f"cannot listen at {host}:{port}: {words}. Give another --port, or 0 for any.") from None

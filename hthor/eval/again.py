@@ -8,7 +8,9 @@ from pathlib import Path
 from hthor import plugins
 from hthor.errors import HthorError, RunError
 from hthor.eval import cast, crews, provenance, reading, setup
+from hthor.eval.crews import Character
 from hthor.eval.record import Record
+from hthor.guest import manifest
 from hthor.types import RobotSeat, TrialSpec
 
 
@@ -44,17 +46,31 @@ def sources(folder: Path, spec: TrialSpec, agents: Sequence[str] = (), humans: s
     Raises:
         HthorError: when an agent's file is needed and not given.
     """
-    minds = {seat.seat: _file(seat, agents) for seat in spec.robots if seat.agent.name not in plugins.names("agent")}
+    theirs = [seat for seat in spec.robots if seat.agent.name not in plugins.names("agent")]
+    given = [crews.introduce(path) for path in agents] if theirs else []
+    minds = {seat.seat: _same(folder, seat, given) for seat in theirs}
     own = folder / "houses"
-    return cast.Sources(minds=minds, people=humans, houses=str(own.resolve()) if own.is_dir() else "")
+    return cast.Sources(
+        minds={seat: one.path for seat, one in minds.items()},
+        manifests={seat: one.manifest for seat, one in minds.items() if one.manifest is not None},
+        people=humans,
+        houses=str(own.resolve()) if own.is_dir() else "",
+    )
 
 
-def _file(seat: RobotSeat, agents: Sequence[str]) -> str:
-    for path in agents:
-        character = crews.introduce(path)
+def _same(folder: Path, seat: RobotSeat, given: Sequence[Character]) -> Character:
+    """The agent among those that were given which the run was played with."""
+    for character in given:
         if character.ref.sha256 == seat.agent.sha256:
-            return character.path
+            return character
+    known = next((one for one in setup.load(folder).agents if one.sha256 == seat.agent.sha256), None)
+    near = next((one.manifest for one in given if one.manifest and known and one.manifest.source == known.source), None)
+    what = ""
+    if near is not None and known is not None:
+        found = manifest.differences(known.files, near.files)
+        found += ["--agent-args are others"] if near.args != known.args else []
+        what = f" It is not as it was: {'; '.join(found)}."
     raise HthorError(
         f"the agent '{seat.agent.name}' of this run came from the file {seat.agent.source}. Give that file, unchanged, "
-        f"with --agent."
+        f"with --agent.{what}"
     )

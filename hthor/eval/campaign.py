@@ -12,7 +12,7 @@ from typing import Protocol
 from msgspec import Struct
 
 from hthor import guest, jsonio
-from hthor.eval import cast, engines, guarded, intent, run, setup, waiting
+from hthor.eval import cast, engines, guarded, intent, opened, run, setup, waiting
 from hthor.eval.course import InternalFailure, Unfinished
 from hthor.eval.crews import Crew
 from hthor.eval.engines import Make
@@ -22,7 +22,7 @@ from hthor.eval.result_file import Result
 from hthor.eval.run import Watcher
 from hthor.eval.session import Session, sessions
 from hthor.eval.setup import Setup
-from hthor.guest import Isolation
+from hthor.guest import Isolation, given
 from hthor.tasks import library
 
 
@@ -122,6 +122,7 @@ def _perform(
         watch=watch,
         extra=extra,
         again=_again(options, chosen, part),
+        check=functools.partial(opened.check, crew.minds) if plan.agents else None,
     )
 
 
@@ -151,6 +152,7 @@ def maker(options: Options, chosen: Programme, part: Part, held: Isolation | Non
     """
     sources = cast.Sources(
         minds=part.crew.minds,
+        manifests=part.crew.manifests,
         bodies=part.crew.bodies,
         kind=chosen.path,
         assets=options.assets,
@@ -161,7 +163,8 @@ def maker(options: Options, chosen: Programme, part: Part, held: Isolation | Non
         return functools.partial(cast.player, sources)
     hidden = (*intent.hidden(options), str(part.folder.resolve()))
     level = options.isolation if held.level == guest.SERVED else held.level  # of whoever is beside the served one
-    return functools.partial(guarded.player, sources, level, hidden)
+    more = given.read(options.agent_args, options.readable)
+    return functools.partial(guarded.player, sources, level, hidden, more)
 
 
 def own_houses(options: Options) -> dict[str, bytes]:
@@ -181,6 +184,9 @@ def _again(options: Options, chosen: Programme, part: Part) -> str:
         words += ["--humans", part.people.word]
     if options.isolation != "auto" and part.crew.minds:
         words += ["--isolation", options.isolation]
+    if part.crew.minds:
+        words += [word for one in options.agent_args for word in ("--agent-args", one)]
+        words += [word for one in options.readable for word in ("--readable", str(one))]
     return shlex.join([*words, _near(str(part.folder))])
 
 

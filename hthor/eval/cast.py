@@ -14,6 +14,8 @@ from msgspec import Struct
 from hthor import garbage, plugins
 from hthor.errors import AgentError, HthorError
 from hthor.eval.watched import Watched
+from hthor.guest import identity
+from hthor.guest.manifest import File, Manifest
 from hthor.types import Mind, RobotSeat, TrialSpec
 
 if TYPE_CHECKING:
@@ -27,12 +29,13 @@ if TYPE_CHECKING:
 
 
 class Sources(Struct, frozen=True, kw_only=True):
-    """Where that lies which is not ours: files of minds and of bodies by their seats, the file of a kind of task,
-    the name of the furniture pack that pictures show, the folder of the suite's own houses, and the word that finds the
-    people again (empty: the name in the trial does).
+    """Where that lies which is not ours: files of minds and of bodies by their seats, what these minds consist of,
+    the file of a kind of task, the name of the furniture pack that pictures show, the folder of the suite's own houses,
+    and the word that finds the people again (empty: the name in the trial does).
     """
 
     minds: dict[str, str] = {}
+    manifests: dict[str, Manifest] = {}
     bodies: dict[str, str] = {}
     kind: str = ""
     assets: str = ""
@@ -115,17 +118,39 @@ class Stage:
         """
         from hthor.eval import impersonal, record, remains
 
+        self._examine(company)
         log = _play(world or self.world(trial), company, trial)
         company.rest()
+        self._examine(company)  # before its record is written: what was played halfway with another file is no trial
+        opened = self._opened(company)
         if not log.faults:
-            return record.of(trial, log)
+            return msgspec.structs.replace(record.of(trial, log), files=opened or msgspec.UNSET)
         files = self._sources.minds.values()
         told = (msgspec.structs.replace(one, detail=impersonal.words(one.detail, files)) for one in log.faults)
         done = record.of(trial, msgspec.structs.replace(log, faults=tuple(told)))
+        done = msgspec.structs.replace(done, files=opened or msgspec.UNSET)
         remains.leave(remains.of(done.key, trial, done.faults, company.minds))
         for seat in dict.fromkeys(fault.seat for fault in log.faults):
             company.dismiss(seat)
         return done
+
+    def _examine(self, company: Company) -> None:
+        """See that the agents' files are the ones that the run began with."""
+        for seat, mind in company.minds.items():
+            if isinstance(mind, Watched) and seat in self._sources.manifests:
+                identity.check(self._sources.manifests[seat], mind.mind.grounds)
+                identity.examine(company.opened.get(seat, ()), mind.mind.grounds)
+
+    def _opened(self, company: Company) -> dict[str, tuple[File, ...]]:
+        """What agents opened of their own in the trial that was played, and no manifest lists."""
+        found: dict[str, tuple[File, ...]] = {}
+        for seat, mind in company.minds.items():
+            if isinstance(mind, Watched) and seat in self._sources.manifests:
+                known, grounds = self._sources.manifests[seat], mind.mind.grounds
+                if files := identity.later(mind.mind.take_opened(), known, grounds):
+                    found[seat] = files
+                    company.opened[seat] = tuple(sorted({*company.opened.get(seat, ()), *files}))
+        return found
 
     def _persons(self, trial: TrialSpec) -> People:
         """Whom the person of a trial is drawn from; kept, as all trials of a run have the same."""
@@ -152,11 +177,14 @@ class Stage:
         from hthor.guest import Guest, Unreachable
 
         guest = Guest(path) if step_limit_s is None else Guest(path, step_s=step_limit_s, bank_s=0.0)
+        known = self._sources.manifests.get(seat.seat)
+        if known is not None:
+            identity.check(known, guest.grounds)
         try:
             changed = guest.load().sha256 != seat.agent.sha256
         except Unreachable:  # a server that is gone for a while costs its trials, not the run
             return Watched(guest)
-        if changed:
+        if changed and (known is None or known.claimed):
             guest.close()
             raise AgentError(_changed(path))
         return Watched(guest)
@@ -176,13 +204,17 @@ def _changed(path: str) -> str:
 
 
 class Company:
-    """One session's person and minds. Use as a context manager: guests are processes and must be let go."""
+    """One session's person and minds. Use as a context manager: guests are processes and must be let go.
+
+    ``opened`` are files that agents have opened in trials so far and that their manifests do not list, by seat.
+    """
 
     def __init__(self, human: HumanModel, seats: Sequence[RobotSeat], make: Callable[[RobotSeat], Mind]) -> None:
         self.human: Any = human
         self._seats = tuple(seats)
         self._make = make
         self._minds: dict[str, Mind] = {}
+        self.opened: dict[str, tuple[File, ...]] = {}
 
     def __enter__(self) -> Company:
         return self

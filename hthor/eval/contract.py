@@ -16,10 +16,10 @@ from hthor.eval import crews, points, provenance
 from hthor.eval.crews import Character
 from hthor.eval.points import Finding
 from hthor.eval.rehearsal import Rehearsal
-from hthor.guest import Guest, Isolation, confine_guests
+from hthor.guest import Given, Guest, Isolation, confine_guests
 
 SCHEMA = "hthor.check/1"
-CHECKS = ("loads", "begins", "acts", "deterministic", "keeps nothing", "fast enough", "held")
+CHECKS = ("loads", "files", "begins", "acts", "deterministic", "keeps nothing", "fast enough", "held")
 
 
 class Report(Struct, frozen=True, kw_only=True):
@@ -39,18 +39,19 @@ class Report(Struct, frozen=True, kw_only=True):
     figures: dict[str, float] = {}
 
 
-def check(agent: str, *, robot: str = "", isolation: str = "auto") -> Report:
+def check(agent: str, *, robot: str = "", isolation: str = "auto", given: Given | None = None) -> Report:
     """Check an agent's file, ``file.py`` or ``file.py:Class``.
 
     Args:
         robot: the body; by default the first that the agent is made for, or scout.
+        given: arguments, and files beyond its own that it may read.
 
     Raises:
         IsolationError: when the level cannot be had.
     """
     if agent in plugins.names("agent"):
         raise HthorError(f"'{agent}' ships with hthor; give an agent of your own, such as my_agent.py.")
-    confine_guests(isolation)
+    confine_guests(isolation, given=given)
     provenance.keep_compiled()
     began = time.perf_counter()
     try:
@@ -65,13 +66,13 @@ def check(agent: str, *, robot: str = "", isolation: str = "auto") -> Report:
     with Guest(agent) as guest:
         info = guest.load()
         (first,) = rehearsal.play(guest, [rehearsal.a])
-    findings = [points.loads(load_s, character), *points.plays(first, agent)]
+    findings = [points.loads(load_s, character), points.files(character), *points.plays(first, agent)]
     figures = {"load_s": load_s, **points.figures(first)}
     if not first.faults:
         with Guest(agent) as guest:
             again, other, last = rehearsal.play(guest, [rehearsal.a, rehearsal.b, rehearsal.a])
         if not other.faults:  # only from the second trial on it has to be imported anew
-            findings[1], figures["begin_s"] = points.plays(other, agent)[0], other.begin_s
+            findings[2], figures["begin_s"] = points.plays(other, agent)[0], other.begin_s
         findings += [
             points.same("deterministic", first, again, "the same trial twice", points.VARIES),
             *([points.plays(other, agent)[-1]] if other.faults else []),

@@ -14,6 +14,7 @@ from msgspec import Struct
 from hthor import plugins
 from hthor.detectors import OWN
 from hthor.errors import HthorError, UnknownName
+from hthor.guest.manifest import Manifest
 from hthor.types import AgentRef, RobotSeat
 
 ALIASES = {"tall": "tender", "small": "puck"}
@@ -29,7 +30,7 @@ class Character(Struct, frozen=True, kw_only=True):
     ``path`` names it as `hthor.guest.reference` reads it, empty for a built-in agent. It stays out of ``ref``, which is
     part of every trial's key, so that a run reads the same wherever the file lies. ``bodies`` names the robots that
     it is made for (empty: any); ``absent`` means that there is no robot in the world at all; ``gpus`` is how much of a
-    GPU it asks for, which engines and isolation care about.
+    GPU it asks for, which engines and isolation care about. ``manifest`` lists its files, None for a built-in agent.
     """
 
     ref: AgentRef
@@ -37,6 +38,7 @@ class Character(Struct, frozen=True, kw_only=True):
     bodies: tuple[str, ...] = ()
     absent: bool = False
     gpus: float = 0.0
+    manifest: Manifest | None = None
 
 
 class Shape(Struct, frozen=True, kw_only=True):
@@ -86,6 +88,17 @@ class Crew(Struct, frozen=True, kw_only=True):
     def minds(self) -> dict[str, str]:
         """The files of minds that are not ours, by seat."""
         return {seat: character.path for seat, (_, character) in self._by_seat if character.path}
+
+    @property
+    def manifests(self) -> dict[str, Manifest]:
+        """What minds that are not ours consist of, by seat."""
+        return {seat: character.manifest for seat, (_, character) in self._by_seat if character.manifest}
+
+    @property
+    def agents(self) -> tuple[Manifest, ...]:
+        """The same, each agent once, in the order in which they were asked for."""
+        found = (character.manifest for _, character in self.robots if character.manifest is not None)
+        return tuple({one.sha256: one for one in found}.values())
 
     @property
     def bodies(self) -> dict[str, str]:
@@ -213,18 +226,26 @@ def _own(name: str) -> Character:
 
 
 def _guest(text: str) -> Character:
-    from hthor.guest import Guest
+    from hthor.guest import Guest, identity
 
     with Guest(text) as guest:
         info = guest.load()
-        ref = AgentRef(name=_tidy(info.name), source=info.source, sha256=info.sha256, privileges=tuple(info.privileges))
+        name = _tidy("-".join([info.name, *(_said(*pair) for pair in guest.given.args.items())]))
+        made = identity.settle(guest, name)
+        ref = AgentRef(name=name, source=info.source, sha256=made.sha256, privileges=tuple(info.privileges))
         return Character(
             ref=ref,
             path=guest.reference.text,
             bodies=tuple(info.robots),
             absent=info.absent,
             gpus=info.gpus,
+            manifest=made,
         )
+
+
+def _said(key: str, value: str) -> str:
+    """An argument as a part of an agent's name."""
+    return f"{key}-{Path(value).name if Path(value).is_absolute() else value}"
 
 
 def _tidy(name: str) -> str:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from hthor.eval.cast import Sources
     from hthor.eval.record import Record
     from hthor.eval.session import Session
+    from hthor.guest import Given
 
 NAME = "isolation.json"
 
@@ -81,12 +82,14 @@ def load(folder: Path) -> Isolation | None:
     return documents.read(path, Isolation, RunError, hint=hint)
 
 
-def player(sources: Sources | None, level: str, hidden: tuple[str, ...]) -> Callable[[Session], Iterator[Record]]:
-    """`cast.player`, whose agents are held at this level and cannot read what is hidden."""
+def player(
+    sources: Sources | None, level: str, hidden: tuple[str, ...], given: Given | None = None
+) -> Callable[[Session], Iterator[Record]]:
+    """`cast.player`, whose agents are held at this level, cannot read what is hidden, and are given this."""
     from hthor import guest
     from hthor.eval import cast
 
-    guest.confine_guests(level, hidden)
+    guest.confine_guests(level, hidden, given)
     return cast.player(sources)
 
 

@@ -14,7 +14,7 @@ from hthor.eval import cast, control, crews, engines, guarded, peoples, programm
 from hthor.eval.crews import Crew
 from hthor.eval.programme import Programme
 from hthor.eval.setup import Setup
-from hthor.guest import Isolation
+from hthor.guest import Isolation, given
 from hthor.humans.people import PROXY, People
 
 RUNS = Path("runs")
@@ -50,6 +50,8 @@ class Options(Struct, frozen=True, kw_only=True):
     require_isolation: str = ""
     trial_limit: float | None = None
     max_faults: str = "0"
+    agent_args: tuple[str, ...] = ()
+    readable: tuple[Path, ...] = ()
 
 
 class Part(Struct, frozen=True, kw_only=True):
@@ -90,7 +92,7 @@ def settle(options: Options) -> Intent:
         raise HthorError(
             "name an agent with --agent, or robots and their agents with --robots tall:oracle,small:oracle."
         )
-    guest.confine_guests(options.isolation, hidden(options))
+    guest.confine_guests(options.isolation, hidden(options), given.read(options.agent_args, options.readable))
     provenance.keep_compiled()
     whom = peoples.expand(options.humans)
     detector = detectors.tidy(options.detector)

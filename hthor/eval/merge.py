@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from hthor import documents, jsonio
 from hthor.errors import RunError
-from hthor.eval import command, control, guarded, log, machine, reading, record, result_file, score, setup
+from hthor.eval import command, control, guarded, log, machine, opened, reading, record, result_file, score, setup
 from hthor.eval.log import Log, Place
 from hthor.eval.record import Record
 from hthor.eval.result_file import Effort, Result
@@ -47,12 +47,16 @@ class Merged(Struct, frozen=True, kw_only=True):
 
 
 class _Part(Struct, frozen=True, kw_only=True):
-    """A shard's folder, its configuration, and where its records lie, by person and trial."""
+    """A shard's folder, its configuration, and where its records lie, by person and trial.
+
+    ``opened`` are the records, without what is long in them, that tell of files which agents opened only then.
+    """
 
     folder: Path
     plan: Setup
     shard: Shard
     records: dict[tuple[int, int], tuple[Place, str, int]]
+    opened: tuple[Record, ...] = ()
 
 
 def merge(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Merged:
@@ -71,6 +75,7 @@ def merge(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Merged:
     for part in parts[1:]:
         _same_run(first, part)
     plan, found = first.plan.whole, _join(parts)
+    opened.manifests(plan, [one for part in parts for one in part.opened])
     setup.examine(out, plan)
     if dry:  # only count; what is missing is named by the merge itself
         there = {one.key for _, one in log.read(out / "trials.jsonl")}
@@ -101,15 +106,18 @@ def _examine(folder: Path) -> _Part:
             f"{folder} holds a run that is not divided: run.json has no shard. 'hthor eval --shard' makes some."
         )
     records: dict[tuple[int, int], tuple[Place, str, int]] = {}
+    told: list[Record] = []
     for place, line, one in log.places(folder / "trials.jsonl"):
         reading.check_origin(folder, one, plan)
         _check_share(folder, one, plan, plan.shard)
+        if one.files:
+            told.append(msgspec.structs.replace(one, paths={}, journal=(), events=()))
         seat, mine = (one.spec.participant, one.spec.index), (place, one.key, record.checksum(line))
         if records.setdefault(seat, mine)[1:] != mine[1:]:
             raise RunError(
                 f"{place.path}: trial {one.key} is there twice and not the same. Delete one of the two lines."
             )
-    return _Part(folder=folder, plan=plan, shard=plan.shard, records=records)
+    return _Part(folder=folder, plan=plan, shard=plan.shard, records=records, opened=tuple(told))
 
 
 def _check_share(folder: Path, one: Record, plan: Setup, mine: Shard) -> None:

@@ -18,6 +18,7 @@ from hthor.errors import HthorError
 from hthor.eval import again, cast, provenance, record
 from hthor.eval.record import Record
 from hthor.eval.session import Session
+from hthor.guest import Given
 from hthor.types import HUMAN, Action, Briefing, Event, Observation
 
 SCHEMA = "hthor.mind/1"
@@ -85,13 +86,15 @@ class Listened:
         self.thoughts.append(Event(tick=tick, seat=HUMAN, kind=kind, data=data))
 
 
-def listen(folder: Path, wanted: Record, *, agents: Sequence[str] = (), humans: str = "") -> Stream:
+def listen(
+    folder: Path, wanted: Record, *, agents: Sequence[str] = (), humans: str = "", given: Given | None = None
+) -> Stream:
     """Play a trial of a run again and listen.
 
     Args:
         folder: the run's. wanted: the trial.
         agents: files of the run's agents that are not built in. humans: where its people come from, when the name in
-            the log does not find them.
+            the log does not find them. given: arguments and files that the agents were given.
 
     Raises:
         RunError: when trials before it are missing, or another version of hthor played them.
@@ -100,7 +103,7 @@ def listen(folder: Path, wanted: Record, *, agents: Sequence[str] = (), humans: 
     provenance.keep_compiled()
     spec = wanted.spec
     session = Session(participant=spec.participant, trials=again.before(folder, wanted))
-    guest.confine_guests(hidden=(str(folder.resolve()),))
+    guest.confine_guests(hidden=(str(folder.resolve()),), given=given)
     stage = cast.Stage(again.sources(folder, spec, agents, humans))
     with stage.enter(session) as company:
         company.human = person = Listened(company.human)

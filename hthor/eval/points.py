@@ -27,6 +27,7 @@ _ADVICE = {
     "oversized": "Shorten texts and ids: an action takes 64 KiB at most.",
     "not_finite": "Look for a division by zero, or a mean of nothing, on the way to that number.",
 }
+_FILES = 8
 _SLOW_LOAD_S, _SLOW_BEGIN_S, _LOUD = 5.0, 1.0, 15_000
 _ON_ONE_SPOT = 0.5
 """Share of a trial that an agent may spend on one spot before it is warned; our choice."""
@@ -52,6 +53,17 @@ def loads(seconds: float, character: Character) -> Finding:
         return Finding(check="loads", status="ok", told=told)
     advice = "60 s are allowed. Import less, or later; import libraries at the top of the file, where it is done once."
     return Finding(check="loads", status="warning", told=told, advice=advice)
+
+
+def files(character: Character) -> Finding:
+    """Which files it consists of, as far as that shows before it plays."""
+    held = character.manifest.files if character.manifest else ()
+    names = [file.path for file in held]
+    shown = ", ".join(names[:_FILES]) + (f" and {len(names) - _FILES} more" if len(names) > _FILES else "")
+    size = sum(file.bytes for file in held)
+    claim = ", as its server says" if character.manifest and character.manifest.claimed else ""
+    told = f"{shown or 'none named'} ({size} bytes){claim}"
+    return Finding(check="files", status="ok", told=told)
 
 
 def plays(notes: Notes, agent: str) -> list[Finding]:

@@ -11,6 +11,7 @@ from msgspec import Struct
 from hthor import documents, jsonio
 from hthor.episode import EpisodeLog, Fault
 from hthor.eval.metrics import TrialMetrics, measure
+from hthor.guest.manifest import File
 from hthor.types import Event, TrialSpec
 
 _DIGITS = 4  # metres, radians and seconds in events: a tenth of a millimetre
@@ -20,7 +21,11 @@ _CHECK_LENGTH = len(_CHECK % 0)
 
 
 class Record(Struct, frozen=True, kw_only=True):
-    """A trial's specification, everything that happened in it, and its metrics. ``key`` is the hash of ``spec``."""
+    """A trial's specification, everything that happened in it, and its metrics. ``key`` is the hash of ``spec``.
+
+    ``files`` has, by seat, what an agent opened of its own that ``agents`` in `run.json` does not list; it is there
+    only where there is such.
+    """
 
     key: str
     spec: TrialSpec
@@ -34,6 +39,7 @@ class Record(Struct, frozen=True, kw_only=True):
     progress: float | None = None
     idle: dict[str, int] = {}
     journal: tuple[Event, ...] = ()
+    files: dict[str, tuple[File, ...]] | msgspec.UnsetType = msgspec.UNSET
 
     @property
     def log(self) -> EpisodeLog:

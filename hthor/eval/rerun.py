@@ -20,6 +20,7 @@ from hthor.eval.crews import Character
 from hthor.eval.record import Record
 from hthor.eval.remains import Remains
 from hthor.eval.session import Session
+from hthor.guest import Given
 from hthor.types import RobotSeat, TrialSpec
 
 
@@ -44,21 +45,21 @@ class Rerun(Struct, frozen=True, kw_only=True):
     left: Remains | None
 
 
-def play(folder: Path, wanted: Record, files: Files, isolation: str = "auto") -> Rerun:
+def play(folder: Path, wanted: Record, files: Files, isolation: str = "auto", given: Given | None = None) -> Rerun:
     """Play a trial of a run once more.
 
     Raises:
         RunError: when trials before it are missing, or another version of hthor played them.
         HthorError: when a file is needed and not given.
     """
-    guest.confine_guests(isolation, (str(folder.resolve()),))
+    guest.confine_guests(isolation, (str(folder.resolve()),), given)
     provenance.keep_compiled()
     specs = again.before(folder, wanted)
     minds = _minds(wanted.spec, files.agents)
     robots = tuple(_seated(seat, minds) for seat in wanted.spec.robots)
     trials = tuple(msgspec.structs.replace(spec, robots=robots) for spec in specs)
     session = Session(participant=wanted.spec.participant, trials=trials)
-    perform = guarded.player(_sources(folder, wanted.spec, files, minds), isolation, (str(folder.resolve()),))
+    perform = guarded.player(_sources(folder, wanted.spec, files, minds), isolation, (str(folder.resolve()),), given)
     done = list(perform(session))[-1]
     left = [remains.take(record.key(trial)) for trial in trials][-1]
     changed = robots != wanted.spec.robots
@@ -101,6 +102,7 @@ def _sources(folder: Path, spec: TrialSpec, files: Files, minds: dict[str, Chara
     own, shown = folder / "houses", setup.load(folder).assets.name
     return Sources(
         minds={seat: one.path for seat, one in minds.items()},
+        manifests={seat: one.manifest for seat, one in minds.items() if one.manifest is not None},
         bodies=bodies,
         kind=str(Path(files.kind).resolve()) if files.kind else "",
         assets="" if shown == setup.PROCEDURAL else shown,

@@ -13,10 +13,10 @@ from hthor.eval.peoples import HumansRef
 from hthor.eval.setup import AssetsRef, KindRef, SuiteRef
 from hthor.eval.stats import Estimate
 from hthor.eval.uplift import Uplift
-from hthor.guest import Isolation
+from hthor.guest import Isolation, Manifest
 from hthor.types import RobotSeat
 
-SCHEMA = "hthor.result/4"
+SCHEMA = "hthor.result/5"
 
 
 class Scores(Struct, frozen=True, kw_only=True):
@@ -93,12 +93,14 @@ class Result(Struct, frozen=True, kw_only=True):
 
     ``trust_by_trial`` is the rating after the first, second, ... trial of a person's session, empty without a robot.
     ``uplift`` is None where no whole run without a robot lay beside this one. ``mode`` is "realtime" where thinking
-    took time of the trials, which no second run repeats byte for byte, else "lockstep".
+    took time of the trials, which no second run repeats byte for byte, else "lockstep". ``agents`` lists the files of
+    every agent that is not built in, those included that it opened only while it played.
     """
 
     schema: str = SCHEMA
     name: str
     robots: tuple[RobotSeat, ...]
+    agents: tuple[Manifest, ...] = ()
     humans: HumansRef
     suite: SuiteRef
     kind: KindRef | None = None

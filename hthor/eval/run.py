@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
 
@@ -12,6 +12,7 @@ from hthor import jsonio
 from hthor.eval import control, course, engines, guarded, log, machine, reading, record, result_file, score, setup
 from hthor.eval.engines import Engine, Make
 from hthor.eval.log import Log
+from hthor.eval.record import Record
 from hthor.eval.remains import Keeper
 from hthor.eval.result_file import Effort, Result
 from hthor.eval.session import Session
@@ -49,6 +50,7 @@ def evaluate(
     watch: Watcher,
     extra: Mapping[str, bytes] | None = None,
     again: str = "",
+    check: Callable[[Setup, Sequence[Record]], None] | None = None,
 ) -> Result:
     """Play what a run still lacks, and score it.
 
@@ -60,6 +62,7 @@ def evaluate(
         engine: where sessions are played; on this machine when not given.
         extra: other files to leave in the folder, by name, such as a suite that was made for this run.
         again: the command that plays one of its trials once more, but for the trial's key.
+        check: looks at what was played before, and raises when no more may be added to it.
 
     Raises:
         RunLocked: when another process writes this run.
@@ -69,7 +72,7 @@ def evaluate(
     """
     with stoppable() as stop:
         where = engine or engines.find(engines.LOCAL, jobs=jobs)
-        result = _evaluate(plan, sessions, make, folder, where, watch, extra, again, stop)
+        result = _evaluate(plan, sessions, make, folder, where, watch, extra, again, check, stop)
         if stop.is_set():
             raise Interrupted("interrupted; resume with the same command.")
         return result
@@ -84,6 +87,7 @@ def _evaluate(
     watch: Watcher,
     extra: Mapping[str, bytes] | None,
     again: str,
+    check: Callable[[Setup, Sequence[Record]], None] | None,
     stop: threading.Event,
 ) -> Result:
     began = time.monotonic()
@@ -96,6 +100,8 @@ def _evaluate(
         keys = [[record.key(trial) for trial in session.trials] for session in sessions]
         wanted = [key for some in keys for key in some]
         left = [session for session, some in zip(sessions, keys, strict=True) if any(key not in book for key in some)]
+        if check is not None and len(book):
+            check(plan, reading.digest(folder, plan)[1])
         watch.begin(len(wanted), sum(key in book for key in wanted))
         if book.torn:
             watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")

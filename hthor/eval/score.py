@@ -11,7 +11,7 @@ from pathlib import Path
 
 import msgspec
 
-from hthor.eval import bounds, control, guarded, metrics, reading, result_file, setup, stats
+from hthor.eval import bounds, control, guarded, metrics, opened, reading, result_file, setup, stats
 from hthor.eval.metrics import TrialMetrics
 from hthor.eval.record import Record
 from hthor.eval.result_file import Counts, Effort, Hashes, Result, Scores
@@ -43,6 +43,7 @@ def summarise(
     return Result(
         name=plan.name,
         robots=plan.robots,
+        agents=opened.manifests(plan, records),
         humans=plan.humans,
         suite=plan.suite,
         kind=plan.kind,

@@ -19,6 +19,7 @@ from hthor.eval.crews import Crew
 from hthor.eval.peoples import HumansRef
 from hthor.eval.session import people_for
 from hthor.eval.shard import Shard
+from hthor.guest.manifest import Manifest
 from hthor.humans import people
 from hthor.humans.people import PROXY, People
 from hthor.tasks import Suite
@@ -65,12 +66,14 @@ class Setup(Struct, frozen=True, kw_only=True):
     a seat. ``kind`` is None when every task of the suite is played. ``trials`` is how many there are in a whole run.
     ``shard`` is there only in a run that was divided among machines, ``realtime`` only where robots' thinking took time
     of the trials, ``limit`` only where so many tasks were chosen from the suite, and ``step_limit_s`` only where
-    submitted agents had another deadline for each action than usual [s].
+    submitted agents had another deadline for each action than usual [s]. ``agents`` lists the files of
+    every agent that is not built in.
     """
 
     schema: str = SCHEMA
     title: str | msgspec.UnsetType = msgspec.UNSET
     robots: tuple[RobotSeat, ...]
+    agents: tuple[Manifest, ...] = ()
     humans: HumansRef
     suite: SuiteRef
     kind: KindRef | None = None
@@ -170,6 +173,7 @@ def settle(
     size = len(suite.tasks)
     return Setup(
         robots=crew.listed,
+        agents=crew.agents,
         humans=peoples.refer(people.find(human) if isinstance(human, str) else human, suite, crew),
         suite=SuiteRef(name=suite.name, version=str(suite.version), sha256=suite.sha256),
         kind=kind,
@@ -296,9 +300,14 @@ def _flat(document: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     flat: dict[str, Any] = {}
     for name, value in document.items():
         if isinstance(value, (list, tuple)) and any(isinstance(part, dict) for part in value):
-            value = {str(number): part for number, part in enumerate(value)}
+            value = {str(_named(part, number)): part for number, part in enumerate(value)}
         flat |= _flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value}
     return flat
+
+
+def _named(part: Any, number: int) -> object:
+    """What to call a member of a list: a file by its path, all others by their number."""
+    return part.get("path", number) if isinstance(part, dict) else number
 
 
 def _short(value: object) -> str:

@@ -10,18 +10,23 @@ from __future__ import annotations
 from hthor.guest.choosing import confine_guests, in_force
 from hthor.guest.confinement import SERVED, Isolation, IsolationError, suffices
 from hthor.guest.faults import GuestFault
+from hthor.guest.given import Given
 from hthor.guest.host import Guest, load_info
 from hthor.guest.info import GuestInfo
+from hthor.guest.manifest import File, Manifest
 from hthor.guest.reference import Reference, is_served
 from hthor.guest.served import Unreachable
 
 __all__ = [
     "SERVED",
+    "File",
+    "Given",
     "Guest",
     "GuestFault",
     "GuestInfo",
     "Isolation",
     "IsolationError",
+    "Manifest",
     "Reference",
     "Unreachable",
     "confine_guests",

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from hthor.errors import KILLED, AgentError, AgentKilled
-from hthor.guest import choosing, info, parking, served, wire
-from hthor.guest.confinement import Isolation
+from hthor.guest import arguments, choosing, explaining, info, parking, served, wire
+from hthor.guest.confinement import Isolation, Policy
 from hthor.guest.faults import GuestFault
+from hthor.guest.grounds import Grounds
 from hthor.guest.info import GuestInfo
 from hthor.guest.process import Process
 from hthor.guest.reference import Reference
@@ -26,13 +27,24 @@ class Arrival:
     """Brings an agent up, and up again after it has failed. The arguments are those of `Guest`."""
 
     def __init__(
-        self, talk: Talk, agent: Reference, *, start_s: float, isolation: str | None, memory_mb: int, disk_mb: int
+        self,
+        talk: Talk,
+        agent: Reference,
+        *,
+        start_s: float,
+        isolation: str | None,
+        memory_mb: int,
+        disk_mb: int,
+        args: dict[str, str],
+        grounds: Grounds,
     ) -> None:
         self._talk, self._agent = talk, agent
+        self._args, self._grounds = args, grounds
         self._start_s, self._isolation = start_s, isolation
         self._memory_mb, self._disk_mb = memory_mb, disk_mb
         self._gpus = 0.0
         self.ahead = False
+        self.policy: Policy | None = None
 
     def come(self) -> GuestInfo:
         """Bring it up, and say what it is; ``ahead`` is then what it says of itself.
@@ -45,6 +57,7 @@ class Arrival:
         if waiting := parking.take(self._key(digest)):
             talk.open(waiting.process)
             talk.loaded, self.ahead = True, waiting.ahead
+            self.policy = waiting.process.policy
             return waiting.info
         held = self._connected() if agent.url else self._started()
         try:
@@ -55,7 +68,9 @@ class Arrival:
             raise kind(f"{agent.text}: loading it failed ({fault}).{hint}\n{fault.log}".rstrip()) from None
         if not isinstance(ready, wire.Ready):
             talk.close()
-            raise AgentError(_instead(agent, ready))
+            said = _instead(agent, ready)
+            why = explaining.reason(said, self.policy, agent.root) if self.policy else ""
+            raise AgentError(f"{said}\n{why}".rstrip())
         try:
             found = info.describe(agent, digest, ready, held)
         except AgentError:
@@ -81,7 +96,8 @@ class Arrival:
     def _key(self, digest: str) -> parking.Key:
         """What two guests must share to be exchangeable."""
         limits = self._isolation, self._memory_mb, self._disk_mb
-        return self._agent.text, digest, *limits, *choosing.terms()
+        more = tuple(self._args.items()), self._grounds.readable
+        return self._agent.text, digest, *limits, *more, *choosing.terms()
 
     def _connected(self) -> Isolation:
         self._talk.open(served.connect(self._agent.url, self._start_s))
@@ -90,20 +106,29 @@ class Arrival:
     def _started(self) -> Isolation:
         """Start its process, at the level that is wanted or the strongest that comes up."""
         return choosing.start(
-            self._agent, self._isolation, self._enter, self._memory_mb, self._disk_mb, gpus=self._gpus > 0.0
+            self._agent,
+            self._isolation,
+            self._enter,
+            self._memory_mb,
+            self._disk_mb,
+            gpus=self._gpus > 0.0,
+            readable=self._grounds.readable,
         )
 
     def _enter(self, process: Process) -> wire.Confined | str:
         """What a process that has just started says of its confinement, or why it has none."""
         self._talk.open(process)
+        self.policy = process.policy
         agent = self._agent
         load = wire.Load(
             path=agent.path,
             cls=agent.cls,
             policy=process.policy,
             module=agent.module,
-            words=agent.words,
+            words=(*agent.words, *arguments.as_words(self._args)) if agent.words else (),
             root=agent.root,
+            args=self._args,
+            grounds=self._grounds,
         )
         try:
             self._talk.send(load, _ENTER_S)

@@ -8,11 +8,14 @@ from __future__ import annotations
 import os
 import sys
 
-from hthor.guest import loading, program, showing, wire
+import msgspec
+
+from hthor.guest import arguments, loading, program, showing, sources, wire
 from hthor.guest.confinement import holding, seccomp
 from hthor.guest.confinement.holding import Refused
 from hthor.guest.confinement.landlock import Ruleset
 from hthor.guest.playing import play
+from hthor.guest.recording import Recorder
 from hthor.guest.senses import Pipe
 
 ORDERLY = 97
@@ -50,17 +53,29 @@ def serve(pipe: Pipe, order: wire.Load, held: Ruleset | None, *, first: bool, wa
             return
     _tidy_numba(order.policy.scratch)
     os.chdir(order.root)
+    recorder = _watched(order)
     try:
         cls, ready = loading.load(order)
     except loading.Refusal as error:
         pipe.send(wire.Failed(kind="contract", detail=showing.shown(str(error))[-wire.TEXT_MAX :]))
         return
     if first:
-        pipe.send(ready)
+        pipe.send(msgspec.structs.replace(ready, files=recorder.take() if recorder else ()))
+    make = arguments.maker(cls, order.args)
     while isinstance(begin := pipe.receive(), wire.Begin):
-        play(pipe, cls, begin)
+        play(pipe, make, begin, recorder)
         if not ready.persistent:
             return
+
+
+def _watched(order: wire.Load) -> Recorder | None:
+    """Take down what the agent opens from here on, and import its own modules from their sources alone."""
+    if order.grounds is None:
+        return None
+    sources.only_from(order.grounds)
+    recorder = Recorder(order.grounds)
+    recorder.start()
+    return recorder
 
 
 def _confined(held: Ruleset | None) -> wire.Confined:

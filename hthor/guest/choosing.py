@@ -12,6 +12,7 @@ from pathlib import Path
 
 from hthor.guest import process, wire
 from hthor.guest.confinement import AUTO, LEVELS, Isolation, IsolationError, known, namespaces
+from hthor.guest.given import Given
 from hthor.guest.process import Process
 from hthor.guest.reference import Reference
 
@@ -25,24 +26,31 @@ class _Terms:
 
     isolation = AUTO
     hidden: tuple[str, ...] = ()
+    given = Given()
 
 
-def confine_guests(isolation: str = AUTO, hidden: tuple[str, ...] = ()) -> None:
+def confine_guests(isolation: str = AUTO, hidden: tuple[str, ...] = (), given: Given | None = None) -> None:
     """Lay down how the guests of this process are held.
 
     Args:
         isolation: a level, or "auto".
         hidden: files and folders that no guest may read, even in its own folder.
+        given: what every agent is given beyond its own folder; nothing when left out.
 
     Raises:
         UnknownName: when there is no such level.
     """
-    _Terms.isolation, _Terms.hidden = known(isolation), hidden
+    _Terms.isolation, _Terms.hidden, _Terms.given = known(isolation), hidden, given or Given()
 
 
 def terms() -> tuple[object, ...]:
     """What is laid down for the guests of this process."""
     return _Terms.isolation, _Terms.hidden
+
+
+def given() -> Given:
+    """What agents of this process are given beyond their own folders."""
+    return _Terms.given
 
 
 def start(
@@ -52,11 +60,13 @@ def start(
     memory_mb: int,
     disk_mb: int,
     gpus: bool = False,
+    readable: tuple[str, ...] = (),
 ) -> Isolation:
     """Start a guest's process at the level that is wanted, and say what holds it.
 
     Args:
         enter: asks a process that has just started what holds it; gives the reason if nothing does.
+        readable: files and folders beyond its own that it may read.
 
     Raises:
         IsolationError: when that level cannot be had.
@@ -68,7 +78,15 @@ def start(
         missing = _missing.get(rung) or (namespaces.unavailable() if rung == "L3" else "")
         if not missing:
             try:
-                one = process.start(agent, rung, hidden=_Terms.hidden, memory_mb=memory_mb, disk_mb=disk_mb, gpus=gpus)
+                one = process.start(
+                    agent,
+                    rung,
+                    hidden=_Terms.hidden,
+                    memory_mb=memory_mb,
+                    disk_mb=disk_mb,
+                    gpus=gpus,
+                    readable=readable,
+                )
             except OSError as error:  # such as too many files beside this agent to name one by one
                 reason = reason or f"{rung}: its process could not be started: {error.strerror}"
                 continue
@@ -103,4 +121,4 @@ def in_force(wanted: str = AUTO) -> Isolation:
     """
     from hthor.guest.host import load_info
 
-    return load_info(_IDLE, isolation=wanted).isolation
+    return load_info(_IDLE, isolation=wanted, given=Given()).isolation

@@ -5,9 +5,10 @@ from __future__ import annotations
 import contextlib
 from pathlib import Path
 
-from hthor.guest import affinity, reference, wire
+from hthor.guest import affinity, choosing, explaining, grounds, reference, wire
 from hthor.guest.arrival import Arrival
 from hthor.guest.faults import GuestFault
+from hthor.guest.given import Given
 from hthor.guest.info import GuestInfo
 from hthor.guest.process import Process
 from hthor.guest.served import Unreachable
@@ -17,7 +18,12 @@ from hthor.types import Action, Briefing, Observation
 
 
 def load_info(
-    path: str | Path, cls: str | None = None, *, start_s: float = 60.0, isolation: str | None = None
+    path: str | Path,
+    cls: str | None = None,
+    *,
+    start_s: float = 60.0,
+    isolation: str | None = None,
+    given: Given | None = None,
 ) -> GuestInfo:
     """Bring an agent up, and say what it is.
 
@@ -27,7 +33,7 @@ def load_info(
     Raises:
         UnknownName, AgentError, IsolationError: as `Guest` and `Guest.load`.
     """
-    with Guest(path, cls, start_s=start_s, isolation=isolation) as guest:
+    with Guest(path, cls, start_s=start_s, isolation=isolation, given=given) as guest:
         return guest.load()
 
 
@@ -45,9 +51,14 @@ class Guest:
         isolation: "L1", "L2", "L3", or "auto" for the strongest that the machine gives; by default what
             `confine_guests` has laid down for this process. An agent that is served elsewhere is not held at all.
         memory_mb: memory that it may hold. disk_mb: what it may write in a trial.
+        given: arguments and files that it is given; by default what `confine_guests` has laid down.
+
+    Attributes:
+        reference: what names it. given: as above. grounds: where its own files lie.
 
     Raises:
         UnknownName, AgentError: when ``path`` names no agent.
+        HthorError: when it cannot be given that.
     """
 
     def __init__(
@@ -61,11 +72,22 @@ class Guest:
         isolation: str | None = None,
         memory_mb: int = 4096,
         disk_mb: int = 256,
+        given: Given | None = None,
     ) -> None:
         self._gathered, self._talk = False, Talk()
+        self.given = choosing.given() if given is None else given
         self.reference = reference.read(str(path), cls)
+        beyond = self.given.beyond(self.reference)
+        self.grounds = grounds.of(self.reference, beyond)
         self._arrival = Arrival(
-            self._talk, self.reference, start_s=start_s, isolation=isolation, memory_mb=memory_mb, disk_mb=disk_mb
+            self._talk,
+            self.reference,
+            start_s=start_s,
+            isolation=isolation,
+            memory_mb=memory_mb,
+            disk_mb=disk_mb,
+            args=self.given.args,
+            grounds=self.grounds,
         )
         self._start_s, self._step_s, self._bank_s = start_s, step_s, bank_s
         self._info: GuestInfo | None = None
@@ -105,7 +127,10 @@ class Guest:
         window = process.frames if process else None
         turns = Turns(talk, step_s=self._step_s, bank_s=self._bank_s, ahead=self._arrival.ahead, window=window)
         talk.send(wire.Begin(briefing=briefing), self._start_s)
-        answer, left = talk.receive(self._start_s)
+        try:
+            answer, left = talk.receive(self._start_s)
+        except GuestFault as fault:
+            raise self._explained(fault) from None
         if isinstance(answer, wire.Ready) and self.reference.words:  # a program says so whenever it is started
             answer, _ = talk.receive(left, f"{self._start_s:g} s")
         if not isinstance(answer, wire.Done):
@@ -120,7 +145,10 @@ class Guest:
         """
         if self._turns is None or self._talk.line is None:
             raise GuestFault("died", "the agent has no trial: begin was not called, or it failed before")
-        return self._turns.act(observation)
+        try:
+            return self._turns.act(observation)
+        except GuestFault as fault:
+            raise self._explained(fault) from None
 
     def finish(self) -> None:
         """The trial is over: its process comes to its end while the caller goes on. Need not be called."""
@@ -137,6 +165,12 @@ class Guest:
             self._await_end()
         if self._info is None or not self._arrival.leave(self._info):
             self._talk.close()
+
+    def take_opened(self) -> tuple[str, ...]:
+        """Which of its own files it says it has opened since this was asked last, as its manifest calls them."""
+        names = tuple(sorted(self._talk.opened))
+        self._talk.opened.clear()
+        return names
 
     @property
     def pid(self) -> int:
@@ -159,6 +193,11 @@ class Guest:
             with contextlib.suppress(Exception):  # the interpreter may be half gone
                 self._scatter()
                 self._talk.close()
+
+    def _explained(self, fault: GuestFault) -> GuestFault:
+        """The fault, with what isolation has to do with it."""
+        policy = self._arrival.policy
+        return explaining.explained(fault, policy, self.reference.root) if policy else fault
 
     @property
     def _process(self) -> Process | None:

@@ -11,6 +11,7 @@ from msgspec import Struct
 from hthor.errors import AgentError
 from hthor.guest import wire
 from hthor.guest.confinement import Isolation
+from hthor.guest.manifest import File
 from hthor.guest.reference import Reference
 from hthor.guest.showing import is_name, shown
 
@@ -18,9 +19,9 @@ from hthor.guest.showing import is_name, shown
 class GuestInfo(Struct, frozen=True, kw_only=True):
     """What an agent says of itself. ``robots`` names the bodies it is made for (empty: any); ``absent`` means none.
 
-    ``persistent`` agents keep one process for all their trials. ``sha256`` is the hash of the file alone: what it
-    imports is not covered. Of a served agent it is the hash of what the server says of it. ``isolation`` is what held
-    the agent while it was asked. ``gpus`` is how much of a GPU it asks for.
+    ``persistent`` agents keep one process for all their trials. ``sha256`` is the hash of the file alone; what else
+    it consists of is in its `Manifest`. Of a served agent it is the hash of what the server says of it, ``manifest``
+    included. ``isolation`` is what held the agent while it was asked. ``gpus`` is how much of a GPU it asks for.
     """
 
     name: str
@@ -32,6 +33,7 @@ class GuestInfo(Struct, frozen=True, kw_only=True):
     persistent: bool = False
     doc: str = ""
     gpus: float = 0.0
+    manifest: tuple[File, ...] = ()
     isolation: Isolation
 
 
@@ -65,5 +67,6 @@ def describe(reference: Reference, sha256: str, ready: wire.Ready, held: Isolati
         persistent=ready.persistent or served,
         doc=shown(ready.doc)[: wire.TEXT_MAX],
         gpus=ready.gpus,
+        manifest=ready.manifest if served else (),
         isolation=held,
     )

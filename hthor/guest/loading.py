@@ -10,7 +10,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from hthor.guest import showing, wire
+from hthor.guest import arguments, showing, wire
+from hthor.guest.sources import SourceLoader
 
 _MODULE = "hthor_guest_agent"  # not the file's name, which could hide a module of the standard library
 
@@ -42,6 +43,10 @@ def load(order: wire.Load) -> tuple[type[Any], wire.Ready]:
         ahead=True,
         gpus=_gpus(cls, path),
     )
+    try:
+        arguments.fit(cls, order.args)
+    except arguments.Unfit as error:
+        raise Refusal(f"{path}: {error}") from None
     return cls, ready
 
 
@@ -68,7 +73,7 @@ def _by_name(path: Path, name: str) -> ModuleType:
 
 
 def _by_file(path: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(_MODULE, path)
+    spec = importlib.util.spec_from_file_location(_MODULE, path, loader=SourceLoader(_MODULE, str(path)))
     if spec is None or spec.loader is None:
         raise Refusal(f"{path}: not a Python file; an agent is one file that ends in .py")
     module = importlib.util.module_from_spec(spec)

@@ -3,28 +3,38 @@
 from __future__ import annotations
 
 import traceback
+from collections.abc import Callable
 from typing import Any
 
 import msgspec
 
-from hthor.guest import loading, wire
+from hthor.guest import loading, recording, wire
+from hthor.guest.recording import Recorder
 from hthor.guest.senses import Gone, RemoteSenses, Wire
 from hthor.guest.showing import shown
 from hthor.types import Action, Message
 
 
-def play(pipe: Wire, cls: type[Any], order: wire.Begin) -> None:
-    """One trial. A failure is the agent's last word; the host then ends the process."""
+def play(pipe: Wire, make: Callable[[], Any], order: wire.Begin, recorder: Recorder | None = None) -> None:
+    """One trial. A failure is the agent's last word; the host then ends the process.
+
+    Args:
+        make: gives a new agent. recorder: what has taken down the files that it opens, if anything has.
+    """
     try:
-        agent = cls()
+        agent = make()
         agent.begin(order.briefing)
-        pipe.send(wire.Done())
+        pipe.send(wire.Done(files=recorder.take() if recorder else ()))
         while isinstance(look := pipe.receive(), wire.Look):
-            pipe.send(_act(pipe, agent, look))
+            said = _act(pipe, agent, look)
+            if recorder and recorder.waiting and len(wire.encode(said)) <= wire.MOST_BYTES - 2 * recording.MOST:
+                said = msgspec.structs.replace(said, files=recorder.take())
+            pipe.send(said)
     except Gone:
         raise
     except BaseException as error:
-        pipe.send(_failed(error))
+        failed = _failed(error)
+        pipe.send(msgspec.structs.replace(failed, files=recorder.take() if recorder else ()))
 
 
 def _act(pipe: Wire, agent: Any, look: wire.Look) -> wire.Acted | wire.Failed:

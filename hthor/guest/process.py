@@ -204,7 +204,14 @@ class Process:
 
 
 def start(
-    agent: Reference, level: str, *, hidden: tuple[str, ...], memory_mb: int, disk_mb: int, gpus: bool = False
+    agent: Reference,
+    level: str,
+    *,
+    hidden: tuple[str, ...],
+    memory_mb: int,
+    disk_mb: int,
+    gpus: bool = False,
+    readable: tuple[str, ...] = (),
 ) -> Process:
     """A fresh guest on this level; what it says first tells whether the level is in force."""
     scratch = "" if level == "L3" else tempfile.mkdtemp(prefix="hthor-guest-")
@@ -214,8 +221,8 @@ def start(
     more = ([compiled] if compiled else []) + (list(devices.FACTS) if gpus else [])
     policy = Policy(
         level=level,
-        read=(*paths.readable(agent.path, agent.root, hidden), *more),
-        listed=paths.listed(agent.root),
+        read=(*paths.readable(agent.path, agent.root, hidden, readable), *more),
+        listed=(*paths.listed(agent.root), *(place for place in readable if os.path.isdir(place))),
         scratch=scratch or _INSIDE,
         memory_mb=memory_mb,
         disk_mb=disk_mb,

@@ -9,15 +9,18 @@ from __future__ import annotations
 import contextlib
 import logging
 import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import msgspec
 
 from hthor.errors import AgentError, UnknownName
-from hthor.guest import loading, reference, served, wire
+from hthor.guest import arguments, grounds, identity, loading, reference, served, sources, wire
 from hthor.guest.confinement import Policy
 from hthor.guest.frames import View
+from hthor.guest.given import Given
 from hthor.guest.playing import play
+from hthor.guest.recording import Recorder
 from hthor.guest.senses import Gone
 
 if TYPE_CHECKING:
@@ -55,11 +58,12 @@ class Socket:
         raise Gone("not what was asked for")
 
 
-def serve(text: str, host: str, port: int) -> Server:
+def serve(text: str, host: str, port: int, given: Given | None = None) -> Server:
     """A server that is ready to serve an agent; call its ``serve_forever``.
 
     Args:
-        text: the agent, a Python file or module. port: 0 for any that is free.
+        text: the agent, a Python file or module. port: 0 for any that is free. given: its arguments, and files beyond
+            its own folder that count as its own.
 
     Raises:
         UnknownName, AgentError: when it is no such agent, or cannot be loaded.
@@ -69,17 +73,33 @@ def serve(text: str, host: str, port: int) -> Server:
     if agent.form not in ("file", "module"):
         raise UnknownName("agent to serve", text, reference.FORMS[:3], "Only Python agents are served.")
     sockets = served.library()
-    version = agent.sha256
+    version, more = agent.sha256, given or Given()
+    ground = grounds.of(agent, more.beyond(agent))
     sys.path.insert(0, agent.root)
+    sources.only_from(ground)
+    recorder = Recorder(ground)
+    recorder.start()
     try:
-        order = wire.Load(path=agent.path, cls=agent.cls, policy=_NO_POLICY, module=agent.module, root=agent.root)
+        order = wire.Load(
+            path=agent.path,
+            cls=agent.cls,
+            policy=_NO_POLICY,
+            module=agent.module,
+            root=agent.root,
+            args=more.args,
+            grounds=ground,
+        )
         cls, ready = loading.load(order)
     except loading.Refusal as error:
         raise AgentError(str(error)) from None
     ready = msgspec.structs.replace(ready, name=agent.name, version=version, persistent=True)
 
+    opened = recorder.take()
+    make = arguments.maker(cls, more.args)
+
     def talk(connection: ServerConnection) -> None:
-        _converse(Socket(connection), cls, ready)
+        files = identity.files_of(agent, more, ground, opened)
+        _converse(Socket(connection), make, msgspec.structs.replace(ready, manifest=files))
 
     quiet = logging.getLogger("hthor.guest.serving")
     quiet.addHandler(logging.NullHandler())
@@ -96,8 +116,8 @@ def address(server: Server) -> str:
     return f"ws://{host}:{port}"
 
 
-def _converse(socket: Socket, cls: type[Any], ready: wire.Ready) -> None:
+def _converse(socket: Socket, make: Callable[[], Any], ready: wire.Ready) -> None:
     socket.send(ready)
     with contextlib.suppress(Gone):
         while isinstance(begin := socket.receive(), wire.Begin):
-            play(socket, cls, begin)
+            play(socket, make, begin)

@@ -15,18 +15,21 @@ from hthor.guest.lines import HungUp, Line, TimeIsUp
 from hthor.guest.showing import shown
 
 _guests_words = msgspec.msgpack.Decoder(wire.ToHost)
+_MOST_OPENED = 100_000
 _keepers_words = msgspec.msgpack.Decoder(wire.KeeperToHost)
 
 
 class Talk:
     """A conversation over a line, or over none once the guest is gone.
 
-    ``loaded`` says that the guest is up: from then on a message that it failed is a fault.
+    ``loaded`` says that the guest is up: from then on a message that it failed is a fault. ``opened`` are the files
+    that it says it has opened.
     """
 
     def __init__(self) -> None:
         self.line: Line | None = None
         self.loaded = False
+        self.opened: set[str] = set()
         self._log = ""
 
     def open(self, line: Line) -> None:
@@ -75,6 +78,8 @@ class Talk:
             message = _keepers_words.decode(body) if keepers else _guests_words.decode(body)
         except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
             raise self.fault("garbage", f"what came is no message: {error}") from None
+        if len(self.opened) < _MOST_OPENED:
+            self.opened.update(getattr(message, "files", ()))
         if isinstance(message, wire.Failed) and (self.loaded or keepers):
             kind = message.kind if keepers or message.kind in wire.OWN_FAULTS else "garbage"
             raise self.fault(kind, message.detail, message.traceback)

@@ -15,6 +15,8 @@ from msgspec import Struct
 
 from hthor.errors import KILLED
 from hthor.guest.confinement import Policy
+from hthor.guest.grounds import Grounds
+from hthor.guest.manifest import File
 from hthor.types import Action, Briefing, Observation
 
 MOST_BYTES = 64 << 10
@@ -46,6 +48,7 @@ class Load(Struct, tag="load", frozen=True, kw_only=True):
         path: its file, which is imported. cls: the class to take, empty for the only one.
         module: the name to import it by, from the folder ``root``; empty for a file that has none.
         words: a program and its arguments, started in ``root`` instead of importing anything.
+        args: keyword arguments of the class's constructor. grounds: where the agent's own files lie.
     """
 
     path: str
@@ -54,6 +57,8 @@ class Load(Struct, tag="load", frozen=True, kw_only=True):
     module: str = ""
     words: tuple[str, ...] = ()
     root: str = ""
+    args: dict[str, str] = {}
+    grounds: Grounds | None = None
 
 
 class Begin(Struct, tag="begin", frozen=True, kw_only=True):
@@ -94,7 +99,9 @@ class Ready(Struct, tag="ready", frozen=True, kw_only=True):
     """Guest: loaded; what the agent says of itself.
 
     ``version`` is whatever tells one version of a served agent from another; ``ahead``
-    says that it takes what it is going to read before it asks; ``gpus`` is how much of a GPU it asks for.
+    says that it takes what it is going to read before it asks; ``gpus`` is how much of a GPU it asks for. ``files``
+    are those of its own files that it has opened, relative to its folder; ``manifest`` is what a served agent says
+    that it consists of.
     """
 
     name: str = ""
@@ -106,11 +113,15 @@ class Ready(Struct, tag="ready", frozen=True, kw_only=True):
     version: str = ""
     ahead: bool = False
     gpus: float = 0.0
+    files: tuple[str, ...] = ()
+    manifest: tuple[File, ...] = ()
     wire: int = VERSION
 
 
 class Done(Struct, tag="done", frozen=True, kw_only=True):
-    """Guest: ready for the trial."""
+    """Guest: ready for the trial; ``files`` as in `Ready`, those that were not named before."""
+
+    files: tuple[str, ...] = ()
 
 
 class Ask(Struct, tag="ask", frozen=True, kw_only=True):
@@ -125,10 +136,11 @@ class Ask(Struct, tag="ask", frozen=True, kw_only=True):
 
 
 class Acted(Struct, tag="acted", frozen=True, kw_only=True):
-    """Guest: its action, and what it has read of what was sent ahead."""
+    """Guest: its action, and what it has read of what was sent ahead; ``files`` as in `Done`."""
 
     action: Action
     read: tuple[str, ...] = ()
+    files: tuple[str, ...] = ()
 
 
 class Over(Struct, tag="over", frozen=True, kw_only=True):
@@ -136,11 +148,12 @@ class Over(Struct, tag="over", frozen=True, kw_only=True):
 
 
 class Failed(Struct, tag="failed", frozen=True, kw_only=True):
-    """Guest or keeper: something went wrong; ``kind`` as in `GuestFault`."""
+    """Guest or keeper: something went wrong; ``kind`` as in `GuestFault`, ``files`` as in `Done`."""
 
     kind: str
     detail: str
     traceback: str = ""
+    files: tuple[str, ...] = ()
 
 
 ToGuest = Load | Begin | Look | Given | End

@@ -27,12 +27,13 @@ def libraries() -> list[str]:
     return [path for path in sys.path if Path(path).name in _LIBRARIES and Path(path).is_dir()]
 
 
-def readable(agent: str, root: str, hidden: Sequence[str]) -> tuple[str, ...]:
+def readable(agent: str, root: str, hidden: Sequence[str], beyond: Sequence[str] = ()) -> tuple[str, ...]:
     """Files and folders that a guest may read, folders with everything in them.
 
     Args:
         agent: the agent's file. root: the folder that it lives in, empty for none.
         hidden: files and folders that it may not read, wherever they lie.
+        beyond: files and folders elsewhere that the user lets it read.
     """
     secret = [PACKAGE, *(Path(path).resolve() for path in hidden)]
     found = [str(path) for path in _ours()]
@@ -42,6 +43,8 @@ def readable(agent: str, root: str, hidden: Sequence[str]) -> tuple[str, ...]:
     if root:
         folder = Path(root)
         found += _open(folder, [*secret, *hiding.below(folder.resolve(), agent)])
+    for place in beyond:
+        found += _open(Path(place), [*secret, *hiding.below(Path(place).resolve())])
     found.append(agent)
     return _tops(found)
 

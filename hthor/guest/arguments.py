@@ -1,0 +1,94 @@
+"""What a user gives an agent by ``--agent-args``: read, made to fit a constructor, or put behind a command."""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+import os
+import re
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from hthor.errors import HthorError
+
+_KEY = re.compile(r"[A-Za-z_]\w*")
+_YES, _NO = ("true", "yes", "1", "on"), ("false", "no", "0", "off")
+
+
+class Unfit(ValueError):
+    """An argument that the agent does not take; the message goes to the user."""
+
+
+def read(texts: Iterable[str]) -> dict[str, str]:
+    """The arguments that a user typed as ``key=value``; the path of a file that exists is made absolute.
+
+    Raises:
+        HthorError: when one cannot be read, or a key is there twice.
+    """
+    found: dict[str, str] = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not equals or not _KEY.fullmatch(key):
+            raise HthorError(f"--agent-args '{text}' is not KEY=VALUE, such as checkpoint=weights/best.npz.")
+        if key in found:
+            raise HthorError(f"--agent-args gives '{key}' twice: '{found[key]}' and '{value}'.")
+        is_path = os.path.isfile(value) or (os.sep in value and os.path.isdir(value))
+        found[key] = os.path.abspath(value) if is_path else value
+    return found
+
+
+def fit(cls: type[Any], given: Mapping[str, str]) -> dict[str, Any]:
+    """The same arguments with values of the types that the constructor's parameters have, by annotation or default.
+
+    Raises:
+        Unfit: when the constructor has no such parameter, lacks one, or the value is of another type.
+    """
+    try:
+        parameters = dict(inspect.signature(cls).parameters)
+    except (TypeError, ValueError):
+        parameters = {}
+    open_ended = any(one.kind is inspect.Parameter.VAR_KEYWORD for one in parameters.values())
+    named = {
+        name: one
+        for name, one in parameters.items()
+        if one.kind in (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    }
+    for key in given:
+        if key not in named and not open_ended:
+            near = difflib.get_close_matches(key, named, n=1, cutoff=0.5)
+            guess = f" Did you mean '{near[0]}'?" if near else ""
+            takes = f"It takes: {', '.join(named)}." if named else "Its constructor takes no arguments."
+            raise Unfit(f"{cls.__name__} has no argument '{key}' (--agent-args {key}=...).{guess} {takes}")
+    missing = [name for name, one in named.items() if one.default is inspect.Parameter.empty and name not in given]
+    if missing:
+        raise Unfit(f"{cls.__name__} needs the argument '{missing[0]}'. Give it: --agent-args {missing[0]}=VALUE")
+    return {key: _typed(key, value, named.get(key)) for key, value in given.items()}
+
+
+def maker(cls: type[Any], given: Mapping[str, str]) -> Callable[[], Any]:
+    """What makes new agents with these arguments, which fit."""
+    values = fit(cls, given)
+    return lambda: cls(**values)
+
+
+def _typed(key: str, value: str, parameter: inspect.Parameter | None) -> Any:
+    if parameter is None:
+        return value
+    wanted = parameter.annotation
+    name = wanted if isinstance(wanted, str) else getattr(wanted, "__name__", "")
+    if wanted is inspect.Parameter.empty:
+        name = type(parameter.default).__name__
+    name = name.replace(" ", "").removesuffix("|None").removeprefix("Optional[").removesuffix("]")
+    try:
+        if name == "bool":
+            if value.lower() not in (*_YES, *_NO):
+                raise ValueError
+            return value.lower() in _YES
+        return {"int": int, "float": float}.get(name, str)(value)
+    except ValueError:
+        raise Unfit(f"--agent-args {key}={value}: the agent takes {name} there.") from None
+
+
+def as_words(given: Mapping[str, str]) -> tuple[str, ...]:
+    """The arguments as words of a command, ``--key=value``."""
+    return tuple(f"--{key}={value}" for key, value in given.items())

@@ -1,0 +1,63 @@
+"""What an agent consists of: a list of files with hashes, and the arguments it was given; opens nothing itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from msgspec import Struct
+
+from hthor import jsonio
+
+
+class File(Struct, frozen=True, kw_only=True, order=True):
+    """One file of an agent.
+
+    ``path`` is relative to the agent's folder, with slashes; what lies outside of it (``--readable``) begins with
+    ``../``, followed by the name of the file or folder that was made readable.
+    """
+
+    path: str
+    sha256: str
+    bytes: int
+
+
+class Manifest(Struct, frozen=True, kw_only=True):
+    """An agent's identity.
+
+    Attributes:
+        name, source: as in `AgentRef`.
+        sha256: what `AgentRef` has: the hash of source, arguments and files; of a served agent, of what its server
+            says.
+        args: what ``--agent-args`` gave it; files stand there by their path in ``files``.
+        files: sorted by path.
+        claimed: whether nobody but the agent's server says so.
+    """
+
+    name: str
+    source: str
+    sha256: str
+    args: dict[str, str] = {}
+    files: tuple[File, ...] = ()
+    claimed: bool = False
+
+
+def of(name: str, source: str, args: dict[str, str], files: Iterable[File]) -> Manifest:
+    """The manifest of an agent that runs here."""
+    kept = tuple(sorted(set(files)))
+    args = dict(sorted(args.items()))
+    sha256 = jsonio.sha256({"source": source, "args": args, "files": kept})
+    return Manifest(name=name, source=source, sha256=sha256, args=args, files=kept)
+
+
+def differences(there: Iterable[File], here: Iterable[File]) -> list[str]:
+    """What is not the same in two lists of files, a few words for each."""
+    before, now = ({file.path: file.sha256 for file in files} for files in (there, here))
+    words = []
+    for path in sorted({*before, *now}):
+        if path not in now:
+            words.append(f"{path} is gone")
+        elif path not in before:
+            words.append(f"{path} is new")
+        elif before[path] != now[path]:
+            words.append(f"{path} has changed")
+    return words
