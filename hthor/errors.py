@@ -108,5 +108,9 @@ class RenderingUnavailable(HthorError):
     """No OpenGL back end could draw a frame."""
 
 
+class PhysicsError(HthorError):
+    """The physics engine lost the state of a world; the message names the objects, and the world can go on."""
+
+
 class StaleObservation(RuntimeError):
     """An observation was read after the tick it was made for; read pictures, scans and detections inside ``act``."""

@@ -33,7 +33,7 @@ from hthor.types import (
     Vec3,
     Wait,
 )
-from hthor.world import journey
+from hthor.world import journey, numbers
 from hthor.world.pictures import IMAGE_SIZE
 
 if TYPE_CHECKING:
@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from hthor.world.world import World
 
 _EPS = 1e-9
+FARTHEST_M = 1000.0
+"""The longest way of one call."""
 
 
 class Actor:
@@ -91,8 +93,13 @@ class Actor:
         Returns:
             the outcome of the last step; a step that is blocked is the last.
         """
+        if not (numbers.finite(forward) and numbers.finite(left)):
+            return self.do(Move(forward=forward, left=left))  # which says what is wrong with them
         length = math.hypot(forward, left)
-        steps = max(1, math.ceil(length / rules.MOVE_MAX_M - _EPS)) if math.isfinite(length) else 1
+        if length > FARTHEST_M:
+            reason = f"move is {length:.5g} m long; at most {FARTHEST_M:.0f} m at once"
+            return Outcome(motion="move", ok=False, reason=reason)
+        steps = max(1, math.ceil(length / rules.MOVE_MAX_M - _EPS))
         outcome = Outcome(motion="move", ok=True)
         for _ in range(steps):
             outcome = self.do(Move(forward=forward / steps, left=left / steps))
@@ -106,7 +113,7 @@ class Actor:
 
     def look_at(self, target: str | Vec3) -> Outcome:
         """Turn body and camera towards a thing, an object, a seat or a point [m] of the house frame."""
-        point = self._world.position(target) if isinstance(target, str) else target
+        point = self._world.position(target) if isinstance(target, str) else numbers.point3("target", target)
         return self.do(journey.towards(self.pose, self.body, point))
 
     def go_to(self, target: str | Vec2) -> Outcome:
@@ -119,13 +126,13 @@ class Actor:
         Raises:
             UnknownName: when there is no such thing. HthorError: when the point is in no room.
         """
-        return journey.go(self, self._world, target)
+        return journey.go(self, self._world, target if isinstance(target, str) else numbers.point2("target", target))
 
     def teleport(self, x: float, y: float, yaw: float | None = None, pitch: float | None = None) -> Pose:
         """Be at (x, y) [m] at once, facing ``yaw`` [rad], camera at ``pitch`` [rad]; None keeps what is.
 
         Raises:
-            HthorError: when the body does not fit there; names the nearest place where it does.
+            HthorError: when the body does not fit there, somebody is there, or a number is not finite or out of range.
         """
         now = self.pose
         self._world.teleport(

@@ -8,16 +8,13 @@ from collections.abc import Sequence
 from hthor import geometry
 from hthor.errors import HthorError, UnknownName
 from hthor.types import HouseSpec, Vec3
-from hthor.world import geoms, places
-from hthor.world.env import FastEnv, QPose
+from hthor.world import geoms, numbers, places
+from hthor.world.env import FASTEST_M_S, FastEnv, QPose
 from hthor.world.objects import Item, Objects
 from hthor.world.places import Places
 from hthor.world.scene import Scene
 from hthor.world.task import HouseTask
 from hthor.world.touch import Touch
-
-FASTEST_M_S = 30.0
-"""The speed limit of what is thrown: nobody throws faster, and much faster things would pass through walls."""
 
 
 class Arranging:
@@ -40,10 +37,9 @@ class Arranging:
     def put(self, id: str, position: Sequence[float] | None, on: str, yaw: float, velocity: Sequence[float]) -> None:
         """See `World.put_object`."""
         item = self._idle(id)
-        at = None if position is None else _vector("position", position)
-        speed = _vector("velocity", velocity)
-        if not (isinstance(yaw, (int, float)) and math.isfinite(yaw)):
-            raise HthorError(f"yaw must be a finite number of radians, got {yaw!r:.40}")
+        at = None if position is None else numbers.point3("position", position)
+        speed = numbers.point3("velocity", velocity, "metres a second")
+        yaw = geometry.wrap(numbers.number("yaw", yaw, "radians"))
         if math.hypot(*speed) > FASTEST_M_S:
             raise HthorError(f"velocity must be at most {FASTEST_M_S:.0f} m/s, got {math.hypot(*speed):.3g} m/s")
         if on:
@@ -95,7 +91,7 @@ class Arranging:
         """There and nowhere else; back to where it was if something is there already."""
         indoors = any(geometry.inside(pose[:2], room.polygon) for room in self._house.rooms)
         if not indoors or pose[2] > self._house.height:
-            at = ", ".join(f"{value:.2f}" for value in pose[:3])
+            at = ", ".join(f"{value:.5g}" for value in pose[:3])
             raise HthorError(f"({at}) is in no room of the house; give a position indoors")
         data = self._env.data
         rows, speeds = slice(item.qpos, item.qpos + 7), slice(item.dof, item.dof + 6)
@@ -108,13 +104,3 @@ class Arranging:
             x, y, z = pose[:3]
             raise HthorError(f"{item.id} would be inside {where} at ({x:.2f}, {y:.2f}, {z:.2f}); give a free position")
         self._objects.move(item.id, pose, velocity)
-
-
-def _vector(name: str, given: Sequence[float]) -> Vec3:
-    try:
-        x, y, z = (float(value) for value in given)
-    except (TypeError, ValueError):
-        raise HthorError(f"{name} must be three numbers, got {given!r:.60}") from None
-    if not all(math.isfinite(value) for value in (x, y, z)):
-        raise HthorError(f"{name} must be finite, got {given!r:.60}")
-    return (x, y, z)

@@ -9,7 +9,7 @@ from hthor.errors import UnknownName
 from hthor.looks import pack as packs
 from hthor.looks.pack import Pack
 from hthor.types import Camera, Detection, DetectorSpec, HouseSpec, RobotSpec, Scan, Senses, Sighting, Vec3, View
-from hthor.world import contents, sight
+from hthor.world import contents, numbers, sight
 from hthor.world.by_tick import TickedWorld
 from hthor.world.pictures import IMAGE_SIZE, Pictures
 from hthor.world.senses import Senses as SeatSenses
@@ -59,7 +59,7 @@ class SeenWorld(TickedWorld):
         Raises:
             UnknownName: when there is no such object.
         """
-        item = self._objects.known(id)
+        eye, item = numbers.point3("eye", eye), self._objects.known(id)
         if item is None:
             raise UnknownName("object", id, [one.id for one in self._objects])
         return all(self._scene.hidden(eye, point, id) for point in sight.points(item.position, item.size))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 from hthor import houses
-from hthor.errors import HthorError, TaskError, UnknownName
+from hthor.errors import HthorError, PhysicsError, TaskError, UnknownName
 from hthor.garbage import uncollected
 from hthor.houses.freespace import FreeSpace
 from hthor.types import (
@@ -22,9 +23,10 @@ from hthor.types import (
     Snapshot,
     TaskSpec,
     ThingState,
+    Vec2,
     Vec3,
 )
-from hthor.world import avatar, bodies, contents, detector, interaction, starts
+from hthor.world import avatar, bodies, contents, detector, interaction, numbers, starts
 from hthor.world.arranging import Arranging
 from hthor.world.doors import Doors
 from hthor.world.env import FastEnv
@@ -92,11 +94,12 @@ class TickedWorld:
         statics, env = self._contents.statics, self._env
         places = Places(statics)
         self._scene = Scene(env, self._task)
-        self._objects = Objects(self._contents.movables, env, self._scene, places)
+        touch = Touch(env, self._scene)
+        self._objects = Objects(self._contents.movables, env, self._scene, places, touch)
         self._doors = Doors(self._task.doors, env, places)
         self._seats = Seats((name, Seat(name, spec, self.space[name])) for name, spec in self.bodies.items())
         self._scanners = {name: Scanner(seat.spec, seat.space, self.house) for name, seat in self._seats.items()}
-        seats, touch = tuple(self._seats.values()), Touch(env, self._scene)
+        seats = tuple(self._seats.values())
         self._whereabouts = Whereabouts(self.house, self.seats)
         self._passages = Passages(seats, self.space)
         self._hinges = Hinges(self._scene, self._objects, self._doors, places, self._passages, seats)
@@ -136,6 +139,7 @@ class TickedWorld:
         """
         if task.house_sha256 and self.house.sha256 and task.house_sha256 != self.house.sha256:
             raise TaskError(task.id, "house_sha256", f"made for another version of house '{task.house}'; make it anew")
+        _check_numbers(task)
         self._begin({placement.id: placement for placement in task.objects}, task.id)
         self._seed = seed
         starts.stand(tuple(self._seats.values()), task.human_start, task.robot_starts)
@@ -196,7 +200,8 @@ class TickedWorld:
             body); held, lifted, lowered, released, see `hthor.world.together`.
 
         Raises:
-            RuntimeError: when the engine reports a state it cannot go on from.
+            PhysicsError: when the engine loses the state. All objects are then where they were a tick before, at rest,
+                and the next call goes on from there; what else happened in this tick, it returns.
         """
         self.tick += 1
         events, self._events = self._events, []
@@ -212,27 +217,63 @@ class TickedWorld:
             if seat.holding and seat.pose is not pose:
                 self._objects.follow(seat.holding)
         if self._env.tick():
+            self._check(events)
             self._objects.settle()
-            self._check()
         return tuple(sorted(events, key=lambda event: event.tick)) if events else ()
 
-    def _check(self) -> None:
+    def _check(self, events: list[Event]) -> None:
+        """Recover when the engine has lost the state, and say so; nothing that happened in the tick is lost."""
         complaints = self._env.warnings()
-        if complaints:
-            raise RuntimeError(
-                f"the physics of house '{self.house.id}' broke down at tick {self.tick}: {', '.join(complaints)}; "
-                "most likely two objects were placed into each other, see `houses.check` and the task's objects"
-            )
+        if not complaints:
+            return
+        lost = [f"{name} at {self._objects.at(where) or where}" for name, where in complaints.items()]
+        self._env.recover()
+        self._objects.reread()
+        self._events = events
+        raise PhysicsError(
+            f"the physics engine lost the state of house '{self.house.id}' at tick {self.tick} ({', '.join(lost)}). "
+            "All objects are back where they were one tick before, at rest: go on, move that object, or reset."
+        )
+
+    def out_of_hand(self, seat: str, id: str, place: Vec2 | None = None) -> str:
+        """Why a body could not pick an object up, or get at a thing's door, with an empty hand; empty when it could.
+
+        Args:
+            seat: whose body. id: the object or thing; "" is the answer for what can be neither picked up nor opened,
+                and for a body that does neither.
+            place: (x, y) [m] where the body would stand, facing it; None for where it stands, as it stands.
+        """
+        body = self._seats[seat]
+        if place is not None:
+            item, leaf = self._objects.get(id), self._doors.get(id)
+            centre = item.position if item is not None else leaf.thing.centre if leaf is not None else None
+            if centre is None:
+                return ""
+            body = Seat(seat, body.spec, body.space)
+            body.pose = Pose(x=place[0], y=place[1], yaw=math.atan2(centre[1] - place[1], centre[0] - place[0]))
+        return self._hands.out_of_hand(body, id)
 
     def teleport(self, seat: str, pose: Pose) -> None:
         """Put a body somewhere at once; what it was doing ends.
 
         Raises:
-            HthorError: when its body does not fit there.
+            HthorError: when its body does not fit there, somebody is there, or the pose is none: numbers that are not
+                finite, or a camera pitch beyond the body's limit.
         """
-        body = self._seats[seat]
+        body, pose = self._seats[seat], numbers.pose(pose)
+        limit = body.spec.pitch_limit
+        if abs(pose.pitch) > limit + 1e-9:
+            raise HthorError(f"pitch must be from {-limit:.2f} to {limit:.2f} rad for {seat}, got {pose.pitch:.5g} rad")
+        here = f"({pose.x:.5g}, {pose.y:.5g})"
         if not body.space.is_free(pose.x, pose.y):
-            raise HthorError(f"({pose.x:.2f}, {pose.y:.2f}) is not free for {seat}; try space['{seat}'].nearest_free")
+            raise HthorError(f"{here} is not free for {seat}; try space['{seat}'].nearest_free")
+        for other in self._seats.values():
+            least = body.spec.radius + other.spec.radius - 1e-9
+            if other is not body and math.dist((pose.x, pose.y), (other.pose.x, other.pose.y)) < least:
+                raise HthorError(
+                    f"{other.name} is in the way at {here}: {seat} must stay {least:.2f} m away from "
+                    f"({other.pose.x:.2f}, {other.pose.y:.2f})"
+                )
         body.pose, body.activity = pose, None
         self._hinges.let_go(seat)
         self._together.let_go(body)
@@ -319,3 +360,15 @@ class TickedWorld:
     def snapshot(self) -> Snapshot:
         """The truth at this tick, for the umpire and the log."""
         return self._truth.snapshot(self.tick)
+
+
+def _check_numbers(task: TaskSpec) -> None:
+    """Complain of a task whose positions or poses are no finite numbers."""
+    try:
+        for placement in task.objects:
+            numbers.point3(f"position of {placement.id}", placement.position)
+            numbers.number(f"yaw of {placement.id}", placement.yaw, "radians")
+        for pose in (task.human_start, *task.robot_starts):
+            numbers.pose(pose)
+    except HthorError as error:
+        raise TaskError(task.id, "objects or starts", str(error)) from None

@@ -57,6 +57,11 @@ class Hinges:
             return f"{name} is already {'open' if leaf.open else 'closed'}"
         return self._far(seat, leaf) or self._in_the_way(leaf, isinstance(motion, Open))
 
+    def out_of_hand(self, seat: Seat, id: str) -> str:
+        """Why ``seat`` could not get at a thing's door from where it stands; empty when it could, or there is none."""
+        leaf = self._doors.get(id)
+        return "" if leaf is None else self._far(seat, leaf)
+
     def begin(self, seat: Seat, motion: Open | Close) -> None:
         """Take hold of a door."""
         self._leaf(motion).user = seat.name

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from hthor import catalog, rules
 from hthor.types import Close, Drop, Event, HouseSpec, Open, Outcome, Pick, Place, Vec3
-from hthor.world import geoms, places, sight
+from hthor.world import geoms, numbers, places, sight
 from hthor.world.doors import Doors
 from hthor.world.env import QPose
 from hthor.world.hinges import Hinges
@@ -129,6 +129,18 @@ class Hands:
         item = self._objects.get(motion.object) if isinstance(motion.object, str) else None
         if item is None:
             return f"there is no object '{motion.object!s:.40}' to pick up"
+        return self._out_of_hand(seat, item)
+
+    def out_of_hand(self, seat: Seat, id: str) -> str:
+        """Why ``seat``, where it stands and with an empty hand, could not pick an object up, or get at a thing's door;
+        empty when it could, and for what has neither.
+        """
+        item = self._objects.get(id)
+        if item is not None:
+            return self._out_of_hand(seat, item) if "pick" in seat.spec.capabilities else ""
+        return self._hinges.out_of_hand(seat, id) if "open" in seat.spec.capabilities else ""
+
+    def _out_of_hand(self, seat: Seat, item: Item) -> str:
         if item.held_by and not item.bearers:
             return f"{item.id} is held by {item.held_by}"
         if self.together.takes(seat, item):
@@ -262,7 +274,5 @@ def _data(motion: Handling, held: str) -> dict[str, str]:
 
 def _is_point(position: object) -> bool:
     return (
-        isinstance(position, (tuple, list))
-        and len(position) == 3
-        and all(isinstance(value, (int, float)) and math.isfinite(value) for value in position)
+        isinstance(position, (tuple, list)) and len(position) == 3 and all(numbers.finite(value) for value in position)
     )

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 _NEAR_M = 0.8
 """How close to go to something: this share of the arm's reach, or as many metres for a body without hands."""
-_FAR_M = 0.97
-"""And to an object that cannot be seen from any place so close."""
+_FAR_M, _FARTHEST_M = 0.97, 0.9999
+"""And to what cannot be seen or got at from any place so close."""
 _SHORT_M = 0.3
 """Ending this much farther away than the house alone asks means that somebody is in the way."""
 _BESIDE_M = 1.0
@@ -32,7 +32,7 @@ _ROUND = ((1.0, 0.5), (0.87, 0.8), (0.6, 1.0))
 _MARGIN_M = 0.04
 """Half the diagonal of a cell: ways run anywhere in free cells, but what is asked is whether their middles are free."""
 _LOOKS = 100
-"""From how many of the places in reach of an object a line of sight to it is tried."""
+"""How many of the places around a body, or in reach of an object, are tried before all of them are."""
 
 
 def towards(pose: Pose, body: BodySpec, point: Vec3) -> Rotate:
@@ -59,7 +59,24 @@ def go(actor: Actor, world: World, target: str | Vec2) -> Outcome:
     if _short(world, actor, target) > _SHORT_M:
         by = _nearest(world, actor)
         return Outcome(motion="move", ok=False, reason=f"{by} is in the way", by=by)
-    return actor.look_at(target) if isinstance(target, str) else Outcome(motion="move", ok=True)
+    if not isinstance(target, str):
+        return Outcome(motion="move", ok=True)
+    facing = actor.look_at(target)
+    reason = _out_of_hand(world, actor, target)
+    return Outcome(motion="move", ok=False, reason=reason) if facing.ok and reason else facing
+
+
+def _out_of_hand(world: World, actor: Actor, target: str) -> str:
+    """Why the body cannot pick up what it has gone to, empty when it can, or when that is no object."""
+    states = {state.id: state for state in world.truth()}
+    reason = world.out_of_hand(actor.seat, target) if _small(world, target) else ""
+    inside = states.get(states[target].support) if reason else None
+    return reason if inside is None or inside.open else f"{reason}; {inside.id} is closed"
+
+
+def _small(world: World, target: str) -> bool:
+    """Whether it is an object, not furniture or a body."""
+    return any(state.id == target for state in world.objects())
 
 
 def _nearest(world: World, actor: Actor) -> str:
@@ -92,7 +109,7 @@ def _taken(world: World, actor: Actor, goal: Vec2) -> bool:
 def _point(world: World, target: Vec2) -> Vec2:
     x, y = target
     if not any(geometry.inside((x, y), room.polygon) for room in world.house.rooms):
-        raise HthorError(f"({x:.2f}, {y:.2f}) is in no room of the house; give a point indoors, or the id of a thing")
+        raise HthorError(f"({x:.5g}, {y:.5g}) is in no room of the house; give a point indoors, or the id of a thing")
     return (x, y)
 
 
@@ -130,21 +147,35 @@ def _leg(actor: Actor, point: Vec2) -> Outcome:
 
 
 def _stand(world: World, actor: Actor, ways: Geodesics, here: Vec2, target: str) -> Vec2:
-    """The free place by ``target`` that is the shortest walk away: in front of a thing, within reach of an object."""
+    """The free place by ``target`` that is the shortest walk away: in front of a thing, within reach of an object.
+
+    From there the hand gets at it; if there is no such place, it is in sight at least; if there is none either, it is
+    close.
+    """
     places = ways.space.centres(ways.space.component(*here))
     if not len(places):
         raise HthorError(f"{actor.seat} stands where it cannot move")
     gaps = _gaps(world, target, places)
-    small = {state.id for state in world.objects()}
-    found: list[Vec2] = []
-    for share in (_NEAR_M, _FAR_M) if target in small else (_NEAR_M,):
+    small = _small(world, target)
+    rings = []
+    for share in (_NEAR_M, _FAR_M, _FARTHEST_M) if small else (_NEAR_M,):
         near = places[gaps <= max(share * (actor.body.reach or 1.0), float(gaps.min()) + 1e-9)]
-        near = near[np.argsort(ways.distances(here, near), kind="stable")]
-        for x, y in near[:: max(1, len(near) // _LOOKS)].tolist():
-            if target not in small or not world.hidden(target, (x, y, actor.body.eye)):
-                return (x, y)
-            found.append((x, y))
-    return found[0]
+        rings.append(near[np.argsort(ways.distances(here, near), kind="stable")])
+
+    def handy(place: Vec2) -> bool:
+        return not world.out_of_hand(actor.seat, target, place)
+
+    def visible(place: Vec2) -> bool:
+        return not small or not world.hidden(target, (*place, actor.body.eye))
+
+    for good in (lambda place: handy(place) and visible(place), visible):
+        for near in rings:
+            for every in {max(1, len(near) // _LOOKS): 0, 1: 0}:  # a few of them first
+                for x, y in near[::every].tolist():
+                    if good((x, y)):
+                        return (x, y)
+    x, y = rings[0][0].tolist()
+    return (x, y)
 
 
 def _gaps(world: World, target: str, places: Any) -> Any:

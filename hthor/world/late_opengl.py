@@ -46,10 +46,10 @@ def _reload_for(module: ModuleType, *names: str) -> None:
 def _answer(module: ModuleType, names: Sequence[str], answer: Callable[[str], Any]) -> None:
     """Let ``answer`` say what a module's ``names`` are that are not in it."""
 
-    def __getattr__(wanted: str) -> Any:
+    def attribute(wanted: str) -> Any:
         return answer(wanted) if wanted in names else _missing(module, wanted)
 
-    vars(module)["__getattr__"] = __getattr__
+    vars(module)["__getattr__"] = attribute
 
 
 def _missing(module: ModuleType, name: str) -> Any:

@@ -13,9 +13,12 @@ from collections.abc import Callable, Sequence
 from hthor import rules
 from hthor.geometry import turn, wrap
 from hthor.types import Event, Move, Outcome, Pose, Rotate, Vec2, Wait
+from hthor.world import numbers
 from hthor.world.seats import Seat
 
 _EPS = 1e-9
+WAIT_MAX_S = 3600.0
+"""The longest that a body waits at once."""
 _SLIDE = 0.05
 """Sliding slower than this share of the speed counts as standing still."""
 _FREE, _BLOCKED = "", "*"
@@ -29,7 +32,10 @@ Step = tuple[Outcome | None, tuple[Event, ...]]
 def refusal(seat: Seat, motion: Move | Rotate | Wait) -> str:
     """Why the motion cannot be started, empty when it can."""
     if isinstance(motion, Wait):
-        return "" if _is_plain(motion.seconds) else _finite(seconds=motion.seconds)
+        reason = "" if _is_plain(motion.seconds) else _finite(seconds=motion.seconds)
+        if not reason and motion.seconds > WAIT_MAX_S:
+            return f"wait is {motion.seconds:.5g} s long; at most {WAIT_MAX_S:.0f} s"
+        return reason
     if "navigate" not in seat.spec.capabilities:
         return f"{seat.spec.title} cannot move"
     if isinstance(motion, Move):
@@ -37,17 +43,17 @@ def refusal(seat: Seat, motion: Move | Rotate | Wait) -> str:
         reason = "" if plain else _finite(forward=motion.forward, left=motion.left)
         length = 0.0 if reason else math.hypot(motion.forward, motion.left)
         if length > rules.MOVE_MAX_M + _EPS:
-            return f"move is {length:.2f} m long; at most {rules.MOVE_MAX_M:.2f} m"
+            return f"move is {length:.5g} m long; at most {rules.MOVE_MAX_M:.2f} m"
         return reason
     plain = _is_plain(motion.yaw) and _is_plain(motion.pitch)
     reason = "" if plain else _finite(yaw=motion.yaw, pitch=motion.pitch)
     if reason:
         return reason
     if abs(motion.yaw) > 2 * math.pi + _EPS:
-        return f"rotation is {motion.yaw:.2f} rad; at most one full turn, {2 * math.pi:.2f} rad"
+        return f"rotation is {motion.yaw:.5g} rad; at most one full turn, {2 * math.pi:.2f} rad"
     pitch, limit = seat.pose.pitch + motion.pitch, seat.spec.pitch_limit
     if abs(pitch) > limit + _EPS:
-        return f"camera pitch would be {pitch:.2f} rad; at most {limit:.2f} rad up or down"
+        return f"camera pitch would be {pitch:.5g} rad; at most {limit:.2f} rad up or down"
     return ""
 
 
@@ -55,9 +61,9 @@ def _is_plain(value: object) -> bool:
     return type(value) is float and math.isfinite(value)
 
 
-def _finite(**numbers: object) -> str:
-    for name, value in numbers.items():
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+def _finite(**given: object) -> str:
+    for name, value in given.items():
+        if not numbers.finite(value):
             return f"{name} must be a finite number, got {value!r:.40}"
     return ""
 

@@ -15,6 +15,7 @@ from hthor.world.contents import Movable
 from hthor.world.env import FastEnv, QPose
 from hthor.world.places import Place, Places
 from hthor.world.scene import Scene
+from hthor.world.touch import FLOOR, Touch
 
 AWAY: Vec3 = (-500.0, 0.0, 0.0)
 """Where objects are that are not in the episode, for whoever asks."""
@@ -74,8 +75,8 @@ class Objects:
         positions: (N, 3) float64 [m], the objects' centres. present: (N,) bool, which are in the episode.
     """
 
-    def __init__(self, movables: Iterable[Movable], env: FastEnv, scene: Scene, places: Places) -> None:
-        self._env, self._scene, self._places = env, scene, places
+    def __init__(self, movables: Iterable[Movable], env: FastEnv, scene: Scene, places: Places, touch: Touch) -> None:
+        self._env, self._scene, self._places, self._touch = env, scene, places, touch
         ordered = sorted(movables, key=lambda movable: movable.id)
         items = [Item(movable, n, env.model, scene.span[movable.id]) for n, movable in enumerate(ordered)]
         self._items = {item.id: item for item in items}
@@ -209,6 +210,18 @@ class Objects:
         self._read(item, self._env.data.qpos[item.qpos : item.qpos + 7].tolist())
         self.changes += 1
 
+    def at(self, dof: int) -> str:
+        """Id of the object with that degree of freedom, empty for none."""
+        return next((item.id for item in self._list if item.dof <= dof < item.dof + 6), "")
+
+    def reread(self) -> None:
+        """The engine has put everything where it was a while ago."""
+        for item in self._list:
+            if item.present and not item.held_by:
+                self._read(item, self._env.data.qpos[item.qpos : item.qpos + 7].tolist())
+                self._loose.add(item.number)
+        self.changes += 1
+
     def settle(self) -> None:
         """Read from the engine what moved in the last tick; what came to rest lies on what is below it."""
         awake = np.flatnonzero(self._env.asleep[self._trees] < 0).tolist() if len(self._trees) else []
@@ -220,7 +233,7 @@ class Objects:
             self._loose.add(number)
             if self._env.asleep[item.tree] >= 0:
                 self._loose.discard(number)
-                item.support = self._below(item)
+                item.support = self._below(item) or self._bearer(item)
             self.changes += 1
 
     def _read(self, item: Item, pose: Sequence[float]) -> None:
@@ -230,6 +243,23 @@ class Objects:
 
     def _below(self, item: Item) -> str:
         return self._places.support(item.position, item.size[2])
+
+    def _bearer(self, item: Item, above: tuple[str, ...] = ()) -> str:
+        """What bears an object at rest whose middle is over no surface, as it lies across an edge or leans.
+
+        ``above`` are the objects on it whose bearer is sought.
+        """
+        for owner in self._touch.touched(item):
+            other = self.get(owner)
+            if owner == FLOOR:
+                return ""
+            if other is None and self._places.of(owner):
+                return owner
+            if other is not None and owner not in above:
+                found = self._below(other) or self._bearer(other, (*above, item.id))
+                if found:
+                    return found
+        return ""
 
     def _collide(self, item: Item, on: bool) -> None:
         bits = geoms.MOVABLE if on else geoms.GHOST

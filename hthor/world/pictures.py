@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from hthor.types import Camera, HouseSpec, Vec2, View
-from hthor.world import camera
+from hthor.world import camera, numbers
 from hthor.world.env import FastEnv
 from hthor.world.moment import Moment
 from hthor.world.scene import Scene
@@ -80,8 +80,8 @@ class Pictures:
 
     def top_view(self, pixels_per_metre: float, profile: str | None) -> Any:
         """The house from above now, (H, W, 3) uint8."""
-        if not 0.0 < pixels_per_metre <= 500.0:
-            raise ValueError(f"pixels_per_metre must be more than 0 and at most 500, got {pixels_per_metre!r}")
+        if not numbers.finite(pixels_per_metre) or not 0.0 < pixels_per_metre <= 500.0:
+            raise ValueError(f"pixels_per_metre must be more than 0 and at most 500, got {pixels_per_metre!r:.40}")
         return self._draw(profile).top_view(self._moment(), self.bounds, pixels_per_metre)
 
     @property

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from hthor import catalog, geometry, houses
+from hthor import catalog, geometry, houses, rules
 from hthor.comms.mailbox import Mailbox
 from hthor.errors import UnknownName
 from hthor.types import (
@@ -27,7 +27,7 @@ from hthor.types import (
     ThingState,
     Vec3,
 )
-from hthor.world import starts
+from hthor.world import numbers, starts
 from hthor.world.actor import Actor
 from hthor.world.by_sight import SeenWorld
 
@@ -159,13 +159,16 @@ class World(SeenWorld):
 
     def step(self, ticks: int = 1) -> tuple[Event, ...]:
         """Let ``ticks`` of 0.1 s pass; returns what happened in them, which `events` keeps too."""
-        news = tuple(event for _ in range(ticks) for event in self.advance())
-        self.note(news)
-        return news
+        news: list[Event] = []
+        for _ in range(numbers.whole("ticks", ticks)):
+            happened = self.advance()
+            self.note(happened)
+            news += happened
+        return tuple(news)
 
     def settle(self, seconds: float = 10.0) -> bool:
         """Let time pass until nothing falls, rolls or swings, at most ``seconds``; says whether all is still."""
-        for _ in range(round(seconds * 10)):
+        for _ in range(round(numbers.number("seconds", seconds, "seconds", 0.0, _LIMIT_TICKS * rules.TICK_S) * 10)):
             self.step()
             if self.still:
                 return True

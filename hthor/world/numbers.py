@@ -1,0 +1,74 @@
+"""Numbers that callers give, checked before anything is done with them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+from hthor import geometry
+from hthor.errors import HthorError
+from hthor.types import Pose, Vec2, Vec3
+
+
+def finite(value: object) -> bool:
+    """Whether it is a number, and neither infinite, nor undefined, nor too large for a float."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
+
+
+def number(name: str, value: object, unit: str, low: float = -math.inf, high: float = math.inf) -> float:
+    """``value`` as a float.
+
+    Raises:
+        HthorError: when it is no finite number, or not from ``low`` to ``high``; says what it is called and its unit.
+    """
+    plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value  # numpy's own
+    if not finite(plain):
+        raise HthorError(f"{name} must be a finite number of {unit}, got {value!r:.40}")
+    if not low <= plain <= high:
+        limits = f"at least {low:g}" if high == math.inf else f"at most {high:g}" if low == -math.inf else ""
+        raise HthorError(f"{name} must be {limits or f'from {low:g} to {high:g}'} {unit}, got {value!r:.40}")
+    return float(plain)
+
+
+def whole(name: str, value: object, low: int = 0) -> int:
+    """``value`` as an int.
+
+    Raises:
+        HthorError: when it is no whole number, or below ``low``.
+    """
+    plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value
+    if isinstance(plain, bool) or not isinstance(plain, int) or plain < low:
+        raise HthorError(f"{name} must be a whole number, at least {low}, got {value!r:.40}")
+    return plain
+
+
+def point2(name: str, value: object) -> Vec2:
+    """``value`` as a point (x, y) [m]; raises as `number` does."""
+    x, y = _vector(name, value, 2, "metres")
+    return (x, y)
+
+
+def point3(name: str, value: object, unit: str = "metres") -> Vec3:
+    """``value`` as a point (x, y, z) [m], or a vector of another ``unit``; raises as `number` does."""
+    x, y, z = _vector(name, value, 3, unit)
+    return (x, y, z)
+
+
+def pose(value: Pose) -> Pose:
+    """A pose of finite numbers, its heading in (-pi, pi]; raises as `number` does."""
+    x, y = number("x", value.x, "metres"), number("y", value.y, "metres")
+    yaw, pitch = number("yaw", value.yaw, "radians"), number("pitch", value.pitch, "radians")
+    return Pose(x=x, y=y, yaw=geometry.wrap(yaw), pitch=pitch)
+
+
+def _vector(name: str, value: object, size: int, unit: str) -> tuple[float, ...]:
+    parts = list(value) if isinstance(value, Iterable) and not isinstance(value, (str, bytes, dict)) else []
+    if len(parts) != size:
+        raise HthorError(f"{name} must be {size} numbers of {unit}, got {value!r:.60}")
+    return tuple(number(f"{name}[{axis}]", part, unit) for axis, part in enumerate(parts))
