@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from pathlib import Path
+from unittest import mock
 
 import eval_fakes as fakes
 import msgspec
@@ -17,10 +20,12 @@ from hthor.eval import (
     compare,
     contrast,
     control,
+    judging,
     pairing,
     planning,
     power,
     progress,
+    ranking,
     report,
     result_file,
     run,
@@ -114,6 +119,82 @@ def test_several_runs_are_compared_pair_by_pair(runs: Path):
     assert [party.name for party in found.runs] == ["helper (helper) #1", "twin", "helper (helper) #3"]
     assert len(found.pairs) == 3
     assert all(pair.p_holm == 1.0 for pair in found.pairs)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(st.tuples(st.floats(-1, 1), st.floats(0, 1)), min_size=1, max_size=8))
+def test_a_verdict_and_the_level_of_its_interval_say_the_same(differences: list[tuple[float, float]]):
+    for (difference, p), found in zip(differences, judging.judge(differences), strict=True):
+        assert found.among == len(differences)
+        assert found.level >= 0.95
+        if abs(p - (1.0 - found.level)) > 1e-5:
+            told = found.sign != 0 or (difference == 0.0 and found.p < 0.05)
+            assert told == (p < 1.0 - found.level)
+        assert found.sign in (0, math.copysign(1.0, difference))
+
+
+@pytest.fixture(scope="module")
+def four() -> tuple[compare.Read, ...]:
+    """Four runs: of one pair the difference counts alone, but not among six."""
+    names = ("none", "one", "two", "three")
+    chance = np.random.default_rng(4)
+    level = chance.random(120)
+    plan, dealt = fakes.run_of(120)
+    kept = [one for session in dealt for one in fakes.player()(session)]
+
+    def run(name: str, rate: float) -> compare.Read:
+        met = level + 0.15 * np.random.default_rng(len(name)).normal(size=120) < rate
+        records = (
+            msgspec.structs.replace(one, metrics=msgspec.structs.replace(one.metrics, sr=int(hit), twsr=0.5 * hit))
+            for one, hit in zip(kept, met, strict=True)
+        )
+        return compare.Read(name=name, folder=Path(name), plan=plan, records=tuple(records))
+
+    return tuple(run(name, rate) for name, rate in zip(names, (0.5, 0.6, 0.52, 0.51), strict=True))
+
+
+def test_where_the_verdict_is_adjusted_its_interval_is_too_and_both_say_so(four: tuple[compare.Read, ...]):
+    (alone,), among = compare.pairs(four[:2]), compare.pairs(four)
+    assert alone.better == "one"
+    assert (alone.among, alone.level, alone.interval) == (1, 0.95, alone.differences["sr"].ci95)
+    pair = next(one for one in among if (one.first, one.second) == ("none", "one"))
+    assert pair.differences == alone.differences, "alone it is what it was"
+    assert (pair.among, pair.better) == (6, "")
+    assert pair.interval[0] < alone.interval[0]
+    assert "adjusted for 6 comparisons" in pair.sentence
+    assert f"it would count alone (p = {alone.p_holm:.3f}), but not among 6 comparisons" in pair.sentence
+    for one in among:
+        assert bool(one.better) == (one.interval[0] > 0.0 or one.interval[1] < 0.0)
+
+
+def test_ranks_judge_as_comparisons_do(four: tuple[compare.Read, ...]):
+    tasks, people = np.arange(120), np.arange(120) // 10
+    outcomes = np.array([[one.metrics.sr for one in run.records] for run in four], dtype=float)
+    ties = [set(place.ties) for place in ranking.standings(outcomes, tasks, people)]
+    for pair, (one, other) in zip(compare.pairs(four), itertools.combinations(range(4), 2), strict=True):
+        assert (other in ties[one]) == (not pair.better)
+
+
+def test_a_comparison_and_a_plan_say_the_same_of_more_tasks(runs: Path, four: tuple[compare.Read, ...]):
+    for one, other in ((four[0], four[2]), (four[1], four[3])):
+        (pair,) = compare.pairs([one, other])
+        with mock.patch.object(compare, "read", return_value=(one, other)):
+            plan = planning.plan([one.folder, other.folder], "", None, None, 0.8)
+        assert plan.more == pair.differences["sr"].more_tasks > 0
+        assert plan.paired.trials == plan.more + pair.n
+        words = power.about(plan.more)
+        assert f"about {words} more tasks" in pair.sentence
+        assert f"about {words} more than the {pair.n}" in plan.sentence
+    folders = [runs / "leaning" / "alone", runs / "leaning" / "better"]
+    found = compare.runs(folders).pairs[0].differences["sr"]
+    assert planning.plan(folders, "", None, None, 0.8).more == found.more_tasks
+
+
+def test_a_plan_for_another_difference_scales_what_was_measured(runs: Path):
+    folders = [runs / "leaning" / "alone", runs / "leaning" / "better"]
+    near, far = (planning.plan(folders, "", None, gap, 0.8) for gap in (0.05, 0.2))
+    assert near.paired.trials > far.paired.trials
+    assert near.unpaired.trials > near.paired.trials
 
 
 def test_other_conditions_are_refused_by_name(runs: Path, tmp_path: Path):

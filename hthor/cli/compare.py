@@ -47,7 +47,7 @@ def compare(
             if len(found.pairs) == 1:
                 for by in pair.groups:
                     screen.put_rich(versus.groups_table(pair, by), shape)
-            for line in versus.lines(pair, len(found.pairs)):
+            for line in versus.lines(pair):
                 screen.put_line(line, shape)
     talk = screen.console(talk=True)
     if len(found.pairs) > 1 and not json:

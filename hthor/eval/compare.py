@@ -11,7 +11,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor.errors import RunError
-from hthor.eval import contrast, pairing, score
+from hthor.eval import contrast, judging, pairing, power, score
 from hthor.eval.contrast import Difference, McNemar
 from hthor.eval.pairing import Pair
 from hthor.eval.record import Record
@@ -54,7 +54,10 @@ class Comparison(Struct, frozen=True, kw_only=True):
         tasks, people: how many different ones there are in them.
         differences: by metric.
         groups: of success, by "kind", "split", "difficulty" and "scene", where there are several.
-        p_holm: p of success, adjusted for all pairs of runs that are compared at once.
+        among: how many pairs of runs are compared at once, for which the verdict is adjusted.
+        p_holm: p of success, adjusted for them by Holm's method.
+        level, interval: the interval of the difference in success that belongs to the verdict, and its level: 0.95 for
+            one pair, more among several. It leaves 0 out exactly when one run is better.
         better: the name of the run that is better in success; empty when these data cannot tell.
         sentence: all of that in words.
     """
@@ -69,9 +72,17 @@ class Comparison(Struct, frozen=True, kw_only=True):
     mcnemar: McNemar
     tally: Tally
     groups: dict[str, dict[str, Difference]]
+    among: int = 1
     p_holm: float | None
+    level: float = LEVEL
+    interval: tuple[float, float] | None = None
     better: str
     sentence: str
+
+    @property
+    def success(self) -> Difference:
+        """The difference in success with the p and the interval that belong to the verdict."""
+        return msgspec.structs.replace(self.differences["sr"], ci95=self.interval, p=self.p_holm)
 
 
 class Comparisons(Struct, frozen=True, kw_only=True):
@@ -110,7 +121,7 @@ def runs(folders: Sequence[Path]) -> Comparisons:
     read_ = read(folders)
     for one, other in itertools.combinations(read_, 2):
         pairing.check((one.folder, one.plan), (other.folder, other.plan))
-    found = [_pair(one, other) for one, other in itertools.combinations(read_, 2)]
+    found = [(_pair(one, other), one, other) for one, other in itertools.combinations(read_, 2)]
     return Comparisons(
         suite=read_[0].plan.suite,
         seed=read_[0].plan.seed,
@@ -134,7 +145,7 @@ def pairs(read_: Sequence[Read]) -> tuple[Comparison, ...]:
     found = []
     for one, other in fair:
         with contextlib.suppress(RunError):  # nothing in common yet
-            found.append(_pair(one, other))
+            found.append((_pair(one, other), one, other))
     return _judged(found)
 
 
@@ -202,15 +213,20 @@ def _rank(name: str) -> int:
     return _ORDER.index(name) if name in _ORDER else len(_ORDER)
 
 
-def _judged(found: Sequence[Comparison]) -> tuple[Comparison, ...]:
+def _judged(found: Sequence[tuple[Comparison, Read, Read]]) -> tuple[Comparison, ...]:
     """The same with their verdicts, for which all of them are looked at together."""
-    successes = [pair.differences["sr"] for pair in found]
-    adjusted = contrast.holm([1.0 if difference.p is None else difference.p for difference in successes])
+    successes = [pair.differences["sr"] for pair, _, _ in found]
     judged = []
-    for pair, difference, p in zip(found, successes, adjusted, strict=True):
-        sure = difference.separated and p < 1.0 - LEVEL
-        better = "" if not sure else pair.second if difference.difference > 0.0 else pair.first
-        fair = msgspec.structs.replace(pair, p_holm=p, better=better)
+    for (pair, one, other), verdict in zip(found, judging.judge([(s.difference, s.p) for s in successes]), strict=True):
+        wide = contrast.of(pairing.join(one.records, other.records).pairs, "sr", level=verdict.level)
+        fair = msgspec.structs.replace(
+            pair,
+            among=verdict.among,
+            p_holm=verdict.p,
+            level=verdict.level,
+            interval=wide.ci95 if wide is not None else None,
+            better={1: pair.second, -1: pair.first}.get(verdict.sign, ""),
+        )
         judged.append(msgspec.structs.replace(fair, sentence=sentence(fair)))
     return tuple(judged)
 
@@ -219,39 +235,41 @@ def sentence(pair: Comparison) -> str:
     """Which run is better and by how much, or that these data cannot tell and how many more tasks would."""
     found = pair.differences["sr"]
     points = 100.0 * found.difference
-    trials = f"{pair.n} shared trial{'' if pair.n == 1 else 's'}"
-    if found.ci95 is None:
+    if pair.interval is None:
         return f"One trial cannot separate {pair.second} from {pair.first}."
-    low, high = (100.0 * end for end in found.ci95)
+    low, high = (100.0 * end for end in pair.interval)
     if pair.better:
         sign, worse = (1.0, pair.first) if pair.better == pair.second else (-1.0, pair.second)
         ends = sorted((sign * low, sign * high))
         return (
             f"{pair.better} is better than {worse} by {sign * points:.1f} points of success "
-            f"(95 % interval {ends[0]:.1f} to {ends[1]:.1f}, {_chance(pair)}, {trials})."
+            f"({_evidence(pair, f'{ends[0]:.1f} to {ends[1]:.1f}')})."
         )
     told = (
         f"These data cannot separate {pair.second} from {pair.first}: {points:+.1f} points of success "
-        f"(95 % interval {low:+.1f} to {high:+.1f}, {trials})"
+        f"({_evidence(pair, f'{low:+.1f} to {high:+.1f}')})"
     )
     if not pair.mcnemar.only_first + pair.mcnemar.only_second:
         return f"{told}; success was the same in every trial."
+    if found.separated:
+        return f"{told}; it would count alone ({_chance(found.p)}), but not among {pair.among} comparisons."
     if found.difference == 0.0 or found.more_tasks is None:
         return f"{told}; a difference of {100.0 * (found.mde80 or 0.0):.1f} points would have shown."
-    if found.separated:
-        return f"{told}; it would count alone, but not among so many comparisons."
     if found.more_tasks == 0:
         return f"{told}; {pair.people} people are too few to tell, however many tasks they do."
-    return f"{told}; if it is real, about {_about(found.more_tasks)} more tasks would show it."
+    alone = " to a comparison of these two alone" if pair.among > 1 else ""
+    return f"{told}; if it is real, about {power.about(found.more_tasks)} more tasks would show it{alone}."
 
 
-def _chance(pair: Comparison) -> str:
-    """The p of the verdict, no finer than anyone can use."""
-    p = pair.p_holm if pair.p_holm is not None else 1.0
+def _evidence(pair: Comparison, ends: str) -> str:
+    """The verdict's interval, p and number of trials; for several comparisons it says that they are adjusted."""
+    trials = f"{pair.n} shared trial{'' if pair.n == 1 else 's'}"
+    if pair.among == 1:
+        return f"95 % interval {ends}, {_chance(pair.p_holm)}, {trials}"
+    return f"interval {ends} and {_chance(pair.p_holm)} are adjusted for {pair.among} comparisons; {trials}"
+
+
+def _chance(p: float | None) -> str:
+    """A p in words, no finer than anyone can use."""
+    p = 1.0 if p is None else p
     return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"
-
-
-def _about(number: int) -> str:
-    """Two figures are as many as such a forecast has."""
-    digits = len(str(number)) - 2
-    return str(round(number, -digits)) if digits > 0 else str(number)

@@ -51,6 +51,13 @@ class Difference(Struct, frozen=True, kw_only=True):
         return self.p is not None and self.p < 1.0 - stats.LEVEL
 
 
+class Noise(Struct, frozen=True, kw_only=True):
+    """What two runs tell of how single trials vary: of their differences, and of two runs that share nothing."""
+
+    paired: power.Scatter
+    unpaired: power.Scatter
+
+
 class McNemar(Struct, frozen=True, kw_only=True):
     """Trials in which only the first robot's person succeeded, and only the second's; the exact two-sided p of that.
 
@@ -99,6 +106,7 @@ def between(
     known = math.isfinite(float(found.variance[0]))
     low, high = (float(end[0]) for end in ends(found, share=share, room=room, level=(1.0 + level) / 2.0))
     needed = float(stats.detectable(found, count)[0])
+    gap = _rounded(float(second.mean())) - _rounded(float(first.mean()))  # as `hthor power` reads it
     return Difference(
         n=count,
         first=_rounded(float(first.mean())),
@@ -109,7 +117,7 @@ def between(
         mde80=_rounded(needed) if known else None,
         correlation=_correlation(first, second),
         gain=_gain(first, second),
-        more_tasks=_more(raw, float(found.variance[0]) * count, count) if known else None,
+        more_tasks=_more(gap, float(found.variance[0]) * count, freedom, count) if known else None,
     )
 
 
@@ -205,8 +213,29 @@ def holm(p: Sequence[float]) -> list[float]:
     return adjusted
 
 
-def _more(difference: float, variance: float, count: int) -> int | None:
-    needed = power.trials_for(difference, variance)
+def noise(pairs: Sequence[Pair], metric: str) -> Noise:
+    """How much single trials of these pairs vary in a metric that all of them have."""
+    values = np.array([[getattr(one.metrics, metric) for one in (pair.one, pair.other)] for pair in pairs], dtype=float)
+    tasks = spread.codes([pair.one.spec.task.id for pair in pairs])
+    people = spread.codes([pair.one.spec.participant for pair in pairs])
+    gap = spread_of((values[:, 1] - values[:, 0])[None], tasks, people, share=metric in SHARES)
+    each = spread.two_way(values.T, tasks, people)
+    count = len(pairs)
+    first, second = (count * each.variance).tolist()
+    return Noise(
+        paired=power.Scatter(variance=count * float(gap.variance[0]), freedom=_a_trial(float(gap.freedom[0]), count)),
+        unpaired=power.Scatter(variance=first + second, freedom=_a_trial(float(each.freedom.min()), count)),
+    )
+
+
+def _a_trial(freedom: float, count: int) -> float:
+    """Degrees of freedom that a trial adds, as so many trials have these."""
+    return min(1.0, (freedom + 1.0) / count)
+
+
+def _more(difference: float, variance: float, freedom: float, count: int) -> int | None:
+    scatter = power.Scatter(variance=variance, freedom=_a_trial(freedom, count))
+    needed = power.trials_for(difference, scatter)
     return None if needed is None else max(0, needed - count)
 
 

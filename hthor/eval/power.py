@@ -24,6 +24,17 @@ class Need(Struct, frozen=True, kw_only=True):
     people: int
 
 
+class Scatter(Struct, frozen=True, kw_only=True):
+    """How much a trial's difference varies, as independent trials would have it, and what one more trial tells of it.
+
+    ``freedom`` is the degrees of freedom that each trial brings: 1 of independent trials, less where ten trials are of
+    one person and people differ.
+    """
+
+    variance: float
+    freedom: float = 1.0
+
+
 def variance_of_difference(first: float, second: float, correlation: float) -> float:
     """Of one trial's difference in success, for success rates and the correlation of the same trial's outcomes."""
     one, other = (rate * (1.0 - rate) for rate in (first, second))
@@ -52,12 +63,20 @@ def possible(first: float, second: float) -> None:
             raise HthorError(f"the {name} rate is {rate:g}, but must be from 0 to 1.")
 
 
-def need(first: float, second: float, *, correlation: float = 0.0, power: float = stats.POWER) -> Need:
+def need(
+    first: float,
+    second: float,
+    *,
+    correlation: float = 0.0,
+    power: float = stats.POWER,
+    scatter: Scatter | None = None,
+) -> Need:
     """What it takes to tell two success rates apart, two-sided at 5 %, with tasks that are done once each.
 
     Args:
         correlation: of the outcomes of the same trial with either robot; 0 for runs that are not paired.
         power: the wanted probability of seeing the difference.
+        scatter: of a trial's difference, where it is measured; else that of independent trials.
 
     Raises:
         HthorError: when a rate or the correlation is impossible.
@@ -69,8 +88,8 @@ def need(first: float, second: float, *, correlation: float = 0.0, power: float 
             f"outcomes with rates {first:g} and {second:g} cannot correlate by {correlation:g}: "
             f"it must be from {low:.2f} to {high:.2f}."
         )
-    variance = variance_of_difference(first, second, correlation)
-    trials = trials_for(second - first, variance, power=power)
+    held = scatter or Scatter(variance=variance_of_difference(first, second, correlation))
+    trials = trials_for(second - first, held, power=power)
     if trials is None:
         raise HthorError(
             "the two rates are equal, and no number of trials can tell them apart. Give two rates, or --difference."
@@ -84,26 +103,28 @@ def need(first: float, second: float, *, correlation: float = 0.0, power: float 
     )
 
 
-def trials_for(difference: float, variance: float, *, power: float = stats.POWER) -> int | None:
-    """Trials whose mean difference is told from 0 with this power; None where there is no difference or no end.
-
-    Args:
-        variance: of one trial's difference, as independent trials would have it.
-    """
+def trials_for(difference: float, scatter: Scatter, *, power: float = stats.POWER) -> int | None:
+    """Trials whose mean difference is told from 0 with this power; None where there is no difference or no end."""
     if difference == 0.0:
         return None
     few, many = 2, 4
-    while not _enough(many, difference, variance, power):
+    while not _enough(many, difference, scatter, power):
         few, many = many, 2 * many
         if many > _MOST:
             return None
     while many - few > 1:
         middle = (few + many) // 2
-        few, many = (few, middle) if _enough(middle, difference, variance, power) else (middle, many)
+        few, many = (few, middle) if _enough(middle, difference, scatter, power) else (middle, many)
     return many
 
 
-def _enough(count: int, difference: float, variance: float, power: float) -> bool:
-    freedom = np.array(count - 1.0)
+def about(number: int) -> str:
+    """A forecast in words: two figures are as many as it has."""
+    digits = len(str(number)) - 2
+    return str(round(number, -digits)) if digits > 0 else str(number)
+
+
+def _enough(count: int, difference: float, scatter: Scatter, power: float) -> bool:
+    freedom = np.array(max(1.0, count * scatter.freedom - 1.0))
     factor = float(stats.student(freedom, (1.0 + stats.LEVEL) / 2.0) + stats.student(freedom, power))
-    return factor * math.sqrt(variance / count) <= abs(difference)
+    return factor * math.sqrt(scatter.variance / count) <= abs(difference)

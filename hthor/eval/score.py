@@ -52,7 +52,7 @@ def summarise(
         participants=plan.participants,
         metrics=whole,
         by_kind=by_kind,
-        trust_by_trial=_by_trial(records),
+        trust_by_trial=by_trial(records),
         uplift=uplift,
         counts=Counts(
             trials=len(records),
@@ -86,7 +86,7 @@ def scores(records: Sequence[Record]) -> Scores:
     return Scores(**single, work=_by_name(records, "work"), hindered_by=_by_name(records, "hindered_by"))
 
 
-def _by_trial(records: Sequence[Record]) -> tuple[Estimate, ...]:
+def by_trial(records: Sequence[Record]) -> tuple[Estimate, ...]:
     """Trust after each trial of a session, in their order."""
     rated = [record for record in records if record.metrics.trust is not None]
     last = max((record.spec.index for record in rated), default=-1)

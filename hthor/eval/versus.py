@@ -29,7 +29,9 @@ def table(pair: Comparison) -> Table:
     for heading in (pair.first, pair.second, "difference", "95 % interval", "could have seen", "p", "trials"):
         made.add_column(heading, justify="right", overflow="fold")
     for metric, found in pair.differences.items():
-        made.add_row(_TITLES[metric], *_cells(found, UNITS[metric]))
+        adjusted = metric == "sr" and pair.among > 1
+        title = _TITLES[metric] + ("*" if adjusted else "")
+        made.add_row(title, *_cells(pair.success if adjusted else found, UNITS[metric]))
     return made
 
 
@@ -43,7 +45,7 @@ def groups_table(pair: Comparison, by: str) -> Table:
     return made
 
 
-def lines(pair: Comparison, among: int) -> Iterator[str]:
+def lines(pair: Comparison) -> Iterator[str]:
     """The rest in words, the verdict last."""
     mcnemar, tally = pair.mcnemar, pair.tally
     yield (
@@ -56,8 +58,11 @@ def lines(pair: Comparison, among: int) -> Iterator[str]:
     )
     if any(pair.dropped):
         yield f"without a partner: {pair.dropped[0]} trials of {pair.first}, {pair.dropped[1]} of {pair.second}"
-    if pair.p_holm is not None and among > 1:
-        yield f"among {among} comparisons (Holm) p {_chance(pair.p_holm)}"
+    if pair.among > 1:
+        yield (
+            f"* interval and p are adjusted for {pair.among} comparisons (Holm's method), as the verdict is; the other "
+            "rows stand each for itself"
+        )
     yield pair.sentence
 
 

@@ -15,11 +15,6 @@ NOTE = (
     "four of five cases."
 )
 """What the cells of `estimate` say."""
-PAIRED_NOTE = (
-    "In brackets: 95 % interval. Below: n, the trials that both runs share, and mde, the smallest true difference that "
-    "these would have seen in four of five cases."
-)
-"""What the cells of `difference` say."""
 
 
 def estimate(one: Estimate, scale: float = 100.0, digits: int = 1) -> Piece:

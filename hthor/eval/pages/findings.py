@@ -16,7 +16,7 @@ from hthor.eval.result_file import Scores
 from hthor.eval.setup import SuiteRef
 from hthor.eval.stats import Estimate
 
-SCHEMA = "hthor.report/2"
+SCHEMA = "hthor.report/3"
 
 
 class Share(Struct, frozen=True, kw_only=True):
@@ -91,7 +91,7 @@ class Spent(Struct, frozen=True, kw_only=True):
 
 
 class Curve(Struct, frozen=True, kw_only=True):
-    """Trust by trial of the session: means, their standard errors over people, and how many people rated each.
+    """Trust by trial of the session: means, their 95 % intervals, and how many people rated each.
 
     ``slope`` is the mean over people of the least-squares slope [points a trial], ``slope_se`` its standard error;
     None where fewer than two people rated two trials.
@@ -100,7 +100,7 @@ class Curve(Struct, frozen=True, kw_only=True):
     arm: str
     trial: tuple[int, ...]
     mean: tuple[float, ...]
-    se: tuple[float | None, ...]
+    ci95: tuple[tuple[float, float], ...]
     people: tuple[int, ...]
     slope: float | None
     slope_se: float | None

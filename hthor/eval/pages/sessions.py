@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hthor.eval import score
 from hthor.eval.pages.findings import Curve, Spent
 from hthor.eval.pages.gather import Run
 
@@ -48,7 +49,7 @@ def trust(run: Run) -> Curve | None:
         arm=run.label,
         trial=tuple(index + 1 for index in indices),
         mean=tuple(round(_mean(values), _DIGITS) for values in by_trial),
-        se=tuple(_error(values) for values in by_trial),
+        ci95=tuple(one.ci95 for one in score.by_trial(run.records) if one.ci95 is not None),
         people=tuple(len(values) for values in by_trial),
         slope=round(_mean(slopes), _DIGITS) if len(slopes) > 1 else None,
         slope_se=_error(slopes),

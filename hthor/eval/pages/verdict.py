@@ -22,6 +22,8 @@ def lead(found: Findings) -> str:
     counts = {pair.n for pair in pairs}
     over = f"the same {counts.pop()} trials" if len(counts) == 1 else "the trials that they share"
     said = [f"Over {over}, {'; '.join((*_better(found, pairs), *_unsure(pairs)))}."]
+    among = max(pair.among for pair in found.comparisons)
+    said += [f"These intervals are adjusted for {among} comparisons."] if among > 1 else []
     if many and found.uplift:
         better = sum(pair.better == pair.second for pair in found.uplift)
         said.append(f"{better or 'None'} of {len(found.uplift)} robots are better than no robot.")
@@ -80,7 +82,7 @@ def _unsure(pairs: Sequence[Comparison]) -> list[str]:
     for pair in pairs:
         if not pair.better:
             one = pair.differences["sr"]
-            ends = "" if one.ci95 is None else _between(one.ci95, sign=True)
+            ends = "" if pair.interval is None else _between(pair.interval, sign=True)
             unit = "" if each else " points of success"
             each.append(f"{pair.second} from {pair.first} ({signed(100.0 * one.difference)}{unit}{ends})")
     return [f"these data cannot tell {listed(each, last='or')}"] if each else []
@@ -93,7 +95,7 @@ def _other(pair: Comparison, name: str) -> str:
 def _points(pair: Comparison, name: str, *, first: bool) -> str:
     one = pair.differences["sr"]
     sign = 1.0 if pair.second == name else -1.0
-    ends = sorted(sign * end for end in one.ci95) if one.ci95 is not None else None
+    ends = sorted(sign * end for end in pair.interval) if pair.interval is not None else None
     unit = " points of success" if first else ""
     return f"{100.0 * sign * one.difference:.1f}{unit}{_between(ends) if ends else ''}"
 

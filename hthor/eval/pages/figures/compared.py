@@ -19,7 +19,10 @@ _PANELS = (
 
 
 def figure(pairs: Sequence[Comparison], arms: Sequence[Arm]) -> Figure:
-    """Paired differences with 95 % intervals; right of the line the robot that is named first is better."""
+    """Paired differences with their intervals, those of success as the verdicts have them.
+
+    Right of the line the robot that is named first is better.
+    """
     own, rows = marks.of(arms), len(pairs)
     names = [f"{pair.second} − {pair.first}" for pair in pairs]
     with ink.style():
@@ -30,7 +33,7 @@ def figure(pairs: Sequence[Comparison], arms: Sequence[Arm]) -> Figure:
             ax.set_title(title)
             ax.axvline(0.0, color=ink.SOFT, lw=0.9)
             for y, pair in enumerate(pairs):
-                one = pair.differences[name]
+                one = pair.success if name == "sr" else pair.differences[name]
                 ends = None if one.ci95 is None else sorted(scale * end for end in one.ci95)
                 marks.interval(ax, y, scale * one.difference, ends, own[pair.second])
             ax.margins(x=0.08)

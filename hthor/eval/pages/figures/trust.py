@@ -17,7 +17,7 @@ _APART = 0.07
 
 
 def figure(curves: Sequence[Curve], arms: Sequence[Arm]) -> Figure:
-    """Means with bars and bands of one standard error over people."""
+    """Means with bars and bands of their 95 % intervals."""
     own, ends = marks.of(arms), []
     low, high = window(curves)
     with ink.style():
@@ -26,8 +26,7 @@ def figure(curves: Sequence[Curve], arms: Sequence[Arm]) -> Figure:
         for number, curve in enumerate(curves):
             mark = own[curve.arm]
             x = [trial + _SIDE * (2 * number - len(curves) + 1) for trial in curve.trial]
-            bars = [0.0 if error is None else error for error in curve.se]
-            lower, upper = ([m + s * b for m, b in zip(curve.mean, bars, strict=True)] for s in (-1.0, 1.0))
+            lower, upper = ([pair[end] for pair in curve.ci95] for end in (0, 1))
             ax.fill_between(x, lower, upper, color=mark.shade, alpha=0.13, lw=0, zorder=2)
             ax.plot(x, curve.mean, color=mark.shade, lw=1.4, zorder=3)
             ax.vlines(x, lower, upper, color=mark.shade, lw=1.0, zorder=3)
@@ -45,8 +44,7 @@ def figure(curves: Sequence[Curve], arms: Sequence[Arm]) -> Figure:
 
 def window(curves: Sequence[Curve]) -> tuple[float, float]:
     """The part of the scale that is drawn, from a whole point to another."""
-    errors = [(m, 0.0 if e is None else e) for curve in curves for m, e in zip(curve.mean, curve.se, strict=True)]
-    values = [m + s * e for m, e in errors for s in (-1.0, 1.0)]
+    values = [end for curve in curves for pair in curve.ci95 for end in pair]
     low, high = marks.window(values, 1.0, (float(rules.TRUST_MIN), float(rules.TRUST_MAX)))
     if high - low < 2.0:
         low, high = (low - 1.0, high) if low - 1.0 >= rules.TRUST_MIN else (low, high + 1.0)

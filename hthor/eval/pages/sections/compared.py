@@ -12,6 +12,12 @@ from hthor.eval.pages.html import Piece, Value
 TITLE = "Paired comparisons"
 _SHORT = 24
 """Names up to so long stand in one line."""
+_COLUMNS = (
+    "Below: n, the trials that both runs share, and mde, the smallest true difference that these would have seen in "
+    "four of five cases. Won: only the robot that is named first succeeded; lost: only the other; with the exact "
+    "McNemar test of that. Tied: both succeeded, or neither did. p (Holm): two-sided, of no difference in success, "
+    "adjusted for all comparisons here."
+)
 _HEAD = ("", "success [points]", "time-weighted [points]", "time saved [s]", "won : lost", "tied", "p (Holm)")
 
 
@@ -28,17 +34,35 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
             drawings,
             "compared",
             "Differences trial by trial: the same person, on the same day, at the same task. Right of the line the "
-            "robot that is named first is better. Bars: 95 % intervals.",
+            f"robot that is named first is better. Bars: {_bars(found)}.",
         ),
         html.table(
             _HEAD,
             [_row(pair) for pair in found.comparisons],
-            f"The same in numbers. {cells.PAIRED_NOTE} Won: only the robot that is named first succeeded; lost: only "
-            "the other; with the exact McNemar test of that. Tied: both succeeded, or neither did. p (Holm): "
-            "two-sided, of no difference in success, adjusted for all comparisons here.",
+            f"The same in numbers. {_intervals(found)} {_COLUMNS}",
         ),
         *apart,
     ]
+
+
+def _among(found: Findings) -> int:
+    return max(pair.among for pair in found.comparisons)
+
+
+def _bars(found: Findings) -> str:
+    among = _among(found)
+    return "95 % intervals" + (f", those of success adjusted for {among} comparisons" if among > 1 else "")
+
+
+def _intervals(found: Findings) -> str:
+    """What the brackets say."""
+    among = _among(found)
+    if among == 1:
+        return "In brackets: 95 % interval."
+    return (
+        f"In brackets: 95 % interval; that of success is adjusted for {among} comparisons, as its p is, and leaves out "
+        "0 exactly where one robot is better. The others stand each for itself."
+    )
 
 
 def _row(pair: Comparison) -> list[Piece]:
@@ -47,7 +71,7 @@ def _row(pair: Comparison) -> list[Piece]:
     name = f"{pair.second} − {pair.first}"
     return [
         name.replace(" ", "\u00a0") if len(name) <= _SHORT else name,
-        cells.difference(pair.differences.get("sr")),
+        cells.difference(pair.success),
         cells.difference(pair.differences.get("twsr")),
         cells.difference(pair.differences.get("time_s"), -1.0),
         Value(f"{only.only_second} : {only.only_first}", "", told),

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from hthor import rules
 from hthor.eval.pages import html, words
 from hthor.eval.pages.figures import trust
-from hthor.eval.pages.findings import Findings
+from hthor.eval.pages.findings import Curve, Findings
+from hthor.eval.pages.html import Piece, Value
 from hthor.eval.pages.numbers import plain, signed
 
 TITLE = "Trust"
@@ -18,12 +19,12 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """Of what the section is made."""
     if not found.trust:
         return [html.paragraph("Nobody rated a robot in these runs.")]
-    rows = [
+    rows: list[list[Piece]] = [
         [
             one.arm,
             str(max(one.people)),
-            _with_error(one.mean[0], one.se[0]),
-            _with_error(one.mean[-1], one.se[-1]),
+            _with_interval(one, 0),
+            _with_interval(one, -1),
             "–" if one.slope is None else f"{signed(one.slope, 3)} ± {plain(one.slope_se, 3)}",
         ]
         for one in found.trust
@@ -38,11 +39,11 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         html.drawn(
             drawings,
             "trust",
-            f"Mean rating after each trial of a session; bars and bands are one standard error over people.{cut}",
+            f"Mean rating after each trial of a session; bars and bands are 95 % intervals.{cut}",
         ),
-        html.table(_HEAD, rows, "Trust from 1 to 7: means over people ± standard error."),
+        html.table(_HEAD, rows, "Trust from 1 to 7: means over people with 95 % intervals; slopes ± standard error."),
     ]
 
 
-def _with_error(mean: float, error: float | None) -> str:
-    return plain(mean) if error is None else f"{plain(mean)} ± {plain(error)}"
+def _with_interval(one: Curve, which: int) -> Value:
+    return Value(plain(one.mean[which]), f"[{', '.join(plain(end) for end in one.ci95[which])}]")
