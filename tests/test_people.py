@@ -407,7 +407,7 @@ def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
     done = list(campaign.conduct(options, lambda _: Watcher()))
     assert told == ["'pop' was calibrated on the suite 'paper', not on 'fake'."]
     stored = json.loads((files / "out" / "frontier" / "result.json").read_bytes())
-    assert stored["schema"] == "hthor.result/4"
+    assert stored["schema"] == "hthor.result/5"
     assert stored["humans"]["valid"] is False
     assert stored["humans"]["notes"] == [told[0].rstrip(".")]
     assert stored["humans"]["population_sha256"] == small().sha256
