@@ -334,7 +334,7 @@ def test_words_that_name_neither_a_thing_nor_a_place_are_about_nothing():
     """Else "I am here." every five seconds is taken up like a find, and earns trust like one."""
     willing = msgspec.structs.replace(TRAITS, a0=9.0, p_slip=0.0)
     for name, place, relevant in (("", None, False), ("", (9.0, 2.5, 0.6), True), ("apple", None, True)):
-        model, _, _ = heard(0, place, support="Bed|1", ticks=150, traits=willing, thing=name)
+        model, _, _ = heard(0, place, ticks=150, traits=willing, thing=name)
         (entry,) = journal(model, "offer")
         assert (entry["relevant"], entry["answer"] == "confirm") == (relevant, relevant), name
         assert (model._talk.experience.helped is not None) == relevant, "it earns no trust"
