@@ -23,6 +23,7 @@ from hthor import jsonio
 from hthor.errors import HthorError, RunError
 from hthor.eval import provenance, record
 from hthor.leaderboard import (
+    admission,
     checks,
     enter,
     files,
@@ -38,7 +39,7 @@ from hthor.leaderboard import (
     verify,
     worth,
 )
-from hthor.leaderboard.entry import Entry, Verification
+from hthor.leaderboard.entry import Entry
 from hthor.tasks.commitment import Commitment
 
 COUNT = 20
@@ -69,12 +70,14 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def committed(board: Path) -> Path:
-    """A board that knows the made-up suite as an official one."""
+    """A board that knows the made-up suite as an official one, and takes the made-up people."""
     suite = fakes.suite(COUNT)
     made = Commitment(
         name="fake", salt="0" * 64, houses=3, tasks=COUNT, suite_sha256=suite.sha256, files={}, made_with={}
     )
     jsonio.write(board / "suites" / "fake.json", jsonio.pretty(made))
+    who = admission.Named(name="proxy", sha256=fakes.persons().sha256)
+    files.write(board / admission.NAME, msgspec.structs.replace(admission.opened(board, made), people=(who,)))
     return board
 
 

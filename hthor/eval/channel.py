@@ -14,7 +14,7 @@ def sent(log: EpisodeLog) -> list[Event]:
 
 
 def claimed(log: EpisodeLog) -> list[Event]:
-    """The messages that claim where a thing is; where a robot or the person is, everybody sees or feels for themselves."""
+    """The messages that claim where a thing is; where robots and the person are themselves counts for nothing."""
     return [event for event in sent(log) if "off" in event.data and event.data.get("object") not in log.paths]
 
 
