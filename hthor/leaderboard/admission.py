@@ -6,6 +6,7 @@ called like ours, on tasks that were picked. A board without the file takes what
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Final, Literal
@@ -57,6 +58,7 @@ class Admission(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return next((one.standing for one in self.suites if one.sha256 == entry.run.suite.sha256), None)
 
 
+@functools.cache
 def own() -> Admission:
     """What every board takes: the people of the benchmark, seed 0, and hthor's own suites, which are public."""
     suites = (library.read(name) for name in tasks.suites())
