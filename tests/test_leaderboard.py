@@ -15,6 +15,7 @@ import jsonschema
 import msgspec
 import numpy as np
 import pytest
+from board_fakes import COUNT, board, code, committed, contents, entry_of, kept, runs, whole  # noqa: F401
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -40,67 +41,6 @@ from hthor.leaderboard import (
     worth,
 )
 from hthor.leaderboard.entry import Entry
-from hthor.tasks.commitment import Commitment
-
-COUNT = 20
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _code():
-    with mock.patch.object(provenance, "code_sha256", return_value="34" * 32):
-        yield
-
-
-@pytest.fixture(scope="module")
-def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Runs as their folders, with the control beside them."""
-    base = tmp_path_factory.mktemp("runs")
-    for name in ("helper", "clumsy", "silent"):
-        plan, dealt = fakes.run_of(COUNT, name=name, absent=name == "silent")
-        jsonio.write(base / name / "run.json", jsonio.pretty(plan))
-        made = [one for session in dealt for one in fakes.player()(session)]
-        jsonio.write(base / name / "trials.jsonl", b"".join(record.encode(one) for one in made))
-        if name != "silent":
-            held = {"level": "L3", "memory": "2048 MiB"}
-            jsonio.write(base / name / "isolation.json", jsonio.pretty(held))
-        else:
-            text = (base / name / "run.json").read_text().replace('"silent.py"', '"hthor.agents.silent"')
-            (base / name / "run.json").write_text(text)
-    return base
-
-
-def committed(board: Path) -> Path:
-    """A board that knows the made-up suite as an official one, and takes the made-up people."""
-    suite = fakes.suite(COUNT)
-    made = Commitment(
-        name="fake", salt="0" * 64, houses=3, tasks=COUNT, suite_sha256=suite.sha256, files={}, made_with={}
-    )
-    jsonio.write(board / "suites" / "fake.json", jsonio.pretty(made))
-    who = admission.Named(name="proxy", sha256=fakes.persons().sha256)
-    files.write(board / admission.NAME, msgspec.structs.replace(admission.opened(board, made), people=(who,)))
-    return board
-
-
-@pytest.fixture(scope="module")
-def whole(runs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    board = committed(tmp_path_factory.mktemp("board"))
-    enter.add(runs, board)
-    publish.build(board)
-    return board
-
-
-@pytest.fixture
-def board(whole: Path, tmp_path: Path) -> Path:
-    return shutil.copytree(whole, tmp_path / "board")
-
-
-def entry_of(board: Path, name: str) -> Path:
-    return next(path for path in files.entry_paths(board) if path.name.startswith(name))
-
-
-def _files(folder: Path) -> dict[str, bytes]:
-    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-
 
 # ------------------------------------------------------------------------------------------------------- entries
 
@@ -110,7 +50,7 @@ def test_twice_is_once_in_any_order_and_the_control_comes_too(whole: Path, runs:
     for name in ("clumsy", "helper", "clumsy"):
         enter.add(runs / name, other)
     publish.build(other)
-    assert _files(other) == _files(whole)
+    assert contents(other) == contents(whole)
     assert [path.name.partition("-")[0] for path in files.entry_paths(other)] == ["clumsy", "helper", "silent"]
 
 
@@ -170,7 +110,8 @@ def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
 CHANGES = {
     "metrics.sr.mean": ("metrics.sr", lambda one: one["metrics"]["sr"].update(mean=0.99)),
     "metrics.sr.ci95": ("metrics.sr.ci95[0]", lambda one: one["metrics"]["sr"].update(ci95=[0.0, 1.0])),
-    "metrics.idle_s": ("metrics.idle_s", lambda one: one["metrics"]["idle_s"].update(mean=1e6)),
+    "usefulness": ("metrics.usefulness.mean", lambda one: one["metrics"]["usefulness"].update(mean=0.5)),
+    "messages": ("counts.messages", lambda one: one["counts"].update(messages=3)),
     "twsr": (
         "metrics.twsr.mean",
         lambda one: one["metrics"]["twsr"].update(mean=one["metrics"]["twsr"]["mean"] + 1e-3),
@@ -179,7 +120,7 @@ CHANGES = {
     "uplift": ("uplift.sr.difference", lambda one: one["uplift"]["sr"].update(difference=0.9)),
     "control": ("uplift.control", lambda one: one["uplift"].update(control="0" * 64)),
     "faults": ("counts.faults", lambda one: one["counts"].update(faults=7)),
-    "kinds of faults": ("counts.faults_by_kind", lambda one: one["counts"]["faults_by_kind"].update(raised=9)),
+    "kinds of faults": ("counts.faults_by_kind", lambda one: one["counts"]["faults_by_kind"].clear()),
     "successes": ("counts.successes", lambda one: one["counts"].update(successes=0)),
     "a bit": ("hashes.merkle", lambda one: one["trials"].update(met=packing.bits(np.ones(COUNT)))),
     "bits beyond": ("trials.met", lambda one: one["trials"].update(met=packing.bits(np.ones(COUNT + 4)))),
@@ -195,6 +136,7 @@ CHANGES = {
     "id": ("id", lambda one: one.update(id="helper-fake-0123456789")),
     "overrides": ("overrides", lambda one: one.update(overrides={"limit": "9"})),
     "unknown field": ("$", lambda one: one.update(note="hello")),
+    "brought verification": ("$", lambda one: one.update(verification={"tier": "V1", "passed": True})),
     "missing field": ("$", lambda one: one.pop("mode")),
     "type": ("run.seed", lambda one: one["run"].update(seed="0")),
     "hash": ("hashes.run", lambda one: one["hashes"].update(run="xyz")),
@@ -208,7 +150,7 @@ def _split(one: dict) -> dict:
 @pytest.mark.parametrize("change", CHANGES)
 def test_what_was_changed_is_named(board: Path, change: str):
     field, spoil = CHANGES[change]
-    path = entry_of(board, "clumsy" if change == "splits" else "helper")
+    path = entry_of(board, "clumsy" if change in ("splits", "kinds of faults") else "helper")
     document = json.loads(path.read_bytes())
     spoil(document)
     path.write_bytes(jsonio.pretty(document))
@@ -236,7 +178,7 @@ def test_another_spelling_is_refused_and_can_be_fixed(board: Path, whole: Path):
     path.write_text(json.dumps(json.loads(path.read_bytes())))
     assert [one.field for one in checks.problems(board)] == [form.SPELLING]
     assert form.fix(files.entry_paths(board)) == [path]
-    assert _files(board) == _files(whole)
+    assert contents(board) == contents(whole)
     (board / "leaderboard.json").write_bytes(b"{}")
     assert [one.file for one in publish.differences(board)] == [str(board / "leaderboard.json")]
 
@@ -269,7 +211,7 @@ def test_numbers_of_older_statistics_are_worked_out_anew(board: Path, whole: Pat
         files.write(path, msgspec.structs.replace(entry, metrics=msgspec.structs.replace(entry.metrics, sr=sr)))
     assert checks.problems(board) != []
     assert rescore.rescore(board) == files.entry_paths(board)
-    assert _files(board) == _files(whole)
+    assert contents(board) == contents(whole)
     assert rescore.rescore(board) == []
 
 
