@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import shutil
 from pathlib import Path
 from unittest import mock
@@ -11,11 +12,12 @@ import msgspec
 import pytest
 
 from hthor import jsonio
-from hthor.eval import provenance, record
+from hthor.eval import crews, provenance, record
 from hthor.leaderboard import admission, enter, files, publish
 from hthor.leaderboard.entry import Entry
 from hthor.leaderboard.verification import Kept, Replayed, Verification
 from hthor.tasks.commitment import Commitment
+from hthor.types import AgentRef
 
 COUNT = 20
 
@@ -31,9 +33,11 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Runs as their folders, with the control beside them."""
     base = tmp_path_factory.mktemp("runs")
     for name in ("helper", "clumsy", "silent"):
-        plan, dealt = fakes.run_of(COUNT, name=name, absent=name == "silent")
+        with mock.patch.object(fakes, "character", character):
+            plan, dealt = fakes.run_of(COUNT, name=name, absent=name == "silent")
         jsonio.write(base / name / "run.json", jsonio.pretty(plan))
         made = [one for session in dealt for one in fakes.player()(session)]
+        made = [late(one) for one in made] if name == "clumsy" else made
         jsonio.write(base / name / "trials.jsonl", b"".join(record.encode(one) for one in made))
         if name != "silent":
             held = {"level": "L3", "memory": "2048 MiB"}
@@ -42,6 +46,21 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
             text = (base / name / "run.json").read_text().replace('"silent.py"', '"hthor.agents.silent"')
             (base / name / "run.json").write_text(text)
     return base
+
+
+def character(name: str = "helper", *, absent: bool = False) -> crews.Character:
+    """Agents whose code is not the same, as their names are not."""
+    return crews.Character(
+        ref=AgentRef(name=name, source=f"{name}.py", sha256=hashlib.sha256(name.encode()).hexdigest()), absent=absent
+    )
+
+
+def late(one: record.Record) -> record.Record:
+    """The same trial, but what succeeds takes three seconds longer, so that the agent is another."""
+    if not one.met or one.ticks > 870:
+        return one
+    events = (*one.events[:-1], msgspec.structs.replace(one.events[-1], tick=one.ticks + 30))
+    return record.of(one.spec, msgspec.structs.replace(one.log, ticks=one.ticks + 30, events=events))
 
 
 def committed(board: Path) -> Path:
