@@ -102,7 +102,7 @@ def replayed(**changed) -> Replayed:
     return Replayed(**{**given, "why": "tested.", **changed})
 
 
-def verified(entry: Entry, **changed) -> Verification:
+def verified(entry: Entry, /, **changed) -> Verification:
     """The keeper's verification of an entry."""
     control = None if entry.alone else replayed()
     given = {"id": entry.id, "entry": entry.digest, "draw": "x", "trials": replayed(), "control": control}

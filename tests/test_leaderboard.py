@@ -136,9 +136,9 @@ CHANGES = {
     "isolation": ("isolation", lambda one: one.update(isolation=None)),
     "id": ("id", lambda one: one.update(id="helper-fake-0123456789")),
     "overrides": ("overrides", lambda one: one.update(overrides={"limit": "9"})),
-    "unknown field": ("$", lambda one: one.update(note="hello")),
-    "brought verification": ("$", lambda one: one.update(verification={"tier": "V1", "passed": True})),
-    "missing field": ("$", lambda one: one.pop("mode")),
+    "unknown field": ("note", lambda one: one.update(note="hello")),
+    "brought verification": ("verification", lambda one: one.update(verification={"tier": "V1", "passed": True})),
+    "missing field": ("mode", lambda one: one.pop("mode")),
     "type": ("run.seed", lambda one: one["run"].update(seed="0")),
     "hash": ("hashes.run", lambda one: one["hashes"].update(run="xyz")),
 }
