@@ -22,7 +22,7 @@ Sha256 = Annotated[str, Meta(pattern="^[0-9a-f]{64}$")]
 Word = Annotated[str, Meta(min_length=1, max_length=120, pattern=r"^[^\x00-\x1f\x7f]*$(?!\n)")]
 Text = Annotated[str, Meta(max_length=2000, pattern=r"^[^\x00-\x08\x0b-\x1f\x7f]*$")]
 Url = Annotated[str, Meta(max_length=500, pattern=r"^(https?://[^\s<>\"'`\\]+)?$(?!\n)")]
-Version = Annotated[str, Meta(pattern=r"^[0-9A-Za-z][0-9A-Za-z.+!_-]{0,39}$(?!\\n)")]
+Version = Annotated[str, Meta(pattern=r"^[0-9A-Za-z][0-9A-Za-z.+!_-]{0,39}$(?!\n)")]
 Label = Annotated[str, Meta(pattern=r"^[a-z][a-z0-9_]{0,39}$(?!\n)")]
 Base64 = Annotated[str, Meta(pattern="^[A-Za-z0-9+/]*={0,2}$")]
 Count = Annotated[int, Meta(ge=0)]
@@ -126,7 +126,7 @@ class Counts(Struct, frozen=True, kw_only=True):
     successes: Count
     messages: Count
     faults: Count
-    faults_by_kind: dict[Label, Count] = {}
+    faults_by_kind: dict[Word, Count] = {}
     replays: Count = 0
 
 
