@@ -7,9 +7,11 @@ import json
 import os
 import py_compile
 import sqlite3
+import sys
 import textwrap
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import eval_fakes
@@ -105,7 +107,7 @@ def test_a_manifest_lists_what_is_imported_and_opened_while_it_comes_up_and_begi
 
 @pytest.mark.parametrize("where", ["top", "init", "body"])
 @pytest.mark.parametrize(
-    "opens", ["open(F).read()", "os.close(os.open(F, 0))", "sqlite3.connect(F).execute('select 1')"]
+    "opens", ["open(F, 'rb').read()", "os.close(os.open(F, 0))", "sqlite3.connect(F).execute('select 1')"]
 )
 def test_a_file_that_changes_makes_another_agent(tmp_path: Path, where: str, opens: str) -> None:
     data = tmp_path / "a" / "net-big.txt"
@@ -304,7 +306,7 @@ def test_an_agent_without_arguments_says_so(tmp_path: Path) -> None:
 def test_a_command_gets_arguments_as_words(tmp_path: Path) -> None:
     (tmp_path / "mind.py").write_text("import sys\nprint(sys.argv[1:], file=sys.stderr)\nsys.exit(3)\n")
     with pytest.raises(AgentError, match=r"\['--speed=1', '--mode=fast'\]"):
-        guest.load_info(f"cmd:python3 {tmp_path / 'mind.py'}", given=giving.read(["speed=1", "mode=fast"]))
+        guest.load_info(f"cmd:{sys.executable} {tmp_path / 'mind.py'}", given=giving.read(["speed=1", "mode=fast"]))
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -367,9 +369,17 @@ def evaluate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., A
 
     def run(*words: str) -> Any:
         fixed = ["--kind", "object_goal_navigation", "--participants", "2", "--no-control", "--quiet", "--json"]
-        return CliRunner().invoke(app.app, ["eval", "--agent", "a/agent.py", *fixed, *words])
+        return invoke("eval", "--agent", "a/agent.py", *fixed, *words)
 
     return run
+
+
+def invoke(*words: str) -> Any:
+    """A command as a user types it; an error of theirs is exit code 2 and its words."""
+    result = CliRunner().invoke(app.app, list(words))
+    if isinstance(result.exception, HthorError):
+        return SimpleNamespace(exit_code=2, output=str(result.exception), stdout="")
+    return result
 
 
 CHANGES = {
@@ -463,7 +473,7 @@ def test_shards_have_one_manifest_between_them_or_are_not_merged(evaluate: Any, 
     for shard in ("1/2", "2/2"):
         assert evaluate("--out", "part", "--shard", shard).exit_code == 0
     merge = ["merge", "part-shard-1-of-2", "part-shard-2-of-2"]
-    merged = CliRunner().invoke(app.app, [*merge, "--out", "joined"])
+    merged = invoke(*merge, "--out", "joined")
     assert merged.exit_code == 0, merged.output
     joined = json.loads(Path("joined/result.json").read_text())
     assert joined["agents"] == whole["agents"]
@@ -471,7 +481,7 @@ def test_shards_have_one_manifest_between_them_or_are_not_merged(evaluate: Any, 
     Path("part-shard-2-of-2/trials.jsonl").unlink()
     (tmp_path / "a" / "weights" / "net-big.txt").write_text("retrained")
     assert evaluate("--out", "part", "--shard", "2/2").exit_code == 0
-    refused = CliRunner().invoke(app.app, [*merge, "--out", "mixed"])
+    refused = invoke(*merge, "--out", "mixed")
     assert refused.exit_code == 2
     assert "weights/net-big.txt was not the same in all trials of this run" in refused.output
     assert not Path("mixed").exists()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import msgspec
@@ -12,7 +12,8 @@ import msgspec
 from hthor.errors import HthorError, RunError
 from hthor.eval import command, control, guarded, machine, metrics, programme, provenance, reading, score, setup
 from hthor.eval.setup import Setup
-from hthor.leaderboard import checks, files, harness, outcomes, overrides, worth
+from hthor.guest import Manifest
+from hthor.leaderboard import checks, files, harness, invariants, outcomes, overrides, worth
 from hthor.leaderboard.entry import LOCKSTEP, REALTIME, Agent, Entry, Hashes
 from hthor.leaderboard.files import BoardError
 from hthor.leaderboard.submission import Submission
@@ -63,12 +64,14 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
     columns = outcomes.of(records, map(outcomes.leaf, lines))
     whose = worth.people(len(records), plan.participants)
     agent = submission.agent if submission else Agent(name=plan.crew)
-    _same_file(folder, plan, submission)
+    _same_files(folder, result.agents, submission)
     return Entry(
         id=f"{_slug(agent.name)}-{_slug(Path(plan.suite.name).name)}-{plan.sha256[:10]}",
         reference=all(robot.agent.source.startswith(OURS) for robot in plan.robots),
         agent=agent,
         submission=submission.name if submission else "",
+        files=submission.files if submission else (),
+        agents=result.agents,
         run=plan.untitled,
         hashes=Hashes(run=plan.sha256, trials=result.hashes.trials, merkle=columns.merkle),
         harness=harness.here(),
@@ -128,16 +131,16 @@ def _crew(plan: Setup) -> tuple[str, ...]:
     return chosen.crew
 
 
-def _same_file(folder: Path, plan: Setup, submission: Submission | None) -> None:
+def _same_files(folder: Path, agents: Sequence[Manifest], submission: Submission | None) -> None:
     if submission is None:
         return
-    from hthor import plugins
-
-    there = plugins.sha256(str(submission.path))
-    if [robot.agent.sha256 for robot in plan.robots] != [there]:
+    if len(agents) != 1:
+        raise BoardError(f"{folder / 'run.json'}: agents: has {len(agents)} agents, and a submission is one.")
+    found = invariants.strangers(agents[0].files, submission.files)
+    if found:
         raise BoardError(
-            f"{folder / 'run.json'}: robots[0].agent.sha256: is not the hash of {submission.path}, {there[:10]}: "
-            "another file was played. Play the one that was handed in."
+            f"{folder / 'run.json'}: agents[0].files: is not what lies in {submission.path.parent}: {'; '.join(found)}. "
+            "Play the agent that was handed in."
         )
 
 

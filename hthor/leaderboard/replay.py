@@ -21,6 +21,7 @@ from hthor.eval.news import Played
 from hthor.eval.programme import Programme
 from hthor.eval.record import Record
 from hthor.eval.session import Session
+from hthor.guest import Given
 from hthor.humans import people
 from hthor.humans.people import People
 from hthor.leaderboard.enter import OURS
@@ -37,22 +38,25 @@ def play(
     suite: str = "",
     jobs: int | None = None,
     require_isolation: str = "",
+    given: Given | None = None,
 ) -> dict[int, tuple[Record, bytes]]:
     """The records of the trials at these places, and of those that had to be played with them, with their lines.
 
     Args:
         agent: the agent's file, for one that is not hthor's own. suite: where the suite lies, when it is not either.
         require_isolation: the least level that will do for a submitted agent.
+        given: arguments and files that it is given.
 
     Raises:
         BoardError: when this is not what the entry says was played, naming the field.
     """
+    guest.confine_guests(given=given)
     chosen = programme.choose(suite or entry.run.suite.name, "")
     crew, who = _crew(entry, agent), people.find(entry.run.humans.source)
     _same(entry, chosen, crew, who)
     whole = session.sessions(chosen.suite, agent=crew, human=who, **_dealt(entry))
     wanted, seats = _cut(whole, places)
-    make = _make(suite, crew, who, require_isolation)
+    make = _make(suite, crew, who, require_isolation, given)
     found: dict[int, tuple[Record, bytes]] = {}
     with closing(engines.find(engines.LOCAL, jobs=jobs).perform(wanted, make)) as stream:
         for news in stream:
@@ -103,16 +107,18 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
     return wanted, seats
 
 
-def _make(suite: str, crew: Crew, who: People, required: str) -> Make:
+def _make(suite: str, crew: Crew, who: People, required: str, given: Given | None) -> Make:
     """What plays a session, as in the run that the entry is of."""
     provenance.keep_compiled()
     own = bool(suite) and Path(suite).exists() and bool(library.own_houses(suite))
     folder = Path(suite) if Path(suite).is_dir() else Path(suite).parent
     houses = str((folder / "houses").resolve()) if own else ""
-    sources = cast.Sources(minds=crew.minds, bodies=crew.bodies, houses=houses, people=who.word)
+    sources = cast.Sources(
+        minds=crew.minds, manifests=crew.manifests, bodies=crew.bodies, houses=houses, people=who.word
+    )
     held = guarded.settle("auto", required, sorted(set(crew.minds.values())))
     if held is None:
         return functools.partial(cast.player, sources)
     hidden = (str(folder.resolve()),) if suite else ()
-    guest.confine_guests(held.level, hidden)
-    return functools.partial(guarded.player, sources, held.level, hidden)
+    guest.confine_guests(held.level, hidden, given)
+    return functools.partial(guarded.player, sources, held.level, hidden, given)

@@ -12,6 +12,7 @@ from hthor import jsonio
 from hthor.errors import HthorError
 from hthor.eval import fingerprint
 from hthor.eval.record import Record
+from hthor.guest import Given
 from hthor.leaderboard import checks, draw, files, outcomes, replay, verdict, worth
 from hthor.leaderboard.entry import REALTIME, Entry, Verification
 from hthor.leaderboard.verdict import Again
@@ -25,6 +26,7 @@ class Request(Struct, frozen=True, kw_only=True):
 
     word: str
     agent: str = ""
+    given: Given | None = None
     suite: str = ""
     sample: int = SAMPLE
     jobs: int | None = None
@@ -53,6 +55,7 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
         suite=request.suite,
         jobs=request.jobs,
         require_isolation=request.require_isolation,
+        given=request.given,
     )
     return entry, judged(entry, drawn, again, request)
 
