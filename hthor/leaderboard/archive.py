@@ -93,13 +93,12 @@ def _bounded(path: Path, members: Iterable[_T]) -> Iterator[_T]:
 
 
 def _write(path: Path, members: Iterator[_Member], folder: Path, most_bytes: int, most_files: int) -> None:
-    count = size = 0
-    for member in members:
+    size = 0
+    for count, member in enumerate(members, 1):
         pure = PurePosixPath(member.name)
         parts = [part for part in pure.parts if part != "."]
         if pure.is_absolute() or not parts or ".." in parts or "\\" in member.name or "\0" in member.name:
             raise _refused(path, member.name, "leads out of the archive's folder")
-        count += 1
         if count > most_files:
             raise _refused(path, member.name, f"is one file too many; at most {most_files} are taken")
         target = folder.joinpath(*parts)

@@ -139,8 +139,8 @@ def _same_files(folder: Path, agents: Sequence[Manifest], submission: Submission
     found = invariants.strangers(agents[0].files, submission.files)
     if found:
         raise BoardError(
-            f"{folder / 'run.json'}: agents[0].files: is not what lies in {submission.path.parent}: {'; '.join(found)}. "
-            "Play the agent that was handed in."
+            f"{folder / 'run.json'}: agents[0].files: is not what lies in {submission.path.parent}: "
+            f"{'; '.join(found)}. Play the agent that was handed in."
         )
 
 
