@@ -126,7 +126,7 @@ def _tell(paper: Console, done: Rerun) -> None:
     for failure in done.left.failures if done.left else ():
         lines += ["", *failure_lines(failure)]
     if done.changed:
-        lines += ["", "the agent's file has changed since the run, so this may go otherwise than it was logged."]
+        lines += ["", "the agent's files have changed since the run, so this may go otherwise than it was logged."]
     else:
         lines += ["", "as it was logged." if done.same else "it went otherwise than it was logged."]
     for line in lines:

@@ -147,7 +147,7 @@ class Stage:
         for seat, mind in company.minds.items():
             if isinstance(mind, Watched) and seat in self._sources.manifests:
                 known, grounds = self._sources.manifests[seat], mind.mind.grounds
-                if files := identity.later(mind.mind.take_opened(), known, grounds):
+                if files := identity.later(mind.mind.take_opened(), known, grounds, mind.mind.reference.path):
                     found[seat] = files
                     company.opened[seat] = tuple(sorted({*company.opened.get(seat, ()), *files}))
         return found

@@ -9,6 +9,7 @@ from pathlib import Path
 from hthor.detectors import OWN
 from hthor.eval.setup import PROCEDURAL, Setup
 from hthor.eval.shard import whole_folder
+from hthor.guest import Manifest
 from hthor.types import RobotSeat
 
 
@@ -32,9 +33,19 @@ def of(folder: Path, plan: Setup, out: Path | None = None) -> str:
     words += ["--realtime"] if plan.realtime else []
     words += ["--limit", str(plan.limit)] if plan.limit else []
     words += ["--step-limit", f"{plan.step_limit_s:g}"] if plan.step_limit_s else []
+    for one in plan.agents[:1]:  # all agents of a command are given the same
+        words += [word for key, value in one.args.items() for word in ("--agent-args", f"{key}={value}")]
+        beyond = dict.fromkeys(file.path.split("/")[1] for file in one.files if file.path.startswith("../"))
+        words += [word for name in beyond if name not in _named(one) for word in ("--readable", name)]
     words += ["--seed", str(plan.seed), "--participants", str(plan.participants)]
     words += ["--shard", plan.shard.words] if plan.shard else []
     return shlex.join([*words, "--out", str(whole_folder(out) if plan.shard else out)])
+
+
+def _named(agent: Manifest) -> set[str]:
+    """What lies outside an agent's folder and needs no option of its own: arguments, and the words of a command."""
+    words = shlex.split(agent.source[len("cmd:") :]) if agent.source.startswith("cmd:") else []
+    return {*(value.removeprefix("../") for value in agent.args.values()), *words}
 
 
 def _who(robots: Sequence[RobotSeat]) -> list[str]:
