@@ -39,7 +39,7 @@ def main() -> None:
     options.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)), help="processes (%(default)s)")
     options.add_argument("--raw", action="store_true", help="also count how many first draws are sound")
     given = options.parse_args()
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))
+    provenance.keep_compiled()
     with tempfile.TemporaryDirectory() as folder:
         _measure(given, Path(folder))
 
