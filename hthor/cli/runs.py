@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -92,6 +92,18 @@ def evaluate(
         typer.Option(
             min=1, help="How many people, ten tasks each.", show_default="so many that every task is done once"
         ),
+    ] = None,
+    house: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Only the suite's tasks in this house; repeat it for several. Or a house file of your own, "
+            "my_house.json: then ten tasks are made in it, as 'hthor tasks make' does, and played.",
+            show_default="all of the suite's",
+        ),
+    ] = None,
+    difficulty: Annotated[
+        Literal["easy", "medium", "hard"] | None,
+        typer.Option(help="Only tasks so hard. Neither such a run nor one with --house is ranked.", show_default="all"),
     ] = None,
     limit: Annotated[
         int | None,
@@ -195,7 +207,7 @@ def evaluate(
     The same command resumes an interrupted run, and only scores a finished one. The same seed gives the same records,
     byte for byte, with any number of jobs.
     """
-    from hthor.eval import campaign, intent, matrix, peoples, progress, remains, report
+    from hthor.eval import campaign, homemade, intent, matrix, peoples, progress, remains, report
 
     allowed = remains.allowance(max_faults)
     talk = screen.console(talk=True)
@@ -225,6 +237,8 @@ def evaluate(
         realtime=realtime,
         name=name,
         limit=limit,
+        houses=tuple(house or ()),
+        difficulty=difficulty or "",
         step_limit=step_limit,
         isolation=isolation,
         require_isolation=require_isolation,
@@ -233,6 +247,7 @@ def evaluate(
         agent_args=tuple(agent_args or ()),
         readable=tuple(readable or ()),
     )
+    options = homemade.resolve(options, lambda words: None if quiet else _say(talk, words))
     if dry_run:
         from hthor.cli import ahead
 

@@ -31,6 +31,8 @@ def of(folder: Path, plan: Setup, out: Path | None = None) -> str:
     words += [] if detector == OWN else ["--detector", detector]
     words += ["--name", plan.title] if plan.title else []
     words += ["--realtime"] if plan.realtime else []
+    words += [word for name in plan.houses or () for word in ("--house", name)]
+    words += ["--difficulty", plan.difficulty] if plan.difficulty else []
     words += ["--limit", str(plan.limit)] if plan.limit else []
     words += ["--step-limit", f"{plan.step_limit_s:g}"] if plan.step_limit_s else []
     for one in plan.agents[:1]:  # all agents of a command are given the same

@@ -16,6 +16,7 @@ from hthor.eval.programme import Programme
 from hthor.eval.setup import Setup
 from hthor.guest import Isolation, given
 from hthor.humans.people import PROXY, People
+from hthor.tasks import library
 
 RUNS = Path("runs")
 
@@ -45,6 +46,8 @@ class Options(Struct, frozen=True, kw_only=True):
     realtime: bool = False
     name: str = ""
     limit: int | None = None
+    houses: tuple[str, ...] = ()
+    difficulty: str = ""
     step_limit: float | None = None
     isolation: str = "auto"
     require_isolation: str = ""
@@ -98,7 +101,8 @@ def settle(options: Options) -> Intent:
     detector = detectors.tidy(options.detector)
     pack = cast.furnish(options.assets)
     shown = setup.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
-    chosen = programme.shorten(programme.choose(options.suite, options.kind), options.limit)
+    whole = programme.choose(options.suite, options.kind)
+    chosen = programme.shorten(programme.narrow(whole, options.houses, options.difficulty), options.limit)
     parts = _parts(options, chosen, _crews(options, chosen, detector), whom, shown)
     controls = _controls(options, chosen, parts) if options.control and not options.shard else {}
     minds = sorted({mind for part in parts for mind in part.crew.minds.values()})
@@ -128,6 +132,8 @@ def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dic
             kind=chosen.kind,
             assets=assets,
             limit=chosen.limit,
+            houses=chosen.houses,
+            difficulty=chosen.difficulty,
         )
         if options.out is None and not options.name:
             folder = RUNS / plan.folder_name
@@ -159,6 +165,8 @@ def _parts(
                 assets=shown,
                 realtime=options.realtime,
                 limit=chosen.limit,
+                houses=chosen.houses,
+                difficulty=chosen.difficulty,
                 step_limit_s=options.step_limit,
             )
             if options.name:
@@ -182,6 +190,8 @@ def hidden(options: Options) -> tuple[str, ...]:
     """What no agent may read, even if it lies in its own folder: runs, tasks and people."""
     words = (*options.humans, options.suite, options.kind, str(options.out or ""))
     places = [RUNS, *(Path(word.rpartition("@")[2]) for word in words if word)]
+    if options.suite and Path(options.suite).exists():
+        places.append(library.houses_of(Path(options.suite)))
     return tuple(str(path.resolve()) for path in places if path.exists())
 
 

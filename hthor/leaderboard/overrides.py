@@ -18,6 +18,10 @@ def of(plan: Setup, crew: tuple[str, ...] = ()) -> dict[str, str]:
         found["participants"] = str(plan.participants)
     if plan.limit:
         found["limit"] = str(plan.limit)
+    if plan.houses:
+        found["house"] = ", ".join(plan.houses)
+    if plan.difficulty:
+        found["difficulty"] = plan.difficulty
     if plan.step_limit_s:
         found["step_limit"] = f"{plan.step_limit_s:g}"
     if plan.kind is not None:
