@@ -25,6 +25,8 @@ _CORNERS, _CROWDED_M = ((1, 1), (-1, -1), (-1, 1), (1, -1)), 1.5
 """Where the names of targets stand that are so near each other."""
 _LINES, _LINE_MAX, _HEAD_MAX = 10, 110, 70
 """Messages whose words are shown, and characters of a line of words and of the headline."""
+_COLUMNS, _DEEPEST = 5, 8.5
+"""Entries of the legend side by side, and inches of a plan's height at most."""
 _BADGE_M, _BESIDE_M = 0.17, 0.15
 """Inches of a badge, and metres below which an arrow to the place that is meant would only hide the badge."""
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.4, foreground="white")]
@@ -158,7 +160,8 @@ def _write_words(ax: Axes, words: Sequence[tuple[str, str]]) -> None:
     ax.axis("off")
     for row, (line, shade) in enumerate(words):
         height = 1.0 - (row + 0.5) / len(words)
-        ax.text(0.0, height, line, transform=ax.transAxes, fontsize=7.5, color=shade, va="center")
+        told = ax.text(0.0, height, line, transform=ax.transAxes, fontsize=7.5, color=shade, va="center")
+        told.set_in_layout(False)  # a long line takes no room from the plan
 
 
 def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
@@ -202,12 +205,13 @@ def _headline(spec: TrialSpec, log: EpisodeLog) -> str:
     end = f"done in {seconds:.1f} s" if log.met else f"not done in {seconds:.0f} s"
     if not log.met and log.progress is not None:
         end += f", {100.0 * log.progress:.0f} % of it done"
+    told = "\n".join(textwrap.wrap(f"“{spec.task.instruction}”", _HEAD_MAX))
+    lines = [told, f"{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"]
     for robot in spec.robots:
         if (fault := trace.failure(log, robot.seat)) is not None:
-            whose = f"{robot.seat} " if len(spec.robots) > 1 else ""
-            end += f"; {whose}failed at {fault.tick * rules.TICK_S:.1f} s ({fault.kind})"
-    told = "\n".join(textwrap.wrap(f"“{spec.task.instruction}”", _HEAD_MAX))
-    return f"{told}\n{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"
+            whose = f"{robot.seat}'s agent" if len(spec.robots) > 1 else "the agent"
+            lines.append(f"{whose} failed at {fault.tick * rules.TICK_S:.1f} s ({fault.kind}) and did nothing more")
+    return "\n".join(lines)
 
 
 def _legend(sheet: Figure, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> None:
@@ -234,7 +238,9 @@ def _legend(sheet: Figure, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -
     if any(plan.is_flat(thing) for thing in house.things):
         handles.append(Patch(facecolor=plan.RUG, edgecolor=plan.RUG_EDGE, hatch=plan.RUG_HATCH, label="rug, flat"))
     handles += [_mark(mark, "#555555", f"{verb}") for kind, (mark, verb) in trace.ACTS.items() if kind in present]
-    sheet.legend(handles=handles, loc="outside right upper", fontsize=7.5, frameon=False, handlelength=1.6)
+    sheet.legend(
+        handles=handles, loc="outside lower left", ncols=_COLUMNS, fontsize=7.5, frameon=False, handlelength=1.6
+    )
 
 
 def _line(shade: str, label: str) -> Line2D:
@@ -252,4 +258,4 @@ def _size(house: HouseSpec) -> tuple[float, float]:
     wide = max(x for x, _ in corners) - min(x for x, _ in corners)
     deep = max(y for _, y in corners) - min(y for _, y in corners)
     width = 8.0
-    return (width, max(4.2, (width - 2.0) * deep / wide + 2.4))
+    return (width, max(4.2, min((width - 0.8) * deep / wide, _DEEPEST) + 2.7))
