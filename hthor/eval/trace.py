@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from hthor import rules
-from hthor.episode import EpisodeLog
+from hthor.episode import EpisodeLog, Fault
 from hthor.types import HUMAN, Event, HouseSpec, Job, Placement, RobotSeat, TrialSpec, Vec2
 
 if TYPE_CHECKING:
@@ -32,6 +34,10 @@ ACTS = {
 }
 """Marker and verb of each deed that is drawn."""
 _THERE_M = 0.3
+_PARTS, _ROUND = 3, 3
+"""Parts of a group of numbers that are written out; and from how many characters on it is no disc any more."""
+GONE = "#9aa0a6"
+"""Of what a robot whose mind failed leaves behind."""
 _MARKED = 8
 """Places that will do are marked up to so many; more would mark half the house."""
 
@@ -100,7 +106,58 @@ def tint(log: EpisodeLog, event: Event) -> str:
     return MESSAGE if fate(log, event.data["message"]) == "confirmed" else IDLE_MESSAGE
 
 
+def failure(log: EpisodeLog, seat: str) -> Fault | None:
+    """The first fault of a seat's mind; from then on the trial went on without it."""
+    return next((fault for fault in log.faults if fault.seat == seat), None)
+
+
+class Group(Struct, frozen=True, kw_only=True):
+    """Messages that are drawn as one, as they would hide one another: their numbers in words, one place, one colour."""
+
+    words: str
+    place: Vec2
+    shade: str
+
+
+def grouped(log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], apart: float) -> list[Group]:
+    """Messages with their numbers and places, those nearer than ``apart`` to the first of a group joined with it.
+
+    A group has the colour of a confirmed message when it has one.
+    """
+    found: list[list[tuple[int, Event, Vec2]]] = []
+    for mark in marks:
+        near = next((held for held in found if math.dist(held[0][2], mark[2]) < apart), None)
+        if near is None:
+            found.append([mark])
+        else:
+            near.append(mark)
+    groups = []
+    for held in found:
+        shades = {tint(log, event) for _, event, _ in held}
+        shade = MESSAGE if MESSAGE in shades else IDLE_MESSAGE
+        groups.append(Group(words=ranges([number for number, _, _ in held]), place=held[0][2], shade=shade))
+    return groups
+
+
+def ranges(numbers: Sequence[int]) -> str:
+    """Rising numbers in words: "1–3, 7"; of many parts the first and the last."""
+    parts: list[list[int]] = []
+    for number in numbers:
+        if parts and number == parts[-1][1] + 1:
+            parts[-1][1] = number
+        else:
+            parts.append([number, number])
+    words = [
+        f"{low}–{high}" if high > low + 1 else ", ".join(map(str, dict.fromkeys((low, high)))) for low, high in parts
+    ]
+    return ", ".join(words if len(words) <= _PARTS else [*words[: _PARTS - 1], "…", words[-1]])
+
+
 def badge(ax: Axes, place: Vec2, text: str, shade: str) -> None:
-    """A message's number in a disc."""
-    box = {"boxstyle": "circle,pad=0.22", "facecolor": shade, "edgecolor": "white", "lw": 0.8}
-    ax.text(*place, text, fontsize=7, color="white", weight="bold", ha="center", va="center", bbox=box, zorder=14)
+    """Messages' numbers in a disc. It takes no room from the axes, even where it stands at their edge."""
+    style = "circle,pad=0.22" if len(text) < _ROUND else "round,pad=0.2,rounding_size=0.6"
+    box = {"boxstyle": style, "facecolor": shade, "edgecolor": "white", "lw": 0.8}
+    made = ax.text(
+        *place, text, fontsize=7, color="white", weight="bold", ha="center", va="center", bbox=box, zorder=14
+    )
+    made.set_in_layout(False)

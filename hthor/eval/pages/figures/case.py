@@ -75,7 +75,7 @@ def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
     record = row.record
     plan.draw_house(ax, house, marked=trace.destinations(record.spec, house), small=True)
     for seat in record.paths:
-        picture.draw_path(ax, record.log, seat)
+        picture.draw_path(ax, record.log, seat, words=False)
     for _, start in trace.targets(record.spec, house):
         ax.scatter(*start.position[:2], s=80, marker="*", color=trace.TARGET, edgecolor="white", lw=0.6, zorder=12)
     busy = [start.position[:2] for _, start in trace.targets(record.spec, house)]
