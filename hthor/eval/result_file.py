@@ -51,7 +51,8 @@ class Counts(Struct, frozen=True, kw_only=True):
     """How much there is: trials, distinct tasks, successes, messages sent by robots, and trials with a fault.
 
     ``faults_by_seat`` counts the trials in which the robot of each seat failed, ``faults_by_kind`` all faults by what
-    they were.
+    they were. ``replays`` counts sessions that were played again because an agent's process was killed, as if from
+    outside: each gave the agent another try.
     """
 
     trials: int
@@ -61,6 +62,7 @@ class Counts(Struct, frozen=True, kw_only=True):
     faults: int
     faults_by_seat: dict[str, int]
     faults_by_kind: dict[str, int] = {}
+    replays: int = 0
 
 
 class Hashes(Struct, frozen=True, kw_only=True):

@@ -10,7 +10,19 @@ from pathlib import Path
 import msgspec
 
 from hthor.errors import HthorError, RunError
-from hthor.eval import command, control, guarded, machine, metrics, programme, provenance, reading, score, setup
+from hthor.eval import (
+    command,
+    control,
+    do_overs,
+    guarded,
+    machine,
+    metrics,
+    programme,
+    provenance,
+    reading,
+    score,
+    setup,
+)
 from hthor.eval.setup import Setup
 from hthor.guest import Manifest
 from hthor.leaderboard import checks, files, harness, invariants, outcomes, overrides, worth
@@ -60,7 +72,7 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
     if gain is None and plan.seats:
         raise RunError(f"{folder} has no run without a robot beside it. 'hthor eval' plays it without --no-control.")
     held = guarded.load(folder)
-    result = score.summarise(plan, lines, records, uplift=gain, isolation=held)
+    result = score.summarise(plan, lines, records, uplift=gain, isolation=held, replays=do_overs.count(folder))
     columns = outcomes.of(records, map(outcomes.leaf, lines))
     whose = worth.people(len(records), plan.participants)
     agent = submission.agent if submission else Agent(name=plan.crew)
