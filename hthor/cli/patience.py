@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -25,12 +25,16 @@ _WIPE = "\r\x1b[K"
 
 
 @contextmanager
-def shown(arguments: Sequence[str]) -> Iterator[None]:
-    """Within the block, tell the user that the command with these arguments is at work."""
+def shown(arguments: Sequence[str], groups: Collection[str] = ()) -> Iterator[None]:
+    """Within the block, tell the user that the command with these arguments is at work.
+
+    Args:
+        groups: first words after which the second one belongs to the command's name too.
+    """
     if "--quiet" in arguments or "serve" in arguments[:2] or not arguments:
         yield
         return
-    words = [word for word in arguments[:2] if word.isidentifier()]
+    words = arguments[: 2 if arguments[0] in groups else 1]
     patience = _Patience(" ".join(words), live=screen.live())
     before = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = _Stream(before[0], patience), _Stream(before[1], patience)
