@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import msgspec
 from msgspec import Struct
 
-from hthor import rules, tasks
+from hthor import rules, steps, tasks
 from hthor.episode import Fault, play
 from hthor.eval import cast, conduct, crews, record
 from hthor.eval.crews import Character
@@ -79,7 +79,11 @@ class Rehearsal:
 
     def play(self, guest: Guest, trials: Sequence[TrialSpec]) -> list[Notes]:
         """Play trials one after the other with the same guest, each with a person who knows of no other."""
-        return [self._play(guest, trial) for trial in trials]
+        found = []
+        for number, trial in enumerate(trials, 1):
+            steps.say(f"playing short trial {number} of {len(trials)}")
+            found.append(self._play(guest, trial))
+        return found
 
     def _play(self, guest: Guest, trial: TrialSpec) -> Notes:
         human = self._stage.enter(Session(participant=trial.participant, trials=(trial,))).human

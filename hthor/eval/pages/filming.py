@@ -11,7 +11,7 @@ from typing import Any
 
 import msgspec
 
-from hthor import guest
+from hthor import guest, steps
 from hthor.errors import RunError
 from hthor.eval import again, cast, record
 from hthor.eval.record import Record
@@ -85,7 +85,8 @@ def film(
     session = Session(participant=spec.participant, trials=again.before(folder, wanted))
     stage = cast.Stage(again.sources(folder, spec, agents, humans))
     with stage.enter(session) as company:
-        for trial in session.trials:
+        for number, trial in enumerate(session.trials, 1):
+            steps.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")
             world = Filmed(stage.world(trial), ticks if trial == spec else (), profile)
             done = stage.play(company, trial, world)
         if _course(done) != _course(wanted):
@@ -94,6 +95,7 @@ def film(
                 "trial. An agent that does not repeat itself, or another machine, does that; 'hthor replay' draws it "
                 "from its log alone."
             )
+        steps.say(f"drawing what was seen in {folder.name}")
         return world.views()
 
 
