@@ -97,7 +97,7 @@ class Actor:
             return self.do(Move(forward=forward, left=left))  # which says what is wrong with them
         length = math.hypot(forward, left)
         if length > FARTHEST_M:
-            reason = f"move is {length:.5g} m long; at most {FARTHEST_M:.0f} m at once"
+            reason = f"move is {numbers.short(length)} m long; at most {FARTHEST_M:.0f} m at once"
             return Outcome(motion="move", ok=False, reason=reason)
         steps = max(1, math.ceil(length / rules.MOVE_MAX_M - _EPS))
         outcome = Outcome(motion="move", ok=True)
