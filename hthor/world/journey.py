@@ -109,9 +109,8 @@ def _taken(world: World, actor: Actor, goal: Vec2) -> bool:
 def _point(world: World, target: Vec2) -> Vec2:
     x, y = target
     if not any(geometry.inside((x, y), room.polygon) for room in world.house.rooms):
-        raise HthorError(
-            f"({numbers.short(x)}, {numbers.short(y)}) is in no room of the house; give a point indoors, or the id of a thing"
-        )
+        place = f"({numbers.short(x)}, {numbers.short(y)})"
+        raise HthorError(f"{place} is in no room of the house; give a point indoors, or the id of a thing")
     return (x, y)
 
 
