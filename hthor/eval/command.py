@@ -6,6 +6,7 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
+from hthor import cameras
 from hthor.detectors import OWN
 from hthor.eval.setup import PROCEDURAL, Setup
 from hthor.eval.shard import whole_folder
@@ -28,6 +29,7 @@ def of(folder: Path, plan: Setup, out: Path | None = None) -> str:
     words += [] if plan.assets.name == PROCEDURAL else ["--assets", plan.assets.name]
     detector = next((robot.detector for robot in plan.seats), OWN)
     words += [] if detector == OWN else ["--detector", detector]
+    words += _camera(plan)
     words += ["--name", plan.title] if plan.title else []
     words += ["--realtime"] if plan.realtime else []
     words += ["--limit", str(plan.limit)] if plan.limit else []
@@ -35,6 +37,14 @@ def of(folder: Path, plan: Setup, out: Path | None = None) -> str:
     words += ["--seed", str(plan.seed), "--participants", str(plan.participants)]
     words += ["--shard", plan.shard.words] if plan.shard else []
     return shlex.join([*words, "--out", str(whole_folder(out) if plan.shard else out)])
+
+
+def _camera(plan: Setup) -> list[str]:
+    """The options that name the robots' camera."""
+    named = next((robot.camera for robot in plan.seats if robot.camera), cameras.OWN)
+    name, _, size = named.partition(":")
+    words = [] if name == cameras.OWN else ["--camera", name]
+    return [*words, "--camera-size", size] if size else words
 
 
 def _who(robots: Sequence[RobotSeat]) -> list[str]:

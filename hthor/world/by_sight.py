@@ -112,8 +112,8 @@ class SeenWorld(TickedWorld):
         Args:
             mode: rgb (H, W, 3) uint8, depth (H, W) float32 [m] along the optical axis, or segmentation (H, W) int32,
                 indices into `names`, -1 for nothing. Depth and segmentation look through glass.
-            size: (width, height) [pixels]; None for the camera's own. Pixels are square: a picture of another shape than
-                the body's field of view shows the middle of it.
+            size: (width, height) [pixels]; None for the camera's own. Pixels are square: a picture of another
+                shape than the body's field of view shows the middle of it.
             profile: "fast", "nice", or None for the world's own.
 
         Raises:
