@@ -104,7 +104,7 @@ class Pictures:
         return (min(xs) - _MARGIN_M, min(ys) - _MARGIN_M, max(xs) + _MARGIN_M, max(ys) + _MARGIN_M)
 
     def _by(self, seat: str) -> CameraSpec:
-        return self._cameras.get(seat, camera.OWN)
+        return self._cameras.get(self._seats[seat].name, camera.OWN)  # which complains of a seat that there is not
 
     def _size(self, seat: str, size: Size) -> tuple[int, int]:
         """The size that is meant: the camera's own when None."""
