@@ -20,6 +20,23 @@ if TYPE_CHECKING:
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder, such as runs/demo/frontier.")]
 Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output; words go to standard error.")]
 
+Camera = Annotated[
+    str,
+    typer.Option(
+        help="The robot's camera: own (as its body says), square, thor, habitat or realsense; docs/robots.md lists "
+        "their fields of view and sizes. What the robot detects does not depend on it."
+    ),
+]
+CameraSize = Annotated[
+    str,
+    typer.Option(
+        metavar="WxH",
+        help="The size of its pictures in pixels, such as 320x240. Pixels are square, so another shape than the field "
+        "of view's shows the middle of it.",
+        show_default="the camera's own",
+    ),
+]
+
 _FAULTS_EXIT = 3
 
 
@@ -79,6 +96,8 @@ def evaluate(
             "miss=0.2,false_alarm=0.05,position_sigma=0.03."
         ),
     ] = "own",
+    camera: Camera = "own",
+    camera_size: CameraSize = "",
     assets: Annotated[
         str,
         typer.Option(
@@ -226,6 +245,8 @@ def evaluate(
         robot=robot,
         assets=assets,
         detector=detector,
+        camera=camera,
+        camera_size=camera_size,
         seed=seed,
         participants=participants,
         jobs=jobs,

@@ -6,6 +6,7 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
+from hthor import cameras
 from hthor.detectors import OWN
 from hthor.eval.setup import PROCEDURAL, Setup
 from hthor.eval.shard import whole_folder
@@ -29,6 +30,7 @@ def of(folder: Path, plan: Setup, out: Path | None = None) -> str:
     words += [] if plan.assets.name == PROCEDURAL else ["--assets", plan.assets.name]
     detector = next((robot.detector for robot in plan.seats), OWN)
     words += [] if detector == OWN else ["--detector", detector]
+    words += _camera(plan)
     words += ["--name", plan.title] if plan.title else []
     words += ["--realtime"] if plan.realtime else []
     words += [word for name in plan.houses or () for word in ("--house", name)]
@@ -48,6 +50,14 @@ def _named(agent: Manifest) -> set[str]:
     """What lies outside an agent's folder and needs no option of its own: arguments, and the words of a command."""
     words = shlex.split(agent.source[len("cmd:") :]) if agent.source.startswith("cmd:") else []
     return {*(value.removeprefix("../") for value in agent.args.values()), *words}
+
+
+def _camera(plan: Setup) -> list[str]:
+    """The options that name the robots' camera."""
+    named = next((robot.camera for robot in plan.seats if robot.camera), cameras.OWN)
+    name, _, size = named.partition(":")
+    words = [] if name == cameras.OWN else ["--camera", name]
+    return [*words, "--camera-size", size] if size else words
 
 
 def _who(robots: Sequence[RobotSeat]) -> list[str]:

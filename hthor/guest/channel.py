@@ -29,7 +29,7 @@ class Channel:
         self.words, write = os.pipe()
         self.err, printed = os.pipe()
         self.frames = frames.window()
-        self._far = (read, write, printed)
+        self._far: tuple[int, ...] = (read, write, printed)
         for handle in (self.out, self.words, self.err):
             os.set_blocking(handle, False)
         with contextlib.suppress(OSError):  # only speed depends on it

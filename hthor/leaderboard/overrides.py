@@ -31,6 +31,8 @@ def of(plan: Setup, crew: tuple[str, ...] = ()) -> dict[str, str]:
     for seat in plan.seats:
         if seat.detector != OWN:
             found["detector"] = seat.detector
+        if seat.camera:
+            found["camera"] = seat.camera
         if seat.robot_sha256:
             found["robot"] = f"{seat.robot}.py"
     bodies = tuple(seat.robot for seat in plan.seats)

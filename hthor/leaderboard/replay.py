@@ -74,7 +74,8 @@ def _crew(entry: Entry, agent: str) -> Crew:
             raise BoardError(f"{entry.id}: the agent is a file, {robot.agent.source}. Name it with --agent.")
         minds.append(robot.agent.name if ours else agent)
     bodies = [robot.robot or "scout" for robot in entry.run.robots]  # a mind that wants no robot has no body either
-    return crews.form(bodies, minds, entry.run.robots[0].detector or "own")
+    first = entry.run.robots[0]
+    return crews.form(bodies, minds, first.detector or "own", first.camera or "own")
 
 
 def _same(entry: Entry, chosen: Programme, crew: Crew, who: People) -> None:
