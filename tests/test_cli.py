@@ -121,8 +121,23 @@ def test_eval_writes_what_json_shows(hthor, tmp_path: Path):
         "eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "run"), "--json", "--jobs", "1"
     )
     assert said.code == 0
-    assert said.out.encode() == (tmp_path / "run" / "result.json").read_bytes()
-    assert json.loads(said.out)["counts"]["trials"] == 20
+    (one,) = json.loads(said.out)["runs"]
+    assert one["folder"] == str(tmp_path / "run")
+    assert one["result"] == json.loads((tmp_path / "run" / "result.json").read_bytes())
+    assert one["result"]["counts"]["trials"] == 20
+
+
+def test_the_document_of_eval_has_one_shape_however_many_agents_there_are(hthor, tmp_path: Path, monkeypatch):
+    monkeypatch.setattr(crews, "introduce", fakes.character)
+    shapes = []
+    for count, agents in enumerate((("helper",), ("helper", "twin")), 1):
+        words = [word for agent in agents for word in ("--agent", agent)]
+        said = hthor("eval", *words, "--suite", "fake", "--out", str(tmp_path / str(count)), "--json", "--jobs", "1")
+        document = json.loads(said.out)
+        assert [one["result"]["name"] for one in document["runs"]] == list(agents)
+        assert document["peoples"] is None
+        shapes.append((sorted(document), sorted(document["runs"][0])))
+    assert shapes[0] == shapes[1]
     assert "20/20 trials" in said.err
     assert "success rate" in said.err
 
@@ -208,7 +223,7 @@ def test_real_time_is_another_run_and_says_so(hthor, tmp_path: Path, monkeypatch
     modes = {}
     for words in ((), ("--realtime",)):
         said = hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--json", *words)
-        result = json.loads(said.out)
+        result = json.loads(said.out)["runs"][0]["result"]
         modes[result["mode"]] = result["hashes"]["run"], result["hashes"]["trials"]
         assert ("in real time" in said.err) == bool(words)
     assert modes.keys() == {"lockstep", "realtime"}

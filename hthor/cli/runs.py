@@ -195,7 +195,7 @@ def evaluate(
     The same command resumes an interrupted run, and only scores a finished one. The same seed gives the same records,
     byte for byte, with any number of jobs.
     """
-    from hthor.eval import campaign, intent, matrix, peoples, progress, remains, report
+    from hthor.eval import campaign, evaluation, intent, matrix, peoples, progress, remains, report
 
     allowed = remains.allowance(max_faults)
     talk = screen.console(talk=True)
@@ -257,7 +257,8 @@ def evaluate(
             whose = f", {one.plan.humans.name} people" if whole is not None else ""
             _say(paper, f"{one.plan.name}{whose}: {one.folder}/")
     if json:
-        screen.put_json(whole or (results[0] if len(results) == 1 else results))
+        held = tuple(evaluation.Evaluated(folder=str(one.folder), result=one.result) for one in done)
+        screen.put_json(evaluation.Evaluation(runs=held, peoples=whole))
     if any(one.result.counts.faults > allowed(one.result.counts.trials) for one in done):
         raise typer.Exit(_FAULTS_EXIT)
 

@@ -55,7 +55,7 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
         listed = ", ".join(f"{name} is {value}" for name, value in found.items())
         raise BoardError(f"{folder / 'run.json'}: such runs are not ranked: {listed}. Leave these options out.")
     records = [msgspec.structs.replace(one, metrics=metrics.measure(one.spec, one.log)) for one in kept]
-    gain = control.beside(folder, plan, records)
+    gain = control.measure(folder, plan, records)
     if gain is None and plan.seats:
         raise RunError(f"{folder} has no run without a robot beside it. 'hthor eval' plays it without --no-control.")
     held = guarded.load(folder)
