@@ -294,11 +294,12 @@ def _show(console: Console, one: Done) -> None:
     _say(console, f"files: {folder}/run.json, trials.jsonl, result.json{more}")
     run = shlex.quote(str(folder))
     unranked = overrides.of(one.plan)
-    ranked = "" if unranked else f"    hthor leaderboard add {run}"
     if unranked:
         why = ", ".join(f"{name.replace('_', '-')} is {value}" for name, value in unranked.items())
         _say(console, f"not for the leaderboard: {why}")
-    _say(console, f"next:  hthor replay {run} 0    hthor score {run} --all{ranked}")
+    ranked = () if unranked else (f"hthor leaderboard add {run}",)
+    for line in screen.following(f"hthor replay {run} 0", f"hthor score {run} --all", *ranked):
+        _say(console, line)
 
 
 def _compare_peoples(console: Console, whole: Matrix) -> None:
