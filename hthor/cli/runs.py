@@ -226,7 +226,7 @@ def evaluate(
     The same command resumes an interrupted run, and only scores a finished one. The same seed gives the same records,
     byte for byte, with any number of jobs.
     """
-    from hthor.eval import campaign, homemade, intent, matrix, peoples, progress, remains, report
+    from hthor.eval import campaign, evaluation, homemade, intent, matrix, peoples, progress, remains, report
 
     allowed = remains.allowance(max_faults)
     talk = screen.console(talk=True)
@@ -293,7 +293,8 @@ def evaluate(
             whose = f", {one.plan.humans.name} people" if whole is not None else ""
             _say(paper, f"{one.plan.name}{whose}: {one.folder}/")
     if json:
-        screen.put_json(whole or (results[0] if len(results) == 1 else results))
+        held = tuple(evaluation.Evaluated(folder=str(one.folder), result=one.result) for one in done)
+        screen.put_json(evaluation.Evaluation(runs=held, peoples=whole))
     if any(one.result.counts.faults > allowed(one.result.counts.trials) for one in done):
         raise typer.Exit(_FAULTS_EXIT)
 
@@ -329,11 +330,12 @@ def _show(console: Console, one: Done) -> None:
     _say(console, f"files: {folder}/run.json, trials.jsonl, result.json{more}")
     run = shlex.quote(str(folder))
     unranked = overrides.of(one.plan)
-    ranked = "" if unranked else f"    hthor leaderboard add {run}"
     if unranked:
         why = ", ".join(f"{name.replace('_', '-')} is {value}" for name, value in unranked.items())
         _say(console, f"not for the leaderboard: {why}")
-    _say(console, f"next:  hthor replay {run} 0    hthor score {run} --all{ranked}")
+    ranked = () if unranked else (f"hthor leaderboard add {run}",)
+    for line in screen.following(f"hthor replay {run} 0", f"hthor score {run} --all", *ranked):
+        _say(console, line)
 
 
 def _compare_peoples(console: Console, whole: Matrix) -> None:

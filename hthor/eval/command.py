@@ -6,12 +6,19 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
+import msgspec
+
 from hthor import cameras
 from hthor.detectors import OWN
 from hthor.eval.setup import PROCEDURAL, Setup
 from hthor.eval.shard import whole_folder
 from hthor.guest import Manifest
-from hthor.types import RobotSeat
+from hthor.types import AgentRef, RobotSeat
+
+OURS = "hthor.agents."
+"""Where built-in agents come from."""
+NO_ROBOT = "silent"
+"""The agent that stands for no robot."""
 
 
 def of(folder: Path, plan: Setup, out: Path | None = None) -> str:
@@ -60,11 +67,21 @@ def _camera(plan: Setup) -> list[str]:
     return [*words, "--camera-size", size] if size else words
 
 
+def near(path: Path) -> Path:
+    """A folder as it can be typed from here: below the current folder without that, elsewhere as it was given."""
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_absolute() and path.is_relative_to(here) else path
+
+
+def alone(plan: Setup) -> str:
+    """The command that plays the same people at the same tasks without a robot."""
+    nobody = RobotSeat(seat="", robot="", agent=AgentRef(name=NO_ROBOT, source=f"{OURS}{NO_ROBOT}", sha256=""))
+    return of(Path(), msgspec.structs.replace(plan, robots=(nobody,), realtime=msgspec.UNSET)).removesuffix(" --out .")
+
+
 def _who(robots: Sequence[RobotSeat]) -> list[str]:
     """The options that name these robots."""
-    minds = [
-        robot.agent.name if robot.agent.source.startswith("hthor.agents.") else robot.agent.source for robot in robots
-    ]
+    minds = [robot.agent.name if robot.agent.source.startswith(OURS) else robot.agent.source for robot in robots]
     bodies = [f"{robot.robot}.py" if robot.robot_sha256 else robot.robot for robot in robots]
     if len(robots) == 1:
         return ["--agent", minds[0], *(("--robot", bodies[0]) if bodies[0] else ())]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
 from msgspec import Struct
 
 from hthor import documents, jsonio
@@ -94,9 +95,9 @@ class Result(Struct, frozen=True, kw_only=True):
     """The run's `result.json`.
 
     ``trust_by_trial`` is the rating after the first, second, ... trial of a person's session, empty without a robot.
-    ``uplift`` is None where no whole run without a robot lay beside this one. ``mode`` is "realtime" where thinking
-    took time of the trials, which no second run repeats byte for byte, else "lockstep". ``agents`` lists the files of
-    every agent that is not built in, those included that it opened only while it played.
+    ``uplift`` is None where no whole run without a robot was ever found for this one. ``mode`` is "realtime" where
+    thinking took time of the trials, which no second run repeats byte for byte, else "lockstep". ``agents`` lists the
+    files of every agent that is not built in, those included that it opened only while it played.
     """
 
     schema: str = SCHEMA
@@ -132,6 +133,26 @@ def load(folder: Path) -> Result | None:
         return None
     hint = f"delete the file, and 'hthor score {folder}' writes it again"
     return documents.read(path, Result, RunError, schema=SCHEMA, hint=hint)
+
+
+class _Named(Struct, frozen=True):
+    run: str = ""
+
+
+class _Gained(Struct, frozen=True):
+    """The part of a result that `uplift` reads, whatever the version of the rest."""
+
+    hashes: _Named = _Named()
+    uplift: Uplift | None = None
+
+
+def uplift(folder: Path, *, run: str) -> Uplift | None:
+    """The uplift that a run's result has recorded, whatever its version; None where it has none for this run's hash."""
+    try:
+        held = msgspec.json.decode((folder / "result.json").read_bytes(), type=_Gained)
+    except (OSError, msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+        return None
+    return held.uplift if held.hashes.run == run else None
 
 
 def outdated(path: Path) -> bool:

@@ -63,12 +63,11 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
     plan = setup.load(folder)
     lines, kept = reading.records(folder, plan)
     _whole(folder, plan, len(kept))
-    found = overrides.of(plan, _crew(plan))
+    found = overrides.of(plan, _crew(plan), len({one.spec.task.id for one in kept}))
     if found:
-        listed = ", ".join(f"{name} is {value}" for name, value in found.items())
-        raise BoardError(f"{folder / 'run.json'}: such runs are not ranked: {listed}. Leave these options out.")
+        raise BoardError(overrides.refusal(folder, plan, found))
     records = [msgspec.structs.replace(one, metrics=metrics.measure(one.spec, one.log)) for one in kept]
-    gain = control.beside(folder, plan, records)
+    gain = control.measure(folder, plan, records)
     if gain is None and plan.seats:
         raise RunError(f"{folder} has no run without a robot beside it. 'hthor eval' plays it without --no-control.")
     held = guarded.load(folder)
