@@ -222,8 +222,12 @@ def _legend(sheet: Figure, entries: list[Artist]) -> None:
     )
 
 
-def handles(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> list[Artist]:
-    """The legend's entries: everybody and everything that is drawn of this trial."""
+def handles(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool = False) -> list[Artist]:
+    """The legend's entries: everybody and everything that is drawn of this trial.
+
+    Args:
+        moving: whether it is for a film, which has no marks for starts, ends, deeds and messages.
+    """
     handles: list[Artist] = [_line(trace.PERSON, "person")]
     handles += [_line(trace.colour(robot.seat), trace.who(robot)) for robot in spec.robots]
     handles += [
