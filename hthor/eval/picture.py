@@ -27,8 +27,8 @@ _LINES, _LINE_MAX, _HEAD_MAX = 10, 110, 70
 """Messages whose words are shown, and characters of a line of words and of the headline."""
 _COLUMNS, _DEEPEST = 5, 8.5
 """Entries of the legend side by side, and inches of a plan's height at most."""
-_BADGE_M, _BESIDE_M = 0.17, 0.15
-"""Inches of a badge, and metres below which an arrow to the place that is meant would only hide the badge."""
+_LETTER_IN, _BADGE_IN, _BESIDE_M = 0.065, 0.17, 0.15
+"""Inches of a letter on a badge and of a badge; metres below which an arrow to what is meant would hide the badge."""
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.4, foreground="white")]
 
 
@@ -52,8 +52,8 @@ def figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
     _draw_targets(above, spec, house)
     draw_messages(above, log)
     _draw_acts(above, log)
-    above.set_title(_headline(spec, log), fontsize=10, loc="left", color=trace.INK)
-    _legend(sheet, spec, log, house)
+    above.set_title(headline(spec, log), fontsize=10, loc="left", color=trace.INK)
+    _legend(sheet, handles(spec, log, house))
     timeline.draw_timeline(below, spec, log)
     for ax in rest:
         _write_words(ax, words)
@@ -179,7 +179,8 @@ def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
             arrow = {"arrowstyle": "-|>", "color": trace.tint(log, event), "alpha": strength}
             line = {"lw": 1.0 if strength == 1.0 else 0.7, "ls": (0, (3, 2)), "shrinkA": 6, "shrinkB": 5}
             ax.annotate("", (claim[0], claim[1]), here, arrowprops=arrow | line, zorder=11)
-    for group in trace.grouped(log, sent, _BADGE_M * _metres(ax)):
+    inch = _metres(ax)
+    for group in trace.grouped(log, sent, _LETTER_IN * inch, _BADGE_IN * inch):
         trace.badge(ax, group.place, group.words, group.shade)
 
 
@@ -199,7 +200,8 @@ def _draw_acts(ax: Axes, log: EpisodeLog) -> None:
             )
 
 
-def _headline(spec: TrialSpec, log: EpisodeLog) -> str:
+def headline(spec: TrialSpec, log: EpisodeLog) -> str:
+    """What was asked, by whom it was helped, and how it ended, in lines."""
     agents = " and ".join(dict.fromkeys(robot.agent.name for robot in spec.robots)) or "no robot"
     seconds = log.ticks * rules.TICK_S
     end = f"done in {seconds:.1f} s" if log.met else f"not done in {seconds:.0f} s"
@@ -214,7 +216,18 @@ def _headline(spec: TrialSpec, log: EpisodeLog) -> str:
     return "\n".join(lines)
 
 
-def _legend(sheet: Figure, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> None:
+def _legend(sheet: Figure, entries: list[Artist]) -> None:
+    sheet.legend(
+        handles=entries, loc="outside lower left", ncols=_COLUMNS, fontsize=7.5, frameon=False, handlelength=1.6
+    )
+
+
+def handles(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool = False) -> list[Artist]:
+    """The legend's entries: everybody and everything that is drawn of this trial.
+
+    Args:
+        moving: whether it is for a film, which has no marks for starts, ends, deeds and messages.
+    """
     handles: list[Artist] = [_line(trace.PERSON, "person")]
     handles += [_line(trace.colour(robot.seat), trace.who(robot)) for robot in spec.robots]
     handles += [
@@ -238,9 +251,7 @@ def _legend(sheet: Figure, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -
     if any(plan.is_flat(thing) for thing in house.things):
         handles.append(Patch(facecolor=plan.RUG, edgecolor=plan.RUG_EDGE, hatch=plan.RUG_HATCH, label="rug, flat"))
     handles += [_mark(mark, "#555555", f"{verb}") for kind, (mark, verb) in trace.ACTS.items() if kind in present]
-    sheet.legend(
-        handles=handles, loc="outside lower left", ncols=_COLUMNS, fontsize=7.5, frameon=False, handlelength=1.6
-    )
+    return handles
 
 
 def _line(shade: str, label: str) -> Line2D:

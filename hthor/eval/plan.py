@@ -115,12 +115,12 @@ def _draw_opening(ax: Axes, opening: Opening, wall_pt: float) -> None:
 
 
 def _name_room(ax: Axes, room: Room, house: HouseSpec, size: float) -> None:
-    x, y = _quiet_spot(room, house)
+    x, y = quiet_spot(room, house)
     text = ax.text(x, y, room.name, ha="center", va="center", fontsize=size, color="#5d6470", style="italic", zorder=6)
     text.set_path_effects([patheffects.withStroke(linewidth=2.5, foreground=FLOORS.get(room.kind, "#eeeeee"))])
 
 
-def _quiet_spot(room: Room, house: HouseSpec) -> Vec2:
+def quiet_spot(room: Room, house: HouseSpec) -> Vec2:
     """The middle of the room's largest patch of bare floor, stretched sideways because names are wide."""
     xs, ys = [x for x, _ in room.polygon], [y for _, y in room.polygon]
     scale, squeeze = 20.0, 0.45

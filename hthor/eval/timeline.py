@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 _WORD = 0.09
 """How much of the time axis a word takes up."""
-_BADGE = 0.03
-"""How much of it a badge takes up."""
+_LETTER = 0.0095
+"""How much of it a letter on a badge takes up."""
 _Side = Literal["left", "center", "right"]
 _SIDES: tuple[_Side, _Side] = ("right", "left")
 """Where the words of two moments stand that are near each other, the earlier one first."""
@@ -86,7 +86,7 @@ def _moment(ax: Axes, seconds: float, name: str, shade: str, style: str, side: _
 def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float, word_s: float) -> None:
     sent = [(number, event) for number, event in enumerate(trace.messages(log), 1) if event.seat == seat]
     marks = [(number, event, (event.tick * rules.TICK_S, row)) for number, event in sent]
-    for group in trace.grouped(log, marks, _BADGE * word_s / _WORD):
+    for group in trace.grouped(log, marks, _LETTER * word_s / _WORD, 1.0):
         trace.badge(ax, group.place, group.words, group.shade)
     words = {**{kind: verb for kind, (_, verb) in trace.ACTS.items()}, "confirmed": "confirms", "declined": "declines"}
     last = dict.fromkeys(_LIFTS, -math.inf)

@@ -34,8 +34,8 @@ ACTS = {
 }
 """Marker and verb of each deed that is drawn."""
 _THERE_M = 0.3
-_PARTS, _ROUND = 3, 3
-"""Parts of a group of numbers that are written out; and from how many characters on it is no disc any more."""
+_PARTS, _ROUND, _PADDED = 2, 3, 1.6
+"""Parts of a group of numbers that are written out; from how many letters on it is no disc; letters of its edges."""
 GONE = "#9aa0a6"
 """Of what a robot whose mind failed leaves behind."""
 _MARKED = 8
@@ -119,28 +119,45 @@ class Group(Struct, frozen=True, kw_only=True):
     shade: str
 
 
-def grouped(log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], apart: float) -> list[Group]:
-    """Messages with their numbers and places, those nearer than ``apart`` to the first of a group joined with it.
+def grouped(log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], letter: float, high: float) -> list[Group]:
+    """Messages with their numbers and places; those whose badges would touch are joined, at the place of the first.
 
     A group has the colour of a confirmed message when it has one.
+
+    Args:
+        letter, high: width of a letter on a badge and height of a badge, in the units of the places.
     """
-    found: list[list[tuple[int, Event, Vec2]]] = []
-    for mark in marks:
-        near = next((held for held in found if math.dist(held[0][2], mark[2]) < apart), None)
-        if near is None:
-            found.append([mark])
-        else:
-            near.append(mark)
-    groups = []
-    for held in found:
-        shades = {tint(log, event) for _, event, _ in held}
-        shade = MESSAGE if MESSAGE in shades else IDLE_MESSAGE
-        groups.append(Group(words=ranges([number for number, _, _ in held]), place=held[0][2], shade=shade))
-    return groups
+    held = [[mark] for mark in marks]
+
+    def touch(one: list[tuple[int, Event, Vec2]], other: list[tuple[int, Event, Vec2]]) -> bool:
+        (x, y), (u, v) = one[0][2], other[0][2]
+        wide = sum(_PADDED + len(_numbers(some)) for some in (one, other)) * letter / 2.0
+        return abs(x - u) < wide and abs(y - v) < high
+
+    joined = True
+    while joined:
+        pairs = ((one, other) for place, one in enumerate(held) for other in held[place + 1 :])
+        pair = next(((one, other) for one, other in pairs if touch(one, other)), None)
+        if joined := pair is not None:
+            one, other = pair
+            held = [some for some in held if some is not other]
+            one[:] = sorted([*one, *other], key=lambda mark: mark[0])
+    return [
+        Group(
+            words=_numbers(some),
+            place=some[0][2],
+            shade=MESSAGE if any(tint(log, event) == MESSAGE for _, event, _ in some) else IDLE_MESSAGE,
+        )
+        for some in held
+    ]
+
+
+def _numbers(marks: Sequence[tuple[int, Event, Vec2]]) -> str:
+    return ranges([number for number, _, _ in marks])
 
 
 def ranges(numbers: Sequence[int]) -> str:
-    """Rising numbers in words: "1–3, 7"; of many parts the first and the last."""
+    """Rising numbers in words: "1–3, 7"; of more parts than two only the ends, "1 … 9"."""
     parts: list[list[int]] = []
     for number in numbers:
         if parts and number == parts[-1][1] + 1:
@@ -150,7 +167,7 @@ def ranges(numbers: Sequence[int]) -> str:
     words = [
         f"{low}–{high}" if high > low + 1 else ", ".join(map(str, dict.fromkeys((low, high)))) for low, high in parts
     ]
-    return ", ".join(words if len(words) <= _PARTS else [*words[: _PARTS - 1], "…", words[-1]])
+    return ", ".join(words) if len(words) <= _PARTS else f"{numbers[0]} … {numbers[-1]}"
 
 
 def badge(ax: Axes, place: Vec2, text: str, shade: str) -> None:
