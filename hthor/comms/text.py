@@ -9,7 +9,6 @@ from typing import Any
 
 from hthor.types import Vec3
 
-
 _LOOKED_AT = 8
 """Times the limit: what a text has beyond that is not even looked at, so that a long one costs no more."""
 
