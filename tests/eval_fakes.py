@@ -265,9 +265,8 @@ def guarded_player(seconds: float = 0.004) -> Callable[[Session], Iterator[Recor
     return perform
 
 
-def killing_player(times: int) -> Callable[[Session], Iterator[Record]]:
-    """The agent of the third trial is killed in the first ``times`` plays of a session."""
-    plays: dict[int, int] = {}
+def killing_player(times: int, plays: dict[int, int]) -> Callable[[Session], Iterator[Record]]:
+    """The agent of the third trial is killed in the first ``times`` plays of a session, which ``plays`` counts."""
 
     def perform(session_: Session) -> Iterator[Record]:
         plays[session_.participant] = plays.get(session_.participant, 0) + 1
@@ -281,14 +280,12 @@ def killing_player(times: int) -> Callable[[Session], Iterator[Record]]:
     return perform
 
 
-def late_player(times: int) -> Callable[[Session], Iterator[Record]]:
-    """The agent of participant 1 is killed before it can say what it is, so many times."""
-    plays = 0
+def late_player(times: int, plays: dict[int, int]) -> Callable[[Session], Iterator[Record]]:
+    """The agent of participant 1 is killed before it can say what it is, so many times; ``plays`` counts them."""
 
     def perform(session_: Session) -> Iterator[Record]:
-        nonlocal plays
-        if session_.participant == 1 and plays < times:
-            plays += 1
+        if session_.participant == 1 and plays.get(1, 0) < times:
+            plays[1] = plays.get(1, 0) + 1
             raise AgentKilled("helper.py: its process was killed by SIGKILL while it started.")
         yield from player()(session_)
 

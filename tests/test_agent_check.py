@@ -43,6 +43,16 @@ AGENTS = {
         "        return Action(say=say)\n",
         {"acts": ("ok", "all legal"), "deterministic": ("ok", "every byte the same"), "keeps nothing": ("ok", "")},
     ),
+    "spams": (
+        "class Agent:\n    def begin(self, briefing):\n        self.target = briefing.target\n"
+        "    def act(self, observation):\n        return Action(say=Send(text='I see it.', object=self.target))\n",
+        {"acts": ("ok", ""), "fast enough": ("ok", " % of the trial's 30 s")},
+    ),
+    "stands": (
+        "class Agent:\n    def begin(self, briefing): ...\n    def act(self, observation):\n"
+        "        return Action(motion=Rotate(yaw=0.5))\n",
+        {"acts": ("ok", "")},
+    ),
     "does not load": (
         "class Agent:\n    def begin(self):\n",
         {"loads": ("broken", "agent.py:4"), "acts": ("skipped", "")},
@@ -89,6 +99,17 @@ def test_what_agent_new_writes_is_sound(check: Any, tmp_path: Path) -> None:
     assert "warning" not in out
 
 
+def test_the_agent_of_the_readme_is_sound_and_warned_of_nothing(check: Any, root: Path) -> None:
+    """The one that the README shows is the one in examples/."""
+    file = root / "examples" / "wanderer.py"
+    blocks = (root / "README.md").read_text(encoding="utf-8").split("```python\n")[1:]
+    assert any(file.read_text(encoding="utf-8").endswith(block.partition("```")[0]) for block in blocks)
+    code, out = check("check", file)
+    assert code == 0, out
+    assert "broken" not in out
+    assert "warning" not in out
+
+
 def test_a_program_is_checked_like_a_file(check: Any) -> None:
     words = f"cmd:{sys.executable} {Path(__file__).parents[1] / 'examples' / 'wire_agent.py'}"
     code, out = check("check", words)
@@ -113,8 +134,15 @@ def test_each_check_finds_what_it_is_there_for(name: str, check: Any, tmp_path: 
         assert bool(found[what]["advice"]) == (status == "broken")
     broken = any(status == "broken" for status, _ in expected.values())
     assert (code, report["sound"]) == ((4, False) if broken else (0, True))
+    notes = "; ".join(one["told"] for one in report["findings"] if one["check"] == "note")
+    if name == "spams":
+        assert "messages in 30 s: " in notes
+        assert "covered by the next one" in notes
+        assert "the same as the one before" in notes
+        assert report["figures"]["share"] < 0.1  # of the trial's 30 s, not of the second that it took to play them
+    if name == "stands":
+        assert "it stood on one spot for 30 of 30 s; it never sent a message" in notes
     if name == "boasts":
-        notes = "; ".join(one["told"] for one in report["findings"] if one["check"] == "note")
         assert "it prints much; it never moved; 2 of 2 messages" in notes
         assert report["isolation"]["level"] in ("L1", "L2", "L3")
         assert 0 < report["figures"]["step_ms_median"] <= report["figures"]["step_ms_p99"]

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import html
 import json
 import os
+import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -12,9 +15,9 @@ import eval_fakes as fakes
 import msgspec
 import pytest
 
-from hthor import __version__, cli, tasks
+from hthor import __version__, cli, houses, tasks
 from hthor.cli import screen
-from hthor.eval import cast, crews
+from hthor.eval import cast, crews, redraw
 
 
 class Said(msgspec.Struct):
@@ -121,8 +124,23 @@ def test_eval_writes_what_json_shows(hthor, tmp_path: Path):
         "eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "run"), "--json", "--jobs", "1"
     )
     assert said.code == 0
-    assert said.out.encode() == (tmp_path / "run" / "result.json").read_bytes()
-    assert json.loads(said.out)["counts"]["trials"] == 20
+    (one,) = json.loads(said.out)["runs"]
+    assert one["folder"] == str(tmp_path / "run")
+    assert one["result"] == json.loads((tmp_path / "run" / "result.json").read_bytes())
+    assert one["result"]["counts"]["trials"] == 20
+
+
+def test_the_document_of_eval_has_one_shape_however_many_agents_there_are(hthor, tmp_path: Path, monkeypatch):
+    monkeypatch.setattr(crews, "introduce", fakes.character)
+    shapes = []
+    for count, agents in enumerate((("helper",), ("helper", "twin")), 1):
+        words = [word for agent in agents for word in ("--agent", agent)]
+        said = hthor("eval", *words, "--suite", "fake", "--out", str(tmp_path / str(count)), "--json", "--jobs", "1")
+        document = json.loads(said.out)
+        assert [one["result"]["name"] for one in document["runs"]] == list(agents)
+        assert document["peoples"] is None
+        shapes.append((sorted(document), sorted(document["runs"][0])))
+    assert shapes[0] == shapes[1]
     assert "20/20 trials" in said.err
     assert "success rate" in said.err
 
@@ -202,13 +220,67 @@ def test_an_agents_faults_are_shown_with_a_way_to_look(hthor, tmp_path: Path, mo
     assert [hthor(*words, most).code for most in ("1", "2", "9%", "10%", "x")] == [3, 0, 3, 0, 2]
 
 
+def _printed(text: str) -> list[str]:
+    """Commands that a page or a command's words tell the reader to type."""
+    return [
+        html.unescape(one).strip()
+        for one in re.findall(r"(?:<code>|<pre>|^next: |^look: |^ {6,})\s*(hthor [^<\n]+)", text, re.M)
+    ]
+
+
+def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor, tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(crews, "introduce", fakes.character)
+    drawn: list[str] = []
+    hazel = houses.load("hazel")
+    monkeypatch.setattr(redraw, "house", lambda _: hazel)
+    monkeypatch.setattr(redraw, "draw", lambda record, path, video: drawn.append(record.key))
+    words = ("--suite", "fake", "--out", "my runs/demo", "--jobs", "1")
+    said = hthor("eval", "--agent", "silent", "--agent", "helper", "--agent", "clumsy", *words)
+    single = hthor("eval", "--agent", "helper", "--suite", "fake", "--out", "my runs/one", "--jobs", "1")
+    next_ones = [one for one in _printed(single.out) if "leaderboard" not in one]
+    assert next_ones == ["hthor replay 'my runs/one' 0", "hthor score 'my runs/one' --all"]
+    assert hthor("report", "my runs/demo/helper", "my runs/demo/clumsy", "--out", "rep").code == 0
+    page = (tmp_path / "rep" / "report.html").read_text(encoding="utf-8")
+    # An unmarked run is drawn as a block of several lines.
+    listed = [line for one in re.findall(r"<pre>(.*?)</pre>", page, re.S) for line in html.unescape(one).splitlines()]
+    commands = [*next_ones, *_printed(page), *(line for line in listed if line.startswith("hthor "))]
+    assert {one.split()[1] for one in commands} >= {"replay", "score", "eval", "agent"}
+    for one in dict.fromkeys(commands):
+        typed = shlex.split(one)[1:]
+        if typed[:2] == ["agent", "run"]:  # plays with a guest; the folder that it names has to be there
+            assert (Path(typed[-2]) / "run.json").is_file(), one
+        else:
+            done = hthor(*typed)
+            assert done.code in ((0, 3) if "clumsy" in one else (0,)), (one, done.err)
+    assert drawn
+    assert said.code == 3
+    assert sorted(path.name for path in tmp_path.glob("**/run.json")) == ["run.json"] * 5, (
+        "nothing was played elsewhere"
+    )
+
+
+def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(crews, "introduce", fakes.character)
+    assert hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--quiet").code == 0
+    run = next((tmp_path / "runs").iterdir())
+    hazel = houses.load("hazel")
+    monkeypatch.setattr(redraw, "house", lambda _: hazel)
+    assert hthor("report", str(run), "--out", "rep").code == 0
+    told = json.loads((tmp_path / "rep" / "report.json").read_bytes())["origins"][0]["alone"]
+    assert html.escape(told, quote=False) in html.unescape((tmp_path / "rep" / "report.html").read_text("utf-8"))
+    assert hthor(*shlex.split(told)[1:]).code == 0
+    assert "uplift: success" in hthor("score", str(run)).out
+
+
 def test_real_time_is_another_run_and_says_so(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(crews, "introduce", fakes.character)
     monkeypatch.chdir(tmp_path)
     modes = {}
     for words in ((), ("--realtime",)):
         said = hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--json", *words)
-        result = json.loads(said.out)
+        result = json.loads(said.out)["runs"][0]["result"]
         modes[result["mode"]] = result["hashes"]["run"], result["hashes"]["trials"]
         assert ("in real time" in said.err) == bool(words)
     assert modes.keys() == {"lockstep", "realtime"}

@@ -12,10 +12,12 @@ import time
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from hthor import houses, plugins, tasks
 from hthor.cli import completing, ending, offers, reference
-from hthor.eval import crews, engines, peoples
+from hthor.cli.app import app
+from hthor.eval import crews, engines, peoples, provenance
 from hthor.guest.confinement import LEVELS
 from hthor.humans import kinds, population_file
 
@@ -211,3 +213,13 @@ def test_what_is_offered_is_what_there_is(tmp_path: Path, monkeypatch: pytest.Mo
     assert offers.runs() == ["runs/one", "runs/one/control"]
     assert offers.runs("runs/o") == offers.runs("runs/") == offers.runs()
     assert offers.runs("nowhere/") == []
+
+
+@pytest.mark.parametrize(
+    "words", [["robots", "list"], ["agent", "check", "nowhere.py"], ["replay", "nowhere", "0", "--mind"]]
+)
+def test_every_command_keeps_compiled_code_in_one_place(words: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Agents' processes look for it there too; without it each of them would compile for 20 s."""
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    CliRunner().invoke(app, words)
+    assert os.environ["NUMBA_CACHE_DIR"] == str(provenance.compiled())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import unicodedata
 
 import numpy as np
 import pytest
@@ -84,6 +85,15 @@ def test_pictures_are_not_taken_by_the_mailbox():
     box = Mailbox(ROBOTS)
     box.send(0, "robot", Send(text="a"), image)
     assert box.inbox(HUMAN)[0].image is image
+
+
+def test_a_long_text_costs_no_more_than_a_short_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked: list[str] = []
+    category = unicodedata.category
+    monkeypatch.setattr(unicodedata, "category", lambda char: looked.append(char) or category(char))
+    kept, cut = text.tidy("x" * 60_000, 280)
+    assert (kept, cut) == ("x" * 280, 59_720)
+    assert len(looked) < 3_000
 
 
 def test_long_text_is_cut_and_the_event_says_so():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import shutil
 from pathlib import Path
 from unittest import mock
 
@@ -15,6 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats as scipy_stats
 
+from hthor import jsonio
 from hthor.errors import HthorError, RunError
 from hthor.eval import (
     compare,
@@ -31,6 +33,7 @@ from hthor.eval import (
     run,
     score,
     setup,
+    uplift,
 )
 
 
@@ -230,6 +233,68 @@ def test_uplift_is_the_comparison_with_the_run_without_a_robot_that_lies_beside(
     assert result_file.load(folder / "alone").uplift is None
     assert result_file.load(runs / "helper").uplift is None, "nothing without a robot lies beside it"
     assert score.rescore(folder / "better")[1] == result
+
+
+def _better(folder: Path) -> Path:
+    """A run and its control, which lies beside it."""
+    _run(folder, "alone", absent=True, make=fakes.leaning_player, count=20)
+    return _run(folder, "better", make=fakes.leaning_player, count=20)
+
+
+def test_a_copied_run_keeps_its_uplift_with_a_note_and_loses_the_note_where_its_control_is(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    whole = _better(tmp_path / "runs" / "here")
+    before = result_file.load(whole)
+    moved = shutil.copytree(whole, tmp_path / "far" / "off" / "copy")
+    monkeypatch.chdir(moved.parent)
+    result_file.store(moved, score.rescore(moved)[1])
+    kept = result_file.load(moved).uplift
+    assert kept.note == uplift.RECORDED
+    assert msgspec.structs.replace(kept, note=msgspec.UNSET) == before.uplift
+    result_file.store(moved, score.rescore(moved)[1])
+    assert result_file.load(moved).uplift == kept, "once more changes nothing"
+    monkeypatch.chdir(tmp_path)
+    assert score.rescore(moved)[1].uplift == before.uplift, "found below ./runs, by what it is"
+
+
+def test_an_older_result_does_not_lose_its_uplift_either(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    whole = _better(tmp_path / "runs")
+    text = (whole / "result.json").read_text(encoding="utf-8").replace(result_file.SCHEMA, "hthor.result/2")
+    shutil.rmtree(tmp_path / "runs" / "alone")
+    (whole / "result.json").write_text(text, encoding="utf-8")
+    assert score.rescore(whole)[1].uplift.note == uplift.RECORDED
+
+
+def test_a_finished_run_that_is_evaluated_again_without_its_control_keeps_its_uplift(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    whole = _better(tmp_path / "runs")
+    before = result_file.load(whole).uplift
+    shutil.rmtree(tmp_path / "runs" / "alone")
+    _run(tmp_path / "runs", "better", make=fakes.leaning_player, count=20)
+    assert result_file.load(whole).uplift.sr == before.sr
+
+
+def test_of_several_controls_it_is_the_one_that_the_result_names(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    whole = _better(tmp_path / "runs")
+    named = result_file.load(whole).uplift.control
+    other = shutil.copytree(tmp_path / "runs" / "alone", tmp_path / "runs" / "aaa")
+    plan = setup.load(other)
+    assert plan.sha256 == named
+    (other / "run.json").write_bytes(jsonio.pretty(msgspec.structs.replace(plan, versions={"hthor": "another"})))
+    assert setup.load(other).sha256 != named
+    assert score.rescore(whole)[1].uplift.control == named
+    assert control.place(whole, setup.load(whole)).name == "alone"
+
+
+def test_a_result_of_another_run_lends_no_uplift(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    whole = _better(tmp_path / "runs")
+    shutil.rmtree(tmp_path / "runs" / "alone")
+    assert result_file.uplift(whole, run="0" * 64) is None
+    (whole / "result.json").write_text("[" * 100_000, encoding="utf-8")
+    assert result_file.uplift(whole, run=setup.load(whole).sha256) is None
 
 
 def test_half_a_control_is_none(tmp_path: Path):

@@ -172,3 +172,21 @@ def test_gpus_are_let_through_where_they_are_asked_for(tmp_path: Path) -> None:
     assert "--dev-bind-try" not in namespaces.command(policy, ["true"])
     words = namespaces.command(replace(policy, devices=found), ["true"])
     assert [words[at + 1] for at, word in enumerate(words) if word == "--dev-bind-try"] == list(found)
+
+
+def test_an_agent_in_a_second_checkout_reads_neither_its_suites_nor_its_houses(tmp_path: Path) -> None:
+    other = tmp_path / "checkout"
+    secrets = [
+        *(paths.PACKAGE / "tasks" / "suites").glob("smoke*.json"),
+        *(paths.PACKAGE / "houses").rglob("alder.json"),
+    ]
+    assert len(secrets) > 1
+    copies = [other / "hthor" / path.relative_to(paths.PACKAGE) for path in secrets]
+    for path, copy in zip(secrets, copies, strict=True):
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        copy.write_bytes(path.read_bytes())
+    (other / "agent.py").write_text("")
+    allowed = paths.readable(str(other / "agent.py"), str(other), [])
+    assert covered(other / "agent.py", allowed)
+    for path in copies:
+        assert not covered(path, allowed), path

@@ -16,8 +16,23 @@ import eval_fakes as fakes
 import pytest
 
 from hthor import rules, tasks
-from hthor.errors import RunError
-from hthor.eval import campaign, cast, course, engines, intent, log, progress, result_file, run, runner, waiting
+from hthor.errors import KILLED, RunError
+from hthor.eval import (
+    campaign,
+    cast,
+    course,
+    do_overs,
+    engines,
+    intent,
+    log,
+    progress,
+    result_file,
+    run,
+    runner,
+    score,
+    setup,
+    waiting,
+)
 from hthor.eval.result_file import Result
 
 
@@ -164,29 +179,55 @@ def test_a_users_error_in_a_worker_keeps_its_exit_code(tmp_path: Path):
     assert caught.value.exit_code == 4
 
 
-@pytest.mark.parametrize(("times", "faults"), [(1, 0), (2, 0), (3, 3)])
-def test_an_agent_that_is_killed_from_outside_plays_again(tmp_path: Path, times: int, faults: int):
+@pytest.mark.parametrize(("times", "faults"), [(0, 0), (1, 2), (2, 3)])
+def test_a_run_has_one_do_over_for_killed_agents(tmp_path: Path, times: int, faults: int):
+    """Of three sessions in which an agent is killed one is played again; whatever comes of that stands."""
     plan, dealt = fakes.run_of(30)
-    make = functools.partial(fakes.killing_player, times)
+    make = functools.partial(fakes.killing_player, times, {})
     result = run.evaluate(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
-    assert (result.counts.trials, result.counts.faults) == (30, faults)
+    again = int(times > 0)
+    assert (result.counts.trials, result.counts.faults, result.counts.replays) == (30, faults, again)
+    assert result.effort is not None
+    assert result.effort.replays == again
+    assert score.rescore(tmp_path)[1].counts.replays == again
 
 
-@pytest.mark.parametrize("times", [2, 3])
-def test_an_agent_that_is_killed_while_it_starts_is_started_again(tmp_path: Path, times: int):
+def test_no_later_command_has_another_do_over(tmp_path: Path):
     plan, dealt = fakes.run_of(30)
-    make, watch = functools.partial(fakes.late_player, times), Notes()
+    make = functools.partial(fakes.killing_player, 1, {})
+    setup.write(tmp_path, plan)
+    assert do_overs.DoOvers(tmp_path).take(7)
+    result = run.evaluate(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
+    assert (result.counts.faults_by_kind, result.counts.replays) == ({KILLED: 3}, 1)
+
+
+def test_what_was_played_beside_a_killed_agent_does_not_count(tmp_path: Path):
+    """Trials after the one that is played again went otherwise: their person had another trial before."""
+    plan, dealt = fakes.run_of(10)
+    calm = run.evaluate(
+        plan, dealt, fakes.player, folder=tmp_path / "calm", engine=fakes.Here(), watch=progress.Silent()
+    )
+    make = functools.partial(fakes.killing_player, 1, {})
+    other = run.evaluate(plan, dealt, make, folder=tmp_path / "killed", engine=fakes.Here(), watch=progress.Silent())
+    assert other.hashes.trials == calm.hashes.trials
+    assert do_overs.load(tmp_path / "killed").participants == (dealt[0].participant,)
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_an_agent_that_is_killed_while_it_starts_is_started_once_more(tmp_path: Path, times: int):
+    plan, dealt = fakes.run_of(30)
+    make, watch = functools.partial(fakes.late_player, times, {}), Notes()
 
     def whole() -> Result:
         return run.evaluate(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=watch)
 
-    if times == 3:
+    if times == 2:
         with pytest.raises(course.Unfinished, match=r"participant 1: helper\.py: its process was killed.*10 of 30"):
             whole()
         assert len(_lines(tmp_path)) == 20
     else:
-        assert whole().effort.replays == 2
-    assert sum("begins again: an agent's process was killed" in note for note in watch.notes) == 2
+        assert whole().counts.replays == 1
+    assert sum("begins again: an agent's process was killed" in note for note in watch.notes) == 1
 
 
 def test_a_full_disk_leaves_whole_lines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

@@ -30,6 +30,7 @@ from hthor.types import (
     Send,
     ThingState,
 )
+from tests.redteam.agents import PIPE
 
 BRIEFING = Briefing(
     seat="robot",
@@ -190,7 +191,7 @@ def test_an_exception_in_begin_is_a_fault_too(write: Write) -> None:
         ("os._exit(3)", "died", "status 3"),
         ("os._exit(0)", "died", "status 0"),
         ("os.kill(os.getpid(), 11)", "died", "SIGSEGV"),
-        ("os.kill(os.getpid(), 9)", "killed", "SIGKILL"),
+        ("os.abort()", "died", "SIGABRT"),
         ("sys.exit(0)", "raised", "SystemExit"),
         ("return 'forward'", "wrong_type", "got str: 'forward'"),
         ("return None", "wrong_type", "NoneType"),
@@ -206,7 +207,7 @@ def test_an_exception_in_begin_is_a_fault_too(write: Write) -> None:
     ],
 )
 def test_every_misdeed_is_a_fault(started: Callable[..., Guest], act: str, kind: str, told: str) -> None:
-    caught = fault(started("WIRE = int(sys.orig_argv[-2])\n" + agent(act)))
+    caught = fault(started(PIPE + "WIRE = pipe().handles[1]\n" + agent(act)))
     assert (caught.kind, told in str(caught)) == (kind, True), str(caught)
 
 

@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import levels
 import pytest
 from test_guest import BRIEFING
 
@@ -68,6 +69,7 @@ def _soon(guest: Guest, wanted: set[int]) -> bool:
     ids=["L2", "L3", "it keeps its process"],
 )
 def test_they_take_turns_on_one_cpu_and_part_after_each_trial(tmp_path: Path, level: str, source: str) -> None:
+    levels.need(level)
     agent = tmp_path / "agent.py"
     agent.write_text(source)
     everywhere = os.sched_getaffinity(0)

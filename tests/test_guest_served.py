@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
+import hashlib
 import socket
 import threading
 import time
@@ -176,3 +178,85 @@ def test_a_port_that_is_taken_is_told_so(tmp_path: Path) -> None:
         done = CliRunner().invoke(cli.app, ["agent", "serve", str(tmp_path / "mine.py"), "--port", port])
     assert isinstance(done.exception, HthorError)
     assert f"cannot listen at 127.0.0.1:{port}: Address already in use. Give another --port" in str(done.exception)
+
+
+def _handshake(near: socket.socket) -> None:
+    """What a server of WebSockets answers at first."""
+    asked = near.recv(65536).decode()
+    key = next(line.split(": ")[1] for line in asked.split("\r\n") if line.lower().startswith("sec-websocket-key"))
+    answer = base64.b64encode(hashlib.sha1(f"{key}258EAFA5-E914-47DA-95CA-C5AB0DC85B11".encode()).digest())
+    head = b"HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: "
+    near.sendall(head + answer + b"\r\n\r\n")
+
+
+@contextlib.contextmanager
+def raw(talk: Callable[[socket.socket], None]) -> Iterator[str]:
+    """A server without a library: what it does with each connection, once it is accepted."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        near: list[socket.socket] = []
+
+        def handle() -> None:
+            with contextlib.suppress(OSError):
+                while True:
+                    near.append(listener.accept()[0])
+                    threading.Thread(target=answer, args=(near[-1],), daemon=True).start()
+
+        def answer(one: socket.socket) -> None:
+            with contextlib.suppress(OSError):
+                talk(one)
+
+        thread = threading.Thread(target=handle)
+        thread.start()
+        try:
+            yield "ws://{}:{}".format(*listener.getsockname())
+        finally:
+            listener.shutdown(socket.SHUT_RDWR)
+            thread.join()
+            for one in near:
+                one.close()
+
+
+def _message(words: object) -> bytes:
+    body = wire.encode(words)
+    return (
+        bytes([0x82, 126]) + len(body).to_bytes(2, "big") + body if len(body) > 125 else bytes([0x82, len(body)]) + body
+    )
+
+
+@pytest.mark.parametrize("answers", [True, False])
+def test_a_flood_of_pings_comes_to_an_end(answers: bool) -> None:
+    """Nobody reads what the library answers to them, so that its own thread waits while it holds all that it has."""
+
+    def flood(one: socket.socket) -> None:
+        _handshake(one)
+        one.sendall(_message(wire.Ready(name="liar")))
+        one.recv(1 << 16)
+        if answers:
+            one.sendall(_message(wire.Done()))
+        while True:
+            one.sendall(bytes([0x89, 125]) + bytes(125))
+
+    began = time.monotonic()
+    with raw(flood) as url:
+        mind = Guest(url, start_s=3.0, step_s=1.0, bank_s=0.0)
+
+        def play() -> None:
+            mind.begin(BRIEFING)
+            all(mind.act(look()) for _ in range(50))
+
+        with pytest.raises(GuestFault) as caught:
+            play()
+        mind.close()
+    assert caught.value.kind in ("timeout", "died"), str(caught.value)
+    assert time.monotonic() - began < 30.0
+
+
+def test_a_server_is_where_its_address_says() -> None:
+    with lying(lambda _: None) as elsewhere:
+
+        def redirect(one: socket.socket) -> None:
+            one.recv(65536)
+            one.sendall(f"HTTP/1.1 302 Found\r\nLocation: {elsewhere}\r\nContent-Length: 0\r\n\r\n".encode())
+
+        with raw(redirect) as url, pytest.raises(Unreachable, match=r"cannot reach .* the agent is elsewhere"):
+            Guest(url, start_s=3.0).load()

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
+import levels
 import pytest
 from test_guest import BRIEFING
 
 from hthor import houses, jsonio, tasks
-from hthor.guest import Guest, GuestFault, confine_guests, in_force
-from hthor.guest.confinement import IsolationError, hiding, paths
+from hthor.guest import Guest, GuestFault
+from hthor.guest.confinement import hiding, paths
 from hthor.humans import population_file
 from hthor.tasks import library, salt
 from hthor.types import Observation, Pose
@@ -124,18 +124,10 @@ class Agent:
 """
 
 
-@pytest.fixture(params=["L2", "L3"])
-def level(request: pytest.FixtureRequest) -> Iterator[str]:
-    try:
-        in_force(request.param)
-    except IsolationError as error:
-        pytest.skip(str(error).split(". ")[0])
-    yield request.param
-    confine_guests()
-
-
+@pytest.mark.parametrize("level", ["L2", "L3"])
 def test_an_agent_tries(level: str, home: Path) -> None:
     """A real one, that reads whatever it can below its folder and says what that was."""
+    levels.need(level)
     (home / "agent.py").write_text(THIEF)
     with Guest(home / "agent.py", isolation=level) as guest:
         guest.begin(BRIEFING)

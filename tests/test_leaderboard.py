@@ -3,9 +3,13 @@
 
 from __future__ import annotations
 
+import io
 import json
+import os
 import shutil
 import subprocess
+import tarfile
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Literal
@@ -23,9 +27,11 @@ from hypothesis import strategies as st
 from benchmarks import forging
 from hthor import jsonio
 from hthor.errors import HthorError, RunError
-from hthor.eval import provenance
+from hthor.eval import provenance, setup
+from hthor.guest import manifest
 from hthor.leaderboard import (
     admission,
+    archive,
     checks,
     enter,
     files,
@@ -41,7 +47,6 @@ from hthor.leaderboard import (
     verify,
     worth,
 )
-from hthor.leaderboard.entry import Entry
 
 # ------------------------------------------------------------------------------------------------------- entries
 
@@ -315,13 +320,24 @@ def test_a_submission_is_read(handed_in: Path):
     assert (found.name, found.agent.name, found.agent.deterministic) == ("mine", "My agent", True)
 
 
+def _touched(path: Path) -> Path:
+    path.touch()
+    return path
+
+
 SPOILT: dict[str, tuple[Callable[[Path], object], str]] = {
     "link": (lambda at: (at / "README.md").symlink_to("/etc/passwd"), "is a link"),
-    "more": (lambda at: (at / "weights.bin").write_bytes(b"1"), "is not taken"),
-    "deep": (lambda at: (at / "more").mkdir(), "is not taken"),
+    "hidden": (lambda at: (at / ".env").write_bytes(b"1"), "no leading ."),
+    "deep link": (lambda at: [(at / "more").mkdir(), (at / "more" / "x").symlink_to("/etc")], "is a link"),
+    "compiled": (lambda at: (at / "helper.pyc").write_bytes(b"1"), "hand in the sources"),
+    "cache": (lambda at: (at / "__pycache__").mkdir(), "hand in the sources"),
+    "space": (lambda at: (at / "my weights.bin").write_bytes(b"1"), "a name has"),
+    "pipe": (lambda at: os.mkfifo(at / "pipe"), "neither a file nor a folder"),
+    "capitals": (lambda at: [(at / name).write_text("") for name in ("a.bin", "A.bin")], "differ only in capitals"),
+    "many": (lambda at: [(at / f"w{n}.bin").touch() for n in range(submission.MAX_FILES)], "files; at most"),
     "binary": (lambda at: (at / "agent.py").write_bytes(b"\xff\xfe"), "is not text"),
     "zero": (lambda at: (at / "agent.py").write_bytes(b"a\0b"), "zero byte"),
-    "large": (lambda at: (at / "agent.py").write_text("#" * 300_000), "at most"),
+    "large": (lambda at: os.truncate(_touched(at / "w.bin"), submission.MAX_BYTES + 1), "at most"),
     "no agent": (lambda at: (at / "agent.py").unlink(), "is missing"),
     "no name": (lambda at: (at / "submission.json").write_text("{}"), "name"),
     "field": (lambda at: (at / "submission.json").write_text('{"name": "x", "rank": 1}'), "rank"),
@@ -344,10 +360,99 @@ def test_names_of_submissions(handed_in: Path):
 
 
 def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path, tmp_path: Path):
-    with pytest.raises(files.BoardError, match=r"robots\[0\]\.agent\.sha256"):
-        enter.add(runs / "helper", tmp_path / "board", submission.read(handed_in))
-    entry: Entry = enter.of(runs / "helper")
-    path = committed(tmp_path / "board") / "entries" / f"{entry.id}.json"
-    files.write(path, msgspec.structs.replace(entry, submission="mine"))
-    found = checks.problems(tmp_path / "board", [path], submissions=handed_in.parent)
-    assert "run.robots[0].agent.sha256" in {one.field for one in found}
+    played = submission.listed(handed_in)
+    mine = shutil.copytree(runs, tmp_path / "runs") / "helper"
+    plan = setup.load(mine)
+    ref = plan.robots[0].agent
+    about = manifest.of(ref.name, ref.source, {}, [one for one in played if one.path == "agent.py"])
+    plan = msgspec.structs.replace(plan, agents=(msgspec.structs.replace(about, sha256=ref.sha256),))
+    jsonio.write(mine / "run.json", jsonio.pretty(plan))
+    board = committed(tmp_path / "board")
+    ((entry, path), *_) = [
+        one for one in enter.add(mine, board, submission.read(handed_in)) if one[0].submission == "mine"
+    ]
+    assert entry.files == played
+    assert entry.agents == plan.agents
+    assert not checks.problems(board, [path], submissions=handed_in.parent)
+    (handed_in / "agent.py").write_text("class Agent: pass\n")
+    with pytest.raises(files.BoardError, match=r"agents\[0\]\.files: is not what lies in .*agent\.py is another file"):
+        enter.add(mine, board, submission.read(handed_in))
+    found = checks.problems(board, [path], submissions=handed_in.parent)
+    assert [(one.field, "agent.py has changed" in one.problem) for one in found] == [("files", True)]
+    files.write(path, msgspec.structs.replace(entry, files=entry.files[1:]))
+    assert "agents[0].files" in {one.field for one in checks.problems(board, [path])}
+    files.write(path, msgspec.structs.replace(entry, agents=()))
+    assert "agents" in {one.field for one in checks.problems(board, [path])}
+
+
+def _zipped(folder: Path, path: Path) -> Path:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as held:
+        for one in sorted(folder.rglob("*"), reverse=True):
+            held.write(one, Path(folder.name) / one.relative_to(folder))
+    return path
+
+
+def _tarred(folder: Path, path: Path) -> Path:
+    with tarfile.open(path, "w:gz") as held:
+        for one in sorted(folder.iterdir()):
+            held.add(one, one.name)
+    return path
+
+
+def test_an_archive_is_the_same_submission_as_its_folder(handed_in: Path, tmp_path: Path):
+    (handed_in / "weights").mkdir()
+    (handed_in / "weights" / "net.bin").write_bytes(bytes(range(256)) * 99)
+    wanted = submission.read(handed_in)
+    for path in (_zipped(handed_in, tmp_path / "mine.zip"), _tarred(handed_in, tmp_path / "mine.tar.gz")):
+        with submission.unpacked(path) as folder:
+            found = submission.read(folder)
+            assert (found.name, found.files, found.agent) == (wanted.name, wanted.files, wanted.agent)
+        assert not folder.exists()
+
+
+class _Evil(tarfile.TarInfo):
+    def __init__(self, name: str, kind: bytes = tarfile.REGTYPE, target: str = "") -> None:
+        super().__init__(name)
+        self.type, self.linkname = kind, target
+
+
+HOSTILE = {
+    "parent": (_Evil("../out.txt"), "leads out of"),
+    "absolute": (_Evil("/tmp/out.txt"), "leads out of"),
+    "deep parent": (_Evil("a/../../out.txt"), "leads out of"),
+    "backslash": (_Evil("..\\out.txt"), "leads out of"),
+    "link": (_Evil("x", tarfile.SYMTYPE, "/etc/passwd"), "is a link"),
+    "hard link": (_Evil("x", tarfile.LNKTYPE, "agent.py"), "is a link"),
+    "device": (_Evil("x", tarfile.CHRTYPE), "no plain file"),
+    "twice": (_Evil("agent.py"), "is there twice"),
+    "through a file": (_Evil("agent.py/x"), "cannot be unpacked"),
+}
+
+
+@pytest.mark.parametrize("how", HOSTILE)
+def test_a_hostile_archive_writes_nothing_outside_and_leaves_nothing(handed_in: Path, tmp_path: Path, how: str):
+    member, told = HOSTILE[how]
+    path = _tarred(handed_in, tmp_path / "mine.tar.gz")
+    with tarfile.open(path, "w:gz") as held:
+        held.add(handed_in / "agent.py", "agent.py")
+        held.addfile(member, io.BytesIO())
+    before = set(tmp_path.rglob("*"))
+    with pytest.raises(files.BoardError, match=told):
+        archive.unpack(path, tmp_path / "new" / "mine", most_bytes=1000, most_files=10)
+    assert set(tmp_path.rglob("*")) == before | {tmp_path / "new"}
+
+
+def test_an_archive_is_bounded_by_what_it_unpacks_to(tmp_path: Path):
+    folder = tmp_path / "big"
+    folder.mkdir()
+    (folder / "zeros.bin").write_bytes(bytes(1 << 20))
+    for path in (_zipped(folder, tmp_path / "big.zip"), _tarred(folder, tmp_path / "big.tar.gz")):
+        assert path.stat().st_size < 10_000
+        with pytest.raises(files.BoardError, match="is too much: at most 1000 bytes"):
+            archive.unpack(path, tmp_path / "new", most_bytes=1000, most_files=10)
+        with pytest.raises(files.BoardError, match="one file too many"):
+            archive.unpack(path, tmp_path / "new", most_bytes=1 << 21, most_files=0)
+        path.write_bytes(path.read_bytes()[:200])
+        with pytest.raises(files.BoardError, match="cannot be unpacked"):
+            archive.unpack(path, tmp_path / "new", most_bytes=1 << 21, most_files=10)
+        assert not (tmp_path / "new").exists()

@@ -253,7 +253,7 @@ def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(tmp_path
     words = ("eval", *agents, "--suite", str(SUITE), "--participants", "1", "--json")
     done = hthor(*words, cwd=tmp_path)
     assert done.returncode == 3, done.stderr
-    mine, tired = json.loads(done.stdout)
+    mine, tired = (one["result"] for one in json.loads(done.stdout)["runs"])
     assert (mine["counts"]["trials"], mine["counts"]["faults"]) == (TRIALS // 2, 0)
     assert (tired["counts"]["trials"], tired["counts"]["faults"] > 2) == (TRIALS // 2, True)
     assert mine["isolation"]["level"] == tired["isolation"]["level"] == guest.in_force().level

@@ -542,10 +542,13 @@ def test_eval_with_several_peoples_compares_them(hthor, files: Path):
     worst = [line for line in out.splitlines() if ": * worst with " in line or ": no people are worse off" in line]
     assert [line.split(":")[0] for line in worst] == ["silent", "frontier"]
     code, out, _ = hthor(*words, *whom, "--quiet", "--json")  # the runs are there: only scored
-    told = json.loads(out)
-    assert told["schema"] == "hthor.peoples/1"
+    document = json.loads(out)
+    assert document["schema"] == "hthor.eval/1"
+    told = document["peoples"]
+    assert told["schema"] == "hthor.peoples/2"
     assert [(ref["name"], ref["kind"]) for ref in told["peoples"]] == [("pop", ""), ("slow@pop", "slow")]
-    assert [(one["humans"]["name"], one["name"]) for one in told["results"]] == [
+    results = [one["result"] for one in document["runs"]]
+    assert [(one["humans"]["name"], one["name"]) for one in results] == [
         (name, agent) for name in names for agent in ("silent", "frontier")
     ]
     assert set(told["worst"]) == {"silent", "frontier"}

@@ -17,7 +17,7 @@ import pytest
 from hthor import guest
 from hthor.guest import Guest, IsolationError, clearing
 from tests.redteam import nobody
-from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, Case
+from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, PIPE, Case
 from tests.redteam.nobody import ROOT, runner
 from tests.test_guest import BRIEFING, look
 
@@ -111,7 +111,7 @@ from hthor.guest import Guest
 from tests.test_guest import BRIEFING
 guest = Guest(sys.argv[1], isolation=sys.argv[2])
 guest.load()
-print(guest._process.policy.scratch, flush=True)
+print(guest._process._ground, flush=True)
 guest.begin(BRIEFING)
 """
 DAEMON = """
@@ -214,7 +214,8 @@ def test_a_trial_leaves_nothing_to_the_next(level: str, tmp_path: Path) -> None:
 HALF_SAID = """
 import os, sys, threading
 from hthor.types import *
-READ, WRITE = int(sys.orig_argv[-4]), int(sys.orig_argv[-2])
+{pipe}
+READ, WRITE = pipe().handles
 class Agent:
     def begin(self, briefing):
         print(os.get_blocking(READ), os.get_blocking(WRITE), os.get_blocking(1), flush=True)
@@ -235,7 +236,7 @@ def test_the_next_trial_finds_the_wire_as_it_was(level: str, tmp_path: Path) -> 
     except IsolationError as error:
         pytest.skip(str(error))
     path = tmp_path / "late.py"
-    path.write_text(HALF_SAID)
+    path.write_text(HALF_SAID.replace("{pipe}", PIPE))
     with Guest(path, isolation=level) as mind:
         for _ in range(2):
             mind.begin(BRIEFING)

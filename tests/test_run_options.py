@@ -13,7 +13,7 @@ import msgspec
 import pytest
 import test_guest
 from eval_fakes import persons, suite
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_cli_contract import run
 from typer.testing import CliRunner
@@ -43,6 +43,7 @@ from hthor.types import Action
 SMOKE = tasks.suite("smoke").tasks
 
 
+@settings(deadline=None)
 @given(st.integers(1, len(SMOKE) - 1))
 def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
     some, more = selection.choose(SMOKE, count), selection.choose(SMOKE, count + 1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-import os
+import itertools
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,6 +21,14 @@ from hthor.types import *
 PIPE = pipe()
 SCRATCH = tempfile.gettempdir()
 
+def first_words():
+    read, write = os.pipe()
+    count = ctypes.CDLL(None).syscall(276, PIPE.handles[0], write, 6, 2)
+    seen = os.read(read, 6) if count > 0 else b""
+    return os.read(PIPE.handles[0], 6) if seen == b"forged" else seen
+
+SEEN = first_words()
+
 def leave():
 {leave}
 
@@ -29,10 +37,10 @@ def find():
 
 class Agent:
     def begin(self, briefing):
-        self.told = briefing.instruction
+        pass
 
     def act(self, observation):
-        print([find() if {find_it} else self.told, left := leave()], flush=True)
+        print([find(), leave()], flush=True)
         return Action()
 
     def __del__(self):
@@ -47,19 +55,16 @@ class Case(NamedTuple):
     """What an agent does to leave a word, how it looks for one, and what it does when its trial is over."""
 
     leave: str
-    find: str = ""
+    find: str
     end: str = "pass"
 
 
 CASES = {
     "a forged beginning": Case(
-        leave="return 'forged'",
+        leave="return b'forged'",
+        find="return SEEN",
         end="""
-from hthor.guest import wire
-from hthor.types import Briefing, BodySpec
-import msgspec
-begin = wire.Begin(briefing=msgspec.structs.replace(Agent.briefing, instruction="forged"))
-os.write(os.open(f"/proc/self/fd/{PIPE.handles[0]}", os.O_WRONLY), wire.frame(begin))
+os.write(os.open(f"/proc/self/fd/{PIPE.handles[0]}", os.O_WRONLY), b"forged")
 """,
     ),
     "flags of the standard input": Case(
@@ -81,9 +86,9 @@ except BlockingIOError:
         leave="os.pread(PIPE.shared, 1, 0); return os.fstat(PIPE.shared).st_atime_ns",
         find="return os.fstat(PIPE.shared).st_atime_ns",
     ),
-    "when the wire was written": Case(
-        leave="return os.fstat(PIPE.handles[1]).st_ino",
-        find="return os.fstat(PIPE.handles[1]).st_ino",
+    "which pipe it had": Case(
+        leave="return [os.fstat(one).st_ino for one in (0, 1, *PIPE.handles, PIPE.shared)][1:]",
+        find="return [os.fstat(one).st_ino for one in (0, 1, *PIPE.handles, PIPE.shared)][1:]",
     ),
     "when its folder was changed": Case(
         leave="os.mkdir(f'{SCRATCH}/x'); os.rmdir(f'{SCRATCH}/x'); return os.stat(SCRATCH).st_mtime_ns",
@@ -106,9 +111,7 @@ def source(case: Case) -> str:
         name: "\n".join(f"    {line}" for line in (text.strip() or "pass").splitlines())
         for name, text in case._asdict().items()
     }
-    return HEAD.format(pipe=PIPE, find_it=bool(case.find), **code).replace(
-        "self.told = briefing", "Agent.briefing = briefing; self.told = briefing"
-    )
+    return HEAD.format(pipe=PIPE, **code)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -125,6 +128,6 @@ def test_an_agent_finds_nothing_of_the_trial_before(level: str, name: str, tmp_p
         for _ in range(4):
             mind.begin(BRIEFING)
             mind.act(look())
-            told.append(ast.literal_eval(mind.log.replace("a note", "").strip().splitlines()[-1]))
-    for (_, left), (found, _) in zip(told, told[1:], strict=False):
-        assert found != left or found == 4096, told
+            told.append(ast.literal_eval(mind.log.strip().splitlines()[-1].lstrip("a note")))
+    for (_, left), (found, _) in itertools.pairwise(told):
+        assert found != left or found == told[0][0], told

@@ -172,6 +172,7 @@ def test_nothing_can_be_placed_on_a_person(world: World) -> None:
 
 
 def test_conditions_are_checked_again_at_the_end(world: World) -> None:
+    world.teleport("human", Pose(x=2.2, y=3.4, yaw=-math.pi / 2))
     world.teleport("robot2", Pose(x=2.8, y=3.4, yaw=-math.pi / 2))
     world.start("robot2", Pick(object="apple"))  # takes 2 s
     do(world, "human", Pick(object="apple"))  # takes half a second

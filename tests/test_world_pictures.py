@@ -88,13 +88,15 @@ def test_the_camera_projects_points_to_where_the_pictures_show_them(
 def test_an_observation_s_camera_is_that_of_its_pictures(world: World) -> None:
     senses = world.senses("robot")
     camera = senses.camera()
-    assert camera.size == (128, 128)
+    assert camera.size == senses.rgb().shape[1::-1] == (160, 104)  # of the shape of its field of view
     place = world.pose("robot")
     assert camera.pose[:3, 3] == pytest.approx((place.x, place.y, world.bodies["robot"].eye))
     assert camera.pose[:3, :3] @ camera.pose[:3, :3].T == pytest.approx(np.eye(3))
     assert np.linalg.det(camera.pose[:3, :3]) == pytest.approx(1.0)
-    across, _ = world.bodies["robot"].fov
-    assert 2 * math.atan(64 / camera.matrix[0, 0]) == pytest.approx(across)
+    assert camera.matrix[0, 0] == camera.matrix[1, 1], "pixels are square"
+    for side, angle in zip(camera.size, world.bodies["robot"].fov, strict=True):
+        assert side / 2 / camera.matrix[0, 0] == pytest.approx(math.tan(angle / 2), rel=0.02)
+        assert side / 2 / camera.matrix[0, 0] <= math.tan(angle / 2) * (1 + 1e-9)
 
 
 def test_glass_is_seen_through_but_seen(world: World) -> None:
@@ -267,7 +269,7 @@ def trial_with_pictures() -> str:
     trial = TrialSpec(task=short, robots=robots, human="x", participant=0, index=0, seed=0, **hashes)
     log = episode.play(trial, World(tiny.house(), robots=("scout",)), Mind(), {"robot": Mind()})
     assert not log.faults, log.faults
-    assert (128, 128, 3) in seen
+    assert (104, 160, 3) in seen
     assert all(all(one) for one in seen)
     return f"{len(seen)} looks"
 

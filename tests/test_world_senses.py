@@ -156,6 +156,7 @@ def test_people_see_walls_over_tables_and_robots_do_not(world: World) -> None:
 
 def test_scans_agree_with_the_free_space_grid(world: World) -> None:
     space = world.space["robot"]
+    world.teleport("human", Pose(x=1.2, y=2.0))
     for yaw in np.linspace(-math.pi, math.pi, 9):
         world.teleport("robot", Pose(x=4.2, y=1.9, yaw=float(yaw)))
         scan = world.senses("robot").scan()

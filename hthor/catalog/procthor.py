@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Container
 from pathlib import Path
 from typing import Any
 
 from msgspec import Struct
 
-from hthor import documents
+from hthor import documents, jsonio
 from hthor.errors import HouseError
 from hthor.types import Vec3
 
@@ -166,9 +167,19 @@ def read(path: Path) -> dict[str, Asset]:
     Raises:
         HouseError: when the file is absent or is no such database.
     """
-    types = documents.read(path, dict[str, list[_Row]], HouseError, hint="expected a ProcTHOR asset database")
+    types = _types(path)
     rows = (row for group in types.values() for row in group)
     return {row.asset_id: _asset(path, row, row.bounding_box) for row in rows if row.bounding_box is not None}
+
+
+def excerpt(path: Path, ids: Container[str]) -> bytes:
+    """The rows of an asset database about these assets, as a small database; raises as `read`."""
+    kept = {name: [row for row in rows if row.asset_id in ids] for name, rows in _types(path).items()}
+    return jsonio.pretty({name: rows for name, rows in kept.items() if rows})
+
+
+def _types(path: Path) -> dict[str, list[_Row]]:
+    return documents.read(path, dict[str, list[_Row]], HouseError, hint="expected a ProcTHOR asset database")
 
 
 def _asset(path: Path, row: _Row, box: Any) -> Asset:

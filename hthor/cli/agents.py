@@ -9,7 +9,7 @@ import typer
 
 from hthor.cli import screen
 from hthor.cli.giving import AgentArgs, Readable
-from hthor.cli.runs import Json, Run
+from hthor.cli.runs import Camera, CameraSize, Json, Run
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -78,6 +78,8 @@ def check(
     robot: Annotated[
         str, typer.Option(help="The body it is tried in.", show_default="the first that it is made for, or scout")
     ] = "",
+    camera: Camera = "own",
+    camera_size: CameraSize = "",
     isolation: Isolation = "auto",
     json: Json = False,
 ) -> None:
@@ -85,11 +87,13 @@ def check(
 
     Exit code 4 when something is broken; warnings cost nothing.
     """
+    from hthor import cameras
     from hthor.eval import contract
     from hthor.guest import given
 
     more = given.read(agent_args or (), readable or ())
-    report = contract.check(agent, robot=robot, isolation=isolation, given=more)
+    seen = cameras.tidy(camera, camera_size)
+    report = contract.check(agent, robot=robot, camera=seen, isolation=isolation, given=more)
     if json:
         screen.put_json(report)
     else:
@@ -126,7 +130,7 @@ def _tell(paper: Console, done: Rerun) -> None:
     for failure in done.left.failures if done.left else ():
         lines += ["", *failure_lines(failure)]
     if done.changed:
-        lines += ["", "the agent's file has changed since the run, so this may go otherwise than it was logged."]
+        lines += ["", "the agent's files have changed since the run, so this may go otherwise than it was logged."]
     else:
         lines += ["", "as it was logged." if done.same else "it went otherwise than it was logged."]
     for line in lines:

@@ -22,6 +22,7 @@ from hthor.cli import (
     homes,
     lists,
     logged,
+    patience,
     people,
     priors,
     reports,
@@ -99,4 +100,6 @@ def run() -> None:
         os.environ["_TYPER_FORCE_DISABLE_TERMINAL"] = "1"  # typer would also colour for GITHUB_ACTIONS and PY_COLORS
     if completing.VARIABLE in os.environ:
         completing.attach(app)
-    ending.conclude(app)
+    groups = [str(group.name) for group in app.registered_groups]
+    with patience.shown(sys.argv[1:], groups):
+        ending.conclude(app)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hthor.cli import screen
+from hthor.cli.giving import AgentArgs, Readable
 from hthor.cli.runs import Json
 
 if TYPE_CHECKING:
@@ -28,14 +29,41 @@ def _group() -> None:
 
 @app.command("check")
 def check(
-    folders: Annotated[list[Path], typer.Argument(metavar="SUBMISSION...", help="Folders such as submissions/mine.")],
+    folders: Annotated[
+        list[Path],
+        typer.Argument(metavar="SUBMISSION...", help="Folders such as submissions/mine, or archives of them."),
+    ],
     json: Json = False,
 ) -> None:
     """See that folders are submissions, without running anything of them."""
     from hthor.leaderboard import submission
 
-    found = [one for folder in folders for one in submission.problems(folder)]
+    found = []
+    for place in folders:
+        with submission.unpacked(place) as folder:
+            found += list(submission.problems(folder))
     _tell(found, json, f"{len(folders)} submission{'' if len(folders) == 1 else 's'} in order")
+
+
+@app.command("unpack")
+def unpack(
+    archive: Annotated[Path, typer.Argument(metavar="ARCHIVE", help="A .zip or .tar.gz of a submission.")],
+    out: Annotated[
+        Path | None, typer.Option(help="The folder to make.", show_default="the archive's name without its ending")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Unpack a submission: plain files alone, none outside its folder, and no more than a submission may hold."""
+    from hthor.errors import HthorError
+    from hthor.leaderboard import archive as archives
+    from hthor.leaderboard import files, submission
+
+    if not archives.is_one(archive):
+        raise HthorError(f"{archive} is no archive; expected a file that ends in {', '.join(archives.SUFFIXES)}.")
+    folder = out or Path(archives.stem(archive))
+    archives.unpack(archive, folder, most_bytes=submission.MAX_BYTES, most_files=submission.MAX_FILES)
+    files.refuse(submission.problems(folder))
+    screen.put_files([folder], json)
 
 
 @app.command("add")
@@ -43,7 +71,8 @@ def add(
     run: Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder, or a folder of such.")],
     board: Board = BOARD,
     submission: Annotated[
-        Path | None, typer.Option(help="The folder that the agent was handed in with.", show_default=False)
+        Path | None,
+        typer.Option(help="The folder or archive that the agent was handed in as.", show_default=False),
     ] = None,
     json: Json = False,
 ) -> None:
@@ -54,7 +83,11 @@ def add(
     from hthor.leaderboard import enter, publish
     from hthor.leaderboard import submission as submissions
 
-    added = enter.add(run, board, submissions.read(submission) if submission else None)
+    if submission is None:
+        added = enter.add(run, board)
+    else:
+        with submissions.unpacked(submission) as folder:
+            added = enter.add(run, board, submissions.read(folder))
     publish.build(board)
     if json:
         screen.put_json({"entries": [str(path) for _, path in added]})
@@ -156,6 +189,8 @@ def verify(
         typer.Option(help="Public chance from after the submission, such as the hash of the commit that merged it."),
     ],
     agent: Annotated[str, typer.Option(help="The agent's file, for one that is not hthor's own.")] = "",
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
     suite: Annotated[str, typer.Option(help="Where the suite lies, when it is not hthor's own.")] = "",
     sample: Annotated[
         int | None,
@@ -185,6 +220,7 @@ def verify(
     statistically for an agent that does not repeat itself (V3). An agent that does worse at tasks which nobody had seen
     is flagged.
     """
+    from hthor.guest import given
     from hthor.leaderboard import files, publish, verification
     from hthor.leaderboard import verify as verifying
 
@@ -192,6 +228,7 @@ def verify(
     request = verifying.Request(
         word=draw,
         agent=agent,
+        given=given.read(agent_args or (), readable or ()),
         suite=suite,
         sample=sample,
         fresh=fresh,

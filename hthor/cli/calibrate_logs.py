@@ -64,4 +64,4 @@ def _say_rest(found: Found, folder: Path) -> None:
     for note in found.notes:
         screen.put_line(note)
     screen.put_line(f"files: {folder}/population.json, population.npz, estimates.json")
-    screen.put_line(f"next:  hthor eval --humans {shlex.quote(str(folder))}/population.npz --agent ...")
+    screen.put_line(f"next:  hthor eval --humans {shlex.quote(str(folder))}/population.npz --agent frontier")

@@ -35,6 +35,7 @@ OFFERS: dict[str, Callable[..., list[str]]] = {
     "isolation": offers.levels,
     "require_isolation": offers.levels,
     "detector": offers.detectors,
+    "camera": offers.cameras,
     "run": offers.runs,
     "runs": offers.runs,
     "folders": offers.runs,

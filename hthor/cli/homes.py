@@ -122,19 +122,22 @@ def show(
     house: House,
     out: Annotated[Path | None, typer.Option(help="The PNG file to write; left out: HOUSE.png.")] = None,
     scale: Annotated[float, typer.Option(min=5.0, max=200.0, help="Pixels a metre.")] = 60.0,
+    plain: Annotated[bool, typer.Option("--plain", help="Without the names of rooms.")] = False,
     json: Json = False,
 ) -> None:
-    """Draw a house from above, its ceilings off."""
+    """Draw a house from above, its ceilings off, with the names of its rooms and a scale."""
     import cv2
 
     from hthor import houses, jsonio
+    from hthor.eval import overhead
     from hthor.world import World
 
     spec = houses.load(house)
     path = out or Path(f"{spec.id}.png")
     if path.suffix.lower() != ".png":
         raise typer.BadParameter(f"'{path}' does not end in .png", param_hint="--out")
-    picture = World(spec).top_view(scale)
+    world = World(spec)
+    picture = overhead.captioned(world.top_view(scale), spec, world.top_view_bounds, named=not plain)
     jsonio.write(path, cv2.imencode(".png", picture[:, :, ::-1])[1].tobytes())
     screen.put_files([path], json, house=spec.id)
 

@@ -55,7 +55,8 @@ def new_agent(
         raise HthorError(str(error)) from None
     screen.put_files([file], json)
     quoted = shlex.quote(str(file))
-    sys.stderr.write(f"next:  hthor agent check {quoted}    hthor eval --agent {quoted} --humans proxy\n")
+    for line in screen.following(f"hthor agent check {quoted}", f"hthor eval --agent {quoted} --humans proxy"):
+        sys.stderr.write(f"{line}\n")
 
 
 agent.command("check")(agents_of_mine.check)

@@ -84,7 +84,7 @@ def replay(
         str, typer.Argument(metavar="TRIAL", help="A key or its start, a task's id, or a number counted from 0.")
     ],
     out: Annotated[
-        Path | None, typer.Option(help="The file to write.", show_default="RUN/replays/TASK-KEY.png, or .mp4")
+        Path | None, typer.Option(help="The file to write.", show_default="RUN/replays/TASK-KEY.png, or .webm")
     ] = None,
     video: Annotated[bool, typer.Option("--video", help="Write a film instead of a picture.")] = False,
     mind: Annotated[
@@ -113,7 +113,7 @@ def replay(
 
     houses.shelve(run / "houses")  # where the suite brought its own
     record = find.trial(run, trial)
-    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'mp4' if video else 'png'}"
+    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'webm' if video else 'png'}"
     redraw.draw(record, path, video=video)
     screen.put_files([path], json, key=record.key, task=record.spec.task.id)
 

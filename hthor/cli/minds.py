@@ -18,7 +18,7 @@ def replay(
 ) -> None:
     """Play a person's session again up to one trial, and draw or print what went on in their mind."""
     from hthor import houses
-    from hthor.eval import find, mind, mind_picture, redraw
+    from hthor.eval import find, lettering, mind, mind_picture, redraw
 
     houses.shelve(run / "houses")  # where the suite brought its own
     record = find.trial(run, trial)
@@ -37,5 +37,5 @@ def replay(
     path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}-mind.png"
     path.parent.mkdir(parents=True, exist_ok=True)
     redraw.check_name(path, video=False)
-    mind_picture.figure(record, house, stream).savefig(path)
+    lettering.save(mind_picture.figure(record, house, stream), path)
     sys.stdout.write(f"{path}\n")

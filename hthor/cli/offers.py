@@ -64,6 +64,11 @@ def detectors() -> list[str]:
     return ["ideal", "noisy", "own"]
 
 
+def cameras() -> list[str]:
+    """Robots' cameras."""
+    return ["habitat", "own", "realsense", "square", "thor"]
+
+
 def packs() -> list[str]:
     """Furniture packs in the user's cache."""
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")

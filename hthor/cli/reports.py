@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from hthor.cli import screen
+from hthor.cli.giving import AgentArgs, Readable
 from hthor.cli.runs import Json
 
 Runs = Annotated[list[Path], typer.Argument(metavar="RUN...", help="Runs' folders, such as runs/demo/frontier.")]
@@ -62,6 +63,8 @@ def case(
         list[str] | None,
         typer.Option(help="The file of an agent that is not built in; repeat it for several.", show_default=False),
     ] = None,
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
     humans: Annotated[str, typer.Option(help="The people's file, if any.", show_default=False)] = "",
     json: Json = False,
 ) -> None:
@@ -70,7 +73,9 @@ def case(
     A row a run, as SVG and as PNG. The person's session is played again for the views, and must go as it was logged.
     """
     from hthor.eval.pages import case as cases
+    from hthor.guest import given
 
+    more = given.read(agent_args or (), readable or ())
     profile = "nice" if nice else "fast"
-    paths = cases.study(runs, task, out, person=person, profile=profile, agents=agent or (), humans=humans)
+    paths = cases.study(runs, task, out, person=person, profile=profile, agents=agent or (), humans=humans, given=more)
     screen.put_files(paths, json, task=task)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -19,6 +19,23 @@ if TYPE_CHECKING:
 
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder, such as runs/demo/frontier.")]
 Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output; words go to standard error.")]
+
+Camera = Annotated[
+    str,
+    typer.Option(
+        help="The robot's camera: own (as its body says), square, thor, habitat or realsense; docs/robots.md lists "
+        "their fields of view and sizes. What the robot detects does not depend on it."
+    ),
+]
+CameraSize = Annotated[
+    str,
+    typer.Option(
+        metavar="WxH",
+        help="The size of its pictures in pixels, such as 320x240. Pixels are square, so another shape than the field "
+        "of view's shows the middle of it.",
+        show_default="the camera's own",
+    ),
+]
 
 _FAULTS_EXIT = 3
 
@@ -79,6 +96,8 @@ def evaluate(
             "miss=0.2,false_alarm=0.05,position_sigma=0.03."
         ),
     ] = "own",
+    camera: Camera = "own",
+    camera_size: CameraSize = "",
     assets: Annotated[
         str,
         typer.Option(
@@ -92,6 +111,18 @@ def evaluate(
         typer.Option(
             min=1, help="How many people, ten tasks each.", show_default="so many that every task is done once"
         ),
+    ] = None,
+    house: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Only the suite's tasks in this house; repeat it for several. Or a house file of your own, "
+            "my_house.json: then ten tasks are made in it, as 'hthor tasks make' does, and played.",
+            show_default="all of the suite's",
+        ),
+    ] = None,
+    difficulty: Annotated[
+        Literal["easy", "medium", "hard"] | None,
+        typer.Option(help="Only tasks so hard. Neither such a run nor one with --house is ranked.", show_default="all"),
     ] = None,
     limit: Annotated[
         int | None,
@@ -195,7 +226,7 @@ def evaluate(
     The same command resumes an interrupted run, and only scores a finished one. The same seed gives the same records,
     byte for byte, with any number of jobs.
     """
-    from hthor.eval import campaign, intent, matrix, peoples, progress, remains, report
+    from hthor.eval import campaign, evaluation, homemade, intent, matrix, peoples, progress, remains, report
 
     allowed = remains.allowance(max_faults)
     talk = screen.console(talk=True)
@@ -214,6 +245,8 @@ def evaluate(
         robot=robot,
         assets=assets,
         detector=detector,
+        camera=camera,
+        camera_size=camera_size,
         seed=seed,
         participants=participants,
         jobs=jobs,
@@ -225,6 +258,8 @@ def evaluate(
         realtime=realtime,
         name=name,
         limit=limit,
+        houses=tuple(house or ()),
+        difficulty=difficulty or "",
         step_limit=step_limit,
         isolation=isolation,
         require_isolation=require_isolation,
@@ -233,6 +268,7 @@ def evaluate(
         agent_args=tuple(agent_args or ()),
         readable=tuple(readable or ()),
     )
+    options = homemade.resolve(options, lambda words: None if quiet else _say(talk, words))
     if dry_run:
         from hthor.cli import ahead
 
@@ -257,7 +293,8 @@ def evaluate(
             whose = f", {one.plan.humans.name} people" if whole is not None else ""
             _say(paper, f"{one.plan.name}{whose}: {one.folder}/")
     if json:
-        screen.put_json(whole or (results[0] if len(results) == 1 else results))
+        held = tuple(evaluation.Evaluated(folder=str(one.folder), result=one.result) for one in done)
+        screen.put_json(evaluation.Evaluation(runs=held, peoples=whole))
     if any(one.result.counts.faults > allowed(one.result.counts.trials) for one in done):
         raise typer.Exit(_FAULTS_EXIT)
 
@@ -293,11 +330,12 @@ def _show(console: Console, one: Done) -> None:
     _say(console, f"files: {folder}/run.json, trials.jsonl, result.json{more}")
     run = shlex.quote(str(folder))
     unranked = overrides.of(one.plan)
-    ranked = "" if unranked else f"    hthor leaderboard add {run}"
     if unranked:
         why = ", ".join(f"{name.replace('_', '-')} is {value}" for name, value in unranked.items())
         _say(console, f"not for the leaderboard: {why}")
-    _say(console, f"next:  hthor replay {run} 0    hthor score {run} --all{ranked}")
+    ranked = () if unranked else (f"hthor leaderboard add {run}",)
+    for line in screen.following(f"hthor replay {run} 0", f"hthor score {run} --all", *ranked):
+        _say(console, line)
 
 
 def _compare_peoples(console: Console, whole: Matrix) -> None:

@@ -21,13 +21,14 @@ documents: list[int] = []
 def console(*, talk: bool = False) -> Console:
     """A console on standard output, or on standard error for ``talk``.
 
-    NO_COLOR and FORCE_COLOR are heeded. Where nobody can see how wide it is, it is wide enough for our tables.
+    NO_COLOR and FORCE_COLOR are heeded. Tables are fitted to the width. Where nobody can see how wide it is, it is wide
+    enough for our tables.
     """
-    from rich.console import Console
+    from hthor.cli.fitting import FittingConsole
 
     stream: TextIO = sys.stderr if talk else sys.stdout
     wide = None if stream.isatty() or "COLUMNS" in os.environ else _PIPE_COLUMNS
-    return Console(file=stream, width=wide, emoji=False)  # agent.py:B: is no blood group
+    return FittingConsole(file=stream, width=wide, emoji=False)  # agent.py:B: is no blood group
 
 
 def live() -> bool:
@@ -51,6 +52,11 @@ def put_files(paths: Sequence[object], json: bool, **more: Any) -> None:
         put_json({"files": [str(path) for path in paths], **more})
     else:
         sys.stdout.write("".join(f"{path}\n" for path in paths))
+
+
+def following(*commands: str) -> list[str]:
+    """Lines that tell which commands may follow: one each, so that each can be copied as it stands."""
+    return [f"{'      ' if number else 'next: '} {command}" for number, command in enumerate(commands)]
 
 
 def put_line(text: str, shape: Format = Format.TABLE) -> None:

@@ -72,7 +72,7 @@ def make(
     sys.stdout.write(f"{folder}: {made.tasks} tasks in {made.houses} houses, suite {made.suite_sha256[:10]}\n")
     sys.stdout.write(f"publish now:    {path} (salt {made.salt[:10]})\n")
     sys.stdout.write(f"keep to yourself until the season is over: {salt_file}, and the rest of {folder}\n")
-    sys.stderr.write(f"next:  hthor eval --suite {shlex.quote(str(folder))} --agent my_agent.py\n")
+    sys.stderr.write(f"next:  hthor eval --suite {shlex.quote(str(folder))} --agent frontier\n")
 
 
 @app.command("reveal")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import sys
 import time
 from collections import Counter
@@ -20,7 +21,7 @@ from hthor.cli.runs import Json
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hthor.eval.soundness import Verdict
+    from hthor.eval.soundness import Fault, Verdict
     from hthor.tasks import Suite
     from hthor.types import Placement, TaskSpec
 
@@ -32,7 +33,6 @@ Own = Annotated[
 ]
 
 _SAY_EVERY_S = 20.0
-_FAULTS = 20
 
 
 @app.callback()
@@ -131,6 +131,63 @@ def draw_task(
     screen.put_files([path], json, task=spec.id)
 
 
+@app.command("make")
+def make_suite(
+    houses: Annotated[
+        list[str], typer.Argument(metavar="HOUSE...", help="Houses: house files (ProcTHOR's JSON), or names of ours.")
+    ],
+    out: Annotated[
+        Path,
+        typer.Option(
+            help="The suite's file, mysuite.json, with copies of the houses in mysuite.houses; or the folder of both."
+        ),
+    ] = Path("mysuite.json"),
+    tasks: Annotated[int, typer.Option(min=1, help="How many tasks in each house.")] = 10,
+    kind: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Tasks of this kind: its name or short name. Repeat it for several.",
+            show_default="a quarter searches, the others deliveries",
+        ),
+    ] = None,
+    difficulty: Annotated[
+        Literal["easy", "medium", "hard"] | None, typer.Option(help="Only tasks so hard.", show_default="any")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Equal seeds give equal tasks in equal houses.")] = 0,
+    name: Annotated[str, typer.Option(help="What to call the suite.", show_default="as the file")] = "",
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one a CPU]")] = None,
+    json: Json = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+) -> None:
+    """Make a suite of tasks in houses of your own, for 'hthor eval --suite'.
+
+    Each task is proved as 'hthor tasks check' does it, and drawn again when it does not pass.
+    """
+    from hthor.eval import making as proved
+    from hthor.eval import programme
+    from hthor.tasks import making, packing
+
+    given = packing.sources(houses)
+    packing.clear(out)
+    kinds = tuple(dict.fromkeys(programme.find(one).name for one in kind or ()))
+    recipe = making.Recipe(
+        name=packing.named(name or out.stem), tasks=tasks, kinds=kinds, difficulty=difficulty or "", seed=seed
+    )
+    columns: dict[int, tuple[TaskSpec, ...]] = {}
+    with _watched(recipe.name, len(given), quiet, "houses") as tell:
+        for number, column in proved.columns(recipe, given, jobs=jobs or len(os.sched_getaffinity(0))):
+            columns[number] = column
+            tell(False)
+    made = packing.files(recipe.name, making.VERSION, given, [columns[number] for number in range(len(given))])
+    path = packing.write(out, made)
+    total, command = sum(map(len, columns.values())), f"hthor eval --suite {shlex.quote(str(path))} --agent frontier"
+    if json:
+        screen.put_json({"suite": str(path), "name": recipe.name, "tasks": total, "houses": len(given)})
+        return
+    sys.stdout.write(f"{path}: {total} tasks in {len(given)} houses, each proved\n")
+    sys.stdout.write(f"next:  {command}\n")
+
+
 @app.command("check")
 def check_tasks(
     suites: Annotated[list[str], typer.Argument(metavar="SUITE...", help="Suites to check: names or files.")],
@@ -138,7 +195,7 @@ def check_tasks(
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
 ) -> None:
-    """Prove that every task is what it says and can be done: exit code 1 when one is not.
+    """Prove that every task is what it says and can be done: exit code 1 when one is not, and all that is wrong.
 
     Each is set up in the real world: everything must stay where it is put, be where the task says, and a person who
     knows everything must meet the goal, in no less than T* and within the time limit.
@@ -146,9 +203,9 @@ def check_tasks(
     from hthor.eval import soundness
     from hthor.tasks import library
 
-    shelves = [library.read(name) for name in suites]
+    shelves = [_some(library.read(name), name) for name in suites]
     workers = jobs or len(os.sched_getaffinity(0))
-    rows, verdicts = [], list[Any]()
+    rows, faults = [], list[Fault]()
     for shelf in shelves:
         began = time.monotonic()
         with _watched(shelf.name, len(shelf.tasks), quiet) as tell:
@@ -158,20 +215,28 @@ def check_tasks(
                 tell(bool(verdict.faults))
         rows.append({**_verdict_row(shelf, own), "wall_s": round(time.monotonic() - began, 1)})
         order = {task.id: number for number, task in enumerate(shelf.tasks)}
-        verdicts += sorted((one for one in own if one.faults), key=lambda one: order[one.task])
-    faults = [fault for verdict in verdicts for fault in verdict.faults]
+        faults += soundness.repeated(shelf.tasks)
+        unsound = sorted((one for one in own if one.faults), key=lambda one: order[one.task])
+        faults += [fault for verdict in unsound for fault in verdict.faults]
     if json:
         for row in rows:
             del row["wall_s"]  # the same tasks give the same document
         screen.put_json({"suites": rows, "faults": faults})
     else:
-        for fault in faults[:_FAULTS]:
+        for fault in faults:
             sys.stdout.write(f"{fault.task}: {fault.field}: {fault.reason}\n")
-        if len(faults) > _FAULTS:
-            sys.stdout.write(f"and {len(faults) - _FAULTS} more faults; --json lists them all\n")
         _put(rows)
     if faults:
         raise typer.Exit(1)
+
+
+def _some(suite: Suite, given: str) -> Suite:
+    """The suite, if there is anything in it."""
+    from hthor.errors import TaskError
+
+    if not suite.tasks:
+        raise TaskError(given, "tasks", "is empty; a suite needs at least one task")
+    return suite
 
 
 # --------------------------------------------------------------------------------------------------------------- rows
@@ -259,7 +324,7 @@ def _put(rows: Sequence[dict[str, Any]], short: Sequence[str] = (), shape: Forma
 
 
 @contextmanager
-def _watched(name: str, total: int, quiet: bool) -> Iterator[Callable[[bool], None]]:
+def _watched(name: str, total: int, quiet: bool, unit: str = "tasks") -> Iterator[Callable[[bool], None]]:
     """Progress on standard error: a bar where somebody watches, a line now and then where nobody does."""
     done, bad, said = 0, 0, time.monotonic()
     first: tuple[int, float] | None = None
@@ -267,7 +332,7 @@ def _watched(name: str, total: int, quiet: bool) -> Iterator[Callable[[bool], No
     if not quiet and screen.live():
         from tqdm import tqdm
 
-        bar = tqdm(total=total, desc=name, unit="task", leave=False)
+        bar = tqdm(total=total, desc=name, unit=unit[:-1], leave=False)
 
     def tell(faulty: bool) -> None:
         nonlocal done, bad, said, first
@@ -275,12 +340,14 @@ def _watched(name: str, total: int, quiet: bool) -> Iterator[Callable[[bool], No
         first = first or (done, time.monotonic())
         if bar is not None:
             bar.update()
-            bar.set_postfix(unsound=bad, refresh=False)
+            if unit == "tasks":
+                bar.set_postfix(unsound=bad, refresh=False)
         elif not quiet and (time.monotonic() - said > _SAY_EVERY_S or done == total):
             said = time.monotonic()
             pace = (done - first[0]) / max(said - first[1], 1e-9)  # the first had to wait for the workers to start
             left = f", {(total - done) / pace:.0f} s left" if done > first[0] and done < total else ""
-            sys.stderr.write(f"{name}: {done}/{total} tasks, {bad} unsound{left}\n")
+            told = f", {bad} unsound" if unit == "tasks" else ""
+            sys.stderr.write(f"{name}: {done}/{total} {unit}{told}{left}\n")
 
     try:
         yield tell

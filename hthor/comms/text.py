@@ -9,6 +9,9 @@ from typing import Any
 
 from hthor.types import Vec3
 
+_LOOKED_AT = 8
+"""Times the limit: what a text has beyond that is not even looked at, so that a long one costs no more."""
+
 
 def tidy(text: str, limit: int) -> tuple[str, int]:
     """The text on one line, without control and formatting characters, at most ``limit`` characters long.
@@ -16,11 +19,12 @@ def tidy(text: str, limit: int) -> tuple[str, int]:
     Returns:
         the text, and how many characters were cut from its end.
     """
-    spaced = "".join(" " if char.isspace() else char for char in text)
+    seen = text[: limit * _LOOKED_AT]
+    spaced = "".join(" " if char.isspace() else char for char in seen)
     plain = " ".join("".join(char for char in spaced if unicodedata.category(char)[0] != "C").split())
     plain = unicodedata.normalize("NFC", plain)
     kept = plain[:limit].rstrip()
-    return kept, len(plain) - len(kept)
+    return kept, len(plain) - len(kept) + len(text) - len(seen)
 
 
 def point(value: Any) -> Vec3 | None:

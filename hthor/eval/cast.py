@@ -12,6 +12,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor import garbage, plugins
+from hthor.cameras import OWN
 from hthor.errors import AgentError, HthorError
 from hthor.eval.watched import Watched
 from hthor.guest import identity
@@ -82,13 +83,14 @@ class Stage:
         return Company(self._persons(first).make(first.seed, first.participant), first.robots, mind)
 
     def world(self, trial: TrialSpec) -> World:
-        """The world of a trial; the one of an earlier trial where house, robots, detectors and objects are the same."""
+        """The world of a trial: that of an earlier one where house, objects, robots and senses are the same."""
         task = trial.task
         _unchanged(self._sources.kind, trial.kind_sha256)
         bodies = tuple(seat.robot for seat in trial.robots)
         objects = tuple((placed.id, placed.kind) for placed in task.objects)
         detectors = tuple(seat.detector for seat in trial.robots)
-        key = (task.house, task.house_sha256, bodies, detectors, objects)
+        cameras = tuple(seat.camera or OWN for seat in trial.robots)
+        key = (task.house, task.house_sha256, bodies, detectors, cameras, objects)
         if key not in self._worlds:
             from hthor import houses
             from hthor.world import World
@@ -106,6 +108,7 @@ class Stage:
                 detectors=detectors,
                 profile="fast" if pack is None else "nice",
                 assets=pack or "",
+                cameras=cameras,
             )
             garbage.keep()
         return self._worlds[key]
@@ -147,7 +150,7 @@ class Stage:
         for seat, mind in company.minds.items():
             if isinstance(mind, Watched) and seat in self._sources.manifests:
                 known, grounds = self._sources.manifests[seat], mind.mind.grounds
-                if files := identity.later(mind.mind.take_opened(), known, grounds):
+                if files := identity.later(mind.mind.take_opened(), known, grounds, mind.mind.reference.path):
                     found[seat] = files
                     company.opened[seat] = tuple(sorted({*company.opened.get(seat, ()), *files}))
         return found

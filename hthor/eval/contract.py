@@ -11,6 +11,7 @@ import time
 from msgspec import Struct
 
 from hthor import plugins
+from hthor.cameras import OWN
 from hthor.errors import AgentError, HthorError
 from hthor.eval import crews, points, provenance
 from hthor.eval.crews import Character
@@ -39,11 +40,14 @@ class Report(Struct, frozen=True, kw_only=True):
     figures: dict[str, float] = {}
 
 
-def check(agent: str, *, robot: str = "", isolation: str = "auto", given: Given | None = None) -> Report:
+def check(
+    agent: str, *, robot: str = "", camera: str = OWN, isolation: str = "auto", given: Given | None = None
+) -> Report:
     """Check an agent's file, ``file.py`` or ``file.py:Class``.
 
     Args:
-        robot: the body; by default the first that the agent is made for, or scout.
+        robot: the body; by default the first that the agent is made for, or scout. camera: its
+            camera, as `hthor.cameras.tidy` spells it.
         given: arguments, and files beyond its own that it may read.
 
     Raises:
@@ -62,7 +66,7 @@ def check(agent: str, *, robot: str = "", isolation: str = "auto", given: Given 
     load_s = time.perf_counter() - began
     if character.absent:
         raise HthorError(f"{agent} says that there is no robot at all (absent = True), so there is nothing to check.")
-    rehearsal = Rehearsal(character, robot or (character.bodies[0] if character.bodies else "scout"))
+    rehearsal = Rehearsal(character, robot or (character.bodies[0] if character.bodies else "scout"), camera)
     with Guest(agent) as guest:
         info = guest.load()
         (first,) = rehearsal.play(guest, [rehearsal.a])

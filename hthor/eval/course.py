@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from hthor import jsonio
 from hthor.errors import HthorError, RunError
+from hthor.eval.do_overs import DoOvers
 from hthor.eval.news import Again, Finished, Lost, Played
 
 if TYPE_CHECKING:
@@ -39,7 +40,10 @@ class InternalFailure(HthorError):
 
 @dataclass
 class Course:
-    """What came of playing: CPU time [s], new trials, sessions that began again, and those that were given up."""
+    """What came of playing: CPU time [s], new trials, sessions that began again, and those that were given up.
+
+    ``void`` are the participants whose sessions are to be played again: what came of them does not count.
+    """
 
     cpu_s: float = 0.0
     new: int = 0
@@ -47,6 +51,7 @@ class Course:
     played: int = 0
     replays: int = 0
     lost: list[Lost] = field(default_factory=list)
+    void: set[int] = field(default_factory=set)
 
     @property
     def hopeless(self) -> bool:
@@ -70,11 +75,37 @@ def play(
     Args:
         steady: whether a trial that is played again has to go the same way.
     """
-    came, draining = Course(), False
+    came, do_overs = Course(), DoOvers(book.path.parent)
+    _listen(book, engine, sessions, make, watch, keeper, stop, came, do_overs)
+    if (left := [session for session in sessions if session.participant in came.void]) and not stop.is_set():
+        came.void.clear()
+        _listen(book, engine, left, make, watch, keeper, stop, came, do_overs)
+    if came.other and steady:
+        watch.note(
+            f"{came.other} trials went otherwise when they were played again: something here does not repeat itself"
+        )
+    return came
+
+
+def _listen(
+    book: Log,
+    engine: Engine,
+    sessions: Sequence[Session],
+    make: Make,
+    watch: Watcher,
+    keeper: Keeper,
+    stop: threading.Event,
+    came: Course,
+    do_overs: DoOvers,
+) -> None:
+    """Take in what an engine tells of sessions, until all are over; `Course` has what came of it."""
+    draining = False
     with closing(engine.perform(sessions, make)) as stream:
         for news in stream:
             if isinstance(news, Played):
                 came.played += 1
+                if _voided(news, came, do_overs, watch, known=news.key in book):
+                    continue
                 if book.append(news.key, news.line):
                     came.new += 1
                     watch.played(news.met, news.faulty)
@@ -87,7 +118,7 @@ def play(
             elif isinstance(news, Again):
                 came.replays += 1
                 watch.note(f"the session of participant {news.participant} begins again: {news.cause}")
-            elif isinstance(news, Lost):
+            elif isinstance(news, Lost) and not _voided(news, came, do_overs, watch):
                 came.lost.append(news)
                 watch.note(f"the session of participant {news.participant} is given up: {news.cause}")
             book.sync(due=True)
@@ -98,11 +129,17 @@ def play(
                 draining = True
                 engine.drain()
                 watch.note("stopping when the trials that are being played are over; Ctrl-C again stops at once")
-    if came.other and steady:
-        watch.note(
-            f"{came.other} trials went otherwise when they were played again: something here does not repeat itself"
-        )
-    return came
+
+
+def _voided(news: Played | Lost, came: Course, do_overs: DoOvers, watch: Watcher, *, known: bool = False) -> bool:
+    """Whether news is of a session that is to be played again, as an agent's process was killed in it."""
+    if news.participant not in came.void:
+        if known or not news.killed or not do_overs.take(news.participant):
+            return False
+        came.void.add(news.participant)
+        came.replays += 1
+        watch.note(f"the session of participant {news.participant} begins again: an agent's process was killed")
+    return True
 
 
 def unfinished(folder: Path, lost: Sequence[Lost], missing: int, wanted: int) -> HthorError:

@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 from msgspec import Struct
 
-from hthor import plugins
+from hthor import cameras, plugins
 from hthor.detectors import OWN
 from hthor.errors import HthorError, UnknownName
 from hthor.guest.manifest import Manifest
@@ -50,13 +50,14 @@ class Shape(Struct, frozen=True, kw_only=True):
 
 
 class Crew(Struct, frozen=True, kw_only=True):
-    """The robots of a trial: bodies and their minds, in the order of their seats; ``detector`` as all of them have it.
+    """The robots of a trial: bodies and their minds, in the order of their seats; all have this detector and camera.
 
     A mind that wants no robot is listed too, but has no seat.
     """
 
     robots: tuple[tuple[Shape, Character], ...]
     detector: str = OWN
+    camera: str = cameras.OWN
 
     @property
     def listed(self) -> tuple[RobotSeat, ...]:
@@ -74,6 +75,7 @@ class Crew(Struct, frozen=True, kw_only=True):
                     robot=shape.name,
                     agent=character.ref,
                     detector=self.detector,
+                    camera=msgspec.UNSET if self.camera == cameras.OWN else self.camera,
                     robot_sha256=shape.sha256,
                 )
             )
@@ -121,7 +123,9 @@ def step_limit(crew: Crew, seconds: float | None) -> float | msgspec.UnsetType:
     return float(seconds) if seconds is not None and crew.minds else msgspec.UNSET
 
 
-def form(bodies: Sequence[str | Shape], minds: Sequence[str | Character], detector: str = OWN) -> Crew:
+def form(
+    bodies: Sequence[str | Shape], minds: Sequence[str | Character], detector: str = OWN, camera: str = cameras.OWN
+) -> Crew:
     """A crew of these bodies and minds, which belong together one by one.
 
     Raises:
@@ -137,10 +141,10 @@ def form(bodies: Sequence[str | Shape], minds: Sequence[str | Character], detect
         robots.append((shape, character))
     if all(character.absent for _, character in robots):
         robots = robots[:1]
-    return Crew(robots=tuple(robots), detector=detector)
+    return Crew(robots=tuple(robots), detector=detector, camera=camera)
 
 
-def read(robots: str, agents: Sequence[str], detector: str = OWN) -> list[Crew]:
+def read(robots: str, agents: Sequence[str], detector: str = OWN, camera: str = cameras.OWN) -> list[Crew]:
     """The crews that ``--robots`` stands for: one, or, where bodies have no mind of their own, one for each agent.
 
     Args:
@@ -161,7 +165,7 @@ def read(robots: str, agents: Sequence[str], detector: str = OWN) -> list[Crew]:
     shapes = [embody(body) for body, _ in pairs]
     known = {mind: introduce(mind) for mind in dict.fromkeys([*(mind for _, mind in pairs if mind), *agents])}
     casts = [[known[mind or agent] for _, mind in pairs] for agent in agents or [""]]
-    return [form(shapes, minds, detector) for minds in casts]
+    return [form(shapes, minds, detector, camera) for minds in casts]
 
 
 def _pair(word: str, given: str) -> tuple[str, str]:

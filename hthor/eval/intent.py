@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
-from hthor import detectors, guest
+from hthor import cameras, detectors, guest
 from hthor.errors import HthorError
 from hthor.eval import cast, control, crews, engines, guarded, peoples, programme, provenance, setup, shard
 from hthor.eval.crews import Crew
@@ -16,6 +16,7 @@ from hthor.eval.programme import Programme
 from hthor.eval.setup import Setup
 from hthor.guest import Isolation, given
 from hthor.humans.people import PROXY, People
+from hthor.tasks import library
 
 RUNS = Path("runs")
 
@@ -34,6 +35,8 @@ class Options(Struct, frozen=True, kw_only=True):
     kind: str = ""
     assets: str = ""
     detector: str = detectors.OWN
+    camera: str = cameras.OWN
+    camera_size: str = ""
     seed: int = 0
     participants: int | None = None
     jobs: int | None = None
@@ -45,6 +48,8 @@ class Options(Struct, frozen=True, kw_only=True):
     realtime: bool = False
     name: str = ""
     limit: int | None = None
+    houses: tuple[str, ...] = ()
+    difficulty: str = ""
     step_limit: float | None = None
     isolation: str = "auto"
     require_isolation: str = ""
@@ -96,10 +101,12 @@ def settle(options: Options) -> Intent:
     provenance.keep_compiled()
     whom = peoples.expand(options.humans)
     detector = detectors.tidy(options.detector)
+    camera = cameras.tidy(options.camera, options.camera_size)
     pack = cast.furnish(options.assets)
     shown = setup.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
-    chosen = programme.shorten(programme.choose(options.suite, options.kind), options.limit)
-    parts = _parts(options, chosen, _crews(options, chosen, detector), whom, shown)
+    whole = programme.choose(options.suite, options.kind)
+    chosen = programme.shorten(programme.narrow(whole, options.houses, options.difficulty), options.limit)
+    parts = _parts(options, chosen, _crews(options, chosen, detector, camera), whom, shown)
     controls = _controls(options, chosen, parts) if options.control and not options.shard else {}
     minds = sorted({mind for part in parts for mind in part.crew.minds.values()})
     held = guarded.settle(options.isolation, options.require_isolation, minds)
@@ -128,6 +135,8 @@ def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dic
             kind=chosen.kind,
             assets=assets,
             limit=chosen.limit,
+            houses=chosen.houses,
+            difficulty=chosen.difficulty,
         )
         if options.out is None and not options.name:
             folder = RUNS / plan.folder_name
@@ -159,6 +168,8 @@ def _parts(
                 assets=shown,
                 realtime=options.realtime,
                 limit=chosen.limit,
+                houses=chosen.houses,
+                difficulty=chosen.difficulty,
                 step_limit_s=options.step_limit,
             )
             if options.name:
@@ -182,15 +193,17 @@ def hidden(options: Options) -> tuple[str, ...]:
     """What no agent may read, even if it lies in its own folder: runs, tasks and people."""
     words = (*options.humans, options.suite, options.kind, str(options.out or ""))
     places = [RUNS, *(Path(word.rpartition("@")[2]) for word in words if word)]
+    if options.suite and Path(options.suite).exists():
+        places.append(library.houses_of(Path(options.suite)))
     return tuple(str(path.resolve()) for path in places if path.exists())
 
 
-def _crews(options: Options, chosen: Programme, detector: str) -> list[Crew]:
+def _crews(options: Options, chosen: Programme, detector: str, camera: str) -> list[Crew]:
     """Who is evaluated, one run each."""
     if options.robots:
         if options.robot:
             raise HthorError("--robots names all the bodies; leave out --robot.")
-        return crews.read(options.robots, options.agents, detector)
+        return crews.read(options.robots, options.agents, detector, camera)
     bodies = (options.robot,) if options.robot else chosen.crew
     if not bodies:
         raise HthorError(
@@ -199,7 +212,7 @@ def _crews(options: Options, chosen: Programme, detector: str) -> list[Crew]:
         )
     shapes = [crews.embody(body) for body in bodies]
     minds = [crews.introduce(agent) for agent in options.agents]
-    return [crews.form(shapes, [mind] * len(shapes), detector) for mind in minds]
+    return [crews.form(shapes, [mind] * len(shapes), detector, camera) for mind in minds]
 
 
 def _folder(options: Options, plan: Setup, crews: int, whom: int) -> Path:

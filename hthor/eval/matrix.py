@@ -13,7 +13,7 @@ from hthor.eval.result_file import Result
 from hthor.eval.setup import SuiteRef
 from hthor.eval.stats import Estimate
 
-SCHEMA = "hthor.peoples/1"
+SCHEMA = "hthor.peoples/2"
 
 
 class Cell(Struct, frozen=True, kw_only=True):
@@ -37,7 +37,7 @@ class Worst(Struct, frozen=True, kw_only=True):
 
 
 class Matrix(Struct, frozen=True, kw_only=True):
-    """The document that several peoples in one evaluation give.
+    """What several peoples in one evaluation say together.
 
     Attributes:
         trials: with each people.
@@ -45,7 +45,6 @@ class Matrix(Struct, frozen=True, kw_only=True):
         worst: by the agent's name; the extremes of the bracket do not count, as nobody is like them.
         conclusions: what is said of any two agents, and what becomes of it at the ends of the bracket; empty where the
             bracket is not whole.
-        results: of every run, as its result.json has it.
     """
 
     schema: str = SCHEMA
@@ -57,7 +56,6 @@ class Matrix(Struct, frozen=True, kw_only=True):
     cells: dict[str, dict[str, Cell]]
     worst: dict[str, Worst]
     conclusions: tuple[Conclusion, ...]
-    results: tuple[Result, ...]
 
 
 def of(results: Sequence[Result]) -> Matrix:
@@ -74,7 +72,6 @@ def of(results: Sequence[Result]) -> Matrix:
         cells={name: {result.name: _cell(result) for result in held} for name, held in by_people.items()},
         worst=_worst(results),
         conclusions=_conclusions(by_people),
-        results=tuple(results),
     )
 
 

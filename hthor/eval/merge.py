@@ -10,7 +10,20 @@ from msgspec import Struct
 
 from hthor import documents, jsonio
 from hthor.errors import RunError
-from hthor.eval import command, control, guarded, log, machine, opened, reading, record, result_file, score, setup
+from hthor.eval import (
+    command,
+    control,
+    do_overs,
+    guarded,
+    log,
+    machine,
+    opened,
+    reading,
+    record,
+    result_file,
+    score,
+    setup,
+)
 from hthor.eval.log import Log, Place
 from hthor.eval.record import Record
 from hthor.eval.result_file import Effort, Result
@@ -200,8 +213,11 @@ def _score(out: Path, plan: Setup, folders: Sequence[Path]) -> Result:
             replays=sum(one.replays for one in efforts),
         )
     machine.join(out, folders)
+    do_overs.join(out, folders)
     beside, held = control.beside(out, plan, records), _held(out, folders)
-    result = score.summarise(plan, log.fetch(there), records, effort, uplift=beside, isolation=held)
+    result = score.summarise(
+        plan, log.fetch(there), records, effort, uplift=beside, isolation=held, replays=do_overs.count(out)
+    )
     result_file.store(out, result)
     return result
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from msgspec import Struct
 
-from hthor import guest
+from hthor import guest, steps
 from hthor.errors import HthorError
 from hthor.eval import again, cast, provenance, record
 from hthor.eval.record import Record
@@ -112,7 +112,8 @@ def listen(
                 f"the people of this run, '{spec.human}', have no mind to look into. --mind takes runs whose people "
                 "are the proxy, or a model made of it."
             )
-        for trial in session.trials:
+        for number, trial in enumerate(session.trials, 1):
+            steps.say(f"playing trial {number} of {len(session.trials)} again")
             person.listening = trial == spec
             done = stage.play(company, trial)
         traits = {name: getattr(person.human.traits, name) for name in person.human.traits.__struct_fields__}

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon, Wedge
 
 from hthor import geometry, rules
-from hthor.eval import mind_timeline, plan, trace
+from hthor.eval import lettering, mind_timeline, plan, trace
 from hthor.eval.mind import Stream
 from hthor.eval.record import Record
 from hthor.types import HUMAN, Event, HouseSpec, Vec2
@@ -36,6 +36,7 @@ _VIEW_M, _VIEW_DEG = 1.1, 97.0
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.0, foreground="white")]
 
 
+@lettering.plain()
 def figure(record: Record, house: HouseSpec, stream: Stream) -> Figure:
     """Draw a mind, 11 inches wide, 14 where the house is deep."""
     moments = _moments(stream.events)

@@ -11,13 +11,18 @@ if TYPE_CHECKING:
 
 
 class Played(Struct, frozen=True, kw_only=True):
-    """A trial is over. ``line`` is its whole record, ``left`` what is left of agents that failed in it."""
+    """A trial is over. ``line`` is its whole record, ``left`` what is left of agents that failed in it.
+
+    ``killed`` says that an agent's process was ended as if from outside; its session may be played again.
+    """
 
     key: str
+    participant: int
     line: bytes
     met: bool
     faulty: bool
     left: Remains | None = None
+    killed: bool = False
 
 
 class Finished(Struct, frozen=True, kw_only=True):
@@ -27,18 +32,22 @@ class Finished(Struct, frozen=True, kw_only=True):
 
 
 class Again(Struct, frozen=True, kw_only=True):
-    """A session begins again, as its worker or an agent's process was lost."""
+    """A session begins again, as its worker was lost."""
 
     participant: int
     cause: str
 
 
 class Lost(Struct, frozen=True, kw_only=True):
-    """A session was given up; the others go on. ``detail`` is the traceback of a bug, empty when there is none."""
+    """A session was given up; the others go on. ``detail`` is the traceback of a bug, empty when there is none.
+
+    ``killed`` says that an agent's process was ended as if from outside before it could say what it is.
+    """
 
     participant: int
     cause: str
     detail: str = ""
+    killed: bool = False
 
 
 class Failed(Struct, frozen=True, kw_only=True):

@@ -10,22 +10,29 @@ from typing import TYPE_CHECKING
 from matplotlib import patheffects
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from hthor import rules
-from hthor.episode import EpisodeLog
-from hthor.eval import plan, timeline, trace
-from hthor.types import Event, HouseSpec, TrialSpec, Vec2
+from hthor.episode import EpisodeLog, Fault
+from hthor.eval import lettering, plan, timeline, trace
+from hthor.types import HouseSpec, TrialSpec, Vec2
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 _CORNERS, _CROWDED_M = ((1, 1), (-1, -1), (-1, 1), (1, -1)), 1.5
 """Where the names of targets stand that are so near each other."""
 _LINES, _LINE_MAX, _HEAD_MAX = 10, 110, 70
 """Messages whose words are shown, and characters of a line of words and of the headline."""
+_COLUMNS, _DEEPEST = 5, 8.5
+"""Entries of the legend side by side, and inches of a plan's height at most."""
+_LETTER_IN, _BADGE_IN, _BESIDE_M = 0.065, 0.17, 0.15
+"""Inches of a letter on a badge and of a badge; metres below which an arrow to what is meant would hide the badge."""
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.4, foreground="white")]
 
 
+@lettering.plain()
 def figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
     """Draw a trial, about 8 inches wide: the plan, the timeline below, and the messages' words.
 
@@ -43,20 +50,25 @@ def figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
     for seat in log.paths:
         draw_path(above, log, seat)
     _draw_targets(above, spec, house)
-    for number, event in enumerate(trace.messages(log), 1):
-        _draw_message(above, log, number, event)
+    draw_messages(above, log)
     _draw_acts(above, log)
-    above.set_title(_headline(spec, log), fontsize=10, loc="left", color=trace.INK)
-    _legend(sheet, spec, log, house)
+    above.set_title(headline(spec, log), fontsize=10, loc="left", color=trace.INK)
+    _legend(sheet, handles(spec, log, house))
     timeline.draw_timeline(below, spec, log)
     for ax in rest:
         _write_words(ax, words)
     return sheet
 
 
-def draw_path(ax: Axes, log: EpisodeLog, seat: str) -> None:
-    """Draw a seat's way: a line that darkens with time, a dot every ten seconds, rings at start and end."""
+def draw_path(ax: Axes, log: EpisodeLog, seat: str, *, words: bool = True) -> None:
+    """Draw a seat's way: a line that darkens with time, a dot every ten seconds, rings at start and end.
+
+    Where its mind failed there is a cross instead of an end: from then on it only stood there.
+    """
     way, shade = trace.points(log, seat), trace.colour(seat)
+    fault = trace.failure(log, seat)
+    if fault is not None:
+        way = way[: fault.tick // rules.LOG_EVERY_TICKS + 1]
     third = max(1, math.ceil(len(way) / 12))
     for first in range(0, len(way) - 1, third):
         piece = way[first : first + third + 1]
@@ -66,7 +78,21 @@ def draw_path(ax: Axes, log: EpisodeLog, seat: str) -> None:
     dots = way[every::every]
     ax.scatter(dots[:, 0], dots[:, 1], s=9, color=shade, zorder=9, linewidths=0)
     ax.scatter(way[0, 0], way[0, 1], s=46, facecolor="white", edgecolor=shade, linewidths=1.7, zorder=10)
-    ax.scatter(way[-1, 0], way[-1, 1], s=46, facecolor=shade, edgecolor="white", linewidths=1.0, zorder=10)
+    if fault is None:
+        ax.scatter(way[-1, 0], way[-1, 1], s=46, facecolor=shade, edgecolor="white", linewidths=1.0, zorder=10)
+    else:
+        _draw_fault(ax, (float(way[-1, 0]), float(way[-1, 1])), fault, words=words)
+
+
+def _draw_fault(ax: Axes, place: Vec2, fault: Fault, *, words: bool) -> None:
+    """A cross where a mind failed, with what and when."""
+    ax.scatter(*place, s=74, marker="X", facecolor=trace.FAILED, edgecolor="white", linewidths=0.9, zorder=13)
+    if words:
+        told = f"{fault.kind} at {fault.tick * rules.TICK_S:.1f} s"
+        text = ax.annotate(
+            told, place, (7, -4), textcoords="offset points", fontsize=7, color=trace.FAILED, va="top", zorder=13
+        )
+        text.set_path_effects(_STROKE)
 
 
 def _draw_targets(ax: Axes, spec: TrialSpec, house: HouseSpec) -> None:
@@ -126,34 +152,42 @@ def _words(log: EpisodeLog) -> list[tuple[str, str]]:
             (f"{number}  {event.tick * rules.TICK_S:.1f} s  {event.seat}: “{text}” ({end})", trace.tint(log, event))
         )
     half = _LINES // 2
-    return lines if len(lines) <= _LINES else [*lines[:half], ("…", trace.INK), *lines[-half:]]
+    left = len(lines) - 2 * half
+    return lines if left <= 0 else [*lines[:half], (f"… and {left} more", trace.INK), *lines[-half:]]
 
 
 def _write_words(ax: Axes, words: Sequence[tuple[str, str]]) -> None:
     ax.axis("off")
     for row, (line, shade) in enumerate(words):
         height = 1.0 - (row + 0.5) / len(words)
-        ax.text(0.0, height, line, transform=ax.transAxes, fontsize=7.5, color=shade, va="center")
+        told = ax.text(0.0, height, line, transform=ax.transAxes, fontsize=7.5, color=shade, va="center")
+        told.set_in_layout(False)  # a long line takes no room from the plan
 
 
-def _draw_message(ax: Axes, log: EpisodeLog, number: int, event: Event) -> None:
-    here, claim = trace.at(log, event.seat, event.tick), event.data.get("position")
-    if claim is not None:
-        ax.annotate(
-            "",
-            (claim[0], claim[1]),
-            here,
-            arrowprops={
-                "arrowstyle": "-|>",
-                "color": trace.tint(log, event),
-                "lw": 1.0,
-                "ls": (0, (3, 2)),
-                "shrinkA": 6,
-                "shrinkB": 5,
-            },
-            zorder=11,
-        )
-    trace.badge(ax, here, str(number), trace.tint(log, event))
+def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
+    """Every message's number where it was sent, and an arrow to where it said the thing was.
+
+    Messages that would hide one another share a badge.
+    """
+    sent = [
+        (number, event, trace.at(log, event.seat, event.tick)) for number, event in enumerate(trace.messages(log), 1)
+    ]
+    strength = 1.0 if len(sent) <= _LINES else 0.45
+    for _, event, here in sent if arrows else ():
+        claim = event.data.get("position")
+        if claim is not None and math.dist(claim[:2], here) > _BESIDE_M:
+            arrow = {"arrowstyle": "-|>", "color": trace.tint(log, event), "alpha": strength}
+            line = {"lw": 1.0 if strength == 1.0 else 0.7, "ls": (0, (3, 2)), "shrinkA": 6, "shrinkB": 5}
+            ax.annotate("", (claim[0], claim[1]), here, arrowprops=arrow | line, zorder=11)
+    inch = _metres(ax)
+    for group in trace.grouped(log, sent, _LETTER_IN * inch, _BADGE_IN * inch):
+        trace.badge(ax, group.place, group.words, group.shade)
+
+
+def _metres(ax: Axes) -> float:
+    """Metres of the house in an inch of the picture, about."""
+    low, high = ax.get_xlim()
+    return (high - low) / max(1.0, 0.75 * float(ax.get_figure(root=True).get_figwidth()))  # type: ignore[union-attr]
 
 
 def _draw_acts(ax: Axes, log: EpisodeLog) -> None:
@@ -166,18 +200,35 @@ def _draw_acts(ax: Axes, log: EpisodeLog) -> None:
             )
 
 
-def _headline(spec: TrialSpec, log: EpisodeLog) -> str:
+def headline(spec: TrialSpec, log: EpisodeLog) -> str:
+    """What was asked, by whom it was helped, and how it ended, in lines."""
     agents = " and ".join(dict.fromkeys(robot.agent.name for robot in spec.robots)) or "no robot"
     seconds = log.ticks * rules.TICK_S
     end = f"done in {seconds:.1f} s" if log.met else f"not done in {seconds:.0f} s"
     if not log.met and log.progress is not None:
         end += f", {100.0 * log.progress:.0f} % of it done"
     told = "\n".join(textwrap.wrap(f"“{spec.task.instruction}”", _HEAD_MAX))
-    return f"{told}\n{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"
+    lines = [told, f"{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"]
+    for robot in spec.robots:
+        if (fault := trace.failure(log, robot.seat)) is not None:
+            whose = f"{robot.seat}'s agent" if len(spec.robots) > 1 else "the agent"
+            lines.append(f"{whose} failed at {fault.tick * rules.TICK_S:.1f} s ({fault.kind}) and did nothing more")
+    return "\n".join(lines)
 
 
-def _legend(sheet: Figure, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> None:
-    handles = [_line(trace.PERSON, "person")]
+def _legend(sheet: Figure, entries: list[Artist]) -> None:
+    sheet.legend(
+        handles=entries, loc="outside lower left", ncols=_COLUMNS, fontsize=7.5, frameon=False, handlelength=1.6
+    )
+
+
+def handles(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool = False) -> list[Artist]:
+    """The legend's entries: everybody and everything that is drawn of this trial.
+
+    Args:
+        moving: whether it is for a film, which has no marks for starts, ends, deeds and messages.
+    """
+    handles: list[Artist] = [_line(trace.PERSON, "person")]
     handles += [_line(trace.colour(robot.seat), trace.who(robot)) for robot in spec.robots]
     handles += [
         _mark("o", "white", "start", edge="#555555"),
@@ -195,8 +246,12 @@ def _legend(sheet: Figure, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -
             if shade in {trace.tint(log, event) for event in trace.messages(log)}
         ]
     present = {event.kind for event in log.events}
+    if log.faults:
+        handles.append(_mark("X", trace.FAILED, "the agent failed", size=8))
+    if any(plan.is_flat(thing) for thing in house.things):
+        handles.append(Patch(facecolor=plan.RUG, edgecolor=plan.RUG_EDGE, hatch=plan.RUG_HATCH, label="rug, flat"))
     handles += [_mark(mark, "#555555", f"{verb}") for kind, (mark, verb) in trace.ACTS.items() if kind in present]
-    sheet.legend(handles=handles, loc="outside right upper", fontsize=7.5, frameon=False, handlelength=1.6)
+    return handles
 
 
 def _line(shade: str, label: str) -> Line2D:
@@ -214,4 +269,4 @@ def _size(house: HouseSpec) -> tuple[float, float]:
     wide = max(x for x, _ in corners) - min(x for x, _ in corners)
     deep = max(y for _, y in corners) - min(y for _, y in corners)
     width = 8.0
-    return (width, max(4.2, (width - 2.0) * deep / wide + 2.4))
+    return (width, max(4.2, min((width - 0.8) * deep / wide, _DEEPEST) + 2.7))

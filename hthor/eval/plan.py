@@ -23,6 +23,9 @@ MARKED, MARKED_EDGE, MARKED_FLOOR = "#bfe3d4", "#00795a", "#dcf0e6"
 WALL_PT, SMALL_WALL_PT = 3.2, 1.6
 _NAME_PT, _SMALL_NAME_PT = 8.5, 6.5
 _FURNITURE, _EDGE = "#d9d4cb", "#a8a196"
+RUG, RUG_EDGE, RUG_HATCH = "#faf7f0", "#cdc6b8", "////"
+_FLAT_M = 0.05
+"""What rises no higher from the floor is walked and driven over: rugs and mats."""
 
 
 def draw_house(ax: Axes, house: HouseSpec, *, marked: Collection[str] = (), small: bool = False) -> None:
@@ -56,6 +59,11 @@ def _draw_thing(ax: Axes, thing: Thing, marked: bool) -> None:
     if thing.centre[2] - thing.size[2] / 2 > 1.2:
         return  # pictures and lamps overhead would hide what stands below
     outline = geometry.rectangle((thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw)
+    if is_flat(thing):
+        ax.add_patch(
+            Polygon(outline, closed=True, facecolor=RUG, edgecolor=RUG_EDGE, hatch=RUG_HATCH, lw=0.6, ls="--", zorder=1)
+        )
+        return
     face, edge = (MARKED, MARKED_EDGE) if marked else (_FURNITURE, _EDGE)
     ax.add_patch(
         Polygon(
@@ -64,6 +72,11 @@ def _draw_thing(ax: Axes, thing: Thing, marked: bool) -> None:
     )
     front = _front_line(thing)
     ax.plot(*zip(*front, strict=True), color=edge, lw=0.7, zorder=2.1)
+
+
+def is_flat(thing: Thing) -> bool:
+    """Whether a thing only covers the floor, so that everybody goes over it."""
+    return not thing.parent and thing.centre[2] + thing.size[2] / 2 <= _FLAT_M
 
 
 def _front_line(thing: Thing) -> tuple[Vec2, Vec2]:
@@ -102,12 +115,12 @@ def _draw_opening(ax: Axes, opening: Opening, wall_pt: float) -> None:
 
 
 def _name_room(ax: Axes, room: Room, house: HouseSpec, size: float) -> None:
-    x, y = _quiet_spot(room, house)
+    x, y = quiet_spot(room, house)
     text = ax.text(x, y, room.name, ha="center", va="center", fontsize=size, color="#5d6470", style="italic", zorder=6)
     text.set_path_effects([patheffects.withStroke(linewidth=2.5, foreground=FLOORS.get(room.kind, "#eeeeee"))])
 
 
-def _quiet_spot(room: Room, house: HouseSpec) -> Vec2:
+def quiet_spot(room: Room, house: HouseSpec) -> Vec2:
     """The middle of the room's largest patch of bare floor, stretched sideways because names are wide."""
     xs, ys = [x for x, _ in room.polygon], [y for _, y in room.polygon]
     scale, squeeze = 20.0, 0.45

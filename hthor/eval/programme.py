@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +11,12 @@ from msgspec import Struct
 
 from hthor import houses, plugins, seeds, tasks
 from hthor.errors import HthorError, UnknownName
-from hthor.eval import selection
+from hthor.eval import selection, vetting
 from hthor.eval.setup import KindRef
 from hthor.tasks import library
 from hthor.tasks.kind import TaskKind
 from hthor.tasks.library import Suite
+from hthor.types import TaskSpec
 
 _ROOT = seeds.derive(2, "programme")
 """Of all draws of tasks for a user's own kind: the same file always gives the same tasks."""
@@ -26,7 +28,8 @@ class Programme(Struct, frozen=True, kw_only=True):
 
     ``kind`` is what the suite was narrowed to, None for all of it; ``path`` the file of a user's own kind, and
     ``drawn`` whether the tasks were made for this run; ``crew`` the robots' bodies that all the tasks' kinds agree on,
-    empty when they do not. ``limit`` is how many of the tasks were chosen, None where all of them are there.
+    empty when they do not. ``houses`` and ``difficulty`` are what else the suite was narrowed to. ``limit`` is how many
+    of the tasks were chosen, None where all of them are there.
     """
 
     suite: Suite
@@ -36,6 +39,8 @@ class Programme(Struct, frozen=True, kw_only=True):
     crew: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     limit: int | None = None
+    houses: tuple[str, ...] = ()
+    difficulty: str = ""
 
 
 def choose(suite: str, kind: str) -> Programme:
@@ -52,15 +57,57 @@ def choose(suite: str, kind: str) -> Programme:
     if kind.endswith(".py"):
         return _own(kind, suite)
     if not kind:
-        return _whole(tasks.suite(suite or "smoke"))
+        return _whole(vetting.suite(suite or "smoke"))
     known = find(kind)
     if not suite and known.short not in tasks.suites():
         raise HthorError(f"there is no suite of tasks of the kind '{known.name}'; name one that has some with --suite.")
-    whole = tasks.suite(suite or known.short)
+    whole = vetting.suite(suite or known.short)
     chosen = _filtered(whole, known.name)
     if len(chosen.tasks) == len(whole.tasks):
         return _whole(whole)
     return Programme(suite=chosen, kind=KindRef(name=known.name), crew=tuple(known.crew))
+
+
+def narrow(whole: Programme, names: Sequence[str], difficulty: str) -> Programme:
+    """The programme with only its tasks in these houses and of this difficulty; all of them where neither is given.
+
+    What a suite does not tell of the difficulty of its tasks is worked out.
+
+    Raises:
+        UnknownName: when the suite has no task in a house.
+        HthorError: when no task is left.
+    """
+    suite, there = whole.suite, tuple(dict.fromkeys(task.house for task in whole.suite.tasks))
+    for name in names:
+        if name not in there:
+            raise UnknownName(f"house of the suite '{suite.name}'", name, there)
+    chosen = tuple(task for task in suite.tasks if (not names or task.house in names) and _so_hard(task, difficulty))
+    if not chosen:
+        where = f" in {', '.join(names)}" if names else ""
+        raise HthorError(
+            f"the suite '{suite.name}' has no {difficulty} task{where}; see 'hthor tasks list {suite.name}'."
+        )
+    if len(chosen) == len(suite.tasks):
+        return whole
+    words = [f"in {', '.join(dict.fromkeys(names))}"] if names else []
+    words += [f"of difficulty {difficulty}"] if difficulty else []
+    few = f"{len(chosen)} of the {len(suite.tasks)} tasks of '{suite.name}', those {' and '.join(words)}"
+    note = f"{few}, are played: no result for the leaderboard."
+    return msgspec.structs.replace(
+        whole,
+        suite=library.frozen(suite.name, suite.version, chosen),
+        houses=tuple(name for name in there if name in names),
+        difficulty=difficulty,
+        notes=(*whole.notes, note),
+    )
+
+
+def _so_hard(task: TaskSpec, difficulty: str) -> bool:
+    from hthor.tasks import difficulty as difficulties
+
+    if not difficulty:
+        return True
+    return (task.difficulty or difficulties.of(task, houses.load(task.house))) == difficulty
 
 
 def shorten(whole: Programme, limit: int | None) -> Programme:
@@ -102,7 +149,7 @@ def _whole(suite: Suite) -> Programme:
 def _own(path: str, suite: str) -> Programme:
     """The tasks of a user's kind: those of a suite, or one in each of the houses that come with hthor."""
     kind = _loaded(path)
-    found, missing = (_filtered(tasks.suite(suite), kind.name), ()) if suite else _drawn(kind, path)
+    found, missing = (_filtered(vetting.suite(suite), kind.name), ()) if suite else _drawn(kind, path)
     return Programme(
         suite=found,
         kind=KindRef(name=kind.name, sha256=plugins.sha256(path)),

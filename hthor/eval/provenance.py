@@ -38,8 +38,12 @@ def compiled() -> Path:
     Left to itself the compiler's cache looks only at the file of the loop it is asked for, not at those that the loop
     calls into: after an update it could run old code, and nothing would tell.
     """
-    cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(cache) / "hthor" / f"compiled-{code_sha256()[:16]}"
+    return cache() / f"compiled-{code_sha256()[:16]}"
+
+
+def cache() -> Path:
+    """hthor's folder in the user's cache; what lies there can be deleted at any time."""
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "hthor"
 
 
 def keep_compiled() -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from hthor import houses
 from hthor.errors import HthorError
+from hthor.eval import lettering
 from hthor.eval.record import Record
 from hthor.types import HouseSpec
 
@@ -28,7 +29,7 @@ def draw(record: Record, path: Path, *, video: bool) -> None:
     else:
         from hthor.eval import picture
 
-        picture.figure(record.spec, record.log, plan).savefig(path)
+        lettering.save(picture.figure(record.spec, record.log, plan), path)
 
 
 def check_name(path: Path, *, video: bool) -> None:
@@ -37,7 +38,7 @@ def check_name(path: Path, *, video: bool) -> None:
     Raises:
         HthorError: when it does not.
     """
-    valid = (".mp4",) if video else PICTURES
+    valid = (".webm",) if video else PICTURES
     if path.suffix.lower() not in valid:
         raise HthorError(f"{path}: the name of a {'film' if video else 'picture'} must end in {' or '.join(valid)}.")
 

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import msgspec
 from msgspec import Struct
 
-from hthor import rules, tasks
+from hthor import rules, steps, tasks
+from hthor.cameras import OWN
 from hthor.episode import Fault, play
 from hthor.eval import cast, conduct, crews, record
 from hthor.eval.crews import Character
@@ -65,12 +66,12 @@ class Rehearsal:
 
     Args:
         character: the agent, from a file.
-        robot: the body it is in.
+        robot: the body it is in. camera: its camera, as `hthor.cameras.tidy` spells it.
     """
 
-    def __init__(self, character: Character, robot: str) -> None:
+    def __init__(self, character: Character, robot: str, camera: str = OWN) -> None:
         self._stage = cast.Stage()
-        crew = crews.form([robot], [character])
+        crew = crews.form([robot], [character], camera=camera)
         known = {task.id: task for task in tasks.suite("smoke").tasks}
         short = [msgspec.structs.replace(known[name], time_limit=_LIMIT_S) for name in _TASKS]
         dealt = sessions(library.frozen("rehearsal", 1, tuple(short)), agent=crew, participants=1)[0]
@@ -79,7 +80,11 @@ class Rehearsal:
 
     def play(self, guest: Guest, trials: Sequence[TrialSpec]) -> list[Notes]:
         """Play trials one after the other with the same guest, each with a person who knows of no other."""
-        return [self._play(guest, trial) for trial in trials]
+        found = []
+        for number, trial in enumerate(trials, 1):
+            steps.say(f"playing short trial {number} of {len(trials)}")
+            found.append(self._play(guest, trial))
+        return found
 
     def _play(self, guest: Guest, trial: TrialSpec) -> Notes:
         human = self._stage.enter(Session(participant=trial.participant, trials=(trial,))).human

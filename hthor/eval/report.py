@@ -74,7 +74,8 @@ def result_table(result: Result, *, everything: bool = False) -> RenderableType:
         ends = "–" if gain.ci95 is None else " … ".join(_gain(end, unit) for end in gain.ci95)
         seen = least(gain.mde80, 100.0 if unit == "points" else 1.0, room=unit == "points")
         table.add_row(f"uplift: {title}", f"{_gain(gain.difference, unit)} {unit}", ends, seen, str(gain.n))
-    return _doubted(table, [result.humans])
+    notes = [f"uplift: {result.uplift.note}"] if result.uplift and result.uplift.note else []
+    return _doubted(table, [result.humans], notes)
 
 
 def kinds_table(result: Result) -> Table:
@@ -197,13 +198,14 @@ def _scaled(value: float, unit: str) -> str:
     return f"{value * 100.0:.1f}" if unit == "%" else f"{value:.1f}"
 
 
-def _doubted(table: Table, whom: Iterable[HumansRef]) -> RenderableType:
-    """The table, and in one line below it where these people are not known to fit."""
+def _doubted(table: Table, whom: Iterable[HumansRef], more: Sequence[str] = ()) -> RenderableType:
+    """The table, and below it where these people are not known to fit, and what ``more`` there is to know."""
     from rich.console import Group
     from rich.text import Text
 
     notes = dict.fromkeys(note for people in whom for note in people.notes)
-    return Group(table, Text(f"not calibrated for this: {'; '.join(notes)}")) if notes else table
+    said = [*([f"not calibrated for this: {'; '.join(notes)}"] if notes else []), *more]
+    return Group(table, *map(Text, said)) if said else table
 
 
 def _table(title: str) -> Table:

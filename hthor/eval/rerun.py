@@ -6,13 +6,13 @@ meanwhile: then it is the mended one that plays, and the trial may go otherwise.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import msgspec
 from msgspec import Struct
 
-from hthor import guest, plugins
+from hthor import guest, plugins, steps
 from hthor.errors import HthorError
 from hthor.eval import again, crews, guarded, provenance, record, remains, setup
 from hthor.eval.cast import Sources
@@ -60,11 +60,21 @@ def play(folder: Path, wanted: Record, files: Files, isolation: str = "auto", gi
     trials = tuple(msgspec.structs.replace(spec, robots=robots) for spec in specs)
     session = Session(participant=wanted.spec.participant, trials=trials)
     perform = guarded.player(_sources(folder, wanted.spec, files, minds), isolation, (str(folder.resolve()),), given)
-    done = list(perform(session))[-1]
+    done = _last(perform(session), len(trials))
     left = [remains.take(record.key(trial)) for trial in trials][-1]
     changed = robots != wanted.spec.robots
     same = record.encode(done) == record.encode(wanted)
     return Rerun(record=done, before=len(trials) - 1, changed=changed, same=same, left=left)
+
+
+def _last(played: Iterator[Record], count: int) -> Record:
+    """The last of so many trials, each said before it is played."""
+    steps.say(f"playing trial 1 of {count}")
+    done = [next(played)]
+    for number in range(2, count + 1):
+        steps.say(f"playing trial {number} of {count}")
+        done.append(next(played))
+    return done[-1]
 
 
 def _minds(spec: TrialSpec, paths: Sequence[str]) -> dict[str, Character]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
 from msgspec import Struct
 
 from hthor import documents, jsonio
@@ -53,7 +54,8 @@ class Counts(Struct, frozen=True, kw_only=True):
     """How much there is: trials, distinct tasks, successes, messages sent by robots, and trials with a fault.
 
     ``faults_by_seat`` counts the trials in which the robot of each seat failed, ``faults_by_kind`` all faults by what
-    they were.
+    they were. ``replays`` counts sessions that were played again because an agent's process was killed, as if from
+    outside: each gave the agent another try.
     """
 
     trials: int
@@ -63,6 +65,7 @@ class Counts(Struct, frozen=True, kw_only=True):
     faults: int
     faults_by_seat: dict[str, int]
     faults_by_kind: dict[str, int] = {}
+    replays: int = 0
 
 
 class Hashes(Struct, frozen=True, kw_only=True):
@@ -94,9 +97,9 @@ class Result(Struct, frozen=True, kw_only=True):
     """The run's `result.json`.
 
     ``trust_by_trial`` is the rating after the first, second, ... trial of a person's session, empty without a robot.
-    ``uplift`` is None where no whole run without a robot lay beside this one. ``mode`` is "realtime" where thinking
-    took time of the trials, which no second run repeats byte for byte, else "lockstep". ``agents`` lists the files of
-    every agent that is not built in, those included that it opened only while it played.
+    ``uplift`` is None where no whole run without a robot was ever found for this one. ``mode`` is "realtime" where
+    thinking took time of the trials, which no second run repeats byte for byte, else "lockstep". ``agents`` lists the
+    files of every agent that is not built in, those included that it opened only while it played.
     """
 
     schema: str = SCHEMA
@@ -132,6 +135,26 @@ def load(folder: Path) -> Result | None:
         return None
     hint = f"delete the file, and 'hthor score {folder}' writes it again"
     return documents.read(path, Result, RunError, schema=SCHEMA, hint=hint)
+
+
+class _Named(Struct, frozen=True):
+    run: str = ""
+
+
+class _Gained(Struct, frozen=True):
+    """The part of a result that `uplift` reads, whatever the version of the rest."""
+
+    hashes: _Named = _Named()
+    uplift: Uplift | None = None
+
+
+def uplift(folder: Path, *, run: str) -> Uplift | None:
+    """The uplift that a run's result has recorded, whatever its version; None where it has none for this run's hash."""
+    try:
+        held = msgspec.json.decode((folder / "result.json").read_bytes(), type=_Gained)
+    except (OSError, msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+        return None
+    return held.uplift if held.hashes.run == run else None
 
 
 def outdated(path: Path) -> bool:

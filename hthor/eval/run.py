@@ -9,7 +9,20 @@ from pathlib import Path
 from typing import Protocol
 
 from hthor import jsonio
-from hthor.eval import control, course, engines, guarded, log, machine, reading, record, result_file, score, setup
+from hthor.eval import (
+    control,
+    course,
+    do_overs,
+    engines,
+    guarded,
+    log,
+    machine,
+    reading,
+    record,
+    result_file,
+    score,
+    setup,
+)
 from hthor.eval.engines import Engine, Make
 from hthor.eval.log import Log
 from hthor.eval.record import Record
@@ -140,6 +153,7 @@ def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
         effort or (stored.effort if stored else None),
         uplift=control.beside(folder, plan, records),
         isolation=guarded.load(folder),
+        replays=do_overs.count(folder),
     )
     if result != stored:
         result_file.store(folder, result)

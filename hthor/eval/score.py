@@ -11,7 +11,7 @@ from pathlib import Path
 
 import msgspec
 
-from hthor.eval import bounds, control, guarded, metrics, opened, reading, result_file, setup, stats
+from hthor.eval import bounds, control, do_overs, guarded, metrics, opened, reading, result_file, setup, stats
 from hthor.eval.metrics import TrialMetrics
 from hthor.eval.record import Record
 from hthor.eval.result_file import Counts, Effort, Hashes, Result, Scores
@@ -29,8 +29,13 @@ def summarise(
     *,
     uplift: Uplift | None = None,
     isolation: Isolation | None = None,
+    replays: int = 0,
 ) -> Result:
-    """The result of the records of a run, whole or not."""
+    """The result of the records of a run, whole or not.
+
+    Args:
+        replays: how many sessions were played again because an agent's process was killed.
+    """
     trials = hashlib.sha256()
     for line in lines:
         trials.update(line)
@@ -65,6 +70,7 @@ def summarise(
                 for robot in plan.seats
             },
             faults_by_kind=dict(sorted(Counter(fault.kind for one in records for fault in one.faults).items())),
+            replays=replays,
         ),
         versions=plan.versions,
         hashes=Hashes(
@@ -129,7 +135,8 @@ def rescore(folder: Path) -> tuple[Setup, Result, Result | None]:
     fresh, stored = _measured(kept), None if result_file.outdated(folder / "result.json") else result_file.load(folder)
     effort = stored.effort if stored else None
     beside, held = control.beside(folder, plan, fresh), guarded.load(folder)
-    return plan, summarise(plan, lines, fresh, effort, uplift=beside, isolation=held), stored
+    again = do_overs.count(folder)
+    return plan, summarise(plan, lines, fresh, effort, uplift=beside, isolation=held, replays=again), stored
 
 
 def measured(folder: Path) -> tuple[Setup, list[Record]]:

@@ -28,6 +28,8 @@ from hthor.types import RobotSeat
 SCHEMA = "hthor.run/4"
 LOCKSTEP, REALTIME = "lockstep", "realtime"
 _NAME_MAX = 100
+_NAMED = 4
+"""Of fewer houses than this, a run's folder names each."""
 _TITLE = re.compile(r"\w[\w.+-]{0,59}")
 _MADE_FIRST = (".lock", "trials.jsonl", ".run.json.*", "control")  # a command that was killed early leaves these alone
 
@@ -65,7 +67,8 @@ class Setup(Struct, frozen=True, kw_only=True):
     same. ``robots`` lists every robot with its body, mind and detector; a mind that wants no robot stands there without
     a seat. ``kind`` is None when every task of the suite is played. ``trials`` is how many there are in a whole run.
     ``shard`` is there only in a run that was divided among machines, ``realtime`` only where robots' thinking took time
-    of the trials, ``limit`` only where so many tasks were chosen from the suite, and ``step_limit_s`` only where
+    of the trials, ``limit`` only where so many tasks were chosen from the suite, ``houses`` and ``difficulty`` only
+    where its tasks in these houses or of this difficulty were, and ``step_limit_s`` only where
     submitted agents had another deadline for each action than usual [s]. ``agents`` lists the files of
     every agent that is not built in.
     """
@@ -86,6 +89,8 @@ class Setup(Struct, frozen=True, kw_only=True):
     assets: AssetsRef
     realtime: bool | msgspec.UnsetType = msgspec.UNSET
     limit: int | msgspec.UnsetType = msgspec.UNSET
+    houses: tuple[str, ...] | msgspec.UnsetType = msgspec.UNSET
+    difficulty: str | msgspec.UnsetType = msgspec.UNSET
     step_limit_s: float | msgspec.UnsetType = msgspec.UNSET
     shard: Shard | msgspec.UnsetType = msgspec.UNSET
 
@@ -133,6 +138,10 @@ class Setup(Struct, frozen=True, kw_only=True):
         played = Path(self.suite.name).name
         if self.kind is not None and self.kind.name != played:
             played = f"{played}-{self.kind.name}"
+        if self.houses:
+            played = f"{played}-{'-'.join(self.houses) if len(self.houses) < _NAMED else f'{len(self.houses)}-houses'}"
+        if self.difficulty:
+            played = f"{played}-{self.difficulty}"
         if self.limit:
             played = f"{played}-{self.limit}"
         whose = "" if self.humans.name == PROXY else f"-{self.humans.name}"
@@ -159,12 +168,15 @@ def settle(
     assets: AssetsRef | None = None,
     realtime: bool = False,
     limit: int | None = None,
+    houses: Sequence[str] = (),
+    difficulty: str = "",
     step_limit_s: float | None = None,
 ) -> Setup:
     """The configuration of a run, every default resolved; ``human`` as `hthor.humans.people` reads it.
 
     ``realtime`` says whether robots' thinking takes time of the trials; without a robot it makes no difference.
-    ``limit`` is how many tasks were chosen for ``suite``; None where it is whole. ``step_limit_s`` is the deadline of
+    ``limit`` is how many tasks were chosen for ``suite``; None where it is whole; ``houses`` and ``difficulty`` are
+    what it was narrowed to, empty where it was not. ``step_limit_s`` is the deadline of
     an action [s]; it makes no difference where all agents are built in.
     """
     hands = people_for(len(suite.tasks))
@@ -186,6 +198,8 @@ def settle(
         assets=assets or AssetsRef(sha256=provenance.code_sha256()),
         realtime=(realtime and bool(crew.seats)) or msgspec.UNSET,
         limit=limit or msgspec.UNSET,
+        houses=tuple(houses) or msgspec.UNSET,
+        difficulty=difficulty or msgspec.UNSET,
         step_limit_s=crews.step_limit(crew, step_limit_s),
     )
 

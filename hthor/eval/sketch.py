@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from hthor import catalog
 from hthor.errors import HthorError
-from hthor.eval import plan, trace
+from hthor.eval import lettering, plan, trace
 from hthor.eval.all_knowing import PACE_M_S, Feat
 from hthor.eval.redraw import PICTURES
 from hthor.types import HouseSpec, Placement, Pose, TaskSpec
@@ -37,9 +37,10 @@ def draw(task: TaskSpec, house: HouseSpec, feat: Feat, path: Path) -> None:
     if path.suffix.lower() not in PICTURES:
         raise HthorError(f"{path}: the name of a picture must end in {' or '.join(PICTURES)}.")
     path.parent.mkdir(parents=True, exist_ok=True)
-    figure(task, house, feat).savefig(path)
+    lettering.save(figure(task, house, feat), path)
 
 
+@lettering.plain()
 def figure(task: TaskSpec, house: HouseSpec, feat: Feat) -> Figure:
     """Draw a task, about 8 inches wide."""
     xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)

@@ -10,18 +10,20 @@ from __future__ import annotations
 import math
 import os
 import signal
-from collections.abc import Generator, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
-from functools import cache
+from collections import Counter
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import closing
+from functools import cache, lru_cache
 from multiprocessing import get_context
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 from msgspec import Struct
 
 from hthor import catalog, houses, plugins, rules
-from hthor.errors import HthorError
+from hthor.errors import HthorError, UnknownName
 from hthor.eval import all_knowing, provenance, worker
 from hthor.tasks.placing import NEAR_M, as_thing
 from hthor.tasks.validate import faults as mistakes
@@ -37,7 +39,9 @@ _PATIENCE = 6
 _DEEP_M = 0.01
 _LIFT_M = 0.002
 """How high above its place an object is let go: less than `DRIFT_M`, and enough for the engine to be awake."""
-_CHUNK = 30
+_CHUNK = 10
+_In = TypeVar("_In")
+_Out = TypeVar("_Out")
 
 
 class Fault(Struct, frozen=True, kw_only=True):
@@ -64,18 +68,25 @@ class Verdict(Struct, frozen=True, kw_only=True):
 
 def verdicts(tasks: Sequence[TaskSpec], *, jobs: int) -> Generator[Verdict, None, None]:
     """Check tasks in worker processes; verdicts come as they are ready. Closing the iterator ends the workers."""
-    chunks = _chunks(tasks)
+    with closing(shared(_examine, _chunks(tasks), jobs=jobs)) as found:
+        for _, own in found:
+            yield from own
+
+
+def shared(work: Callable[[_In], _Out], items: Sequence[_In], *, jobs: int) -> Generator[tuple[int, _Out], None, None]:
+    """Do something to each item in worker processes; results come with the items' numbers as they are ready.
+
+    Closing the iterator ends the workers.
+    """
     before = dict(os.environ)
     os.environ.update(worker.ONE_THREAD, PYTHONHASHSEED="0")
     provenance.keep_compiled()
-    count, known = min(jobs, max(1, len(chunks))), (os.getpid(), houses.shelves())
+    count, known = min(jobs, max(1, len(items))), (os.getpid(), houses.shelves())
     pool = ProcessPoolExecutor(count, get_context("spawn"), initializer=_begin, initargs=known)
     try:
-        left = {pool.submit(_examine, chunk) for chunk in chunks}
-        while left:
-            done, left = wait(left, return_when=FIRST_COMPLETED)
-            for future in done:
-                yield from future.result()
+        left = {pool.submit(work, item): number for number, item in enumerate(items)}
+        for future in as_completed(left):
+            yield left[future], future.result()
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
         for process in tuple((getattr(pool, "_processes", None) or {}).values()):
@@ -87,13 +98,31 @@ def verdicts(tasks: Sequence[TaskSpec], *, jobs: int) -> Generator[Verdict, None
 def examine(task: TaskSpec) -> Verdict:
     """Check one task, in this process."""
     try:
-        house = houses.load(task.house)
+        house = _house(task.house, task.house_sha256)
     except HthorError as error:
         return _unsound(task, [("house", str(error))])
     first = list(mistakes(task, house))
     if first:
         return _unsound(task, first)
+    try:
+        return _proved(task, house)
+    except HthorError as error:  # the world refuses to set the task up
+        return _unsound(task, [("$", str(error))])
+
+
+def repeated(tasks: Sequence[TaskSpec]) -> list[Fault]:
+    """A fault for every id that more than one task has."""
+    many = Counter(task.id for task in tasks)
+    reason = "is the id of {} tasks; ids must be distinct"
+    return [Fault(task=id, field="id", reason=reason.format(count)) for id, count in many.items() if count > 1]
+
+
+def _proved(task: TaskSpec, house: HouseSpec) -> Verdict:
+    """What came of a task whose record is valid in its house."""
     world = _world(house, tuple((placed.id, placed.kind) for placed in task.objects))
+    inside = tuple(_inside(world, task))
+    if inside:
+        return _unsound(task, inside)
     drift, states = woken(world, task)
     found = [*_unsettled(task, drift), *(fault for one in task.objects for fault in _untrue(one, house, task, states))]
     seconds, metres, late = _played(world, task)
@@ -103,7 +132,15 @@ def examine(task: TaskSpec) -> Verdict:
 
 def _unsound(task: TaskSpec, faults: Sequence[tuple[str, str]]) -> Verdict:
     rows = tuple(Fault(task=task.id, field=field, reason=reason) for field, reason in faults)
-    return Verdict(task=task.id, house=task.house, least=plugins.load("task kind", task.kind).least(task), faults=rows)
+    return Verdict(task=task.id, house=task.house, least=_least(task), faults=rows)
+
+
+def _least(task: TaskSpec) -> float:
+    """The least time [s], 0 for a task of a kind that is not there."""
+    try:
+        return float(plugins.load("task kind", task.kind).least(task))
+    except UnknownName:
+        return 0.0
 
 
 # ----------------------------------------------------------------------------------------------------- where things are
@@ -121,6 +158,17 @@ def woken(world: World, task: TaskSpec) -> tuple[dict[str, float], dict[str, Thi
         for placed in task.objects:
             drift[placed.id] = max(drift[placed.id], math.dist(world.position(placed.id), placed.position))
     return drift, {state.id: state for state in world.truth()}
+
+
+def _inside(world: World, task: TaskSpec) -> Iterator[tuple[str, str]]:
+    """Objects that cannot be set down where the task says, because something is there already."""
+    world.reset(task)
+    for number, placed in enumerate(task.objects):
+        x, y, z = placed.position
+        try:
+            world.put_object(placed.id, (x, y, z + _LIFT_M), yaw=placed.yaw)
+        except HthorError as error:
+            yield f"objects[{number}].position", str(error)
 
 
 def _unsettled(task: TaskSpec, drift: dict[str, float]) -> Iterator[tuple[str, str]]:
@@ -222,6 +270,12 @@ def _begin(parent: int, shelves: tuple[Path, ...]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
+@lru_cache(maxsize=32)
+def _house(name: str, sha256: str) -> HouseSpec:  # noqa: ARG001 - names may come to stand for other houses
+    """The house of that name, loaded once for all tasks that were made for its version ``sha256``."""
+    return houses.load(name)
+
+
 @cache
 def _world(house: HouseSpec, objects: tuple[tuple[str, str], ...]) -> World:
     from hthor.world import World
@@ -229,4 +283,4 @@ def _world(house: HouseSpec, objects: tuple[tuple[str, str], ...]) -> World:
     return World(house, objects=objects)
 
 
-__all__ = ["DRIFT_M", "HUMAN", "WATCHED_S", "Fault", "Verdict", "examine", "verdicts", "woken"]
+__all__ = ["DRIFT_M", "HUMAN", "WATCHED_S", "Fault", "Verdict", "examine", "repeated", "shared", "verdicts", "woken"]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from hthor import rules
-from hthor.episode import EpisodeLog
+from hthor.episode import EpisodeLog, Fault
 from hthor.eval import trace
 from hthor.types import HUMAN, Event, TrialSpec
 
@@ -17,6 +17,11 @@ if TYPE_CHECKING:
 
 _WORD = 0.09
 """How much of the time axis a word takes up."""
+_LETTER = 0.0095
+"""How much of it a letter on a badge takes up."""
+_Side = Literal["left", "center", "right"]
+_SIDES: tuple[_Side, _Side] = ("right", "left")
+"""Where the words of two moments stand that are near each other, the earlier one first."""
 _LIFTS = (6, -14, 15)
 """Where a word may stand, in points above its mark, best first."""
 
@@ -28,12 +33,22 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
     rows = len(seats) + (log.progress is not None)
     end, limit = log.ticks * rules.TICK_S, spec.task.time_limit
     for row, seat in enumerate(seats):
-        ax.plot((0, end), (-row, -row), color=trace.colour(seat), lw=2.2, alpha=0.35, solid_capstyle="butt")
+        fault = trace.failure(log, seat)
+        until = end if fault is None else fault.tick * rules.TICK_S
+        ax.plot((0, until), (-row, -row), color=trace.colour(seat), lw=2.2, alpha=0.35, solid_capstyle="butt")
+        if fault is not None:
+            ax.plot((until, end), (-row, -row), color=trace.GONE, lw=1.0, ls=":", solid_capstyle="butt")
         _timeline_marks(ax, log, seat, -row, _WORD * limit)
+        if fault is not None:
+            _mark_fault(ax, fault, until, -row)
     if rows > len(seats):
         _draw_progress(ax, steps, end, -len(seats), _WORD * limit)
-    _moment(ax, spec.task.t_star, "T*", "#777777", ":")
-    _moment(ax, end, "done" if log.met else "time is up", trace.TARGET if log.met else trace.FAILED, "-")
+    beside = abs(spec.task.t_star - end) < _WORD * limit  # else one would be written over the other
+    sides = _SIDES if beside else ("center", "center")
+    first, last = sides if spec.task.t_star <= end else sides[::-1]
+    _moment(ax, spec.task.t_star, "T*", "#777777", ":", first)
+    word, shade = ("done", trace.TARGET) if log.met else ("time is up", trace.FAILED)
+    _moment(ax, end, word, shade, "-", last)
     ax.set_xlim(-1, limit + 1)
     ax.set_ylim(-rows + 0.4, 0.75)
     names = ["person" if seat == HUMAN else seat for seat in seats]
@@ -57,15 +72,22 @@ def _draw_progress(ax: Axes, steps: Sequence[Event], end: float, row: float, wor
             following = begin
 
 
-def _moment(ax: Axes, seconds: float, name: str, shade: str, style: str) -> None:
+def _mark_fault(ax: Axes, fault: Fault, seconds: float, row: float) -> None:
+    ax.scatter(seconds, row, s=56, marker="X", facecolor=trace.FAILED, edgecolor="white", linewidths=0.8, zorder=15)
+    told = f"{fault.kind} at {seconds:.1f} s"
+    ax.annotate(told, (seconds, row), (7, 5), textcoords="offset points", fontsize=7, color=trace.FAILED)
+
+
+def _moment(ax: Axes, seconds: float, name: str, shade: str, style: str, side: _Side) -> None:
     ax.axvline(seconds, color=shade, lw=1.0, ls=style, zorder=1)
-    ax.text(seconds, 1.02, name, transform=ax.get_xaxis_transform(), fontsize=7.5, color=shade, ha="center")
+    ax.text(seconds, 1.02, name, transform=ax.get_xaxis_transform(), fontsize=7.5, color=shade, ha=side)
 
 
 def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float, word_s: float) -> None:
-    for number, event in enumerate(trace.messages(log), 1):
-        if event.seat == seat:
-            trace.badge(ax, (event.tick * rules.TICK_S, row), str(number), trace.tint(log, event))
+    sent = [(number, event) for number, event in enumerate(trace.messages(log), 1) if event.seat == seat]
+    marks = [(number, event, (event.tick * rules.TICK_S, row)) for number, event in sent]
+    for group in trace.grouped(log, marks, _LETTER * word_s / _WORD, 1.0):
+        trace.badge(ax, group.place, group.words, group.shade)
     words = {**{kind: verb for kind, (_, verb) in trace.ACTS.items()}, "confirmed": "confirms", "declined": "declines"}
     last = dict.fromkeys(_LIFTS, -math.inf)
     for event in log.events:

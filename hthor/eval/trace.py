@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from hthor import rules
-from hthor.episode import EpisodeLog
+from hthor.episode import EpisodeLog, Fault
 from hthor.types import HUMAN, Event, HouseSpec, Job, Placement, RobotSeat, TrialSpec, Vec2
 
 if TYPE_CHECKING:
@@ -32,6 +34,10 @@ ACTS = {
 }
 """Marker and verb of each deed that is drawn."""
 _THERE_M = 0.3
+_PARTS, _ROUND, _PADDED = 2, 3, 1.6
+"""Parts of a group of numbers that are written out; from how many letters on it is no disc; letters of its edges."""
+GONE = "#9aa0a6"
+"""Of what a robot whose mind failed leaves behind."""
 _MARKED = 8
 """Places that will do are marked up to so many; more would mark half the house."""
 
@@ -100,7 +106,75 @@ def tint(log: EpisodeLog, event: Event) -> str:
     return MESSAGE if fate(log, event.data["message"]) == "confirmed" else IDLE_MESSAGE
 
 
+def failure(log: EpisodeLog, seat: str) -> Fault | None:
+    """The first fault of a seat's mind; from then on the trial went on without it."""
+    return next((fault for fault in log.faults if fault.seat == seat), None)
+
+
+class Group(Struct, frozen=True, kw_only=True):
+    """Messages that are drawn as one, as they would hide one another: their numbers in words, one place, one colour."""
+
+    words: str
+    place: Vec2
+    shade: str
+
+
+def grouped(log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], letter: float, high: float) -> list[Group]:
+    """Messages with their numbers and places; those whose badges would touch are joined, at the place of the first.
+
+    A group has the colour of a confirmed message when it has one.
+
+    Args:
+        letter, high: width of a letter on a badge and height of a badge, in the units of the places.
+    """
+    held = [[mark] for mark in marks]
+
+    def touch(one: list[tuple[int, Event, Vec2]], other: list[tuple[int, Event, Vec2]]) -> bool:
+        (x, y), (u, v) = one[0][2], other[0][2]
+        wide = sum(_PADDED + len(_numbers(some)) for some in (one, other)) * letter / 2.0
+        return abs(x - u) < wide and abs(y - v) < high
+
+    joined = True
+    while joined:
+        pairs = ((one, other) for place, one in enumerate(held) for other in held[place + 1 :])
+        pair = next(((one, other) for one, other in pairs if touch(one, other)), None)
+        if joined := pair is not None:
+            one, other = pair
+            held = [some for some in held if some is not other]
+            one[:] = sorted([*one, *other], key=lambda mark: mark[0])
+    return [
+        Group(
+            words=_numbers(some),
+            place=some[0][2],
+            shade=MESSAGE if any(tint(log, event) == MESSAGE for _, event, _ in some) else IDLE_MESSAGE,
+        )
+        for some in held
+    ]
+
+
+def _numbers(marks: Sequence[tuple[int, Event, Vec2]]) -> str:
+    return ranges([number for number, _, _ in marks])
+
+
+def ranges(numbers: Sequence[int]) -> str:
+    """Rising numbers in words: "1–3, 7"; of more parts than two only the ends, "1 … 9"."""
+    parts: list[list[int]] = []
+    for number in numbers:
+        if parts and number == parts[-1][1] + 1:
+            parts[-1][1] = number
+        else:
+            parts.append([number, number])
+    words = [
+        f"{low}–{high}" if high > low + 1 else ", ".join(map(str, dict.fromkeys((low, high)))) for low, high in parts
+    ]
+    return ", ".join(words) if len(words) <= _PARTS else f"{numbers[0]} … {numbers[-1]}"
+
+
 def badge(ax: Axes, place: Vec2, text: str, shade: str) -> None:
-    """A message's number in a disc."""
-    box = {"boxstyle": "circle,pad=0.22", "facecolor": shade, "edgecolor": "white", "lw": 0.8}
-    ax.text(*place, text, fontsize=7, color="white", weight="bold", ha="center", va="center", bbox=box, zorder=14)
+    """Messages' numbers in a disc. It takes no room from the axes, even where it stands at their edge."""
+    style = "circle,pad=0.22" if len(text) < _ROUND else "round,pad=0.2,rounding_size=0.6"
+    box = {"boxstyle": style, "facecolor": shade, "edgecolor": "white", "lw": 0.8}
+    made = ax.text(
+        *place, text, fontsize=7, color="white", weight="bold", ha="center", va="center", bbox=box, zorder=14
+    )
+    made.set_in_layout(False)

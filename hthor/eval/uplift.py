@@ -4,23 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import msgspec
 from msgspec import Struct
 
 from hthor.eval import contrast, pairing
 from hthor.eval.contrast import Difference
 from hthor.eval.record import Record
 
+RECORDED = "the control's log was not at hand; these are the numbers that were recorded when it was"
+
 
 class Uplift(Struct, frozen=True, kw_only=True):
     """The run less its control, trial by trial: the same people, on the same days, at the same tasks.
 
-    ``control`` is the hash of the control's configuration, as its result has it in ``hashes.run``.
+    ``control`` is the hash of the control's configuration, as its result has it in ``hashes.run``. ``note`` is there
+    only where the control's log was not at hand when the run was scored, so that the numbers are the recorded ones.
     """
 
     control: str
     sr: Difference
     twsr: Difference
     time_s: Difference
+    note: str | msgspec.UnsetType = msgspec.UNSET
 
 
 def over(control: Sequence[Record], records: Sequence[Record], *, run: str) -> Uplift | None:

@@ -13,7 +13,7 @@ from contextlib import closing
 from typing import TYPE_CHECKING, cast
 
 from hthor.errors import KILLED, AgentKilled, HthorError
-from hthor.eval.news import Again, Failed, Finished, Lost, News, Played
+from hthor.eval.news import Failed, Finished, Lost, News, Played
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 """One thread a worker: more would only fight over the cores, and sums of floats would depend on their number."""
-REPEATS = 2
-"""How often a session begins again because an agent's process was killed."""
 _MENDABLE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 
 
@@ -68,13 +66,18 @@ class Player:
         try:
             if self._perform is None:
                 self._perform = self._make()
-            for done in _steadily(self._perform, session):
-                if isinstance(done, Again):
-                    yield done
-                    continue
-                line = record.encode(done)
-                left, faulty = remains.take(done.key), bool(done.faults)  # what is left may be of a start before this
-                yield Played(key=done.key, line=line, met=done.met, faulty=faulty, left=left if faulty else None)
+            with closing(cast("Generator[Record, None, None]", self._perform(session))) as trials:
+                for done in trials:
+                    left, faulty = remains.take(done.key), bool(done.faults)  # it may be of a start before this
+                    yield Played(
+                        key=done.key,
+                        participant=session.participant,
+                        line=record.encode(done),
+                        met=done.met,
+                        faulty=faulty,
+                        left=left if faulty else None,
+                        killed=any(fault.kind == KILLED for fault in done.faults),
+                    )
         except Exception as error:
             yield _failure(session.participant, error)
             return
@@ -82,31 +85,10 @@ class Player:
         yield Finished(cpu_s=self._cpu_s - before)
 
 
-def _steadily(perform: Callable[[Session], Iterator[Record]], session: Session) -> Iterator[Record | Again]:
-    """A session's trials. One in which an agent's process was killed is not told of: the session begins again.
-
-    That mostly comes from outside, from a kernel that ran out of memory or a machine that goes down, and then the
-    trial is not the agent's failure. An agent that ends itself that way does so again, and the fault stands.
-    """
-    for left in reversed(range(REPEATS + 1)):
-        try:
-            with closing(cast("Generator[Record, None, None]", perform(session))) as trials:
-                for done in trials:
-                    if left and any(fault.kind == KILLED for fault in done.faults):
-                        break
-                    yield done
-                else:
-                    return
-        except AgentKilled:  # before it could say what it is
-            if not left:
-                raise
-        yield Again(participant=session.participant, cause="an agent's process was killed")
-
-
 def _failure(participant: int, error: Exception) -> Failed | Lost:
     """What the user can mend ends the run; a bug, or a machine that kills agents, costs the session alone."""
     if isinstance(error, AgentKilled):
-        return Lost(participant=participant, cause=str(error))
+        return Lost(participant=participant, cause=str(error), killed=True)
     if isinstance(error, HthorError):
         return Failed(exit_code=error.exit_code, message=str(error))
     if isinstance(error, OSError) and error.errno in _MENDABLE:

@@ -1,4 +1,4 @@
-"""The guest's side: ``python -m hthor.guest READ TELL WRITE PARENT``; knows only its pipes."""
+"""The guest's side: ``python -m hthor.guest TELL PARENT``; knows only its line to the host."""
 
 from __future__ import annotations
 
@@ -7,4 +7,4 @@ import sys
 from hthor.guest.keeper import main
 
 if __name__ == "__main__":
-    main(*(int(word) for word in sys.argv[1:5]))
+    main(*(int(word) for word in sys.argv[1:3]))

@@ -1,4 +1,4 @@
-"""One trial's process: held first, then it imports the agent's file and plays; knows nothing but its two pipes.
+"""One trial's process: held first, then it imports the agent's file and plays; knows nothing but its channel.
 
 All that a submitted file ever does, it does here, and nothing of it lasts: the next trial has another process.
 """
@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 
 import msgspec
 
-from hthor.guest import arguments, loading, program, showing, sources, wire
+from hthor.guest import arguments, frames, loading, program, showing, sources, wire
+from hthor.guest.channel import Ends
 from hthor.guest.confinement import holding, seccomp
 from hthor.guest.confinement.holding import Refused
 from hthor.guest.confinement.landlock import Ruleset
@@ -22,12 +24,13 @@ ORDERLY = 97
 """Exit status of a trial that came to its end, which an agent would hardly choose for itself."""
 
 
-def serve(pipe: Pipe, order: wire.Load, held: Ruleset | None, *, first: bool, wait: int = -1) -> None:
+def serve(awaited: Callable[[], Ends | None], order: wire.Load, held: Ruleset | None, *, first: bool) -> None:
     """Play one trial, or, with an agent that says ``persistent = True``, all of them.
 
     Args:
+        awaited: waits for the trial's channel; None when there is none to come. Until then nothing is said and nothing
+            of the agent is read.
         held: rules for files. first: say what holds this process, and what the file is.
-        wait: a pipe that says when the trial begins; until then nothing is said and nothing of the agent is read.
     """
     word = seccomp.new_word() if order.words and held is not None else b""
     try:
@@ -36,10 +39,9 @@ def serve(pipe: Pipe, order: wire.Load, held: Ruleset | None, *, first: bool, wa
         problem = str(error)
     else:
         problem = ""
-    if wait >= 0:
-        if not os.read(wait, 1):
-            return
-        os.close(wait)
+    if (ends := awaited()) is None:
+        return
+    pipe = _taken(ends)
     if problem:
         pipe.send(wire.Failed(kind="confinement", detail=problem))
         return
@@ -76,6 +78,18 @@ def _watched(order: wire.Load) -> Recorder | None:
     recorder = Recorder(order.grounds)
     recorder.start()
     return recorder
+
+
+def _taken(ends: Ends) -> Pipe:
+    """The wire of this trial, with standard input and output that are its own too."""
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    for handle, number in ((nothing, 0), (ends.printed, 1), (ends.printed, 2)):
+        os.dup2(handle, number)
+    os.close(nothing)
+    os.close(ends.printed)
+    if ends.shared >= 0:
+        os.environ[frames.VARIABLE] = str(ends.shared)
+    return Pipe(ends.read, ends.write, ends.shared)
 
 
 def _confined(held: Ruleset | None) -> wire.Confined:

@@ -74,6 +74,7 @@ def start(
     level = known(_Terms.isolation if wanted is None else wanted)
     ladder = tuple(reversed(LEVELS)) if level == AUTO else (level,)
     reason = "" if level in (AUTO, LEVELS[-1]) else f"{level} was asked for"
+    why = ""
     for rung in ladder:
         missing = _missing.get(rung) or (namespaces.unavailable() if rung == "L3" else "")
         if not missing:
@@ -88,15 +89,16 @@ def start(
                     readable=readable,
                 )
             except OSError as error:  # such as too many files beside this agent to name one by one
-                reason = reason or f"{rung}: its process could not be started: {error.strerror}"
+                place = f": {error.filename}" if error.filename else ""
+                why = f"its process could not be started: {error.strerror}{place}"
+                reason = reason or f"{rung}: {why}"
                 continue
             said = enter(one)
             if isinstance(said, wire.Confined):
                 return _described(rung, said, memory_mb, reason)
             missing = namespaces.excuse(said) if rung == "L3" else said
-        _missing[rung] = missing
+        _missing[rung] = why = missing
         reason = reason or f"{rung}: {missing}"
-    why = _missing.get(ladder[-1], reason)
     raise IsolationError(f"isolation {level} cannot be had on this machine: {why}. {_HINT}")
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import os
-import shutil
 import signal
-import subprocess
 import time
 from pathlib import Path
+
+_FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW
 
 
 def end_descendants(ancestor: int) -> None:
@@ -40,20 +40,52 @@ def families() -> dict[int, list[int]]:
 
 
 def empty(folder: str) -> None:
-    """Remove all that is in a folder, however deep and however it was locked; nothing that a link leads to."""
+    """Remove all that is in a folder, however deep and however it was locked; nothing that a link leads to.
+
+    It starts no program and holds one folder open at a time, so neither depth nor names stop it.
+    """
     if os.path.islink(folder):
         os.unlink(folder)
         return
     with contextlib.suppress(OSError):
         os.chmod(folder, 0o700)
-    with contextlib.suppress(OSError):
-        for entry in os.scandir(folder):
-            deep = entry.is_dir(follow_symlinks=False)
-            with contextlib.suppress(OSError, RecursionError):
-                if deep:
-                    shutil.rmtree(entry.path)
-                else:
-                    os.unlink(entry.path)
-            if deep and os.path.lexists(entry.path):  # too deep for Python, or locked by its owner
-                for words in (["chmod", "-R", "u+rwX"], ["rm", "-rf"]):
-                    subprocess.run([*words, "--", entry.path], stderr=subprocess.DEVNULL, check=False)
+        _descend(os.open(folder, _FOLDER))
+
+
+def _descend(at: int) -> None:
+    """Empty an open folder, which is closed then."""
+    way, left = list[str](), [_emptied(at)]
+    try:
+        while way or left[-1]:
+            if left[-1]:
+                way.append(left[-1].pop())
+                with contextlib.suppress(OSError):
+                    os.chmod(way[-1], 0o700, dir_fd=at)
+                at = _moved(way[-1], at)
+                left.append(_emptied(at))
+            else:
+                at = _moved("..", at)
+                left.pop()
+                with contextlib.suppress(OSError):
+                    os.rmdir(way.pop(), dir_fd=at)
+    finally:
+        os.close(at)
+
+
+def _moved(name: str, at: int) -> int:
+    there = os.open(name, _FOLDER, dir_fd=at)
+    os.close(at)
+    return there
+
+
+def _emptied(at: int) -> list[str]:
+    """Remove what can be removed of an open folder at once; the names of folders in it that are not empty."""
+    with os.scandir(at) as entries:
+        found = [(entry.name, entry.is_dir(follow_symlinks=False)) for entry in entries]
+    full = []
+    for name, deep in found:
+        try:
+            (os.rmdir if deep else os.unlink)(name, dir_fd=at)
+        except OSError:
+            full += [name] * deep
+    return full

@@ -3,46 +3,69 @@
 from __future__ import annotations
 
 import os
+import socket
+from collections.abc import Callable, Iterable
 
-from hthor.guest import child, wire
+from hthor.guest import channel, child, wire
+from hthor.guest.channel import Ends
 from hthor.guest.confinement import limits
 from hthor.guest.confinement.landlock import Ruleset
-from hthor.guest.senses import Pipe
 
 
-def fork(pipe: Pipe, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool = False) -> int:
+def fork(ends: Ends, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool = False) -> int:
     """A child that plays one trial; its process id.
 
     Args:
-        tell: the keeper's own pipe, which no child may have. held: rules for files. first: as `child.serve`.
+        ends: the trial's channel. tell: the keeper's own line, which no child may have.
+        held: rules for files. first: as `child.serve`.
     """
-    return _forked(pipe, (tell,), order, held, first, -1)
+    return _forked(lambda: ends, (tell,), order, held, first=first)
 
 
 class Spare:
     """A child that is held already, and waits for its trial without having seen anything of the agent.
 
     So nothing of one trial can reach the next by it: what it imports, it imports when its turn has come.
+
+    Args:
+        playing: the channel of the trial that goes on meanwhile, which is none of its business.
     """
 
-    def __init__(self, pipe: Pipe, tell: int, order: wire.Load, held: Ruleset | None) -> None:
-        wait, self._go = os.pipe()
-        self._pid = _forked(pipe, (tell, self._go), order, held, False, wait)
-        os.close(wait)
+    def __init__(self, playing: Ends, tell: int, order: wire.Load, held: Ruleset | None) -> None:
+        self._go, wait = socket.socketpair()
+        secret = (*playing.handles, tell, self._go.fileno())
+        self._pid = _forked(lambda: _received(wait), secret, order, held)
+        wait.close()
 
-    def start(self) -> int:
-        """Let it play; its process id, or 0 if it is gone."""
+    def start(self, ends: Ends) -> int:
+        """Let it play a trial with this channel; its process id, or 0 if it is gone."""
         try:
-            os.write(self._go, b"!")
+            ends.pass_on(self._go)
         except BrokenPipeError:
-            os.waitpid(self._pid, 0)
+            self.discard()
             return 0
-        finally:
-            os.close(self._go)
+        self._go.close()
         return self._pid
 
+    def discard(self) -> None:
+        """End it without a trial."""
+        self._go.close()
+        os.waitpid(self._pid, 0)
 
-def _forked(pipe: Pipe, secret: tuple[int, ...], order: wire.Load, held: Ruleset | None, first: bool, wait: int) -> int:
+
+def _received(wait: socket.socket) -> Ends | None:
+    with wait:
+        return channel.awaited(wait)
+
+
+def _forked(
+    ends: Callable[[], Ends | None],
+    secret: Iterable[int],
+    order: wire.Load,
+    held: Ruleset | None,
+    *,
+    first: bool = False,
+) -> int:
     me = os.getpid()
     pid = os.fork()
     if pid:
@@ -51,8 +74,7 @@ def _forked(pipe: Pipe, secret: tuple[int, ...], order: wire.Load, held: Ruleset
         limits.die_with(me)
         for handle in secret:
             os.close(handle)
-        pipe.own()
-        child.serve(pipe, order, held, first=first, wait=wait)
+        child.serve(ends, order, held, first=first)
         os._exit(child.ORDERLY)
     finally:
         os._exit(1)

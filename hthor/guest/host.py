@@ -217,4 +217,4 @@ class Guest:
             if not isinstance(answer, wire.Over):
                 self._talk.close()
             elif self._process is not None:
-                self._process.forget()
+                self._process.renew()

@@ -56,18 +56,24 @@ def files_of(agent: Reference, given: Given, grounds: Grounds, opened: Iterable[
     first = [str(path) for path in _first(agent)]
     first += [value for value in given.args.values() if os.path.isabs(value) and os.path.isfile(value)]
     first += [str(path) for path in _real(opened, grounds)]
-    paths = {*scanning.closure(first, grounds), *_readable(grounds)}
+    hidden = _hidden(agent.root, agent.path)
+    named = {path for path in scanning.closure(first, grounds) if not _below_any(path, hidden)}
+    paths = {*named, *_readable(grounds)}
     return tuple(sorted({_file(path, grounds) for path in paths}))
 
 
-def later(names: Iterable[str], known: Manifest, grounds: Grounds) -> tuple[File, ...]:
+def later(names: Iterable[str], known: Manifest, grounds: Grounds, agent: str = "") -> tuple[File, ...]:
     """Files that an agent has opened and that are not in its manifest.
+
+    Args:
+        agent: the agent's own file.
 
     Raises:
         AgentError: when one of them cannot be read.
     """
-    listed = {file.path for file in known.files}
-    return tuple(sorted({_file(str(path), grounds) for path in _real(set(names) - listed, grounds)}))
+    new = list(_real(set(names) - {file.path for file in known.files}, grounds))
+    hidden = _hidden(grounds.root, agent) if new else []
+    return tuple(sorted({_file(str(path), grounds) for path in new if not _below_any(str(path), hidden)}))
 
 
 def check(known: Manifest, grounds: Grounds) -> None:
@@ -174,7 +180,7 @@ def _readable(grounds: Grounds) -> Iterator[str]:
         if os.path.isfile(place):
             yield place
             continue
-        hidden = [str(path) for path in hiding.below(Path(place).resolve())]
+        hidden = _hidden(place)
         for folder, inner, names in os.walk(place):
             inner[:] = sorted(
                 name for name in inner if name not in _SKIPPED and not os.path.isfile(os.path.join(folder, name, _RUN))
@@ -183,6 +189,11 @@ def _readable(grounds: Grounds) -> Iterator[str]:
                 path = os.path.join(folder, name)
                 if os.path.isfile(path) and not grounds.owns(path) and not _below_any(path, hidden):
                     yield path
+
+
+def _hidden(folder: str, agent: str = "") -> list[str]:
+    """What in a folder isolation hides from every agent. It is no part of one, though at L1 it could be read."""
+    return [str(path) for path in hiding.below(Path(folder).resolve(), agent)] if folder else []
 
 
 def _below_any(path: str, folders: Iterable[str]) -> bool:

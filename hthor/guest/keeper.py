@@ -1,6 +1,7 @@
 """The trusted part of a guest's process: forks one child a trial, watches it and clears up; runs no agent's code.
 
-It has its own pipe to the host, which no child ever holds. So an agent can neither speak for it nor keep it from saying
+It is held too, before it imports anything for an agent, so that no library does what an agent may not. It has its own
+line to the host, which no child ever holds. So an agent can neither speak for it nor keep it from saying
 how the agent ended. What a trial is about it never reads: that the host calls is enough to fork a child who does.
 """
 
@@ -9,60 +10,73 @@ from __future__ import annotations
 import os
 import select
 import signal
+import socket
 import sys
 from pathlib import Path
 
-from hthor.guest import clearing, forking, frames, watching, wire
+from hthor.guest import channel, clearing, forking, watching, wire
 from hthor.guest.confinement import holding, kernel, limits
 from hthor.guest.confinement.holding import Refused
 from hthor.guest.forking import Spare
+from hthor.guest.home import Home
 from hthor.guest.preloading import preload
 from hthor.guest.senses import Pipe
 
 _SUBREAPER = 36
 
 
-def main(read: int, tell: int, write: int, parent: int) -> None:
+def main(tell: int, parent: int) -> None:
     """Serve the host until it hangs up.
 
     Args:
-        read: pipe from the host. tell: the keeper's own line to the host, and back. write: the children's pipe to
-            the host.
+        tell: the keeper's own line to the host and back, by which channels for trials come too.
         parent: the host's process id, to die with it; 0 where bubblewrap sees to that.
     """
     limits.die_with(parent)
-    for handle in (read, tell, write):
-        os.set_inheritable(handle, False)
+    os.set_inheritable(tell, False)
     os.dup2(2, 1)
     sys.stdout = sys.stderr
-    shared = int(os.environ.get(frames.VARIABLE, "-1"))
-    if shared >= 0:
-        os.set_inheritable(shared, False)
-    pipe, own = Pipe(read, write, shared), Pipe(-1, tell)
-    order = pipe.receive()
-    if not isinstance(order, wire.Load):
+    line, own = socket.socket(fileno=tell), Pipe(-1, tell)
+    ends = channel.awaited(line)
+    order = Pipe(ends.read, ends.write).receive() if ends else None
+    if ends is None or not isinstance(order, wire.Load):
         os._exit(1)
     if parent:
-        _leave_guard((read, tell, write), order.policy.scratch)
+        _leave_guard((tell, *ends.handles), os.path.dirname(order.policy.scratch))
     try:
         limits.renounce()
         if sys.platform == "linux":
             kernel.prctl("adopting orphans", _SUBREAPER, 1)
+        holding.keep(order.policy)
+        home = Home(order.policy.scratch)
         held = holding.rules(order.policy)
     except Refused as error:
         own.send(wire.Failed(kind="confinement", detail=str(error)))
         return
+    os.chdir(os.path.dirname(order.policy.scratch))
     if not order.words:
         preload(Path(order.path), order.module)
-    pid = forking.fork(pipe, tell, order, held, first=True)
+        home.tidy()
+    pid = forking.fork(ends, tell, order, held, first=True)
     spare: Spare | None = None
     while True:
-        own.send(watching.watch(pid, order, tell))
-        if not _called(read):
+        told = watching.watch(pid, order, tell)
+        if home.tidy() and held is not None:  # rules are for the folder that was there
+            held.close()
+            held = holding.rules(order.policy)
+            if spare:
+                spare.discard()
+                spare = None
+        own.send(told)
+        if (fresh := channel.awaited(line)) is None:
             return
-        pid = (spare.start() if spare else 0) or forking.fork(pipe, tell, order, held)
+        ends.close()
+        ends = fresh
+        if not _called(ends.read):
+            return
+        pid = (spare.start(ends) if spare else 0) or forking.fork(ends, tell, order, held)
         if order.policy.level != "L1":  # there all that the keeper has started ends with each trial
-            spare = Spare(pipe, tell, order, held)
+            spare = Spare(ends, tell, order, held)
 
 
 def _called(read: int) -> bool:
@@ -73,7 +87,7 @@ def _called(read: int) -> bool:
     return bool(event & select.POLLIN)
 
 
-def _leave_guard(pipes: tuple[int, ...], scratch: str) -> None:
+def _leave_guard(pipes: tuple[int, ...], ground: str) -> None:
     """Go on as a child of a guard, which outlives us and the host for just as long as it takes to end all we started.
 
     Whatever loses its parent comes to the guard, even if it has left the group.
@@ -99,8 +113,8 @@ def _leave_guard(pipes: tuple[int, ...], scratch: str) -> None:
             ended, found = os.waitpid(-1, os.WNOHANG)
             code = os.waitstatus_to_exitcode(found) if ended == pid else None
         clearing.end_descendants(me)
-        clearing.empty(scratch)
-        os.rmdir(scratch)
+        clearing.empty(ground)
+        os.rmdir(ground)
     finally:
         if code is not None and code < 0:  # so that the host hears how the keeper ended
             os.kill(me, -code)

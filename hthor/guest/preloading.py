@@ -18,6 +18,8 @@ from hthor.guest.confinement import paths
 _MINDS = "hthor.agents"
 _MOST_BYTES = 1 << 20
 """Longest file that is looked into."""
+_SIDE_EFFECTS = ("__main__", "antigravity", "idlelib", "lib2to3", "this", "turtledemo")
+"""Names of modules, or of parts of them, that do something when they are imported; so do all tests."""
 _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "hthor.catalog", "hthor.rules")
 
 
@@ -29,12 +31,13 @@ def preload(path: Path, module: str = "") -> None:
     """
     own = module.partition(".")[0]
     wanted = [one for one in _named(path) if one[0].partition(".")[0] != own or own == "hthor"]
+    sys.argv = [""]
     if any(name.startswith(_MINDS) for name in (module, *(one[0] for one in wanted))):
         wanted += [(name, []) for name in _behind()]
     for module, names in wanted:
         with contextlib.suppress(BaseException):
             for name in [module, *(f"{module}.{name}" for name in names if module == "hthor")]:
-                if name.startswith(_OURS) or _installed(name.partition(".")[0]):
+                if name.startswith(_OURS) or (_quiet(name) and _installed(name.partition(".")[0])):
                     found = importlib.import_module(name)
                     for part in names:
                         getattr(found, part, None)  # some packages import their parts only then
@@ -48,6 +51,11 @@ def _behind() -> list[str]:
     return [
         f"hthor.{path.parent.name}.{path.stem}" for path in files if path.parent.name != "agents" or path.stem[0] == "_"
     ]
+
+
+def _quiet(name: str) -> bool:
+    """Whether a module is a library, which importing does nothing but make available."""
+    return not any(part in _SIDE_EFFECTS or part.startswith("test") for part in name.split("."))
 
 
 def _installed(name: str) -> bool:

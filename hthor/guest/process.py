@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import os
 import select
 import shutil
@@ -15,8 +14,10 @@ import tempfile
 import time
 from collections.abc import Mapping
 
-from hthor.guest import affinity, clearing, cost, ending, frames, wire
+from hthor.guest import affinity, clearing, cost, ending, wire
+from hthor.guest.channel import Channel
 from hthor.guest.confinement import Policy, devices, limits, namespaces, paths
+from hthor.guest.frames import Window
 from hthor.guest.lines import HungUp, TimeIsUp
 from hthor.guest.reference import Reference
 from hthor.guest.showing import shown
@@ -27,63 +28,79 @@ _MEMORY = f"glibc.malloc.mmap_threshold={64 << 20}:glibc.malloc.trim_threshold={
 """Keep what arrays have freed, as a process that has lived for long does anyway: each trial's is new, and pages that
 are given back and taken again cost it more than its agent."""
 _LOG_BYTES = 16 << 10
-_PIPE_BYTES = 1 << 20
-_F_SETPIPE_SZ = 1031
 _LAST_S = 10.0
 """Longest wait for a process whose pipes are closed. On a busy machine it takes a while to clear up behind it."""
 _INSIDE = "/tmp/hthor-guest"
 """The scratch folder where the guest has a file system of its own."""
+_HOME = "home"
+"""The scratch folder elsewhere, within a folder that is made for the guest: its keeper may have to make it anew."""
 
 
 class Process:
-    """A running guest. Pipes: to it, from its trials, with its keeper, one for what it prints; shared frames."""
+    """A running guest: a line to its keeper, a pipe for what that prints, and the channel of one trial after another.
 
-    def __init__(self, policy: Policy, scratch: str) -> None:
-        self.policy, self._scratch = policy, scratch
+    Args:
+        ground: the folder that was made for it and is to be removed; empty for none.
+    """
+
+    def __init__(self, policy: Policy, ground: str) -> None:
+        self.policy, self._ground = policy, ground
         self._log = b""
         limits.undumpable()
-        guest_in, self._out = os.pipe()
-        self._words, guest_out = os.pipe()
-        self._keeper, tell = (end.detach() for end in socket.socketpair())
+        self._line, tell = socket.socketpair()
+        self._keeper = self._line.fileno()
         self._err, printed = os.pipe()
-        self.frames = frames.window()
-        for handle in (self._out, self._words, self._keeper, self._err):
+        for handle in (self._keeper, self._err):
             os.set_blocking(handle, False)
-        with contextlib.suppress(OSError):  # only speed depends on it
-            fcntl.fcntl(self._out, _F_SETPIPE_SZ, _PIPE_BYTES)
-        env = _environment(os.environ, policy)
-        passed: tuple[int, ...] = (guest_in, tell, guest_out)
-        if self.frames is not None:
-            env[frames.VARIABLE] = str(self.frames.handle)
-            passed += (self.frames.handle,)
+        self._channel = Channel()
         spaces = policy.level == "L3"
-        words = [sys.executable, "-P", "-u", "-m", "hthor.guest", str(guest_in), str(tell), str(guest_out)]
-        words.append("0" if spaces else str(os.getpid()))
+        words = [
+            sys.executable,
+            "-P",
+            "-u",
+            "-m",
+            "hthor.guest",
+            str(tell.fileno()),
+            "0" if spaces else str(os.getpid()),
+        ]
         if spaces:
-            words = namespaces.command(policy, words, [env[name] for name in ("NUMBA_CACHE_DIR",) if name in env])
+            words = namespaces.command(policy, words)
         try:
             self._process = subprocess.Popen(
                 words,
                 stdin=subprocess.DEVNULL,
                 stdout=printed,
                 stderr=printed,
-                pass_fds=passed,
+                pass_fds=(tell.fileno(),),
                 cwd="/",
-                env=env,
+                env=_environment(os.environ, policy),
                 start_new_session=True,
             )
         except OSError:
             self._close()
             raise
         finally:
-            for handle in (guest_in, tell, guest_out, printed):
-                os.close(handle)
-        self._buffers = {self._words: b"", self._keeper: b""}
+            tell.close()
+            os.close(printed)
+        self._buffers: dict[int, bytes] = {self._keeper: b""}
+        self._open()
+
+    def _open(self) -> None:
+        """Hand a new channel over, and listen to it."""
+        channel = self._channel
+        channel.hand_over(self._line)
+        self._buffers = {channel.words: b"", self._keeper: self._buffers[self._keeper]}
         self._hear, self._say = select.poll(), select.poll()
-        for handle in (self._words, self._keeper, self._err):
+        for handle in (channel.words, self._keeper, channel.err, self._err):
             self._hear.register(handle, select.POLLIN)
-        self._say.register(self._out, select.POLLOUT)
-        self._say.register(self._err, select.POLLIN)
+        self._say.register(channel.out, select.POLLOUT)
+        for handle in (channel.err, self._err):
+            self._say.register(handle, select.POLLIN)
+
+    @property
+    def frames(self) -> Window | None:
+        """Pictures that are shared with the trial's process."""
+        return self._channel.frames
 
     @property
     def pid(self) -> int:
@@ -101,19 +118,20 @@ class Process:
         left = memoryview(wire.framed(body))
         while left:
             try:
-                left = left[os.write(self._out, left) :]
+                left = left[os.write(self._channel.out, left) :]
             except BlockingIOError:
-                self._wait(self._say, (self._out,), end)
+                self._wait(self._say, (self._channel.out,), end)
             except OSError:
                 raise HungUp from None
 
     def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
         """As `Line` says; a message of a trial comes before one of the keeper."""
+        both = (self._channel.words, self._keeper)
         while True:
-            for handle in (self._words, self._keeper):
+            for handle in both:
                 if (found := self._next(handle, most)) is not None:
                     return handle == self._keeper, found
-            for handle in self._wait(self._hear, (self._words, self._keeper), end):
+            for handle in self._wait(self._hear, both, end):
                 try:
                     chunk = os.read(handle, 1 << 16)
                 except ConnectionResetError:  # a keeper that ended before it had read all
@@ -122,12 +140,12 @@ class Process:
                     raise HungUp
                 self._buffers[handle] += chunk
 
-    def forget(self) -> None:
-        """Drop what a trial that has ended left half said."""
-        with contextlib.suppress(BlockingIOError):
-            while os.read(self._words, 1 << 16):
-                pass  # however much it is
-        self._buffers[self._words] = b""
+    def renew(self) -> None:
+        """Begin a channel for the next trial; what the last one left half said is gone with its own."""
+        self._drain()
+        self._channel.close()
+        self._channel = Channel()
+        self._open()
 
     def _next(self, handle: int, most: int) -> bytes | int | None:
         buffer = self._buffers[handle]
@@ -164,10 +182,14 @@ class Process:
         return shown(self._log.decode(errors="replace"))
 
     def _drain(self) -> bool:
-        """Take in what was printed, as much of it as has come by now; false when nothing more can come."""
+        """Take in what was printed, as much of it as has come by now; false when nothing more can come of something."""
+        keepers, trials = self._taken_in(self._err), self._taken_in(self._channel.err)
+        return keepers and trials
+
+    def _taken_in(self, handle: int) -> bool:
         try:
             for _ in range(64):
-                if not (chunk := os.read(self._err, 1 << 16)):
+                if not (chunk := os.read(handle, 1 << 16)):
                     return False
                 self._log = (self._log + chunk)[-_LOG_BYTES:]
         except BlockingIOError:
@@ -194,13 +216,17 @@ class Process:
         self._close()
 
     def _close(self) -> None:
-        for handle in (self._out, self._words, self._keeper, self._err):
-            os.close(handle)
-        if self.frames is not None:
-            self.frames.close()
-        if self._scratch:
-            clearing.empty(self._scratch)
-            shutil.rmtree(self._scratch, ignore_errors=True)
+        self._line.close()
+        os.close(self._err)
+        self._channel.close()
+        remove(self._ground)
+
+
+def remove(ground: str) -> None:
+    """Remove what a guest may have written, and the folder that it was in; an empty name is none."""
+    if ground:
+        clearing.empty(ground)
+        shutil.rmtree(ground, ignore_errors=True)
 
 
 def start(
@@ -214,22 +240,30 @@ def start(
     readable: tuple[str, ...] = (),
 ) -> Process:
     """A fresh guest on this level; what it says first tells whether the level is in force."""
-    scratch = "" if level == "L3" else tempfile.mkdtemp(prefix="hthor-guest-")
     compiled = os.environ.get("NUMBA_CACHE_DIR", "")
     if compiled:
         os.makedirs(compiled, exist_ok=True)
     more = ([compiled] if compiled else []) + (list(devices.FACTS) if gpus else [])
+    read = paths.readable(agent.path, agent.root, hidden, readable)
+    ground = "" if level == "L3" else tempfile.mkdtemp(prefix="hthor-guest-")
     policy = Policy(
         level=level,
-        read=(*paths.readable(agent.path, agent.root, hidden, readable), *more),
+        read=(*read, *more),
         listed=(*paths.listed(agent.root), *(place for place in readable if os.path.isdir(place))),
-        scratch=scratch or _INSIDE,
+        scratch=os.path.join(ground, _HOME) if ground else _INSIDE,
         memory_mb=memory_mb,
         disk_mb=disk_mb,
         execute=bool(agent.words),
         devices=devices.gpus() if gpus else (),
+        compiled=compiled,
     )
-    return Process(policy, scratch)
+    try:
+        if ground:
+            os.mkdir(policy.scratch)
+        return Process(policy, ground)
+    except OSError:
+        remove(ground)
+        raise
 
 
 def _environment(ours: Mapping[str, str], policy: Policy) -> dict[str, str]:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-import sys
 from collections.abc import Mapping
 from typing import Any, NoReturn, Protocol
 
@@ -25,17 +23,6 @@ class Pipe:
         self._read, self._write = read, write
         self.handles, self.shared = (read, write), shared
         self.view = frames.View(shared) if shared >= 0 else None
-
-    def own(self) -> None:
-        """Open all ends anew, under the same numbers: what is done to them, as to wait or where to read, stays here."""
-        said = dict.fromkeys((self._write, 1, 2), os.O_WRONLY)
-        for handle, way in {self._read: os.O_RDONLY, self.shared: os.O_RDONLY, **said}.items():
-            if handle < 0 or sys.platform != "linux":
-                continue
-            with contextlib.suppress(OSError):  # then it is shared with the trials that follow, which still play
-                anew = os.open(f"/proc/self/fd/{handle}", way)
-                os.dup2(anew, handle, inheritable=handle <= 2)
-                os.close(anew)
 
     def receive(self) -> wire.ToGuest:
         """The host's next message; ends the process when the host is gone."""

@@ -15,7 +15,7 @@ from hthor.guest.lines import HungUp, Line, TimeIsUp
 from hthor.guest.showing import shown
 
 _guests_words = msgspec.msgpack.Decoder(wire.ToHost)
-_MOST_OPENED = 100_000
+_MOST_OPENED, _LONGEST = 20_000, 1000
 _keepers_words = msgspec.msgpack.Decoder(wire.KeeperToHost)
 
 
@@ -79,7 +79,7 @@ class Talk:
         except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
             raise self.fault("garbage", f"what came is no message: {error}") from None
         if len(self.opened) < _MOST_OPENED:
-            self.opened.update(getattr(message, "files", ()))
+            self.opened.update(name for name in getattr(message, "files", ()) if len(name) <= _LONGEST)
         if isinstance(message, wire.Failed) and (self.loaded or keepers):
             kind = message.kind if keepers or message.kind in wire.OWN_FAULTS else "garbage"
             raise self.fault(kind, message.detail, message.traceback)

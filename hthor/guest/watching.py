@@ -13,7 +13,7 @@ _LOOK_MS = 50
 
 
 def watch(pid: int, order: wire.Load, tell: int) -> wire.KeeperToHost:
-    """Wait for a child's end, which comes early if it takes too much, and clear up; what to say of it.
+    """Wait for a child's end, which comes early if it takes too much; what to say of it.
 
     Args:
         tell: the line to the host, which may say on which CPU it waits for the child.
@@ -25,7 +25,6 @@ def watch(pid: int, order: wire.Load, tell: int) -> wire.KeeperToHost:
     _, status = os.waitpid(pid, 0)
     if policy.level == "L1":
         clearing.end_descendants(os.getpid())
-    clearing.empty(policy.scratch)
     code = os.waitstatus_to_exitcode(status)
     if found:
         return wire.Failed(kind=found[0], detail=found[1])

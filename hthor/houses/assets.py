@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from hthor import catalog
@@ -13,10 +13,10 @@ from hthor.catalog.procthor import Asset
 from hthor.errors import HouseError
 
 VARIABLE = "HTHOR_ASSETS"
-_NAME = "asset-database.json"
+DATABASE = "asset-database.json"
 _HINT = (
-    f"give one with assets=..., set {VARIABLE} to its path, or put '{_NAME}' or 'databases/{_NAME}' beside the house "
-    "file; it comes with ProcTHOR's databases"
+    f"give one with assets=..., set {VARIABLE} to its path, or put '{DATABASE}' or 'databases/{DATABASE}' beside the "
+    "house file; it comes with ProcTHOR's databases"
 )
 
 
@@ -53,6 +53,18 @@ class Assets:
             raise HouseError(file, field, f"unknown asset '{asset}', and no asset database was found; {_HINT}")
         raise HouseError(file, field, f"unknown asset '{asset}': neither ours nor in {self._source}")
 
+    def excerpt(self, ids: Iterable[str]) -> bytes:
+        """The part of the database that says what these assets are, as a database of its own; empty where all are ours.
+
+        Raises:
+            HouseError: as `find`, naming the database.
+        """
+        foreign = {id for id in ids if catalog.own_asset(id) is None}
+        if not foreign:
+            return b""
+        self._database()
+        return procthor.excerpt(self._source, foreign) if self._source is not None else b""
+
     def _database(self) -> dict[str, Asset]:
         if self._rows is None:
             self._source = self._given_database() or next(filter(Path.is_file, _places(self._beside)), None)
@@ -73,7 +85,7 @@ class Assets:
 
 
 def _inside(folder: Path) -> tuple[Path, Path]:
-    return folder / "databases" / _NAME, folder / _NAME
+    return folder / "databases" / DATABASE, folder / DATABASE
 
 
 def _places(house: Path) -> Iterator[Path]:
@@ -81,7 +93,7 @@ def _places(house: Path) -> Iterator[Path]:
         yield from _inside(folder)
     here = Path.cwd()
     for folder in (here, *here.parents):
-        yield folder / "shared" / "houses" / "databases" / _NAME
+        yield folder / "shared" / "houses" / "databases" / DATABASE
     spec = importlib.util.find_spec("procthor")
     for place in (spec.submodule_search_locations or ()) if spec is not None else ():
         yield from _inside(Path(place))

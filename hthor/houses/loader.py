@@ -15,7 +15,7 @@ from hthor import jsonio
 from hthor.errors import HouseError, UnknownName
 from hthor.geometry import signed_area, wrap
 from hthor.houses import laying, schema, validate, worktops
-from hthor.houses.assets import Assets
+from hthor.houses.assets import DATABASE, Assets
 from hthor.houses.schema import Agent, HouseFile, OpeningRow, RoomRow, WallRow
 from hthor.houses.validate import EXTERIOR, ROOM_KINDS
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec3, Wall
@@ -86,7 +86,11 @@ def _locate(given: str) -> tuple[Path, str]:
     path = Path(given)
     if path.suffix == ".json" or path.is_file():
         return path, given
-    known = (*names(), *names("unseen"), *(path.stem for shelf in _shelves for path in sorted(shelf.glob("*.json"))))
+    known = (
+        *names(),
+        *names("unseen"),
+        *(path.stem for shelf in _shelves for path in sorted(shelf.glob("*.json")) if path.name != DATABASE),
+    )
     raise UnknownName("house", given, known, "Or give the path of a ProcTHOR house file (.json).")
 
 

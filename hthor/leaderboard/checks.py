@@ -7,15 +7,15 @@ from pathlib import Path
 
 from msgspec import UNSET, Struct
 
-from hthor import plugins, tasks
+from hthor import tasks
 from hthor.errors import HthorError
 from hthor.eval import bounds
-from hthor.leaderboard import admission, dealt, files, form, invariants, listing, outcomes
+from hthor.guest import manifest
+from hthor.leaderboard import admission, dealt, files, form, invariants, listing, outcomes, submission
 from hthor.leaderboard.admission import Admission
 from hthor.leaderboard.entry import Entry
 from hthor.leaderboard.files import Problem
 from hthor.leaderboard.outcomes import Outcomes, Unreadable
-from hthor.leaderboard.submission import MIND
 from hthor.tasks import library
 from hthor.types import TaskSpec
 
@@ -72,11 +72,12 @@ def _laws(
     yield from _suite(entry, sizes)
     yield from invariants.outcomes(entry, held, _tasks(entry))
     yield from invariants.settings(entry)
+    yield from invariants.consists(entry)
     yield from invariants.numbers(entry, held)
     control = next((other for other in all_ if _controls(other.entry, entry)), None)
     yield from invariants.uplift(entry, held, control.entry if control else None, control.outcomes if control else None)
     if entry.submission and submissions is not None:
-        yield from _submitted(entry, submissions / entry.submission / MIND)
+        yield from _submitted(entry, submissions / entry.submission)
 
 
 def _controls(other: Entry, entry: Entry) -> bool:
@@ -116,9 +117,9 @@ def _tasks(entry: Entry) -> list[TaskSpec]:
     return dealt.tasks(ours, entry) if ours.sha256 == entry.run.suite.sha256 else []
 
 
-def _submitted(entry: Entry, path: Path) -> invariants.Found:
-    """The agent is the file that was handed in."""
-    if not path.is_file():
-        yield "submission", f"is '{entry.submission}', but there is no {path}"
-    elif [robot.agent.sha256 for robot in entry.run.robots] != [plugins.sha256(str(path))]:
-        yield "run.robots[0].agent.sha256", f"is not the hash of {path}"
+def _submitted(entry: Entry, folder: Path) -> invariants.Found:
+    """What was handed in is what lies there."""
+    if not folder.is_dir():
+        yield "submission", f"is '{entry.submission}', but there is no {folder}"
+    elif found := manifest.differences(entry.files, submission.listed(folder)):
+        yield "files", f"is not what lies in {folder}: {'; '.join(found)}"

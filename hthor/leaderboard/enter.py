@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import msgspec
@@ -14,17 +14,18 @@ from hthor.errors import HthorError, RunError
 from hthor.eval import (
     command,
     control,
+    do_overs,
     guarded,
     machine,
     metrics,
     programme,
     provenance,
     reading,
-    result_file,
     score,
     setup,
 )
 from hthor.eval.setup import Setup
+from hthor.guest import Manifest
 from hthor.leaderboard import admission, checks, files, harness, invariants, outcomes, overrides, verification, worth
 from hthor.leaderboard.entry import LOCKSTEP, REALTIME, Agent, Counts, Entry, Hashes, Metrics
 from hthor.leaderboard.files import BoardError
@@ -67,25 +68,26 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
     plan = setup.load(folder)
     lines, kept = reading.records(folder, plan)
     _whole(folder, plan, len(kept))
-    found = overrides.of(plan, _crew(plan))
+    found = overrides.of(plan, _crew(plan), len({one.spec.task.id for one in kept}))
     if found:
-        listed = ", ".join(f"{name} is {value}" for name, value in found.items())
-        raise BoardError(f"{folder / 'run.json'}: such runs are not ranked: {listed}. Leave these options out.")
+        raise BoardError(overrides.refusal(folder, plan, found))
     records = [msgspec.structs.replace(one, metrics=metrics.measure(one.spec, one.log)) for one in kept]
-    gain = control.beside(folder, plan, records)
+    gain = control.measure(folder, plan, records)
     if gain is None and plan.seats:
         raise RunError(f"{folder} has no run without a robot beside it. 'hthor eval' plays it without --no-control.")
     held = guarded.load(folder)
-    result = score.summarise(plan, lines, records, uplift=gain, isolation=held)
+    result = score.summarise(plan, lines, records, uplift=gain, isolation=held, replays=do_overs.count(folder))
     columns = outcomes.of(records, map(outcomes.leaf, lines))
     whose = worth.people(len(records), plan.participants)
     agent = submission.agent if submission else Agent(name=plan.crew)
-    _same_file(folder, plan, submission)
+    _same_files(folder, result.agents, submission)
     return Entry(
         id=f"{_slug(agent.name)}-{_slug(Path(plan.suite.name).name)}-{plan.sha256[:10]}",
         reference=all(robot.agent.source.startswith(OURS) for robot in plan.robots),
         agent=agent,
         submission=submission.name if submission else "",
+        files=submission.files if submission else (),
+        agents=result.agents,
         run=plan.untitled,
         hashes=Hashes(run=plan.sha256, trials=result.hashes.trials, merkle=columns.merkle),
         harness=harness.here(),
@@ -98,7 +100,7 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
             messages=int(columns.sent.sum()),
             faults=result.counts.faults,
             faults_by_kind=result.counts.faults_by_kind,
-            replays=_replays(folder),
+            replays=result.counts.replays,
         ),
         metrics=Metrics(**worth.scores(columns, whose, alone=not plan.seats)),
         splits=worth.splits(columns, whose),
@@ -152,24 +154,17 @@ def _crew(plan: Setup) -> tuple[str, ...]:
     return chosen.crew
 
 
-def _same_file(folder: Path, plan: Setup, submission: Submission | None) -> None:
+def _same_files(folder: Path, agents: Sequence[Manifest], submission: Submission | None) -> None:
     if submission is None:
         return
-    from hthor import plugins
-
-    there = plugins.sha256(str(submission.path))
-    if [robot.agent.sha256 for robot in plan.robots] != [there]:
+    if len(agents) != 1:
+        raise BoardError(f"{folder / 'run.json'}: agents: has {len(agents)} agents, and a submission is one.")
+    found = invariants.strangers(agents[0].files, submission.files)
+    if found:
         raise BoardError(
-            f"{folder / 'run.json'}: robots[0].agent.sha256: is not the hash of {submission.path}, {there[:10]}: "
-            "another file was played. Play the one that was handed in."
+            f"{folder / 'run.json'}: agents[0].files: is not what lies in {submission.path.parent}: "
+            f"{'; '.join(found)}. Play the agent that was handed in."
         )
-
-
-def _replays(folder: Path) -> int:
-    """How often a session of the run began again, as its result tells."""
-    path = folder / "result.json"
-    stored = None if result_file.outdated(path) else result_file.load(folder)
-    return stored.effort.replays if stored is not None and stored.effort is not None else 0
 
 
 def _there(entry: Entry, path: Path) -> bool:

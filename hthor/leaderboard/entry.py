@@ -11,7 +11,7 @@ from hthor.eval.machine import Platform
 from hthor.eval.setup import Setup
 from hthor.eval.stats import Estimate
 from hthor.eval.uplift import Uplift
-from hthor.guest import Isolation
+from hthor.guest import File, Isolation, Manifest
 
 SCHEMA: Final = "hthor.entry/6"
 LOCKSTEP: Final = "lockstep"
@@ -138,6 +138,8 @@ class Entry(Struct, frozen=True, kw_only=True):
     Attributes:
         reference: whether it is one of hthor's own agents, which are there to be measured against and have no rank.
         submission: the folder under submissions/ that the agent came from, empty for none.
+        files: everything that was handed in with it.
+        agents: what its agents consist of, with what they opened only in play; none for hthor's own.
         run: the run's configuration, as its run.json.
         mode: whether the world waited for the agent (lockstep) or its thinking took time (realtime).
         overrides: settings that depart from the benchmark's; there are none in an entry that is taken.
@@ -152,6 +154,8 @@ class Entry(Struct, frozen=True, kw_only=True):
     reference: bool
     agent: Agent
     submission: Annotated[str, Meta(pattern="^([a-z0-9][a-z0-9_-]{0,39})?$")] = ""
+    files: tuple[File, ...] = ()
+    agents: tuple[Manifest, ...] = ()
     run: Setup
     hashes: Hashes
     harness: Harness

@@ -16,6 +16,7 @@ import numpy as np
 
 from hthor import jsonio, tasks
 from hthor.eval import metrics, programme, session, soundness, stats
+from hthor.guest import Given
 from hthor.humans import people
 from hthor.leaderboard import falling, files, outcomes, replay, worth
 from hthor.leaderboard.entry import Entry
@@ -32,13 +33,22 @@ _HOUSE_TASKS = 10
 
 
 def verify(
-    entry: Entry, board: Path, word: str, count: int, *, agent: str = "", jobs: int | None = None, required: str = ""
+    entry: Entry,
+    board: Path,
+    word: str,
+    count: int,
+    *,
+    agent: str = "",
+    jobs: int | None = None,
+    required: str = "",
+    given: Given | None = None,
 ) -> Fresh:
     """Draw tasks, have the agent play them, and compare.
 
     Args:
         word: public chance that came to be after the entry was handed in. count: how many tasks.
         agent: the agent's file, for one that is not hthor's own. required: the least level that holds it.
+        given: arguments and files that it is given.
 
     Raises:
         BoardError: when the recipe is not known, or a trial could not be played.
@@ -49,7 +59,7 @@ def verify(
         crew, who = replay.crew_of(entry, agent), people.find(entry.run.humans.source)
         clock = {name: value for name, value in replay.dealt(entry).items() if name != "participants"}
         whole = session.sessions(chosen.suite, agent=crew, human=who, **clock)
-        played = replay.perform(entry, whole, replay.player(folder, crew, who, required), jobs)
+        played = replay.perform(entry, whole, replay.player(folder, crew, who, required, given), jobs)
     records = sorted((one for one, _ in played), key=lambda one: (one.spec.participant, one.spec.index))
     owners = [one.spec.participant for one in records]
     values = {

@@ -16,6 +16,7 @@ from hthor import rules
 from hthor.eval import metrics
 from hthor.eval.session import people_for
 from hthor.eval.stats import Estimate
+from hthor.guest import File
 from hthor.leaderboard import overrides, worth
 from hthor.leaderboard.entry import Entry
 from hthor.leaderboard.outcomes import Outcomes, labels
@@ -116,6 +117,29 @@ def settings(entry: Entry) -> Found:
         yield "reference", f"is {entry.reference}, but the agents are {'' if ours else 'not '}hthor's own"
     if not ours and entry.isolation is None:
         yield "isolation", "is absent, but a submitted agent is always held at some level"
+
+
+def consists(entry: Entry) -> Found:
+    """Agents consist of what the run began with, and of nothing that was not handed in."""
+    for place, (known, told) in enumerate(zip(entry.run.agents, entry.agents, strict=False)):
+        if not set(known.files) <= set(told.files) or known.sha256 != told.sha256:
+            yield f"agents[{place}]", f"lacks files of run.agents[{place}], or has others"
+    if len(entry.agents) != len(entry.run.agents):
+        yield "agents", f"has {len(entry.agents)} agents, but 'run' has {len(entry.run.agents)}"
+    if entry.submission:
+        for place, one in enumerate(entry.agents):
+            for words in strangers(one.files, entry.files):
+                yield f"agents[{place}].files", f"is not what 'files' says was handed in: {words}"
+
+
+def strangers(files: Sequence[File], handed_in: Sequence[File]) -> list[str]:
+    """Files of an agent that were not handed in, or not as they are, in words."""
+    there = {file.path: file.sha256 for file in handed_in}
+    return [
+        f"{file.path} is not there" if file.path not in there else f"{file.path} is another file"
+        for file in files
+        if there.get(file.path) != file.sha256
+    ]
 
 
 def numbers(entry: Entry, held: Outcomes) -> Found:

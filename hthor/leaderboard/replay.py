@@ -21,6 +21,7 @@ from hthor.eval.news import Lost, Played
 from hthor.eval.programme import Programme
 from hthor.eval.record import Record
 from hthor.eval.session import Session
+from hthor.guest import Given
 from hthor.humans import people
 from hthor.humans.people import People
 from hthor.leaderboard.enter import OURS
@@ -39,23 +40,26 @@ def play(
     suite: str = "",
     jobs: int | None = None,
     require_isolation: str = "",
+    given: Given | None = None,
 ) -> dict[int, tuple[Record, bytes]]:
     """The records of the trials at these places, and of those that had to be played with them, with their lines.
 
     Args:
         agent: the agent's file, for one that is not hthor's own. suite: where the suite lies, when it is not either.
         require_isolation: the least level that will do for a submitted agent.
+        given: arguments and files that it is given.
 
     Raises:
         BoardError: when this is not what the entry says was played, naming the field; when a trial that is wanted could
             not be played, as nothing follows from a part of a draw.
     """
+    guest.confine_guests(given=given)
     chosen = programme.choose(suite or entry.run.suite.name, "")
     crew, who = crew_of(entry, agent), people.find(entry.run.humans.source)
     _same(entry, chosen, crew, who)
     whole = session.sessions(chosen.suite, agent=crew, human=who, **dealt(entry))
     wanted, seats = _cut(whole, places)
-    played = perform(entry, wanted, player(suite, crew, who, require_isolation), jobs)
+    played = perform(entry, wanted, player(suite, crew, who, require_isolation, given), jobs)
     return {seats[one.spec.participant, one.spec.index]: (one, line) for one, line in played}
 
 
@@ -94,7 +98,8 @@ def crew_of(entry: Entry, agent: str) -> Crew:
             raise BoardError(f"{entry.id}: the agent is a file, {robot.agent.source}. Name it with --agent.")
         minds.append(robot.agent.name if ours else agent)
     bodies = [robot.robot or "scout" for robot in entry.run.robots]  # a mind that wants no robot has no body either
-    return crews.form(bodies, minds, entry.run.robots[0].detector or "own")
+    first = entry.run.robots[0]
+    return crews.form(bodies, minds, first.detector or "own", first.camera or "own")
 
 
 def _same(entry: Entry, chosen: Programme, crew: Crew, who: People) -> None:
@@ -127,20 +132,23 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
     return wanted, seats
 
 
-def player(suite: str, crew: Crew, who: People, required: str) -> Make:
+def player(suite: str, crew: Crew, who: People, required: str, given: Given | None = None) -> Make:
     """What plays a session, as in the run that the entry is of.
 
     Args:
         suite: where the suite lies, empty for one of hthor's own. required: the least level that holds the agents.
+        given: arguments and files that they are given.
     """
     provenance.keep_compiled()
     own = bool(suite) and Path(suite).exists() and bool(library.own_houses(suite))
     folder = Path(suite) if Path(suite).is_dir() else Path(suite).parent
     houses = str((folder / "houses").resolve()) if own else ""
-    sources = cast.Sources(minds=crew.minds, bodies=crew.bodies, houses=houses, people=who.word)
+    sources = cast.Sources(
+        minds=crew.minds, manifests=crew.manifests, bodies=crew.bodies, houses=houses, people=who.word
+    )
     held = guarded.settle("auto", required, sorted(set(crew.minds.values())))
     if held is None:
         return functools.partial(cast.player, sources)
     hidden = (str(folder.resolve()),) if suite else ()
-    guest.confine_guests(held.level, hidden)
-    return functools.partial(guarded.player, sources, held.level, hidden)
+    guest.confine_guests(held.level, hidden, given)
+    return functools.partial(guarded.player, sources, held.level, hidden, given)

@@ -12,6 +12,7 @@ from hthor import jsonio
 from hthor.errors import HthorError
 from hthor.eval import fingerprint, programme
 from hthor.eval.record import Record
+from hthor.guest import Given
 from hthor.leaderboard import (
     catching,
     checks,
@@ -43,6 +44,7 @@ class Request(Struct, frozen=True, kw_only=True):
 
     word: str
     agent: str = ""
+    given: Given | None = None
     suite: str = ""
     sample: int | None = None
     fresh: int = freshly.TASKS
@@ -91,6 +93,7 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
         agent=request.agent,
         jobs=request.jobs,
         required=request.require_isolation,
+        given=request.given,
     )
     return entry, msgspec.structs.replace(found, fresh=fresh)
 
@@ -166,6 +169,7 @@ def _again(entry: Entry, drawn: Sequence[int], request: Request) -> dict[int, tu
         suite=request.suite,
         jobs=request.jobs,
         require_isolation=request.require_isolation,
+        given=request.given,
     )
 
 

@@ -86,7 +86,7 @@ def uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes) -> U
         )
         for metric in ("sr", "twsr", "time_s")
     }
-    return Uplift(control=control.hashes.run, **found)
+    return Uplift(control=control.hashes.run, sr=found["sr"], twsr=found["twsr"], time_s=found["time_s"])
 
 
 def _estimate(some: np.ndarray, whose: Sequence[int], metric: str, limit_s: float | None = None) -> Estimate:

@@ -33,7 +33,7 @@ def suite(name_or_path: str | Path) -> Suite:
     """A suite by name, or from a file, verified and validated.
 
     A suite of ours was validated when it was made, and its hash tells that nothing has changed since; one of the user's
-    is validated now. Houses that lie beside the file, in a folder ``houses``, are those of the suite: from now on
+    is validated now. Houses that lie beside the file, in `houses_of` it, are those of the suite: from now on
     `hthor.houses.load` finds them by name. The path of a folder stands for the ``suite.json`` in it.
 
     Raises:
@@ -57,7 +57,7 @@ def read(name_or_path: str | Path) -> Suite:
         TaskError: when the file cannot be read, or was changed after it was frozen.
     """
     path, shown = _locate(name_or_path)
-    if (own := path.with_name("houses")).is_dir():
+    if (own := houses_of(path)).is_dir():
         houses.shelve(own)
     found = _decode(path, shown)
     digest = digest_of(found.tasks)
@@ -86,9 +86,18 @@ def find(id: str, name_or_path: str | Path | None = None) -> tuple[Suite, TaskSp
 
 
 def own_houses(name_or_path: str | Path) -> dict[str, bytes]:
-    """The house files that a suite brings with it, by name such as ``h1c0ffee.json``; empty for a suite of ours."""
+    """The house files that a suite brings with it, by name such as ``h1c0ffee.json``; empty for a suite of ours.
+
+    The excerpt of an asset database that may lie beside them comes with them.
+    """
     path, _ = _locate(name_or_path)
-    return {file.name: file.read_bytes() for file in sorted(path.with_name("houses").glob("*.json"))}
+    return {file.name: file.read_bytes() for file in sorted(houses_of(path).glob("*.json"))}
+
+
+def houses_of(path: Path) -> Path:
+    """Where the houses of the suite in this file lie: ``mine.houses`` for ``mine.json``, else ``houses`` beside it."""
+    own = path.with_suffix(".houses")
+    return own if own.is_dir() else path.with_name("houses")
 
 
 def frozen(name: str, version: int, tasks: tuple[TaskSpec, ...]) -> Suite:

@@ -28,6 +28,7 @@ from hthor.types.places import (
 from hthor.types.sensing import (
     Briefing,
     Camera,
+    CameraSpec,
     Detection,
     DetectorSpec,
     Message,
@@ -49,6 +50,7 @@ __all__ = [
     "BodySpec",
     "Briefing",
     "Camera",
+    "CameraSpec",
     "Close",
     "Detection",
     "DetectorSpec",

@@ -140,7 +140,8 @@ class AgentRef(Struct, frozen=True, kw_only=True):
 class RobotSeat(Struct, frozen=True, kw_only=True):
     """One robot of a trial: its body and its mind. ``detector`` as `hthor.detectors.read` reads it.
 
-    ``robot_sha256`` is the hash of a user's own robot file, empty for a robot that ships with hthor.
+    ``camera`` is there only where it is not the body's own, as `hthor.cameras.read` reads it. ``robot_sha256`` is the
+    hash of a user's own robot file, empty for a robot that ships with hthor.
     """
 
     seat: str
@@ -148,6 +149,7 @@ class RobotSeat(Struct, frozen=True, kw_only=True):
     agent: AgentRef
     detector: str = "own"
     robot_sha256: str = ""
+    camera: str | msgspec.UnsetType = msgspec.UNSET
 
 
 class TrialSpec(Struct, frozen=True, kw_only=True):

@@ -72,8 +72,8 @@ class Thing(Struct, frozen=True, kw_only=True):
     """A piece of furniture or a small object of a house, where it stands, or lies on its support.
 
     ``centre`` [m] house frame is the middle of the bounding box, ``size`` [m] its extents along the thing's local
-    x (width), y (depth) and z (height) axes. ``variant`` picks one of its kind's finishes; it changes looks only. ``lift`` [m] is how much higher the house's
-    file has it: what its heights were before it was laid down (`hthor.houses.laying`).
+    x (width), y (depth) and z (height) axes. ``variant`` picks one of its kind's finishes; it changes looks only.
+    ``lift`` [m] is how much higher the house's file has it, which was laid down since (`hthor.houses.laying`).
     """
 
     id: str

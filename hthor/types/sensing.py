@@ -79,6 +79,18 @@ class Scan(Struct, frozen=True, kw_only=True):
     beyond: Any = None
 
 
+class CameraSpec(Struct, frozen=True, kw_only=True):
+    """Which pictures a seat's camera takes, as `hthor.cameras.read` reads its name.
+
+    ``size`` is (width, height) [pixels], None for the body's own. ``fov`` [rad] is the horizontal field of view of the
+    pictures, None for the body's; what a detector reports goes by the body's alone.
+    """
+
+    name: str = "own"
+    size: tuple[int, int] | None = None
+    fov: float | None = None
+
+
 class Camera(Struct, frozen=True, kw_only=True):
     """A camera as OpenCV counts: in its frame x is right, y down, z along the optical axis.
 

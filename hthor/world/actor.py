@@ -34,7 +34,7 @@ from hthor.types import (
     Wait,
 )
 from hthor.world import journey, numbers
-from hthor.world.pictures import IMAGE_SIZE
+from hthor.world.pictures import Size
 
 if TYPE_CHECKING:
     from hthor.types import View
@@ -97,7 +97,7 @@ class Actor:
             return self.do(Move(forward=forward, left=left))  # which says what is wrong with them
         length = math.hypot(forward, left)
         if length > FARTHEST_M:
-            reason = f"move is {length:.5g} m long; at most {FARTHEST_M:.0f} m at once"
+            reason = f"move is {numbers.short(length)} m long; at most {FARTHEST_M:.0f} m at once"
             return Outcome(motion="move", ok=False, reason=reason)
         steps = max(1, math.ceil(length / rules.MOVE_MAX_M - _EPS))
         outcome = Outcome(motion="move", ok=True)
@@ -166,21 +166,25 @@ class Actor:
 
     # -------------------------------------------------------------------------------------------------- perception
 
-    def look(self, size: tuple[int, int] = IMAGE_SIZE) -> View:
-        """Colour, depth, segmentation and the camera of one glance; ``size`` is (width, height) [pixels]."""
-        return self._world.look(self.seat, size)
+    def look(self, size: Size = None, profile: str | None = None) -> View:
+        """Colour, depth, segmentation and the camera of one glance.
 
-    def rgb(self, size: tuple[int, int] = IMAGE_SIZE, profile: str = "fast") -> Any:
-        """(H, W, 3) uint8, what its camera sees; ``profile`` is fast or nice."""
-        return self._world.picture(self.seat, "rgb", size, profile=profile)
+        Args:
+            size: (width, height) [pixels], None for the camera's own. profile: fast, nice, or None for the world's.
+        """
+        return self._world.look(self.seat, size, profile)
 
-    def depth(self, size: tuple[int, int] = IMAGE_SIZE) -> Any:
+    def rgb(self, size: Size = None, profile: str | None = None) -> Any:
+        """(H, W, 3) uint8, what its camera sees; arguments as in `look`."""
+        return self._world.picture(self.seat, "rgb", size, profile)
+
+    def depth(self, size: Size = None, profile: str | None = None) -> Any:
         """(H, W) float32 [m] along the optical axis."""
-        return self._world.picture(self.seat, "depth", size)
+        return self._world.picture(self.seat, "depth", size, profile)
 
-    def segmentation(self, size: tuple[int, int] = IMAGE_SIZE) -> Any:
+    def segmentation(self, size: Size = None, profile: str | None = None) -> Any:
         """(H, W) int32, indices into ``World.names``, -1 for nothing."""
-        return self._world.picture(self.seat, "segmentation", size)
+        return self._world.picture(self.seat, "segmentation", size, profile)
 
     def detections(self) -> tuple[Detection, ...]:
         """What its detector reports now, by id."""

@@ -91,7 +91,7 @@ class Arranging:
         """There and nowhere else; back to where it was if something is there already."""
         indoors = any(geometry.inside(pose[:2], room.polygon) for room in self._house.rooms)
         if not indoors or pose[2] > self._house.height:
-            at = ", ".join(f"{value:.5g}" for value in pose[:3])
+            at = ", ".join(numbers.short(value) for value in pose[:3])
             raise HthorError(f"({at}) is in no room of the house; give a position indoors")
         data = self._env.data
         rows, speeds = slice(item.qpos, item.qpos + 7), slice(item.dof, item.dof + 6)

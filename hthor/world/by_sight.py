@@ -5,13 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from hthor.errors import UnknownName
+from hthor import cameras as hthor_cameras
+from hthor.errors import HthorError, UnknownName
 from hthor.looks import pack as packs
 from hthor.looks.pack import Pack
-from hthor.types import Camera, Detection, DetectorSpec, HouseSpec, RobotSpec, Scan, Senses, Sighting, Vec3, View
+from hthor.types import (
+    Camera,
+    CameraSpec,
+    Detection,
+    DetectorSpec,
+    HouseSpec,
+    RobotSpec,
+    Scan,
+    Senses,
+    Sighting,
+    Vec3,
+    View,
+)
 from hthor.world import contents, numbers, sight
 from hthor.world.by_tick import TickedWorld
-from hthor.world.pictures import IMAGE_SIZE, Pictures
+from hthor.world.pictures import Pictures, Size
 from hthor.world.senses import Senses as SeatSenses
 
 
@@ -23,6 +36,8 @@ class SeenWorld(TickedWorld):
         profile: how pictures are drawn unless a call says otherwise: "fast" needs the processor alone, "nice" is for
             people and needs OpenGL.
         assets: a furniture pack, or its name, that the profile "nice" shows instead of our own furniture where it can.
+        cameras: what pictures the robots' cameras take, in their order: a record, or what `hthor.cameras.read` reads;
+            where there is none, the body's own.
     """
 
     def __init__(
@@ -33,10 +48,17 @@ class SeenWorld(TickedWorld):
         detectors: Iterable[DetectorSpec | str] = (),
         profile: str = "fast",
         assets: Pack | str = "",
+        cameras: Iterable[CameraSpec | str] = (),
     ) -> None:
         self._pack = (packs.load(assets) if assets else None) if isinstance(assets, str) else assets
         super().__init__(house, robots, objects, detectors)
-        self._pictures = Pictures(self.house, self._env, self._scene, self._seats, self._studio, profile)
+        given = [hthor_cameras.read(one) if isinstance(one, str) else one for one in cameras]
+        if len(given) > len(self.seats) - 1:
+            raise HthorError(
+                f"there are {len(given)} cameras and {len(self.seats) - 1} robots; give one camera a robot"
+            )
+        self.cameras = dict(zip(self.seats[1:], given, strict=False))
+        self._pictures = Pictures(self.house, self._env, self._scene, self._seats, self._studio, profile, self.cameras)
 
     # -------------------------------------------------------------------------------------------------------- senses
 
@@ -73,35 +95,42 @@ class SeenWorld(TickedWorld):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What the numbers of a segmentation stand for: things, seats, rooms, walls and openings."""
-        return self._scene.names
+        """What the numbers of a segmentation stand for: things, seats, rooms, walls and openings.
 
-    def picture(
-        self, seat: str, mode: str = "rgb", size: tuple[int, int] = IMAGE_SIZE, profile: str | None = None
-    ) -> Any:
+        Every episode deals them anew, by its seed.
+        """
+        return self._pictures.names(self._seed)
+
+    @property
+    def profile(self) -> str:
+        """How pictures are drawn unless a call says otherwise."""
+        return self._pictures.profile
+
+    def picture(self, seat: str, mode: str = "rgb", size: Size = None, profile: str | None = None) -> Any:
         """The seat's own view now, without its own body.
 
         Args:
             mode: rgb (H, W, 3) uint8, depth (H, W) float32 [m] along the optical axis, or segmentation (H, W) int32,
                 indices into `names`, -1 for nothing. Depth and segmentation look through glass.
-            size: (width, height) [pixels].
+            size: (width, height) [pixels]; None for the camera's own. Pixels are square: a picture of another
+                shape than the body's field of view shows the middle of it.
             profile: "fast", "nice", or None for the world's own.
 
         Raises:
             ValueError: when mode, size or profile are none of these.
             RenderingUnavailable: when the profile is nice and no OpenGL back end works.
         """
-        return self._pictures.view(seat, mode, size, profile)
+        return self._pictures.view(seat, mode, size, profile, self._seed)
 
-    def look(self, seat: str, size: tuple[int, int] = IMAGE_SIZE) -> View:
-        """All pictures of one glance and the camera they were taken with, in the profile fast."""
-        return self._pictures.look(seat, size)
+    def look(self, seat: str, size: Size = None, profile: str | None = None) -> View:
+        """All pictures of one glance and the camera they were taken with; see `picture`."""
+        return self._pictures.look(seat, size, profile, self._seed)
 
-    def camera(self, seat: str, size: tuple[int, int] = IMAGE_SIZE) -> Camera:
+    def camera(self, seat: str, size: Size = None) -> Camera:
         """The seat's camera now: how it projects pictures of ``size`` (width, height) [pixels], and where it is."""
         return self._pictures.camera(seat, size)
 
-    def frame(self, seat: str, size: tuple[int, int] = IMAGE_SIZE, profile: str | None = None) -> Callable[[], Any]:
+    def frame(self, seat: str, size: Size = None, profile: str | None = None) -> Callable[[], Any]:
         """The seat's own view of this very moment, (H, W, 3) uint8, drawn if and when it is called."""
         return self._pictures.frame(seat, size, profile)
 

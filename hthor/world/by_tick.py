@@ -263,8 +263,10 @@ class TickedWorld:
         body, pose = self._seats[seat], numbers.pose(pose)
         limit = body.spec.pitch_limit
         if abs(pose.pitch) > limit + 1e-9:
-            raise HthorError(f"pitch must be from {-limit:.2f} to {limit:.2f} rad for {seat}, got {pose.pitch:.5g} rad")
-        here = f"({pose.x:.5g}, {pose.y:.5g})"
+            raise HthorError(
+                f"pitch must be from {-limit:.2f} to {limit:.2f} rad for {seat}, got {numbers.short(pose.pitch)} rad"
+            )
+        here = f"({numbers.short(pose.x)}, {numbers.short(pose.y)})"
         if not body.space.is_free(pose.x, pose.y):
             raise HthorError(f"{here} is not free for {seat}; try space['{seat}'].nearest_free")
         for other in self._seats.values():

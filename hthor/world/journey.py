@@ -12,7 +12,7 @@ from hthor.errors import HthorError
 from hthor.houses.freespace import FreeSpace
 from hthor.houses.geodesic import Geodesics
 from hthor.types import BodySpec, Outcome, Pose, Rotate, Vec2, Vec3
-from hthor.world import passages
+from hthor.world import numbers, passages
 
 if TYPE_CHECKING:
     from hthor.world.actor import Actor
@@ -109,7 +109,8 @@ def _taken(world: World, actor: Actor, goal: Vec2) -> bool:
 def _point(world: World, target: Vec2) -> Vec2:
     x, y = target
     if not any(geometry.inside((x, y), room.polygon) for room in world.house.rooms):
-        raise HthorError(f"({x:.5g}, {y:.5g}) is in no room of the house; give a point indoors, or the id of a thing")
+        place = f"({numbers.short(x)}, {numbers.short(y)})"
+        raise HthorError(f"{place} is in no room of the house; give a point indoors, or the id of a thing")
     return (x, y)
 
 

@@ -34,7 +34,7 @@ def refusal(seat: Seat, motion: Move | Rotate | Wait) -> str:
     if isinstance(motion, Wait):
         reason = "" if _is_plain(motion.seconds) else _finite(seconds=motion.seconds)
         if not reason and motion.seconds > WAIT_MAX_S:
-            return f"wait is {motion.seconds:.5g} s long; at most {WAIT_MAX_S:.0f} s"
+            return f"wait is {numbers.short(motion.seconds)} s long; at most {WAIT_MAX_S:.0f} s"
         return reason
     if "navigate" not in seat.spec.capabilities:
         return f"{seat.spec.title} cannot move"
@@ -43,17 +43,17 @@ def refusal(seat: Seat, motion: Move | Rotate | Wait) -> str:
         reason = "" if plain else _finite(forward=motion.forward, left=motion.left)
         length = 0.0 if reason else math.hypot(motion.forward, motion.left)
         if length > rules.MOVE_MAX_M + _EPS:
-            return f"move is {length:.5g} m long; at most {rules.MOVE_MAX_M:.2f} m"
+            return f"move is {numbers.short(length)} m long; at most {rules.MOVE_MAX_M:.2f} m"
         return reason
     plain = _is_plain(motion.yaw) and _is_plain(motion.pitch)
     reason = "" if plain else _finite(yaw=motion.yaw, pitch=motion.pitch)
     if reason:
         return reason
     if abs(motion.yaw) > 2 * math.pi + _EPS:
-        return f"rotation is {motion.yaw:.5g} rad; at most one full turn, {2 * math.pi:.2f} rad"
+        return f"rotation is {numbers.short(motion.yaw)} rad; at most one full turn, {2 * math.pi:.2f} rad"
     pitch, limit = seat.pose.pitch + motion.pitch, seat.spec.pitch_limit
     if abs(pitch) > limit + _EPS:
-        return f"camera pitch would be {pitch:.5g} rad; at most {limit:.2f} rad up or down"
+        return f"camera pitch would be {numbers.short(pitch)} rad; at most {limit:.2f} rad up or down"
     return ""
 
 

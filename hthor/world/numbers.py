@@ -21,6 +21,11 @@ def finite(value: object) -> bool:
         return False
 
 
+def short(value: float) -> str:
+    """A number for a message: to the hundredth, or as a power of ten where that would be long."""
+    return f"{value:.2f}" if abs(value) < 1e6 else f"{value:.3g}"
+
+
 def number(name: str, value: object, unit: str, low: float = -math.inf, high: float = math.inf) -> float:
     """``value`` as a float.
 

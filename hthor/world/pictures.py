@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from hthor.types import Camera, HouseSpec, Vec2, View
+from hthor.types import Camera, CameraSpec, HouseSpec, Vec2, View
 from hthor.world import camera, numbers
 from hthor.world.env import FastEnv
+from hthor.world.labels import Labels
 from hthor.world.moment import Moment
 from hthor.world.scene import Scene
 from hthor.world.seats import Seat
@@ -20,10 +21,10 @@ if TYPE_CHECKING:
     from hthor.world.rendering import Studio
     from hthor.world.tracer import Tracer
 
-IMAGE_SIZE = (128, 128)
-"""Width and height of a seat's own pictures, in pixels."""
 PROFILES = ("fast", "nice")
 MODES = ("rgb", "depth", "segmentation")
+Size = tuple[int, int] | None
+"""Width and height [pixels], None for the camera's own."""
 _MARGIN_M = 0.3
 
 
@@ -33,6 +34,7 @@ class Pictures:
     Args:
         studio: makes what draws the profile ``nice``; called at most once, when first needed.
         profile: the profile of every picture for which a call names none.
+        cameras: of the seats that do not have their bodies' own.
     """
 
     def __init__(
@@ -43,40 +45,50 @@ class Pictures:
         seats: Mapping[str, Seat],
         studio: Callable[[], Studio],
         profile: str = "fast",
+        cameras: Mapping[str, CameraSpec] | None = None,
     ) -> None:
         _check(PROFILES, profile=profile)
-        self._profile = profile
+        self.profile = profile
         self._house, self._env, self._scene, self._seats = house, env, scene, seats
+        self._cameras = dict(cameras or {})
         self._make = studio
         self._studio: Studio | None = None
         self._tracer: Tracer | None = None
+        self._labels = Labels(scene.names)
 
-    def view(self, seat: str, mode: str, size: tuple[int, int], profile: str | None) -> Any:
+    def names(self, seed: int) -> tuple[str, ...]:
+        """Whom each number of a segmentation stands for in the episode of that seed."""
+        self._labels.draw(seed)
+        return self._labels.names
+
+    def view(self, seat: str, mode: str, size: Size, profile: str | None, seed: int) -> Any:
         """The seat's own view now: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
         _check(MODES, mode=mode)
-        camera.check(size)
-        return self._draw(profile).view(self._moment(), seat, mode, size)
+        size = self._size(seat, size)
+        picture = self._draw(profile).view(self._moment(), seat, mode, size, self._by(seat))
+        return self._labelled(picture, seed) if mode == "segmentation" else picture
 
-    def look(self, seat: str, size: tuple[int, int]) -> View:
-        """Colour, depth and segmentation of one glance, in the profile ``fast``."""
-        camera.check(size)
-        glance = self._fast().look(self._moment(), seat, size)
+    def look(self, seat: str, size: Size, profile: str | None, seed: int) -> View:
+        """Colour, depth and segmentation of one glance."""
+        size = self._size(seat, size)
+        glance = self._draw(profile).look(self._moment(), seat, size, self._by(seat))
         return View(
-            rgb=glance.rgb, depth=glance.depth, segmentation=glance.segmentation, camera=self.camera(seat, size)
+            rgb=glance.rgb,
+            depth=glance.depth,
+            segmentation=self._labelled(glance.segmentation, seed),
+            camera=self.camera(seat, size),
         )
 
-    def camera(self, seat: str, size: tuple[int, int]) -> Camera:
+    def camera(self, seat: str, size: Size) -> Camera:
         """The seat's camera now, as it takes pictures of this size."""
-        camera.check(size)
         body = self._seats[seat]
-        return camera.of(body.pose, body.spec, size)
+        return camera.of(body.pose, body.spec, self._size(seat, size), self._by(seat))
 
-    def frame(self, seat: str, size: tuple[int, int], profile: str | None) -> Callable[[], Any]:
+    def frame(self, seat: str, size: Size, profile: str | None) -> Callable[[], Any]:
         """The seat's own view of this moment in colour, drawn when called."""
-        _check(PROFILES, profile=profile or self._profile)
-        camera.check(size)
-        moment = self._moment()
-        return lambda: self._draw(profile).view(moment, seat, "rgb", size)
+        _check(PROFILES, profile=profile or self.profile)
+        fixed, moment, by = self._size(seat, size), self._moment(), self._by(seat)
+        return lambda: self._draw(profile).view(moment, seat, "rgb", fixed, by)
 
     def top_view(self, pixels_per_metre: float, profile: str | None) -> Any:
         """The house from above now, (H, W, 3) uint8."""
@@ -91,13 +103,27 @@ class Pictures:
         xs, ys = [corner[0] for corner in corners], [corner[1] for corner in corners]
         return (min(xs) - _MARGIN_M, min(ys) - _MARGIN_M, max(xs) + _MARGIN_M, max(ys) + _MARGIN_M)
 
+    def _by(self, seat: str) -> CameraSpec:
+        return self._cameras.get(self._seats[seat].name, camera.OWN)  # which complains of a seat that there is not
+
+    def _size(self, seat: str, size: Size) -> tuple[int, int]:
+        """The size that is meant: the camera's own when None."""
+        if size is None:
+            return camera.size(self._seats[seat].spec, self._by(seat))
+        camera.check(size)
+        return size
+
+    def _labelled(self, numbers: Any, seed: int) -> Any:
+        self._labels.draw(seed)
+        return self._labels.of(numbers)
+
     def _moment(self) -> Moment:
         self._env.pin()
         poses = {name: (seat.pose, seat.spec) for name, seat in self._seats.items()}
         return Moment(self._env.data.qpos.copy(), poses)
 
     def _draw(self, profile: str | None) -> Any:
-        wanted = profile or self._profile
+        wanted = profile or self.profile
         _check(PROFILES, profile=wanted)
         return self._fast() if wanted == "fast" else self._nice()
 

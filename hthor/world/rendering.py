@@ -10,13 +10,14 @@ import atexit
 import math
 import weakref
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor.types import BodySpec, HouseSpec, Pose
+from hthor.types import BodySpec, CameraSpec, HouseSpec, Pose
 from hthor.world import bodies, geoms, opengl
+from hthor.world import camera as projection
 from hthor.world.contents import Contents
 from hthor.world.engine import mujoco
 from hthor.world.moment import Moment
@@ -32,6 +33,14 @@ _FINER = 2
 """Colour is drawn finer and averaged: the engine's own smoothing leaves dotted edges where shadows are."""
 _FAR_AWAY = (0.0, 0.0, -200.0)
 _MODES = ("rgb", "depth", "segmentation")
+
+
+class Glance(NamedTuple):
+    """One glance: rgb (H, W, 3) uint8, depth (H, W) float32 [m], segmentation (H, W) int32."""
+
+    rgb: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    segmentation: NDArray[np.int32]
 
 
 class Studio:
@@ -72,7 +81,11 @@ class Studio:
         self.close.atexit = False
         atexit.register(self.close)  # registered after the back end's own farewell, so it runs before it
 
-    def view(self, moment: Moment, seat: str, mode: str, size: tuple[int, int]) -> Any:
+    def look(self, moment: Moment, seat: str, size: tuple[int, int], by: CameraSpec = projection.OWN) -> Glance:
+        """What ``seat`` sees in every way."""
+        return Glance(*(self.view(moment, seat, mode, size, by) for mode in _MODES))
+
+    def view(self, moment: Moment, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = projection.OWN) -> Any:
         """What ``seat`` sees: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
         if mode not in _MODES:
             raise ValueError(f"mode must be one of {', '.join(_MODES)}, got '{mode}'")
@@ -80,7 +93,7 @@ class Studio:
         self._pose(moment, without=seat)
         self._compose(INSIDE)
         for eye in self._scene.camera:
-            camera.look(eye, pose, spec)
+            camera.look(eye, pose, spec, projection.lens(spec, size, by))
         self._lamps.light(self._scene, pose)
         return self._shoot(mode, size)
 
@@ -144,7 +157,7 @@ class Studio:
         mujoco.mjr_readPixels(None, buffer, area, self._context)
         near, far = camera.NEAR_M, camera.FAR_M
         depth = near / (1.0 - buffer[::-1].astype(np.float64) * (1.0 - near / far))
-        return np.asarray(depth, np.float32)
+        return np.asarray(np.minimum(depth, projection.FAR_M), np.float32)
 
     def _owners(self, pixels: NDArray[np.uint8]) -> NDArray[np.int32]:
         """The number of each pixel's owner, -1 where nothing was drawn."""

@@ -17,13 +17,14 @@ if TYPE_CHECKING:
 class Senses:
     """A seat's detector, range scanner and camera at the tick at which this was made."""
 
-    __slots__ = ("_detections", "_moment", "_scan", "_seat", "_view", "_world")
+    __slots__ = ("_detections", "_drawn", "_moment", "_scan", "_seat", "_view", "_world")
 
     def __init__(self, world: SeenWorld, seat: str) -> None:
         self._world, self._seat, self._moment = world, seat, world.moment
         self._detections: tuple[Detection, ...] | None = None
         self._scan: Scan | None = None
         self._view: View | None = None
+        self._drawn: dict[str, Any] = {}
 
     def detections(self) -> tuple[Detection, ...]:
         """Objects, furniture, doorways, people and robots in view, by id."""
@@ -65,11 +66,15 @@ class Senses:
         return self._world.camera(self._seat)
 
     def _picture(self, mode: str) -> Any:
-        """From one glance, kept, so that the three pictures cost little more than one."""
+        """Kept; where that is cheap, from one glance, so that the three pictures cost little more than one."""
         self._check()
-        if self._view is None:
-            self._view = self._world.look(self._seat)
-        return getattr(self._view, mode)
+        if self._world.profile == "fast":
+            if self._view is None:
+                self._view = self._world.look(self._seat)
+            return getattr(self._view, mode)
+        if mode not in self._drawn:
+            self._drawn[mode] = self._world.picture(self._seat, mode)
+        return self._drawn[mode]
 
     def _check(self) -> None:
         if self._world.moment != self._moment:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor.types import HouseSpec
+from hthor.types import CameraSpec, HouseSpec
 from hthor.world import bodies, camera, geoms, patterns, raster, shading
 from hthor.world.engine import mujoco
 from hthor.world.moment import Moment
@@ -57,14 +57,14 @@ class Tracer:
         self._solid, self._glass = order[(shown & ~clear)[order]], order[(shown & clear)[order]]
         self._roofless = self._solid[model.geom_group[self._solid] != geoms.CEILINGS]
 
-    def look(self, moment: Moment, seat: str, size: tuple[int, int]) -> Trace:
+    def look(self, moment: Moment, seat: str, size: tuple[int, int], by: CameraSpec = camera.OWN) -> Trace:
         """What ``seat`` sees in every way at once; its own body is not in it."""
-        view, w, hit = self._fill(moment, seat, size)
+        view, w, hit = self._fill(moment, seat, size, by)
         return Trace(self._shade(view, w, hit), _depth(w), self._numbers(hit))
 
-    def view(self, moment: Moment, seat: str, mode: str, size: tuple[int, int]) -> Any:
+    def view(self, moment: Moment, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = camera.OWN) -> Any:
         """What ``seat`` sees in one way: rgb, depth or segmentation."""
-        view, w, hit = self._fill(moment, seat, size)
+        view, w, hit = self._fill(moment, seat, size, by)
         if mode == "rgb":
             return self._shade(view, w, hit)
         return _depth(w) if mode == "depth" else self._numbers(hit)
@@ -79,9 +79,9 @@ class Tracer:
         self._draw(view, self._roofless, w, hit)
         return self._shade(view, w, hit)
 
-    def _fill(self, moment: Moment, seat: str, size: tuple[int, int]) -> tuple[Any, Any, Any]:
+    def _fill(self, moment: Moment, seat: str, size: tuple[int, int], by: CameraSpec) -> tuple[Any, Any, Any]:
         self._pose(moment, seat)
-        view = camera.view(*moment.seats[seat])
+        view = camera.view(*moment.seats[seat], size, by)
         w, hit = _blank(view, size)
         self._draw(view, self._solid, w, hit)
         return view, w, hit

@@ -1,4 +1,4 @@
-"""Takes the references off a board, with their verifications, so that others can be put in their place: `stale.py BOARD`."""
+"""Takes the references off a board, with their verifications, so that others can take their place: `stale.py BOARD`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hthor.leaderboard.files import BoardError
 
 
 def main(board: Path) -> None:
-    """Delete their files; entries of submitted agents stay, and what cannot be read because it is of another version."""
+    """Delete their files; entries of submitted agents stay, and those of another version, which cannot be read."""
     for path in files.entry_paths(board):
         try:
             entry = files.read(path)

@@ -22,12 +22,16 @@ def pipe():
         frame = frame.f_back
 """
 """How an agent finds its end of the wire."""
-HEAD = """
+_IMPORTS = """
 import ctypes, fcntl, glob, mmap, os, resource, signal, socket, struct, subprocess, sys, tempfile, threading, time
 from pathlib import Path
 from hthor.types import *
-
-WIRE, TELL = int(sys.orig_argv[-2]), int(sys.orig_argv[-3])
+"""
+HEAD = (
+    f"{_IMPORTS}{PIPE}"
+    + """
+PIPE = pipe()
+(READ, WIRE), FRAMES, TELL = PIPE.handles, PIPE.shared, int(sys.orig_argv[-2])
 HERE = Path(__file__).parent
 PACKAGE = Path(sys.modules["hthor"].__file__).parent
 libc = ctypes.CDLL(None, use_errno=True)
@@ -63,6 +67,7 @@ class Agent:
 
     def attack(self):
 """
+)
 
 
 class Case(NamedTuple):

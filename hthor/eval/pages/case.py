@@ -14,6 +14,7 @@ from hthor.eval.pages.figures import case
 from hthor.eval.pages.figures.case import Row
 from hthor.eval.pages.gather import Run
 from hthor.eval.record import Record
+from hthor.guest import Given
 
 _DPI = 220
 
@@ -27,6 +28,7 @@ def study(
     profile: str = "fast",
     agents: Sequence[str] = (),
     humans: str = "",
+    given: Given | None = None,
 ) -> tuple[Path, Path]:
     """Draw a task under the robots of several runs; the paths of the SVG and of the PNG.
 
@@ -34,7 +36,8 @@ def study(
         folders: the runs'. task: its id. out: a folder.
         person: the participant; by default the first who did the task in every run.
         profile: how views are drawn, fast or nice.
-        agents: files of agents that are not built in. humans: where the people come from.
+        agents: files of agents that are not built in. humans: where the people come from. given: what the agents were
+            given.
 
     Raises:
         RunError: when the runs do not belong together, or cannot be played again.
@@ -51,7 +54,7 @@ def study(
     for run, record in zip(runs, chosen, strict=True):
         held = moments.of(record, house)
         ticks = [one.tick for one in held]
-        views = filming.film(run.folder, record, ticks, profile=profile, agents=agents, humans=humans)
+        views = filming.film(run.folder, record, ticks, profile=profile, agents=agents, humans=humans, given=given)
         rows.append(Row(label=run.label, record=record, moments=held, views=views))
     made = case.figure(rows, house)
     spec = chosen[0].spec

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import shlex
+
+from hthor.eval import command
 from hthor.eval.pages.gather import Run, pair
 from hthor.eval.pages.singled import Shown
 from hthor.eval.record import Record
@@ -56,5 +59,5 @@ def _shown(run: Run, rank: str, record: Record, other: Record | None) -> Shown:
 
 
 def replay(run: Run, record: Record) -> str:
-    """The command that draws a trial; a folder's own name alone, as no page is to tell where it lay."""
-    return f"hthor replay {run.name} {record.key}"
+    """The command that draws a trial, as it can be typed where the report was written."""
+    return shlex.join(["hthor", "replay", str(command.near(run.folder)), record.key])

@@ -45,8 +45,9 @@ def draw(found: Findings, scenes: Sequence[Scene]) -> Iterator[Drawing]:
         seats = list(dict.fromkeys(seat for scene in scenes for seat in scene.record.paths))
         alone = any(scene.alone is not None for scene in scenes)
         destined = any(trace.destinations(scene.record.spec, scene.house) for scene in scenes)
+        failed = any(scene.record.faults for scene in scenes)
         words = "What lines and marks on the maps mean"
-        legend = trial_map.legend(seats, alone=alone, destined=destined)
+        legend = trial_map.legend(seats, alone=alone, destined=destined, failed=failed)
         yield Drawing(name="legend", words=words, figure=legend)
     for number, (one, scene) in enumerate(zip(found.shown, scenes, strict=False), 1):
         words = f"Map of {one.task} with {one.arm}, one of its {one.rank} trials"

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import shlex
+
 from msgspec import Struct
 
 from hthor import documents, rules
+from hthor.eval import command
 from hthor.eval.pages import chosen
 from hthor.eval.pages.gather import Run
 from hthor.eval.pages.singled import Failure
@@ -58,9 +61,18 @@ def _failure(run: Run, seat: str, agent: str, kind: str, held: list[Record]) -> 
         after_s=round(fault.tick * rules.TICK_S, 1),
         detail=(left.detail or fault.detail).strip()[-_DETAIL_MAX:],
         output=left.output.strip()[-_OUTPUT_MAX:],
-        again=remains.again,
+        again=_here(remains.again, run),
         replay=chosen.replay(run, first),
     )
+
+
+def _here(again: str, run: Run) -> str:
+    """The command that plays a trial again, with the run's folder as it is reached from here."""
+    try:
+        *words, _, key = shlex.split(again)
+    except ValueError:  # there is none, or somebody changed it
+        return again
+    return shlex.join([*words, str(command.near(run.folder)), key])
 
 
 def _remains(run: Run, record: Record) -> _Remains:

@@ -11,11 +11,12 @@ from typing import Any
 
 import msgspec
 
-from hthor import guest
+from hthor import guest, steps
 from hthor.errors import RunError
 from hthor.eval import again, cast, record
 from hthor.eval.record import Record
 from hthor.eval.session import Session
+from hthor.guest import Given
 from hthor.types import Event, TaskSpec
 
 SIZE = (400, 300)
@@ -65,6 +66,7 @@ def film(
     profile: str = "fast",
     agents: Sequence[str] = (),
     humans: str = "",
+    given: Given | None = None,
 ) -> Views:
     """Play a trial again and look.
 
@@ -72,18 +74,19 @@ def film(
         folder: the run's. wanted: the trial. ticks: when to look.
         profile: how pictures are drawn, fast or nice.
         agents: files of the run's agents that are not built in. humans: where its people come from, when the name in
-            the log does not find them.
+            the log does not find them. given: arguments and files that the agents were given.
 
     Raises:
         RunError: when trials before it are missing, another version of hthor played them, or it goes otherwise now.
         HthorError: when a file is needed.
     """
     spec = wanted.spec
-    guest.confine_guests(hidden=(str(folder.resolve()),))
+    guest.confine_guests(hidden=(str(folder.resolve()),), given=given)
     session = Session(participant=spec.participant, trials=again.before(folder, wanted))
     stage = cast.Stage(again.sources(folder, spec, agents, humans))
     with stage.enter(session) as company:
-        for trial in session.trials:
+        for number, trial in enumerate(session.trials, 1):
+            steps.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")
             world = Filmed(stage.world(trial), ticks if trial == spec else (), profile)
             done = stage.play(company, trial, world)
         if _course(done) != _course(wanted):
@@ -92,6 +95,7 @@ def film(
                 "trial. An agent that does not repeat itself, or another machine, does that; 'hthor replay' draws it "
                 "from its log alone."
             )
+        steps.say(f"drawing what was seen in {folder.name}")
         return world.views()
 
 

@@ -17,6 +17,8 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from hthor.eval import lettering
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -57,6 +59,7 @@ _PX = 1.45
 """Pixels that a point of a figure takes on a screen that is wide enough."""
 
 _STYLE = {
+    **lettering.SETTINGS,
     "svg.hashsalt": "hthor",
     "svg.fonttype": "none",
     "font.family": "sans-serif",
@@ -89,7 +92,7 @@ _STYLE = {
 @contextmanager
 def style() -> Iterator[None]:
     """Draw in the report's style."""
-    with mpl.rc_context(_STYLE):
+    with lettering.plain(), mpl.rc_context(_STYLE):
         yield
 
 

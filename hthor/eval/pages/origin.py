@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from msgspec import Struct
 
 from hthor import documents
@@ -34,7 +32,8 @@ class Origin(Struct, frozen=True, kw_only=True):
 
     ``name`` is that of its folder. ``beside`` says that the report found it there by itself, as the control of another.
     ``isolation`` is None where all agents are built in; ``platforms`` is empty where the run did not note them.
-    ``command`` plays the run again. ``mode`` is lockstep, or realtime where robots' thinking took time of the trials.
+    ``command`` plays the run again, ``alone`` the same people at the same tasks without a robot. ``mode`` is
+    lockstep, or realtime where robots' thinking took time of the trials.
     """
 
     name: str
@@ -56,6 +55,7 @@ class Origin(Struct, frozen=True, kw_only=True):
     isolation: Isolation | None
     platforms: tuple[Platform, ...]
     command: str
+    alone: str
     run_sha256: str
     rules_sha256: str
     code_sha256: str
@@ -88,7 +88,8 @@ def of(run: Run) -> Origin:
         versions=plan.versions,
         isolation=guarded.load(run.folder),
         platforms=_platforms(run),
-        command=command.of(run.folder, plan, Path(run.name)),
+        alone=command.alone(plan),
+        command=command.of(run.folder, plan, command.near(run.folder)),
         run_sha256=plan.sha256,
         rules_sha256=plan.rules_sha256,
         code_sha256=plan.code_sha256,

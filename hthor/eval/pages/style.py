@@ -22,7 +22,8 @@ dd{margin:0;overflow-wrap:anywhere}
 nav{font-size:.9rem;margin:1.2rem 0}
 nav a{color:var(--oracle);text-decoration:none;margin-right:1rem;white-space:nowrap;display:inline-block}
 nav a:hover{text-decoration:underline}
-.wide{overflow-x:auto;margin:1rem 0}
+.wide{overflow-x:auto;margin:1rem 0;width:fit-content;min-width:100%;max-width:calc(100vw - 3rem)}
+.wide{position:relative;left:50%;transform:translateX(-50%)}
 table{border-collapse:collapse;font:.8rem/1.4 system-ui,Arial,sans-serif;font-variant-numeric:tabular-nums}
 caption{text-align:left;padding:0 0 .45rem;font:.9rem/1.45 Charter,"Bitstream Charter",Georgia,serif}
 th,td{padding:.2rem 1rem .2rem 0;text-align:left;vertical-align:top}

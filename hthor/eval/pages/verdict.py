@@ -28,7 +28,7 @@ def lead(found: Findings) -> str:
         better = sum(pair.better == pair.second for pair in found.uplift)
         said.append(f"{better or 'None'} of {len(found.uplift)} robots are better than no robot.")
     said += ["Section 2 has all pairs."] if many else []
-    said += [] if found.baseline else [words.alone()]
+    said += [] if found.baseline else [words.alone(found)]
     return " ".join(said)
 
 
@@ -41,7 +41,7 @@ def _alone(found: Findings) -> str:
     if found.baseline and len(found.arms) == 1:
         return f"There is only a run without a robot: people succeed in {rates} of its trials."
     text = f"People succeed with {rates} of the trials."
-    return text if found.apart and found.baseline else f"{text} {words.alone()}"
+    return text if found.apart and found.baseline else f"{text} {words.alone(found)}"
 
 
 def worth_telling(found: Findings) -> Sequence[Comparison]:

@@ -43,11 +43,11 @@ def facts(found: Findings) -> str:
     return f"{runs}, {trials} trials: {tasks} tasks, {people} {'person' if people == 1 else 'people'} ({who})."
 
 
-def alone() -> str:
+def alone(found: Findings) -> str:
     """That nothing can be said about help."""
     return (
-        "There is no run without a robot among these or beside them, so whether the robots help cannot be said: "
-        "'hthor eval --agent silent' on the same suite makes one."
+        "There is no run without a robot among these or beside them, so whether the robots help cannot be said. This "
+        f"makes one: {found.origins[0].alone}"
     )
 
 

@@ -14,7 +14,8 @@ from hthor.guest.confinement.kernel import Refused
 from hthor.guest.confinement.landlock import Ruleset
 from hthor.guest.confinement.policy import Policy
 
-__all__ = ["Refused", "confine", "rules"]
+__all__ = ["Refused", "confine", "keep", "rules"]
+_PROCESSES = ("/proc",)
 
 
 def rules(policy: Policy) -> Ruleset | None:
@@ -35,6 +36,29 @@ def rules(policy: Policy) -> Ruleset | None:
         driven=policy.devices,
         execute=policy.execute,
     )
+
+
+def keep(policy: Policy) -> None:
+    """Hold the trusted part of a guest for good, before it imports what an agent names.
+
+    It may do what its agents may, and what it takes to start them, to watch them and to clear up behind them.
+
+    Raises:
+        Refused: when it cannot be held.
+    """
+    if policy.level == "L1":
+        return
+    own = landlock.Ruleset(
+        (*policy.read, *_PROCESSES),
+        listed=policy.listed,
+        write=[os.path.dirname(policy.scratch), *([policy.compiled] if policy.compiled else [])],
+        devices=paths.DEVICES,
+        driven=policy.devices,
+        execute=policy.execute,
+    )
+    own.put_on()
+    own.close()
+    seccomp.put_on_keeper(execute=policy.execute)
 
 
 def confine(policy: Policy, held: Ruleset | None, word: bytes = b"") -> None:

@@ -22,20 +22,16 @@ def unavailable() -> str:
     return "" if shutil.which("bwrap") else f"bubblewrap is not installed. {_HELP}"
 
 
-def command(policy: Policy, inner: Sequence[str], writable: Sequence[str] = ()) -> list[str]:
-    """The command that runs another one inside.
-
-    Args:
-        writable: folders for the trusted part of the guest alone, which Landlock keeps from the rest.
-    """
+def command(policy: Policy, inner: Sequence[str]) -> list[str]:
+    """The command that runs another one inside."""
     words = [shutil.which("bwrap") or "bwrap", *_APART, *_NOBODY, "--hostname", "guest"]
     words += ["--die-with-parent", "--cap-drop", "ALL", "--proc", "/proc", "--dev", "/dev"]
     words += ["--size", str(policy.disk_mb << 20), "--tmpfs", policy.scratch]
     for path in policy.read:  # after the scratch folder: what comes later lies on top
         if not path.startswith(_OWN):
             words += ["--ro-bind-try", path, path]
-    for path in writable:
-        words += ["--bind-try", path, path]
+    if policy.compiled:
+        words += ["--bind-try", policy.compiled, policy.compiled]
     for path in policy.devices:
         words += ["--dev-bind-try", path, path]
     return [*words, "--remount-ro", "/", "--chdir", "/", "--", *inner]

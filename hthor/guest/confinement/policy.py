@@ -15,6 +15,7 @@ class Policy(Struct, frozen=True, kw_only=True):
         memory_mb: memory that it may hold. disk_mb: what it may write in a trial.
         execute: whether it is a program, which is started once it is held; what may be read may then be executed.
         devices: what it may use beyond what everybody may, such as GPUs.
+        compiled: where the trusted part of the guest keeps compiled code, which agents may only read; may be empty.
     """
 
     level: str
@@ -25,3 +26,4 @@ class Policy(Struct, frozen=True, kw_only=True):
     disk_mb: int
     execute: bool = False
     devices: tuple[str, ...] = ()
+    compiled: str = ""

@@ -70,6 +70,20 @@ def put_on(me: int, word: bytes = b"", *, driven: bool = False) -> None:
     load(program(me, word, driven=driven))
 
 
+def put_on_keeper(*, execute: bool) -> None:
+    """Filter the calls of whoever starts and watches held processes. It starts no program but as one of them.
+
+    Raises:
+        Refused: when it cannot be.
+    """
+    needed = (*calls.KEEPERS, *(["execve"] if execute else []))
+    refused = {**calls.DENIED, "execve": calls.EXECVE}
+    lines = _begin()
+    for number in (number for name, number in refused.items() if name not in needed):
+        lines += _on(number, [_no(errno.EPERM)])
+    load(_assembled(lines))
+
+
 def load(code: bytes) -> None:
     """Put a filter's instructions on this process for good.
 
@@ -92,8 +106,7 @@ def program(me: int, word: bytes = b"", *, driven: bool = False) -> bytes:
         errno.EOPNOTSUPP: calls.UNSUPPORTED,
         0: calls.IDLE,
     }
-    lines = [(_LOAD, 0, 0, _MACHINE), (_EQUAL, 1, 0, _ARCH), (_RETURN, 0, 0, _KILL)]
-    lines += [(_LOAD, 0, 0, _NUMBER), (_AT_LEAST, 0, 1, _X32), (_RETURN, 0, 0, _KILL)]
+    lines = _begin()
     for code, table in answers.items():
         for number in table.values():
             lines += _on(number, [_no(code)])
@@ -111,6 +124,16 @@ def program(me: int, word: bytes = b"", *, driven: bool = False) -> bytes:
     locks = _any(calls.FCNTL_LOCKS, _no(0))
     lines += _on(calls.FCNTL, [_argument(1), *_any(calls.FCNTLS, _YES), *locks, refuse])
     lines += _on(calls.IOCTL, _commands(driven))
+    return _assembled(lines)
+
+
+def _begin() -> list[Line]:
+    """Whoever calls otherwise than a program for x86_64 is ended; then the call's number is loaded."""
+    lines = [(_LOAD, 0, 0, _MACHINE), (_EQUAL, 1, 0, _ARCH), (_RETURN, 0, 0, _KILL)]
+    return [*lines, (_LOAD, 0, 0, _NUMBER), (_AT_LEAST, 0, 1, _X32), (_RETURN, 0, 0, _KILL)]
+
+
+def _assembled(lines: Iterable[Line]) -> bytes:
     return b"".join(struct.pack("<HBBI", *line) for line in [*lines, _YES])
 
 

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
-from hthor.types import BodySpec, Pose
+from hthor.types import BodySpec, Pose, Vec2
 from hthor.world import sight
 
 NEAR_M, FAR_M = 0.02, 120.0
 ABOVE_M = 20.0
 
 
-def look(camera: Any, pose: Pose, spec: BodySpec) -> None:
-    """Put the camera where the body's eye is."""
+def look(camera: Any, pose: Pose, spec: BodySpec, lens: Vec2) -> None:
+    """Put the camera where the body's eye is; ``lens`` are the tangents of half its fields of view."""
     view = sight.camera(pose, spec)
     camera.pos, camera.forward, camera.up = view[:3], view[3:6], view[9:12]
     camera.orthographic, camera.frustum_center = 0, 0.0
     camera.frustum_near, camera.frustum_far = NEAR_M, FAR_M
-    top = NEAR_M * math.tan(spec.fov[1] / 2)
+    top = NEAR_M * lens[1]
     camera.frustum_bottom, camera.frustum_top = -top, top
-    camera.frustum_width = NEAR_M * math.tan(spec.fov[0] / 2)
+    camera.frustum_width = NEAR_M * lens[0]
 
 
 def hover(camera: Any, bounds: tuple[float, float, float, float]) -> None:

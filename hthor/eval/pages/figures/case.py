@@ -75,7 +75,7 @@ def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
     record = row.record
     plan.draw_house(ax, house, marked=trace.destinations(record.spec, house), small=True)
     for seat in record.paths:
-        picture.draw_path(ax, record.log, seat)
+        picture.draw_path(ax, record.log, seat, words=False)
     for _, start in trace.targets(record.spec, house):
         ax.scatter(*start.position[:2], s=80, marker="*", color=trace.TARGET, edgecolor="white", lw=0.6, zorder=12)
     busy = [start.position[:2] for _, start in trace.targets(record.spec, house)]
@@ -110,7 +110,7 @@ def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
 
 def _letter(ax: Axes, place: Vec2, letters: str, seat: str, side: Vec2) -> None:
     """Beside the place, where there is room."""
-    ax.annotate(
+    made = ax.annotate(
         letters,
         place,
         (5 * side[0], 5 * side[1]),
@@ -119,6 +119,7 @@ def _letter(ax: Axes, place: Vec2, letters: str, seat: str, side: Vec2) -> None:
         va="bottom" if side[1] > 0 else "top",
         **_badge(seat),
     )
+    made.set_in_layout(False)  # at the edge of a house it would take room from the row, whose scale is all rows'
 
 
 def _draw_view(ax: Axes, view: Any, seat: str, column: int, moment: Moment, *, first: bool) -> None:

@@ -34,21 +34,21 @@ def figure(record: Record, house: HouseSpec, alone: Record | None) -> Figure:
             way = trace.points(alone.log, HUMAN)
             ax.plot(way[:, 0], way[:, 1], color=trace.INK, lw=0.8, ls=_DASH, alpha=0.7, zorder=7.5)
         for seat in record.paths:
-            picture.draw_path(ax, record.log, seat)
+            picture.draw_path(ax, record.log, seat, words=False)
         for _, start in trace.targets(record.spec, house):
             ax.scatter(
                 *start.position[:2], s=95, marker="*", color=trace.TARGET, edgecolor="white", linewidths=0.6, zorder=12
             )
-        for number, event in enumerate(trace.messages(record.log), 1):
-            trace.badge(ax, trace.at(record.log, event.seat, event.tick), str(number), trace.tint(record.log, event))
+        picture.draw_messages(ax, record.log, arrows=False)
     return made
 
 
-def legend(seats: Collection[str], *, alone: bool, destined: bool) -> Figure:
+def legend(seats: Collection[str], *, alone: bool, destined: bool, failed: bool = False) -> Figure:
     """What all these plans have in common.
 
     Args:
         seats: everybody who is drawn. alone: whether ways without a robot are. destined: whether destinations are.
+        failed: whether the mind of one of them failed.
     """
     ways = [Line2D([], [], color=trace.colour(seat), lw=2, label="person" if seat == HUMAN else seat) for seat in seats]
     if alone:
@@ -60,6 +60,8 @@ def legend(seats: Collection[str], *, alone: bool, destined: bool) -> Figure:
         _mark("o", trace.MESSAGE, "message, confirmed"),
         _mark("o", trace.IDLE_MESSAGE, "message, not confirmed"),
     ]
+    if failed:
+        marks.append(_mark("X", trace.FAILED, "the agent failed", size=7.5))
     if destined:
         marks.append(_mark("s", plan.MARKED, "destination", plan.MARKED_EDGE))
     handles = [*ways, *marks]

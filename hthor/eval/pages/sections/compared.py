@@ -23,7 +23,7 @@ _HEAD = ("", "success [points]", "time-weighted [points]", "time saved [s]", "wo
 
 def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """Of what the section is made."""
-    said = [html.paragraph(words.alone())] if not found.baseline else []
+    said = [html.paragraph(words.alone(found))] if not found.baseline else []
     apart = [html.bullets([words.apart(one) for one in found.apart])] if found.apart else []
     if not found.comparisons:
         return [*said, *apart]

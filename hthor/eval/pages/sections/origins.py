@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from hthor.eval.command import OURS
 from hthor.eval.pages import html
 from hthor.eval.pages.findings import Findings
 from hthor.eval.pages.html import Code, Piece
@@ -28,9 +29,15 @@ def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
             words=range(len(found.origins) + 1),
         ),
         html.paragraph(f"{', '.join(beside)} was not named, but found beside as a control.") if beside else "",
-        html.paragraph("The commands that play these runs again:"),
+        html.paragraph(f"The commands that play these runs again{_own(found)}:"),
         html.block("\n".join(one.command for one in found.origins)),
     ]
+
+
+def _own(found: Findings) -> str:
+    """Where files of the user's own are wanted: a run keeps their names and hashes, not their folders."""
+    ours = all(robot.agent.source.startswith(OURS) for one in found.origins for robot in one.robots)
+    return "" if ours else ", typed where the agents' files lie"
 
 
 def _robots(one: Origin) -> str:

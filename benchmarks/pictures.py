@@ -1,0 +1,146 @@
+"""The docs' pictures: ``python -m benchmarks.pictures [NAME...]`` makes them, ``--check`` says which are out of date.
+
+`docs/images/pictures.json` holds, for each picture, the hash of its file and of its origin: the task with its T*, the
+house, the benchmark's rules, how trials go (the reference trial of `hthor doctor`) and the code that draws. A picture is
+out of date when one of the two is another now. Checking plays nothing and takes a second.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from hthor import houses, jsonio, rules, tasks
+from hthor.eval import cast, crews, lettering, picture, programme, session
+from hthor.eval.record import Record
+
+ROOT = Path(__file__).resolve().parents[1]
+FOLDER = ROOT / "docs" / "images"
+MANIFEST = FOLDER / "pictures.json"
+_REFERENCE = "hthor/eval/health/reference.json"
+_DRAWING = ("lettering", "picture", "plan", "timeline", "trace")
+_SHEETS = ("hthor/world/sheet.py", "hthor/world/rendering.py")
+BY_HAND = ("robots.png", "report.png", "case.jpg")
+"""Pictures that need a longer run or a camera of their own; docs/report.md has the commands of the last two."""
+
+TRIALS = {
+    "replay.png": "smoke/birch/manipulation-01",
+    "collect.png": "collect/juniper/02",
+    "rearrange.png": "rearrange/elder/01",
+    "tidy.png": "tidy/maple/02",
+    "carry.png": "carry/rowan/01",
+}
+"""Trials with the oracle, in the robots' bodies that the kind of task is made for: a task, whose suite is its first word."""
+
+
+def names() -> list[str]:
+    """All pictures that this makes."""
+    return [*TRIALS, *(f"scenes/{name}.jpg" for name in houses.names())]
+
+
+def origin(name: str) -> str:
+    """Hash of all that decides what a picture shows."""
+    if name in TRIALS:
+        task = _task(TRIALS[name])
+        code = [f"hthor/eval/{part}.py" for part in _DRAWING]
+        facts = [TRIALS[name], task, houses.load(task.house).sha256, rules.sha256(), _sha256(ROOT / _REFERENCE)]
+        return jsonio.sha256([*facts, *(_sha256(ROOT / path) for path in code)])
+    return jsonio.sha256([houses.load(Path(name).stem).sha256, *(_sha256(ROOT / path) for path in _SHEETS)])
+
+
+def problems(folder: Path = FOLDER) -> list[str]:
+    """Which pictures are out of date, missing or unknown, a line each."""
+    manifest = folder / MANIFEST.name
+    known = json.loads(manifest.read_bytes()) if manifest.is_file() else {}
+    found = []
+    for name in names():
+        path, entry = folder / name, known.get(name, {})
+        if not path.is_file():
+            found.append(f"{name}: is missing")
+        elif entry.get("sha256") != _sha256(path):
+            found.append(f"{name}: is not the file that was made last")
+        elif entry.get("origin") != origin(name):
+            found.append(f"{name}: is out of date: what it shows, or the code that draws it, has changed since")
+    there = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.suffix in (".png", ".jpg")}
+    found += [f"{name}: nothing makes it" for name in sorted(there - {*names(), *BY_HAND})]
+    return found
+
+
+def make(wanted: Sequence[str], folder: Path = FOLDER) -> None:
+    """Make pictures, and note in the manifest what they were made of."""
+    manifest = folder / MANIFEST.name
+    known = json.loads(manifest.read_bytes()) if manifest.is_file() else {}
+    for name in wanted:
+        print(f"{name} ...", file=sys.stderr)
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _maker(name)(path)
+        known[name] = {"origin": origin(name), "sha256": _sha256(path)}
+        jsonio.write(manifest, jsonio.pretty({one: known[one] for one in names() if one in known}))
+
+
+def played(task_id: str) -> Record:
+    """The trial of a task with the oracle, as `hthor eval` plays it with the seed 0."""
+    chosen = programme.choose(task_id.partition("/")[0], "")
+    suite, crew = chosen.suite, crews.form(chosen.crew, ["oracle"] * len(chosen.crew))
+    for one in session.sessions(suite, agent=crew):
+        ids = [trial.task.id for trial in one.trials]
+        if task_id in ids:
+            until = session.Session(participant=one.participant, trials=one.trials[: ids.index(task_id) + 1])
+            return list(cast.player()(until))[-1]
+    raise ValueError(f"the suite {suite.name} has no task {task_id}")
+
+
+def _maker(name: str) -> Callable[[Path], None]:
+    if name in TRIALS:
+        return lambda path: _draw_trial(path, TRIALS[name])
+    return _draw_scene
+
+
+def _draw_trial(path: Path, task_id: str) -> None:
+    record = played(task_id)
+    made = picture.figure(record.spec, record.log, houses.load(record.spec.task.house))
+    lettering.save(made, path, metadata={"Software": None})
+
+
+def _draw_scene(path: Path) -> None:
+    from hthor.world import sheet
+
+    with tempfile.TemporaryDirectory() as folder:
+        sheet.main([path.stem, "--out", folder])
+        (made,) = Path(folder).iterdir()
+        path.write_bytes(made.read_bytes())
+
+
+def _task(task_id: str) -> object:
+    return next(task for task in tasks.suite(task_id.partition("/")[0]).tasks if task.id == task_id)
+
+
+def _sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def main() -> None:
+    """Make pictures, or check them."""
+    options = argparse.ArgumentParser(prog="python -m benchmarks.pictures", description=__doc__.splitlines()[0])
+    options.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"one of {', '.join(names())} (default: outdated ones)"
+    )
+    options.add_argument("--all", action="store_true", help="make all of them anew")
+    options.add_argument("--check", action="store_true", help="only say which are out of date; exit code 1 if some are")
+    given = options.parse_args()
+    found = problems()
+    if given.check:
+        print("\n".join(found) or f"{len(names())} pictures are up to date")
+        sys.exit(bool(found))
+    stale = [name for name in names() if any(line.startswith(f"{name}:") for line in found)]
+    make(given.names or (names() if given.all else stale))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,108 @@
+"""Are the tasks that are made in houses sound, and can they be played? Drawn, proved again, and evaluated.
+
+Run as ``python -m benchmarks.soundness HOUSE.json ... --tasks 38``, or ``--generated 50 --tasks 6`` for houses of the
+generator. For every house tasks are made as ``hthor tasks make`` does; all are proved again as ``hthor tasks check``
+does, and played by ``hthor eval``, which must end without a fault. Beside that it counts how many of the first draws,
+before any is drawn again, start with one object inside another, and how many are sound.
+"""
+
+from __future__ import annotations
+
+import argparse
+import functools
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+from hthor import houses, jsonio
+from hthor.eval import making as proved
+from hthor.eval import provenance, soundness
+from hthor.eval.soundness import Verdict
+from hthor.tasks import making, packing
+from hthor.tasks.making import Recipe
+from hthor.tasks.packing import Source
+from hthor.world import homes
+
+
+def main() -> None:
+    """Measure and print."""
+    options = argparse.ArgumentParser(prog="python -m benchmarks.soundness", description=__doc__.splitlines()[0])
+    options.add_argument("houses", nargs="*", help="house files, or names")
+    options.add_argument("--generated", type=int, default=0, help="so many houses of the generator, seeds from --first")
+    options.add_argument("--first", type=int, default=5000, help="the first seed (%(default)s)")
+    options.add_argument("--tasks", type=int, default=6, help="how many tasks in each house (%(default)s)")
+    options.add_argument("--agent", default="frontier", help="who plays them; - plays none (%(default)s)")
+    options.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)), help="processes (%(default)s)")
+    options.add_argument("--raw", action="store_true", help="also count how many first draws are sound")
+    given = options.parse_args()
+    provenance.keep_compiled()
+    with tempfile.TemporaryDirectory() as folder:
+        _measure(given, Path(folder))
+
+
+def _measure(given: argparse.Namespace, folder: Path) -> None:
+    files = [*given.houses, *_generated(given, folder / "generated")]
+    found = packing.sources(files)
+    recipe = Recipe(name="soundness", tasks=given.tasks)
+    if given.raw:
+        _count("first draws", [one for _, own in _shared(_first, recipe, found, given.jobs) for one in own])
+    made = dict(proved.columns(recipe, found, jobs=given.jobs))
+    columns = [made[number] for number in range(len(found))]
+    path = packing.write(folder / "suite.json", packing.files(recipe.name, making.VERSION, found, columns))
+    tasks = [task for column in columns for task in column]
+    houses.shelve(path.with_suffix(".houses"))
+    _count("made", list(soundness.verdicts(tasks, jobs=given.jobs)))
+    if given.agent != "-":
+        _play(path, given, folder / "run")
+
+
+def _shared(work: object, recipe: Recipe, found: tuple[Source, ...], jobs: int) -> object:
+    return soundness.shared(functools.partial(work, recipe), found, jobs=jobs)  # type: ignore[arg-type]
+
+
+def _first(recipe: Recipe, source: Source) -> list[Verdict]:
+    """Verdicts on the first draws in one house."""
+    if source.file is not None:
+        houses.shelve(source.file.resolve().parent)
+    return [soundness.examine(task) for task in making.in_house(recipe, source.given)]
+
+
+def _generated(given: argparse.Namespace, folder: Path) -> list[str]:
+    """Files of houses of the generator, 4 to 7 rooms in turn."""
+    paths = []
+    for seed in range(given.first, given.first + given.generated):
+        rooms = 4 + seed % 4
+        path = folder / f"{homes.name(seed, rooms)}.json"
+        jsonio.write(path, jsonio.pretty(homes.make(seed, rooms).document))
+        paths.append(str(path))
+    return paths
+
+
+def _count(what: str, verdicts: list[Verdict]) -> None:
+    bad = [verdict for verdict in verdicts if verdict.faults]
+    inside = [
+        verdict for verdict in bad if any("inside" in f.reason or "in one another" in f.reason for f in verdict.faults)
+    ]
+    share = f"{len(verdicts) - len(bad)} of {len(verdicts)} sound"
+    print(f"{what}: {share}; {len(inside)} start with one object inside another")
+    for field, many in Counter(verdict.faults[0].field for verdict in bad).most_common():
+        print(f"    {many} by {field}, such as {next(v.faults[0].reason for v in bad if v.faults[0].field == field)}")
+    sys.stdout.flush()
+
+
+def _play(suite: Path, given: argparse.Namespace, out: Path) -> None:
+    words = ["--suite", str(suite), "--agent", given.agent, "--jobs", str(given.jobs), "--out", str(out)]
+    command = [sys.executable, "-m", "hthor", "eval", *words, "--no-control", "--json", "--quiet"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    if ended.returncode not in (0, 3):
+        raise SystemExit(ended.stderr)
+    counts = json.loads(ended.stdout)["counts"]
+    print(f"played by {given.agent}: {counts['trials']} trials, {counts['faults']} with a fault")
+
+
+if __name__ == "__main__":
+    main()

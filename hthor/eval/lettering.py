@@ -1,0 +1,33 @@
+"""How words stand in pictures: as they are. What agents and files say is never read as a formula.
+
+Every figure is made and saved within `plain`, so that a message such as ``$\\frac{1}{$`` is drawn letter by letter, and
+a letter that the font lacks is a box and no warning.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+SETTINGS = {"text.parse_math": False, "text.usetex": False}
+"""For those who set more than this."""
+
+
+@contextmanager
+def plain() -> Iterator[None]:
+    """Draw words as they are; a decorator, too."""
+    with mpl.rc_context(SETTINGS), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=r"(?s)(Glyph|Matplotlib currently does not support) .*")
+        yield
+
+
+def save(made: Figure, path: Path, **more: Any) -> None:
+    """Write a figure to a file."""
+    with plain():
+        made.savefig(path, **more)

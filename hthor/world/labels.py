@@ -1,0 +1,43 @@
+"""Which number stands for whom in a segmentation: dealt anew for every episode, so that a number alone says nothing.
+
+Numbers in the order of the names would tell an agent that counts its pixels what a thing is called, and a number that
+stayed would be an id from one trial to the next. Neither is anything that a camera sees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from hthor import seeds
+
+
+class Labels:
+    """The numbers of the owners of what is drawn.
+
+    Args:
+        names: of all owners, in the order in which they are counted where pictures are drawn.
+
+    Attributes:
+        names: the same names in the order of the numbers that pictures show.
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self._counted, self._seed = tuple(names), -1
+        self.names: tuple[str, ...] = ()
+        self._shown = np.zeros(0, np.int32)
+
+    def draw(self, seed: int) -> None:
+        """Deal the numbers of an episode; equal seeds deal equally."""
+        if self.names and seed == self._seed:
+            return
+        root = seeds.derive(seed, "segmentation")
+        self.names, self._seed = tuple(sorted(self._counted, key=lambda name: seeds.draw(root, name))), seed
+        number = {name: index for index, name in enumerate(self.names)}
+        self._shown = np.array([*(number[name] for name in self._counted), -1], np.int32)
+
+    def of(self, numbers: Any) -> Any:
+        """(H, W) int32, as pictures show what was counted so; -1 stays."""
+        return self._shown[numbers]

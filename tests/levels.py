@@ -1,0 +1,26 @@
+"""Which levels of isolation this machine gives, for tests that want one."""
+
+from __future__ import annotations
+
+import functools
+
+import pytest
+
+from hthor.guest import in_force
+from hthor.guest.confinement import IsolationError
+
+
+def need(level: str) -> str:
+    """The same level; skips the test, with the reason, where the machine does not give it."""
+    if reason := _missing(level):
+        pytest.skip(reason)
+    return level
+
+
+@functools.cache
+def _missing(level: str) -> str:
+    try:
+        in_force(level)
+    except IsolationError as error:
+        return str(error).partition(". ")[0]
+    return ""

@@ -1,0 +1,522 @@
+"""An agent is what its files say: its own, what it imports and opens, wherever it lies and whenever it does that."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import py_compile
+import sqlite3
+import sys
+import textwrap
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import eval_fakes
+import guest_fakes
+import pytest
+import test_episode
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from test_guest import BRIEFING, HEAD, look
+from typer.testing import CliRunner
+
+from hthor import guest
+from hthor.cli import app
+from hthor.errors import AgentError, HthorError, RunError
+from hthor.eval import cast, crews, engines, setup
+from hthor.guest import Given, Guest, GuestFault, IsolationError, identity, manifest, recording, scanning
+from hthor.guest import given as giving
+from hthor.guest.grounds import Grounds
+from hthor.guest.manifest import File
+
+LEVELS = ("L1", "L2", "L3")
+
+
+def write(
+    folder: Path, body: str = "", *, top: str = "", init: str = "", act: str = "", name: str = "agent.py"
+) -> Path:
+    """An agent's file whose methods do this besides standing still."""
+    folder.mkdir(parents=True, exist_ok=True)
+    parts = {"__init__(self)": init, "begin(self, briefing)": body, "act(self, observation)": act}
+    methods = "".join(f"    def {head}:\n{textwrap.indent(text or 'pass', ' ' * 8)}\n" for head, text in parts.items())
+    text = f"{HEAD}from pathlib import Path\nHERE = Path(__file__).parent\n{top}\nclass Agent:\n{methods}"
+    (folder / name).write_text(f"{text}        return Action()\n")
+    return folder / name
+
+
+def names(agent: Path | str) -> list[str]:
+    """What the agent's manifest lists."""
+    made = crews.introduce(str(agent)).manifest
+    assert made is not None
+    return [file.path for file in made.files]
+
+
+@pytest.fixture(autouse=True)
+def _free() -> Iterator[None]:
+    yield
+    guest.confine_guests()
+
+
+def at(level: str) -> str:
+    try:
+        guest.in_force(level)
+    except IsolationError as error:
+        pytest.skip(str(error))
+    return level
+
+
+WEIGHTS = "name = 'net' + '-' + 'big.txt'\nassert open(HERE / 'weights' / name).read()"
+"""Opens a file whose name stands nowhere in the source."""
+
+
+def test_a_manifest_lists_what_is_imported_and_opened_while_it_comes_up_and_begins(tmp_path: Path) -> None:
+    for name, text in {
+        "helper.py": "import deep.inner\n",
+        "deep/__init__.py": "",
+        "deep/inner.py": "from . import cousin\n",
+        "deep/cousin.py": "",
+        "late.py": "X = 1\n",
+        "unused.py": "",
+        "weights/net-big.txt": "1",
+        "weights/net-small.txt": "1",
+        "table.csv": "1",
+        "picture.png": "1",
+        "__pycache__/helper.cpython-311.pyc": "",
+        "runs/old/run.json": "{}",
+    }.items():
+        (tmp_path / "a" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "a" / name).write_text(text)
+    act = "import late\ncv2 = None\nif False:\n    cv2.imread(str(HERE / 'picture.png'))"
+    top = "import helper\nTABLE = (HERE / ('table' + '.csv')).read_text()"
+    path = write(tmp_path / "a", WEIGHTS, top=top, act=act)
+    assert names(path) == [
+        "agent.py",
+        "deep/__init__.py",
+        "deep/cousin.py",
+        "deep/inner.py",
+        "helper.py",
+        "late.py",
+        "picture.png",
+        "table.csv",
+        "weights/net-big.txt",
+    ]
+
+
+@pytest.mark.parametrize("where", ["top", "init", "body"])
+@pytest.mark.parametrize(
+    "opens", ["open(F, 'rb').read()", "os.close(os.open(F, 0))", "sqlite3.connect(F).execute('select 1')"]
+)
+def test_a_file_that_changes_makes_another_agent(tmp_path: Path, where: str, opens: str) -> None:
+    data = tmp_path / "a" / "net-big.txt"
+    read = f"import sqlite3\nF = str(HERE / ('net' + '-big.txt'))\n{opens}"
+    path = write(tmp_path / "a", **{where: read})
+    sqlite3.connect(data).execute("create table t (x)").connection.close()
+    before = crews.introduce(str(path)).ref
+    assert crews.introduce(str(path)).ref == before
+    data.write_bytes(data.read_bytes() + b" ")
+    after = crews.introduce(str(path)).ref
+    assert after.sha256 != before.sha256
+    assert after.name == before.name == "agent"
+
+
+def test_an_agent_is_the_same_wherever_it_lies_and_whatever_holds_it(tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "helper.py").write_text("")
+    (tmp_path / "a" / "weights").mkdir()
+    (tmp_path / "a" / "weights" / "net-big.txt").write_text("1")
+    path = write(tmp_path / "a", WEIGHTS, top="import helper")
+    found = []
+    for level in ("L1", at("L2")):
+        guest.confine_guests(level)
+        found.append(crews.introduce(str(path)).manifest)
+    (tmp_path / "a").rename(tmp_path / "elsewhere")
+    guest.confine_guests()
+    found.append(crews.introduce(str(tmp_path / "elsewhere" / "agent.py")).manifest)
+    assert found[0] == found[1] == found[2]
+
+
+def test_libraries_and_this_package_are_no_part_of_an_agent_beside_them(tmp_path: Path) -> None:
+    path = write(tmp_path / "a", top="import numpy, hthor.navigation")
+    (tmp_path / "a" / "venv").mkdir()
+    grounds = Guest(path).grounds
+    inside = Grounds(root="/home/me", base="/home/me", apart=("/home/me/.venv",))
+    assert grounds.name(str(path)) == "agent.py"
+    assert inside.name("/home/me/.venv/lib/numpy/__init__.py") is None
+    assert inside.name("/home/me/x/y.py") == "x/y.py"
+    assert inside.name("/home/you/y.py") is None
+    assert names(path) == ["agent.py"]
+
+
+def test_compiled_files_beside_an_agent_are_never_run(tmp_path: Path) -> None:
+    """A compiled file that says it is of the present source, though it is of another, would run unseen."""
+    folder = tmp_path / "a"
+    folder.mkdir()
+    path = write(folder, top="import helper", act="return Action(motion=Move(forward=helper.X))")
+    for module in ("helper", "agent"):
+        source = folder / f"{module}.py"
+        honest = source.read_text() if source.exists() else "X = 0.25\n"
+        source.write_text("X = 0.5\n" if module == "helper" else honest.replace("helper.X", "0.125   "))
+        py_compile.compile(str(source), invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH, doraise=True)
+        source.write_text(honest)
+        assert Path(importlib.util.cache_from_source(str(source))).exists()
+    for level in ("L1", at("L2")):
+        with Guest(path, isolation=level) as mind:
+            mind.begin(BRIEFING)
+            action = mind.act(look())
+        assert getattr(action.motion, "forward", None) == 0.25, level
+    (folder / "helper.py").unlink()
+    py_compile.compile(str(path), cfile=str(folder / "helper.pyc"))
+    with pytest.raises(AgentError, match="No module named 'helper'"):
+        guest.load_info(path)
+
+
+def test_a_recorder_names_each_file_once_and_only_the_agents_own(tmp_path: Path) -> None:
+    own = tmp_path / "own"
+    own.mkdir()
+    for name in ("a.txt", "b.txt"):
+        (own / name).write_text("")
+    (tmp_path / "other.txt").write_text("")
+    recorder = recording.Recorder(Grounds(root=str(own), base=str(own)))
+    for path in (own / "b.txt", own / "a.txt", own / "a.txt", tmp_path / "other.txt", own / "absent", own, 3, b"\xff"):
+        recorder._hear("open", (path, "r", os.O_RDONLY))
+    recorder._hear("open", (own / "new.txt", "w", os.O_WRONLY))
+    recorder._hear("import", ("x", None))
+    assert recorder.take() == ("b.txt", "a.txt")
+    assert recorder.take() == ()
+
+
+@given(st.lists(st.text(st.characters(codec="ascii", exclude_characters="/\0"), min_size=1, max_size=40), max_size=8))
+@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_scanning_never_leaves_the_agents_folder(tmp_path: Path, words: list[str]) -> None:
+    own = tmp_path / "own"
+    own.mkdir(exist_ok=True)
+    (tmp_path / "outside.txt").write_text("")
+    (own / "inside.txt").write_text("")
+    (own / "x.py").write_text(f"WORDS = {[*words, '../outside.txt', '..', 'inside.txt', str(tmp_path)]!r}")
+    found = scanning.closure([str(own / "x.py")], Grounds(root=str(own), base=str(own)))
+    assert found == {str(own / "x.py"), str(own / "inside.txt")}
+
+
+def test_claims_about_files_that_are_not_the_agents_are_not_believed(tmp_path: Path) -> None:
+    path = write(tmp_path / "a")
+    (tmp_path / "secret").write_text("")
+    grounds = Guest(path).grounds
+    known = manifest.of("a", "a.py", {}, ())
+    told = ("../secret", "../../etc/passwd", "/etc/passwd", "agent.py", "absent", "./agent.py", "")
+    assert [file.path for file in identity.later(told, known, grounds)] == ["agent.py"]
+
+
+def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Path) -> None:
+    for name, text in {
+        "mind.sh": "#!/bin/sh\n. ./lib/common.sh\ncat weights.bin\n",
+        "lib/common.sh": "exec perl tool.pl\n",
+        "tool.pl": "",
+        "weights.bin": "1",
+        "notes.md": "",
+    }.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    mind = Guest(f"cmd:sh {tmp_path / 'mind.sh'}")
+    first = identity.files_of(mind.reference, Given(), mind.grounds, ())
+    assert [file.path for file in first] == ["lib/common.sh", "mind.sh", "tool.pl", "weights.bin"]
+    (tmp_path / "weights.bin").write_text("2")
+    assert identity.files_of(mind.reference, Given(), mind.grounds, ()) != first
+
+
+ARGS = """
+def __init__(self, checkpoint="", speed=0.5, loud: bool = False):
+    self.text = open(checkpoint).read() if checkpoint else "none"
+    self.speed, self.loud = speed, loud
+def begin(self, briefing): pass
+def act(self, observation):
+    return Action(motion=Move(forward=self.speed), say=Send(text=f"{self.text} {self.loud}"))
+"""
+
+
+@pytest.fixture
+def taking(tmp_path: Path) -> Path:
+    """An agent that takes arguments, beside weights outside its folder."""
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "agent.py").write_text(f"{HEAD}class Agent:\n{textwrap.indent(ARGS, '    ')}")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "net.txt").write_text("learned")
+    return tmp_path / "own" / "agent.py"
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_arguments_reach_the_constructor_and_a_file_among_them_is_readable(taking: Path, level: str) -> None:
+    at(level)
+    out = taking.parents[1] / "out" / "net.txt"
+    given = giving.read([f"checkpoint={out}", "speed=0.25", "loud=yes"])
+    with Guest(taking, isolation=level, given=given) as mind:
+        mind.begin(BRIEFING)
+        action = mind.act(look())
+    assert action.motion is not None
+    assert getattr(action.motion, "forward", None) == 0.25
+    assert getattr(action.say, "text", None) == "learned True"
+
+
+def test_arguments_are_part_of_who_an_agent_is(taking: Path) -> None:
+    out = taking.parents[1] / "out" / "net.txt"
+    found = []
+    for words in ([], ["speed=0.1"], ["speed=0.2"], [f"checkpoint={out}"]):
+        guest.confine_guests(given=giving.read(words))
+        found.append(crews.introduce(str(taking)))
+    out.write_text("more")
+    found.append(crews.introduce(str(taking)))
+    assert len({one.ref.sha256 for one in found}) == 5
+    assert [one.ref.name for one in found[:4]] == [
+        "agent",
+        "agent-speed-0-1",
+        "agent-speed-0-2",
+        "agent-checkpoint-net-txt",
+    ]
+    made = found[3].manifest
+    assert made is not None
+    assert made.args == {"checkpoint": "../net.txt"}
+    assert [file.path for file in made.files] == ["../net.txt", "agent.py"]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["chekpoint=x"], "Did you mean 'checkpoint'? It takes: checkpoint, speed, loud."),
+        (["speed=fast"], "--agent-args speed=fast: the agent takes float there"),
+        (["loud=perhaps"], "the agent takes bool there"),
+        (["speed"], "is not KEY=VALUE"),
+        (["speed=1", "speed=2"], "gives 'speed' twice"),
+        (["checkpoint=../out/"], "Name the folder with --readable too"),
+    ],
+)
+def test_wrong_arguments_are_told_apart(taking: Path, words: list[str], told: str, monkeypatch: Any) -> None:
+    monkeypatch.chdir(taking.parent)
+    with pytest.raises(HthorError) as caught:
+        guest.load_info(taking, given=giving.read(words))
+    assert told in str(caught.value)
+
+
+def test_an_agent_without_arguments_says_so(tmp_path: Path) -> None:
+    with pytest.raises(AgentError, match="Its constructor takes no arguments"):
+        guest.load_info(write(tmp_path / "a"), given=giving.read(["speed=1"]))
+
+
+def test_a_command_gets_arguments_as_words(tmp_path: Path) -> None:
+    (tmp_path / "mind.py").write_text("import sys\nprint(sys.argv[1:], file=sys.stderr)\nsys.exit(3)\n")
+    with pytest.raises(AgentError, match=r"\['--speed=1', '--mode=fast'\]"):
+        guest.load_info(f"cmd:{sys.executable} {tmp_path / 'mind.py'}", given=giving.read(["speed=1", "mode=fast"]))
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_what_isolation_hides_is_named_and_readable_shows_it(tmp_path: Path, level: str) -> None:
+    at(level)
+    (tmp_path / "out" / "old").mkdir(parents=True)
+    (tmp_path / "out" / "net.txt").write_text("0.25")
+    (tmp_path / "out" / "old" / "run.json").write_text(json.dumps({"schema": "hthor.run/4"}))
+    body = f"self.x = open({str(tmp_path / 'out' / 'net.txt')!r}).read()"
+    hidden = f"open({str(tmp_path / 'out' / 'old' / 'run.json')!r}).read()"
+    path = write(tmp_path / "own", body, act=hidden)
+    if level != "L1":
+        with Guest(path, isolation=level) as mind, pytest.raises(GuestFault) as caught:
+            mind.begin(BRIEFING)
+        assert f"The file 'net.txt' is there, but isolation {level} hides it" in caught.value.detail
+        assert "--readable" in caught.value.detail
+    given = giving.read(readable=[tmp_path / "out"])
+    with Guest(path, isolation=level, given=given) as mind:
+        mind.begin(BRIEFING)
+        if level != "L1":
+            with pytest.raises(GuestFault):  # a run stays hidden
+                mind.act(look())
+    guest.confine_guests(level, given=given)
+    assert names(path) == ["../out/net.txt", "agent.py"]
+
+
+def test_a_missing_environment_variable_is_explained(tmp_path: Path) -> None:
+    path = write(tmp_path / "a", "os.environ['MY_KEY']")
+    with Guest(path) as mind, pytest.raises(GuestFault) as caught:
+        mind.begin(BRIEFING)
+    assert "No environment variable of yours reaches an agent, MY_KEY neither" in caught.value.detail
+
+
+def test_what_is_readable_must_be_there(tmp_path: Path) -> None:
+    with pytest.raises(HthorError, match="there is no such file or folder"):
+        giving.read(readable=[tmp_path / "absent"])
+    for place in ("a/w", "b/w"):
+        (tmp_path / place).mkdir(parents=True)
+    with pytest.raises(HthorError, match="two files or folders called 'w'"):
+        giving.read(readable=[tmp_path / "a" / "w", tmp_path / "b" / "w"])
+
+
+class Quick(cast.Stage):
+    """Trials of some dozen ticks in a world without an engine."""
+
+    def enter(self, session: Any) -> cast.Company:
+        make = lambda seat: self._mind(seat, None)  # noqa: E731
+        return cast.Company(test_episode.Mind(), session.trials[0].robots, make)
+
+    def world(self, trial: Any) -> Any:
+        return guest_fakes.Stage(seen=20 + trial.index)
+
+
+@pytest.fixture
+def evaluate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
+    """`hthor eval` with real agents, logs and results, in a world without an engine."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(cast, "Stage", Quick)
+    monkeypatch.setattr(engines, "find", lambda *_, **__: eval_fakes.Here())
+
+    def run(*words: str) -> Any:
+        fixed = ["--kind", "object_goal_navigation", "--participants", "2", "--no-control", "--quiet", "--json"]
+        return invoke("eval", "--agent", "a/agent.py", *fixed, *words)
+
+    return run
+
+
+def invoke(*words: str) -> Any:
+    """A command as a user types it; an error of theirs is exit code 2 and its words."""
+    result = CliRunner().invoke(app.app, list(words))
+    if isinstance(result.exception, HthorError):
+        return SimpleNamespace(exit_code=2, output=str(result.exception), stdout="")
+    return result
+
+
+CHANGES = {
+    "weights opened in __init__": ({"init": WEIGHTS}, "weights/net-big.txt"),
+    "weights opened in begin": ({"body": WEIGHTS}, "weights/net-big.txt"),
+    "a helper": ({"top": "import helper"}, "helper.py"),
+    "a helper that is imported late": ({"act": "import helper"}, "helper.py"),
+    "a file that is named": ({"act": "open(HERE / 'weights' / 'net-big.txt').read()"}, "weights/net-big.txt"),
+}
+
+
+def own(folder: Path, **parts: str) -> None:
+    write(folder, **parts)
+    (folder / "helper.py").write_text("X = 1\n")
+    (folder / "weights").mkdir(exist_ok=True)
+    (folder / "weights" / "net-big.txt").write_text("1")
+
+
+@pytest.mark.parametrize("how", CHANGES)
+def test_an_agent_that_was_changed_is_played_as_another(evaluate: Any, tmp_path: Path, how: str) -> None:
+    parts, changed = CHANGES[how]
+    own(tmp_path / "a", **parts)
+    first = evaluate()
+    assert first.exit_code == 0, first.output
+    before = json.loads(first.stdout)
+    assert changed in [file["path"] for file in before["agents"][0]["files"]]
+    assert json.loads(evaluate().stdout) == before  # nothing is played again
+    assert len(list((tmp_path / "runs").iterdir())) == 1
+    (tmp_path / "a" / changed).write_text("X = 2\n")
+    after = json.loads(evaluate().stdout)
+    assert len(list((tmp_path / "runs").iterdir())) == 2
+    assert after["hashes"]["run"] != before["hashes"]["run"]
+    named = evaluate("--out", str(next((tmp_path / "runs").glob("*"))))
+    there = setup.load(next((tmp_path / "runs").glob("*")))
+    assert named.exit_code in (0, 2)
+    if there.sha256 == before["hashes"]["run"]:
+        assert named.exit_code == 2
+        assert f"{changed}.sha256 is" in named.output
+
+
+OPENED = "name = 'net' + '-big.txt'\nopen(HERE / 'weights' / name).read()"
+
+
+def test_what_is_opened_only_in_play_is_checked_before_a_run_goes_on(evaluate: Any, tmp_path: Path) -> None:
+    own(tmp_path / "a", act=OPENED)
+    assert names(tmp_path / "a" / "agent.py") == ["agent.py"]
+    first = evaluate()
+    assert first.exit_code == 0, first.output
+    files = json.loads(first.stdout)["agents"][0]["files"]
+    assert [file["path"] for file in files] == ["agent.py", "weights/net-big.txt"]
+    log = next((tmp_path / "runs").glob("*/trials.jsonl"))
+    whole = log.read_bytes()
+    lines = whole.splitlines(keepends=True)
+    log.write_bytes(b"".join(lines[:3]))  # as if the command had been killed
+    (tmp_path / "a" / "weights" / "net-big.txt").write_text("retrained")
+    refused = evaluate()
+    assert refused.exit_code == 2
+    assert "weights/net-big.txt was changed since trials of this run were played with it" in refused.output
+    assert log.read_bytes() == b"".join(lines[:3])
+    (tmp_path / "a" / "weights" / "net-big.txt").write_text("1")
+    assert evaluate().exit_code == 0
+    assert sorted(log.read_bytes().splitlines()) == sorted(whole.splitlines())
+    (tmp_path / "a" / "weights" / "net-big.txt").write_text("retrained")
+    assert evaluate().exit_code == 2  # a finished run is not taken for that of the new weights
+
+
+@pytest.mark.parametrize("changed", ["helper.py", "weights/net-big.txt"])
+def test_a_file_that_changes_during_a_run_ends_it_and_is_named(
+    evaluate: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, changed: str
+) -> None:
+    own(tmp_path / "a", top="import helper", act=OPENED)
+    played: list[str] = []
+
+    def edited(self: Any, trial: Any) -> Any:
+        played.append(trial.task.id)
+        if len(played) == 4:
+            (tmp_path / "a" / changed).write_text("X = 2  # edited\n")
+        return guest_fakes.Stage(seen=20)
+
+    monkeypatch.setattr(Quick, "world", edited)
+    ended = evaluate()
+    assert ended.exit_code == 2
+    assert f"{changed} was changed while its run was going on" in ended.output
+    log = next((tmp_path / "runs").glob("*/trials.jsonl"))
+    assert len(log.read_bytes().splitlines()) == 3
+
+
+def test_shards_have_one_manifest_between_them_or_are_not_merged(evaluate: Any, tmp_path: Path) -> None:
+    own(tmp_path / "a", act=OPENED)
+    whole = json.loads(evaluate("--out", "whole").stdout)
+    for shard in ("1/2", "2/2"):
+        assert evaluate("--out", "part", "--shard", shard).exit_code == 0
+    merge = ["merge", "part-shard-1-of-2", "part-shard-2-of-2"]
+    merged = invoke(*merge, "--out", "joined")
+    assert merged.exit_code == 0, merged.output
+    joined = json.loads(Path("joined/result.json").read_text())
+    assert joined["agents"] == whole["agents"]
+    assert joined["hashes"] == whole["hashes"]
+    Path("part-shard-2-of-2/trials.jsonl").unlink()
+    (tmp_path / "a" / "weights" / "net-big.txt").write_text("retrained")
+    assert evaluate("--out", "part", "--shard", "2/2").exit_code == 0
+    refused = invoke(*merge, "--out", "mixed")
+    assert refused.exit_code == 2
+    assert "weights/net-big.txt was not the same in all trials of this run" in refused.output
+    assert not Path("mixed").exists()
+
+
+def test_files_of_readable_folders_are_part_of_the_run(evaluate: Any, tmp_path: Path) -> None:
+    own(tmp_path / "a")
+    (tmp_path / "more").mkdir()
+    (tmp_path / "more" / "net.bin").write_bytes(b"1")
+    (tmp_path / "more" / "runs").mkdir()
+    found = json.loads(evaluate("--readable", "more").stdout)
+    assert [file["path"] for file in found["agents"][0]["files"]] == ["../more/net.bin", "agent.py"]
+    (tmp_path / "more" / "new.bin").write_bytes(b"2")
+    again = json.loads(evaluate("--readable", "more").stdout)
+    assert again["hashes"]["run"] != found["hashes"]["run"]
+
+
+def test_differences_name_the_files() -> None:
+    one, other = (
+        (File(path=p, sha256=h, bytes=1) for p, h in pairs)
+        for pairs in ([("a", "1"), ("b", "1")], [("b", "2"), ("c", "1")])
+    )
+    assert manifest.differences(one, other) == ["a is gone", "b has changed", "c is new"]
+
+
+def test_two_contents_of_one_file_are_no_manifest() -> None:
+    from hthor.eval import opened
+
+    plan, sessions = eval_fakes.run_of(20)
+    lines = [done for session in sessions for done in eval_fakes.player()(session)]
+    import msgspec
+
+    mixed = [
+        msgspec.structs.replace(one, files={"robot": (File(path="w", sha256=str(number), bytes=1),)})
+        for number, one in enumerate(lines[:2])
+    ]
+    with pytest.raises(RunError, match="w was not the same in all trials"):
+        opened.manifests(plan, mixed)

@@ -1,0 +1,276 @@
+"""Whatever a caller gives, the world stays sound: nothing in one another, nothing too fast, no number unchecked."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+import world_house as tiny
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from world_house import COFFEE, TABLE, on, task
+
+from hthor import catalog
+from hthor.errors import HthorError, PhysicsError, TaskError, UnknownName
+from hthor.types import Pick, Place, Pose, Wait
+from hthor.world import World, env, numbers
+from hthor.world.contents import DEFAULT_OBJECTS
+from hthor.world.touch import Touch
+
+ROBOTS = (Pose(x=2.9, y=3.3, yaw=-math.pi / 2), Pose(x=2.0, y=3.3, yaw=-math.pi / 2))
+TARGETS = tuple(id for id, _ in DEFAULT_OBJECTS)
+
+
+@pytest.fixture(scope="module")
+def built() -> World:
+    return World(tiny.house(), robots=("tender", "tender"))
+
+
+@pytest.fixture
+def world(built: World) -> World:
+    built.reset(task(human=Pose(x=4.0, y=2.0), robots=ROBOTS))
+    return built
+
+
+def inside(world: World, id: str) -> str:
+    """What an object is in."""
+    item = world._objects.get(id)
+    assert item is not None
+    return Touch(world._env, world._scene).inside(item)
+
+
+# ------------------------------------------------------------------------------------- two things in one place
+
+
+@pytest.mark.parametrize(("one", "two"), itertools.permutations(("apple", "mug", "book"), 2))
+def test_what_was_put_in_the_same_tick_is_in_the_way(world: World, one: str, two: str) -> None:
+    world.put_object(one, on=COFFEE)
+    world.put_object(two, on=COFFEE)
+    assert inside(world, one) == inside(world, two) == ""
+    with pytest.raises(HthorError, match=f"would be inside {two}"):
+        world.put_object("lettuce", world.position(two))
+    world.remove_object(two)
+    world.put_object("lettuce", on=COFFEE, position=world.position(one))
+    assert inside(world, "lettuce") == ""
+
+
+def test_six_things_on_one_table_stay_there(world: World) -> None:
+    before = {}
+    for id in TARGETS:
+        world.put_object(id, on=COFFEE)
+        before[id] = world.position(id)
+    assert world.settle()
+    for id in TARGETS:
+        assert world.state(id).support == COFFEE
+        assert math.dist(world.position(id), before[id]) < 0.02
+
+
+def test_two_robots_place_on_one_spot_in_one_tick(world: World) -> None:
+    world.reset(task(on(TABLE, "apple", 0.3, 0.1), on(TABLE, "mug", -0.3, 0.1), robots=ROBOTS))
+    world.teleport("human", Pose(x=1.0, y=1.0))
+    assert world.robot.pick("apple").ok
+    assert world.actor("robot2").pick("mug").ok
+    for seat in ("robot", "robot2"):
+        world.start(seat, Place(on=TABLE, position=(2.5, 2.7, 0.8)))
+    while not (world.idle("robot") and world.idle("robot2")):
+        world.step()
+    placed = {id: world.position(id) for id in ("apple", "mug")}
+    assert inside(world, "apple") == inside(world, "mug") == ""
+    assert world.settle()
+    for id, position in placed.items():
+        assert world.state(id).support == TABLE
+        assert math.dist(world.position(id), position) < 0.02
+
+
+# ---------------------------------------------------------------------------------------------------- too fast
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(
+    st.sampled_from(TARGETS),
+    st.tuples(st.floats(0.3, 9.7), st.floats(0.3, 3.7), st.floats(0.3, 2.3)),
+    st.floats(3.0, env.FASTEST_M_S),
+    st.floats(-math.pi, math.pi),
+    st.floats(-1.5, 1.5),
+    st.floats(-math.pi, math.pi),
+)
+def test_whatever_is_thrown_lands_in_the_house(built: World, id, place, speed, heading, climb, yaw) -> None:
+    built.reset()
+    flat = 0.999 * speed * math.cos(climb)
+    velocity = (flat * math.cos(heading), flat * math.sin(heading), 0.999 * speed * math.sin(climb))
+    try:
+        built.put_object(id, place, velocity=velocity, yaw=yaw)
+    except HthorError:
+        return
+    assert built.settle(20.0)
+    x, y, z = built.position(id)
+    assert (0.0 < x < 10.0, 0.0 < y < 4.0, 0.0 < z < 2.6) == (True, True, True)
+
+
+@pytest.mark.parametrize(
+    ("yaw", "velocity"),
+    [(2.9, (2.0, -9.0, 4.0)), (0.3, (15.0, 11.0, 6.0)), (-1.1, (0.0, 0.0, -19.9)), (1.7, (-12.0, 9.0, -12.0))],
+)
+def test_a_thin_thing_that_hits_an_edge_does_not_spin_up_without_end(world: World, yaw, velocity) -> None:
+    world.put_object("remote_control", (3.2, 1.4, 1.2), velocity=velocity, yaw=yaw)
+    fastest = 0.0
+    for _ in range(60):
+        world.step()
+        fastest = max(fastest, float(np.abs(world._env.data.qvel).max()))
+    assert fastest <= env.FASTEST_RAD_S
+
+
+def test_faster_than_anything_flies_is_refused(world: World) -> None:
+    with pytest.raises(HthorError, match="velocity must be at most 20 m/s, got 30 m/s"):
+        world.put_object("apple", (4.0, 2.0, 1.0), velocity=(30.0, 0.0, 0.0))
+
+
+def test_an_engine_that_breaks_down_says_so_and_goes_on(world: World) -> None:
+    world.put_object("apple", on=TABLE)
+    world.put_object("mug", (4.0, 3.0, 1.0))
+    world.step(2)
+    lying, falling = world.position("apple"), world.position("mug")
+    item = world._objects.get("mug")
+    assert item is not None
+    world._env.data.qvel[item.dof] = 1e12
+    with pytest.raises(PhysicsError, match=r"lost the state of house 'tiny' at tick 3 \(mjWARN_BADQVEL at mug\)"):
+        world.step()
+    assert world.position("apple") == lying
+    assert world.position("mug") == falling
+    assert world.settle()
+    assert world.position("mug")[2] < 0.1
+    assert world._env.warnings() == {}
+
+
+def test_what_happened_in_the_tick_of_a_breakdown_is_not_lost(world: World) -> None:
+    world.put_object("apple", on=TABLE)
+    world.settle()
+    tick = world.tick
+    world.start("human", Pick(object="nothing"))
+    world._env.data.qvel[0] = np.nan
+    world._env.touch()
+    with pytest.raises(PhysicsError):
+        world.advance()
+    assert [(event.kind, event.tick) for event in world.advance()] == [("refused", tick)]
+
+
+# ------------------------------------------------------------------------------------------------- what bears it
+
+
+@pytest.mark.parametrize("over", [-0.06, 0.0, 0.03, 0.06])
+def test_a_book_over_the_edge_lies_on_the_table(world: World, over: float) -> None:
+    coffee = next(thing for thing in world.house.things if thing.id == COFFEE)
+    width, _, height = catalog.kind("book").size
+    edge = coffee.centre[0] + coffee.size[0] / 2
+    world.put_object("book", (edge + over - width / 2, 1.9, coffee.size[2] + height / 2 + 0.003))
+    assert world.settle()
+    assert world.position("book")[2] > coffee.size[2]
+    assert world.state("book").support == COFFEE
+
+
+def test_what_lies_on_the_floor_beside_a_table_lies_on_nothing(world: World) -> None:
+    coffee = next(thing for thing in world.house.things if thing.id == COFFEE)
+    world.put_object("book", (coffee.centre[0] + coffee.size[0] / 2 + 0.1, 1.9, 0.02))
+    assert world.settle()
+    assert world.state("book").support == ""
+
+
+# ------------------------------------------------------------------------------------------------------- numbers
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda world: world.robot.teleport(6.2, 1.2, yaw=math.inf), "yaw must be a finite number of radians, got inf"),
+        (lambda world: world.robot.teleport(6.2, 1.2, pitch=math.nan), "pitch must be a finite number of radians"),
+        (lambda world: world.robot.teleport(6.2, 1.2, pitch=2.0), "pitch must be from -0.52 to 0.52 rad for robot"),
+        (lambda world: world.robot.teleport(math.nan, 1.2), "x must be a finite number of metres, got nan"),
+        (lambda world: world.robot.teleport(1e300, 1.2), r"\(1e\+300, 1.20\) is not free for robot"),
+        (
+            lambda world: world.robot.teleport(4.1, 2.1),
+            r"human is in the way at \(4.10, 2.10\): robot must stay 0.40 m",
+        ),
+        (lambda world: world.robot.look_at((0.0, math.nan, 0.0)), r"target\[1\] must be a finite number of metres"),
+        (lambda world: world.robot.go_to(("a", 0.0)), r"target\[0\] must be a finite number of metres, got 'a'"),
+        (lambda world: world.robot.go_to((10**400, 0.0)), r"target\[0\] must be a finite number of metres"),
+        (lambda world: world.put_object("apple", (4.0, 3.0)), "position must be 3 numbers of metres"),
+        (lambda world: world.put_object("apple", (4.0, 3.0, 1e300)), r"\(4.00, 3.00, 1e\+300\) is in no room"),
+        (lambda world: world.put_object("apple", on=TABLE, yaw=math.nan), "yaw must be a finite number of radians"),
+        (lambda world: world.put_object("apple", (4.0, 3.0, 1.0), velocity=(1e308,) * 3), "at most 20 m/s"),
+        (lambda world: world.step(-1), "ticks must be a whole number, at least 0, got -1"),
+        (lambda world: world.step(1.5), "ticks must be a whole number"),
+        (lambda world: world.settle(math.inf), "seconds must be a finite number of seconds, got inf"),
+        (lambda world: world.hidden("apple", (0.0, math.nan, 0.0)), r"eye\[1\] must be a finite number of metres"),
+    ],
+)
+def test_numbers_that_are_none_are_refused_by_name(world: World, call, words: str) -> None:
+    before = world.poses(), world.truth()
+    with pytest.raises(HthorError, match=words):
+        call(world)
+    assert (world.poses(), world.truth()) == before
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda world: world.robot.move(1e308), "move is 1e+308 m long; at most 1000 m at once"),
+        (lambda world: world.robot.move(1e308, 1e308), "move is 1.41e+308 m long; at most 1000 m at once"),
+        (lambda world: world.robot.move("far"), "forward must be a finite number, got 'far'"),
+        (lambda world: world.robot.move(10**400), "forward must be a finite number"),
+        (lambda world: world.robot.wait(1e308), "wait is 1e+308 s long; at most 3600 s"),
+        (lambda world: world.robot.do(Wait(seconds=10**400)), "seconds must be a finite number"),
+        (lambda world: world.robot.rotate(10**400), "yaw must be a finite number"),
+    ],
+)
+def test_motions_that_cannot_be_are_refused(world: World, call, words: str) -> None:
+    outcome = call(world)
+    assert not outcome.ok
+    assert words in outcome.reason
+
+
+def test_a_task_with_positions_that_are_none_is_refused(world: World) -> None:
+    lost = on(TABLE, "apple")
+    lost = type(lost)(id="apple", kind="apple", position=(math.nan, 0.0, 0.0))
+    with pytest.raises(TaskError, match=r"position of apple\[0\] must be a finite number of metres"):
+        world.reset(task(lost))
+    with pytest.raises(TaskError, match="yaw must be a finite number of radians"):
+        world.reset(task(human=Pose(x=4.0, y=2.0, yaw=math.inf)))
+
+
+def test_a_seat_that_there_is_not_is_named(world: World) -> None:
+    for call in (world.look, world.picture, world.camera, world.scan, world.detections, world.pose, world.frame):
+        with pytest.raises(UnknownName, match="unknown seat 'robot3'"):
+            call("robot3")
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    assert numbers.number("x", np.float32(0.5), "metres") == 0.5
+    assert numbers.point3("p", np.array((1.0, 2.0, 3.0))) == (1.0, 2.0, 3.0)
+    assert numbers.whole("n", np.int64(3)) == 3
+
+
+# ------------------------------------------------------------------------------------------------ going to objects
+
+
+def test_going_to_an_object_is_ok_only_where_it_can_be_picked_up(world: World) -> None:
+    world.reset(task(on(TABLE, "apple", 0.3, 0.1), on(tiny.FRIDGE, "mug", surface=0), human=Pose(x=4.0, y=2.0)))
+    human = world.human
+    assert human.go_to("apple").ok
+    assert human.pick("apple").ok
+    outcome = human.go_to("mug")
+    assert (outcome.ok, outcome.reason) == (False, f"mug is out of sight; {tiny.FRIDGE} is closed")
+    world.set_open(tiny.FRIDGE)
+    assert human.go_to("mug").ok
+    assert world.out_of_hand("human", "mug") == ""
+
+
+@pytest.mark.parametrize("body", ["human", "tender"])
+def test_the_promise_holds_all_over_a_house(body: str) -> None:
+    from collections import Counter
+
+    from benchmarks import reaching
+
+    found = reaching.measure("hazel", body, Counter())
+    assert found["went"] == found["picked"] >= 30
