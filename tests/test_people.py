@@ -105,11 +105,11 @@ def test_files_are_found_by_path_and_again_from_anywhere(files: Path, monkeypatc
 
 def test_a_file_that_is_called_like_people_of_ours_is_not_taken_for_them(tmp_path: Path):
     """Their names stand in tables and on pages; a home-made proxy.json must not pass there as the proxy."""
-    kind = (Path(kinds.__file__).parent / "fast.json").read_bytes()
+    kind = (Path(kinds.__file__).parent / "fast.json").read_text()
     names = set()
     for name in ("proxy", "paper", "cautious", "mine"):
         path = tmp_path / f"{name}.json"
-        path.write_bytes(kind)
+        path.write_text(kind.replace('"name": "fast"', f'"name": "{name}"'))
         names.add(people.find(str(path)).name)
     assert "mine" in names
     assert not names & {"proxy", "paper", "cautious"}
