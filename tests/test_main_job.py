@@ -555,7 +555,9 @@ def test_leaderboard(
     assert (said.code, parts["trials"]["passed"], parts["control"]["passed"]) == (5, True, False)
     assert say(*verify, "--write").code == 5
     listed = json.loads((here / "leaderboard.json").read_bytes())
-    assert [one["id"] for one in listed["refuted"]] == [true.id]
+    assert [one["id"] for one in listed["refuted"]] == [control.id], "it is the control that does not stand"
+    (row,) = [row for section in listed["sections"] for row in section["rows"]]
+    assert (row["id"], row["uplift"]) == (true.id, None)
 
     text = entry.read_text().replace('"seed": 0', '"seed": 1')
     entry.write_text(text)
