@@ -368,7 +368,8 @@ def evaluate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., A
     monkeypatch.setattr(engines, "find", lambda *_, **__: eval_fakes.Here())
 
     def run(*words: str) -> Any:
-        fixed = ["--kind", "object_goal_navigation", "--participants", "2", "--no-control", "--quiet", "--json"]
+        fixed = ["--kind", "object_goal_navigation", "--limit", "3", "--participants", "2", "--isolation", "L1"]
+        fixed += ["--no-control", "--quiet", "--json"]
         return invoke("eval", "--agent", "a/agent.py", *fixed, *words)
 
     return run
@@ -406,18 +407,20 @@ def test_an_agent_that_was_changed_is_played_as_another(evaluate: Any, tmp_path:
     assert first.exit_code == 0, first.output
     before = json.loads(first.stdout)
     assert changed in [file["path"] for file in before["agents"][0]["files"]]
-    assert json.loads(evaluate().stdout) == before  # nothing is played again
-    assert len(list((tmp_path / "runs").iterdir())) == 1
     (tmp_path / "a" / changed).write_text("X = 2\n")
     after = json.loads(evaluate().stdout)
     assert len(list((tmp_path / "runs").iterdir())) == 2
     assert after["hashes"]["run"] != before["hashes"]["run"]
-    named = evaluate("--out", str(next((tmp_path / "runs").glob("*"))))
-    there = setup.load(next((tmp_path / "runs").glob("*")))
-    assert named.exit_code in (0, 2)
-    if there.sha256 == before["hashes"]["run"]:
-        assert named.exit_code == 2
-        assert f"{changed}.sha256 is" in named.output
+
+
+def test_a_folder_of_an_agent_that_was_changed_is_refused_by_the_files_name(evaluate: Any, tmp_path: Path) -> None:
+    own(tmp_path / "a", top="import helper")
+    first = evaluate("--out", "mine")
+    assert evaluate("--out", "mine").stdout == first.stdout  # nothing is played again
+    (tmp_path / "a" / "helper.py").write_text("X = 2\n")
+    refused = evaluate("--out", "mine")
+    assert refused.exit_code == 2
+    assert "agents.0.files.helper.py.sha256 is" in refused.output
 
 
 OPENED = "name = 'net' + '-big.txt'\nopen(HERE / 'weights' / name).read()"
