@@ -9,6 +9,7 @@ import py_compile
 import sqlite3
 import sys
 import textwrap
+import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -26,7 +27,7 @@ from typer.testing import CliRunner
 from hthor import guest
 from hthor.cli import app
 from hthor.errors import AgentError, HthorError, RunError
-from hthor.eval import cast, crews, engines, setup
+from hthor.eval import cast, crews, engines
 from hthor.guest import Given, Guest, GuestFault, IsolationError, identity, manifest, recording, scanning
 from hthor.guest import given as giving
 from hthor.guest.grounds import Grounds
@@ -347,6 +348,43 @@ def test_what_is_readable_must_be_there(tmp_path: Path) -> None:
         (tmp_path / place).mkdir(parents=True)
     with pytest.raises(HthorError, match="two files or folders called 'w'"):
         giving.read(readable=[tmp_path / "a" / "w", tmp_path / "b" / "w"])
+
+
+def test_a_served_agent_says_what_it_consists_of_and_that_is_marked(taking: Path) -> None:
+    pytest.importorskip("websockets")
+    from hthor.guest import serving
+
+    out = taking.parents[1] / "out" / "net.txt"
+    server = serving.serve(str(taking), "127.0.0.1", 0, giving.read([f"checkpoint={out}"]))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    try:
+        url = serving.address(server)
+        first = crews.introduce(url)
+        made = first.manifest
+        assert made is not None
+        assert made.claimed
+        assert made.sha256 == first.ref.sha256
+        assert [file.path for file in made.files] == ["../net.txt", "agent.py"]
+        with Guest(url) as mind:
+            mind.begin(BRIEFING)
+            assert getattr(mind.act(look()).say, "text", None) == "learned False"
+        out.write_text("more")
+        assert crews.introduce(url).ref.sha256 != first.ref.sha256
+        with pytest.raises(HthorError, match="--agent-args is for 'hthor agent serve' there"):
+            Guest(url, given=giving.read(["speed=1"]))
+    finally:
+        server.shutdown()
+
+
+def test_compiled_files_beside_a_program_in_python_are_not_run(tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text("raise SystemExit('stale')\n")
+    py_compile.compile(
+        str(tmp_path / "helper.py"), invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH, doraise=True
+    )
+    (tmp_path / "helper.py").write_text("raise SystemExit('fresh')\n")
+    (tmp_path / "mind.py").write_text("import helper\n")
+    with pytest.raises(AgentError, match="fresh"):
+        guest.load_info(f"cmd:{sys.executable} {tmp_path / 'mind.py'}")
 
 
 class Quick(cast.Stage):
