@@ -53,8 +53,7 @@ def become(words: Sequence[str], folder: str, pipes: tuple[int, int], shared: in
 def _has_compiled(folder: str) -> bool:
     """Whether modules lie there compiled, which a Python program would believe whatever their sources say now.
 
-    Then it compiles all that it imports anew. Libraries take a second longer so, and where nothing is compiled they need
-    not.
+    Then it compiles all that it imports, which takes libraries a second; where nothing is compiled they need not.
     """
     for count, (_, inner, _) in enumerate(os.walk(folder)):
         if "__pycache__" in inner or count > _MOST_FOLDERS:
