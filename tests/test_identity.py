@@ -229,7 +229,8 @@ def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Pa
 
 ARGS = """
 def __init__(self, checkpoint="", speed=0.5, loud: bool = False):
-    self.text = open(checkpoint).read() if checkpoint else "none"
+    from pathlib import Path
+    self.text = Path(checkpoint).read_text() if checkpoint else "none"
     self.speed, self.loud = speed, loud
 def begin(self, briefing): pass
 def act(self, observation):
