@@ -388,6 +388,15 @@ def test_compiled_files_beside_a_program_in_python_are_not_run(tmp_path: Path) -
         guest.load_info(f"cmd:{sys.executable} {tmp_path / 'mind.py'}")
 
 
+def test_a_folder_with_too_many_files_is_not_made_readable(taking: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(identity, "_MOST_READABLE", 1)
+    guest.confine_guests(given=giving.read(readable=[taking.parents[1] / "out"]))
+    assert len(names(taking)) == 2
+    (taking.parents[1] / "out" / "more.txt").write_text("")
+    with pytest.raises(AgentError, match=r"has more than 1 files.*Name the folders or files in there"):
+        names(taking)
+
+
 class Quick(cast.Stage):
     """Trials of some dozen ticks in a world without an engine."""
 
