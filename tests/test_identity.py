@@ -397,6 +397,15 @@ def test_a_folder_with_too_many_files_is_not_made_readable(taking: Path, monkeyp
         names(taking)
 
 
+def test_what_no_source_names_can_be_made_part_of_an_agent(tmp_path: Path) -> None:
+    path = write(tmp_path / "a")
+    (tmp_path / "a" / "w").mkdir()
+    (tmp_path / "a" / "w" / "net.bin").write_bytes(b"1")
+    assert names(path) == ["agent.py"]
+    guest.confine_guests(given=giving.read(readable=[tmp_path / "a" / "w"]))
+    assert names(path) == ["agent.py", "w/net.bin"]
+
+
 class Quick(cast.Stage):
     """Trials of some dozen ticks in a world without an engine."""
 

@@ -188,7 +188,7 @@ def _readable(grounds: Grounds) -> Iterator[str]:
             )
             for name in sorted(names):
                 path = os.path.join(folder, name)
-                if not os.path.isfile(path) or grounds.owns(path) or _below_any(path, hidden):
+                if not os.path.isfile(path) or _below_any(path, hidden):
                     continue
                 count += 1
                 if count > _MOST_READABLE:
