@@ -22,6 +22,7 @@ from hthor.types import HouseSpec, Thing
 from hthor.world import World
 
 DATA = Path(houses.__file__).parent / "data"
+SCENE = "juniper"
 HEIGHT_M = 0.938
 DATABASE = {
     "CounterTop": [
@@ -71,10 +72,11 @@ def test_a_straight_or_tiny_one_is_one_thing(plan: str, w: float, d: float):
 
 
 def house(folder: Path, asset: str, rotation: int = 0) -> HouseSpec:
-    """The largest room of a scene, with nothing in the house but this worktop in its middle, cups all over its box."""
-    document: Any = copy.deepcopy(json.loads((DATA / "maple.json").read_bytes()))
+    """A scene with nothing in it but this worktop in the middle of its largest square room, cups all over its box."""
+    document: Any = copy.deepcopy(json.loads((DATA / f"{SCENE}.json").read_bytes()))
     size = next(row for row in DATABASE["CounterTop"] if row["assetId"] == asset)["boundingBox"]
-    corners = max((room["floorPolygon"] for room in document["rooms"]), key=_area)
+    floors = [room["floorPolygon"] for room in document["rooms"]]
+    corners = max((floor for floor in floors if len(floor) == 4), key=_least)
     x, z = ((min(c[axis] for c in corners) + max(c[axis] for c in corners)) / 2 for axis in "xz")
     turn = {"x": 0, "y": rotation, "z": 0}
     cups = [
@@ -90,9 +92,8 @@ def house(folder: Path, asset: str, rotation: int = 0) -> HouseSpec:
     return houses.load(folder / "corner.json")
 
 
-def _area(corners: Any) -> float:
-    spans = [max(c[axis] for c in corners) - min(c[axis] for c in corners) for axis in "xz"]
-    return spans[0] * spans[1]
+def _least(corners: Any) -> float:
+    return min(max(c[axis] for c in corners) - min(c[axis] for c in corners) for axis in "xz")
 
 
 def _turned(x: float, z: float, degrees: int) -> tuple[float, float]:
