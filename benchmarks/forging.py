@@ -8,31 +8,33 @@ trials again can tell. `python -m benchmarks.forging ENTRY OUT` writes such a co
 from __future__ import annotations
 
 import argparse
-import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import msgspec
 import numpy as np
 
-from hthor import seeds
+from hthor import seeds, tasks
 from hthor.eval.stats import Estimate
-from hthor.leaderboard import draw, files, outcomes, verdict, worth
+from hthor.leaderboard import dealt, draw, files, outcomes, verdict, worth
 from hthor.leaderboard.entry import Entry
 from hthor.leaderboard.outcomes import Outcomes
+from hthor.tasks import Suite
+from hthor.types import TaskSpec
 
-COUNT, PEOPLE, SAMPLE = 2000, 200, 200
+COUNT, SAMPLE = 2000, 200
 SHARES = (0.005, 0.01, 0.03, 0.05)
 _MILLION = 1_000_000
 
 
-def forged(entry: Entry, share: float, control: Entry | None = None) -> Entry:
+def forged(entry: Entry, share: float, control: Entry | None = None, suite: Suite | None = None) -> Entry:
     """A copy of an entry in which this share of the trials, or all that failed, did better; the copy is in order.
 
     Args:
-        control: the entry without a robot that its uplift is over.
+        control: the entry without a robot that its uplift is over. suite: its tasks, so that what the times are worth
+            follows from them too.
     """
-    held = better(outcomes.unpack(entry.trials), share)
+    held = better(outcomes.unpack(entry.trials), share, tasks=dealt.tasks(suite, entry) if suite else ())
     whose = worth.people(entry.trials.count, entry.run.participants)
     fresh: dict[str, Estimate] = worth.scores(held, whose, alone=entry.alone)
     return msgspec.structs.replace(
@@ -43,52 +45,78 @@ def forged(entry: Entry, share: float, control: Entry | None = None) -> Entry:
         uplift=worth.uplift(entry, held, control, outcomes.unpack(control.trials)) if control else entry.uplift,
         hashes=msgspec.structs.replace(entry.hashes, merkle=held.merkle),
         trials=outcomes.pack(held),
-        verification=None,
     )
 
 
-def better(held: Outcomes, share: float, seed: int = 0) -> Outcomes:
+def better(held: Outcomes, share: float, seed: int = 0, tasks: Sequence[TaskSpec] = ()) -> Outcomes:
     """The same trials, but this share of all did better: of those that failed, as far as there are enough."""
     failed = np.flatnonzero(~held.met)
     order = seeds.shuffled(len(failed), seed, "forging")
     chosen = failed[order[: round(share * len(held.met))]]
     met, twsr, time = held.met.copy(), held.twsr.copy(), held.time.copy()
     met[chosen], twsr[chosen], time[chosen] = True, _MILLION * 6 // 10, 600
+    for place in chosen.tolist() if tasks else ():
+        good = tasks[place].t_star
+        twsr[place] = round(_MILLION * round(good / max(good, 60.0), 6))
     return msgspec.structs.replace(held, met=met, twsr=twsr, time=time)
 
 
-def made_up(seed: int = 0) -> Outcomes:
+def made_up(seed: int = 0, count: int = COUNT) -> Outcomes:
     """A run's columns that never was."""
     chance = np.random.default_rng(seed)
-    met = chance.random(COUNT) < 0.72
-    time = np.where(met, chance.integers(150, 900, COUNT), 900)
+    met = chance.random(count) < 0.72
+    time = np.where(met, chance.integers(150, 900, count), 900)
     return Outcomes(
         met=met,
-        adopted=chance.random(COUNT) < 0.5,
-        faulty=np.zeros(COUNT, dtype=bool),
+        adopted=np.zeros(count, dtype=bool),
+        faulty=np.zeros(count, dtype=bool),
         twsr=np.where(met, np.minimum(_MILLION, 300 * _MILLION // np.maximum(time, 1)), 0),
         time=time,
-        trust=chance.integers(1, 8, COUNT),
-        leaves=[chance.bytes(outcomes.LEAF) for _ in range(COUNT)],
+        trust=chance.integers(1, 8, count),
+        sent=np.ones(count, dtype=np.int64),
+        accepted=np.zeros(count, dtype=np.int64),
+        useful=np.zeros(count, dtype=np.int64),
+        leaves=[chance.bytes(outcomes.LEAF) for _ in range(count)],
         labels={},
     )
 
 
-def caught(tier: verdict.Tier, share: float, draws: int, *, sample: int = SAMPLE) -> int:
-    """In how many draws an entry is refuted of which this share of the outcomes was made better."""
-    true = made_up()
+def caught(
+    tier: verdict.Tier, share: float, draws: int, *, sample: int = SAMPLE, count: int = COUNT, noise: float = 0.0
+) -> int:
+    """In how many draws an entry is refuted of which this share of the outcomes was made better.
+
+    Args:
+        sample: trials that are drawn, of ``count``. noise: the share of trials in which two runs of the agent differ in
+            success, either way, for an agent that does not repeat itself.
+    """
+    true = made_up(count=count)
     claimed = better(true, share)
-    rows, whose = true.rows, worth.people(COUNT, PEOPLE)
+    whose = worth.people(count, count // 10)
     found = 0
     for number in range(draws):
-        drawn = draw.sample(f"commit {number}", claimed.merkle, COUNT, sample)
+        drawn = draw.sample(f"commit {number}", claimed.merkle, count, sample)
+        came = _another(true, noise, number)
+        rows = came.rows
         again = verdict.Again(
             rows={place: rows[place] for place in drawn},
-            met={place: bool(true.met[place]) for place in drawn},
-            twsr={place: int(true.twsr[place]) for place in drawn},
+            met={place: bool(came.met[place]) for place in drawn},
+            twsr={place: int(came.twsr[place]) for place in drawn},
         )
         found += not verdict.judge(tier, claimed, again, drawn, whose).passed
     return found
+
+
+def _another(true: Outcomes, noise: float, number: int) -> Outcomes:
+    """Another run of the same agent: of so many trials the success comes out otherwise, either way as often."""
+    if not noise:
+        return true
+    chance = np.random.default_rng(number)
+    met, twsr, half = true.met.copy(), true.twsr.copy(), round(noise * len(true.met) / 2)
+    lost = chance.permutation(np.flatnonzero(true.met))[:half]
+    won = chance.permutation(np.flatnonzero(~true.met))[:half]
+    met[lost], twsr[lost], met[won], twsr[won] = False, 0, True, _MILLION * 6 // 10
+    return msgspec.structs.replace(true, met=met, twsr=twsr)
 
 
 def main() -> None:
@@ -97,25 +125,41 @@ def main() -> None:
     options.add_argument("entry", nargs="?", type=Path, help="an entry's file")
     options.add_argument("out", nargs="?", type=Path, help="where its forged copy goes")
     options.add_argument("--share", type=float, default=0.3, help="of the trials that do better there (%(default)s)")
+    options.add_argument("--suite", default="", help="the suite of the entry, for what times are worth")
     options.add_argument("--draws", type=int, default=1000, help="for the table (%(default)s)")
     given = options.parse_args()
     if given.entry is not None and given.out is not None:
         entry = files.read(given.entry)
         beside = [files.read(path) for path in sorted(given.entry.parent.glob("*.json"))]
         control = next((one for one in beside if entry.uplift and one.hashes.run == entry.uplift.control), None)
-        files.write(given.out, forged(entry, given.share, control))
+        suite = tasks.suite(given.suite) if given.suite else None
+        files.write(given.out, forged(entry, given.share, control, suite))
         return
-    print(f"caught of {given.draws} draws of {SAMPLE} among {COUNT} trials\n", file=sys.stderr)
     for line in _lines(given.draws):
-        print(line)
+        print(line, flush=True)
+
+
+CASES: tuple[tuple[str, verdict.Tier, int, int, float], ...] = (
+    ("V1", "V1", 2000, 200, 0.0),
+    ("V2", "V2", 2000, 200, 0.0),
+    ("V3, 20 % of trials differ from run to run", "V3", 2000, 200, 0.2),
+    ("V3, all drawn, 20 % differ", "V3", 2000, 2000, 0.2),
+    ("V1, 60 tasks", "V1", 60, 20, 0.0),
+    ("V2, 60 tasks", "V2", 60, 20, 0.0),
+    ("V1, 60 tasks, all drawn", "V1", 60, 60, 0.0),
+    ("V2, 60 tasks, all drawn", "V2", 60, 60, 0.0),
+    ("V3, 60 tasks, all drawn, none differs", "V3", 60, 60, 0.0),
+)
+"""How entries are verified: the tier, how many trials there are and are drawn, and how many differ between runs."""
 
 
 def _lines(draws: int) -> Iterator[str]:
-    yield "| changed outcomes | V1 | V2 | V3 |"
-    yield "|---|---|---|---|"
-    for share in (0.0, *SHARES):
-        counts = (caught(tier, share, draws) for tier in ("V1", "V2", "V3"))
-        yield f"| {100 * share:g} % | " + " | ".join(str(count) for count in counts) + " |"
+    yield "| of " + str(draws) + " draws | trials | drawn | none | 0.5 % | 1 % | 3 % | 5 % |"
+    yield "|---|---|---|---|---|---|---|---|"
+    for name, tier, count, sample, noise in CASES:
+        shares = (0.0, *SHARES)
+        counts = [caught(tier, share, draws, sample=sample, count=count, noise=noise) for share in shares]
+        yield f"| {name} | {count} | {sample} | " + " | ".join(str(found) for found in counts) + " |"
 
 
 if __name__ == "__main__":

@@ -42,25 +42,33 @@ step static.sh "$mine"
 step smoke.sh "$mine" smoke 1
 sha256sum <<<"no secret: the same small suite every time" | cut -c1-64 | "$STEPS/salt.sh" salt
 step suite.sh small salt suite 2 20
+(cd "$ROOT" && hthor leaderboard open "$work/suite/commitment.json" --board "$work/board") # the keeper opens a season
 step plan.sh 2
 step control.sh suite runs/control
 for shard in 1 2; do step shard.sh "$mine" suite "$shard/2" runs/mine; done
 step seal.sh salt sealed runs/mine-shard-1-of-2 runs/mine-shard-2-of-2
 rm -r runs/mine-shard-*
-step unseal.sh salt sealed
+step unseal.sh salt shard sealed
 step merge.sh runs/mine runs/mine-shard-1-of-2 runs/mine-shard-2-of-2
-step enter.sh runs/mine "$mine" suite board | tee entered
-entry=$(grep -o 'board/entries/[^ ]*\.json' entered | head -1)
+step enter.sh runs/mine "$mine" board entered | tee said
+entry=$(grep -o 'board/entries/[^ ]*\.json' said | head -1)
 draw=$(sha256sum "$entry" | cut -c1-40) # on GitHub, the commit that merged the submission
-step verify.sh "$entry" "$mine" suite "$draw" 8
+FRESH=10 OFFICIAL=1 step verify.sh "$entry" "$mine" suite "$draw" verified 16
+step record.sh verified board
 step validate.sh board
+cp -r "$ROOT/leaderboard" published # as another machine has it, which ran nothing of the submission
+cp -r board/suites board/admission.json published/
+step place.sh entered published
+step record.sh verified published
 
 cp -r board tampered
 sed -i 's/"successes": [0-9]*/"successes": 0/' "tampered/entries/$(basename "$entry")"
 refused counts.successes validate.sh tampered
 cp "$entry" "tampered/entries/"
-(cd "$ROOT" && "$PYTHON" -m benchmarks.forging "$work/$entry" "$work/tampered/entries/$(basename "$entry")" --share 0.5)
-refused REFUTED verify.sh "tampered/entries/$(basename "$entry")" "$mine" suite "$draw" 20
+(cd "$ROOT" && "$PYTHON" -m benchmarks.forging "$work/$entry" "$work/tampered/entries/$(basename "$entry")" --share 0.5 \
+  --suite "$work/suite")
+FRESH=0 refused REFUTED verify.sh "tampered/entries/$(basename "$entry")" "$mine" suite "$draw" refuted 20
+refused 'is not written over' place.sh tampered published
 
 step build.sh board
 DRY_RUN=1 step pull_request.sh "$(basename "$mine")"

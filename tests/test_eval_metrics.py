@@ -292,3 +292,39 @@ def test_messages_as_a_channel():
     assert (silent.precision, silent.first_useful_s, silent.interruptions_per_min) == (None, None, 0.0)
     alone = metrics.measure(ALONE, log())
     assert (alone.precision, alone.first_useful_s, alone.interruptions_per_min) == (None, None, None)
+
+
+def test_what_a_robot_says_of_bodies_is_no_claim_that_counts():
+    """A robot that tells where it is itself, all the time, is always right and of no use."""
+    made = log(
+        (100, "robot", "sent", {"message": 0, "object": "robot", "off": 0.0}),
+        (110, HUMAN, "confirmed", {"message": 0}),
+        (120, "robot", "sent", {"message": 1, "object": HUMAN, "off": 0.0}),
+        (200, "robot", "sent", {"message": 2, "object": "apple", "off": 3.0}),
+        paths={HUMAN: [], "robot": []},
+    )
+    found = metrics.measure(TRIAL, made)
+    assert found.precision == 0.0, "of one claim none was true"
+    assert found.first_useful_s is None
+    assert found.false_claims == 1
+
+
+def test_usefulness_is_of_the_confirmed_what_was_true_and_new():
+    def offer(number, useful):
+        return Event(tick=1, seat=HUMAN, kind="offer", data={"message": number, "useful": useful})
+
+    rows = [
+        (100, "robot", "sent", {"message": 0, "object": "apple", "off": 3.0}),  # false
+        (200, "robot", "sent", {"message": 1, "object": "apple", "off": 0.2}),  # true and new
+        (300, "robot", "sent", {"message": 2, "object": "apple", "off": 0.2}),  # true, but known by now
+        (400, "robot", "sent", {"message": 3}),  # claims nothing
+        (500, "robot", "sent", {"message": 4, "object": "apple", "off": 0.2}),  # true, new, and not confirmed
+        *((600, HUMAN, "confirmed", {"message": number}) for number in range(4)),
+    ]
+    journal = tuple(offer(number, number != 2) for number in range(5))
+    found = metrics.measure(TRIAL, log(*rows, journal=journal))
+    assert (found.accepted, found.useful, found.usefulness) == (4, 1, 0.25)
+    nothing = metrics.measure(TRIAL, log())
+    assert (nothing.useful, nothing.usefulness) == (0, None)
+    alone = metrics.measure(ALONE, log())
+    assert (alone.useful, alone.usefulness) == (None, None)

@@ -279,6 +279,12 @@ class Mind:
         return None if aim is None else (aim.verb, aim.duty.target if aim.duty else "")
 
 
+def test_a_message_without_a_name_and_a_place_means_nothing_with_several_things_to_do():
+    mind = Mind()
+    assert mind.hears("", None) is None
+    assert mind.hears("") is not None
+
+
 def test_an_apple_noticed_while_looking_for_another_is_remembered():
     mind = Mind()
     mind.sees("apple_2")

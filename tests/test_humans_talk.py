@@ -330,6 +330,34 @@ def test_what_one_sees_oneself_may_still_be_confirmed():
     raise AssertionError("nobody was asked on the way")
 
 
+def test_words_that_name_neither_a_thing_nor_a_place_are_about_nothing():
+    """Else "I am here." every five seconds is taken up like a find, and earns trust like one."""
+    willing = msgspec.structs.replace(TRAITS, a0=9.0, p_slip=0.0)
+    for name, place, relevant in (("", None, False), ("", (9.0, 2.5, 0.6), True), ("apple", None, True)):
+        model, _, _ = heard(0, place, ticks=150, traits=willing, thing=name)
+        (entry,) = journal(model, "offer")
+        assert (entry["relevant"], entry["answer"] == "confirm") == (relevant, relevant), name
+        assert (model._talk.experience.helped is not None) == relevant, "it earns no trust"
+
+
+def test_a_place_without_a_name_matters_only_while_something_is_missing():
+    willing = msgspec.structs.replace(TRAITS, a0=9.0, p_slip=0.0)
+    for person in range(6):
+        flat = Flat("Table|1")
+        model = Model(Person(seed=1, participant=person, traits=willing))
+        model.begin(flat.briefing(relation="on", destination="bed", teammates=("robot",)))
+        play(model, flat, ticks=400, until=lambda flat=flat, model=model: model.about.startswith("fetch"))
+        if not model.about.startswith("fetch"):
+            continue
+        play(model, flat, ticks=80, say=lambda tick: (message(0, (9.0, 2.5, 0.6), ""),))
+        entries = journal(model, "offer")
+        if entries and not flat.held:
+            assert not entries[0]["relevant"]
+            assert entries[0]["answer"] != "confirm"
+            return
+    raise AssertionError("nobody was asked on the way")
+
+
 def test_who_never_confirms_walks_as_if_nobody_spoke_when_reading_costs_nothing():
     """A declined message leaves no trace but the time it takes."""
     deaf = msgspec.structs.replace(TRAITS, a0=-50.0, p_slip=0.0, k_read=1.0)

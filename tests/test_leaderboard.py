@@ -1,3 +1,4 @@
+# ruff: noqa: F811  fixtures are imported, and named by tests
 """The leaderboard: whole runs only, the same bytes always, and whatever is changed in an entry is named."""
 
 from __future__ import annotations
@@ -19,15 +20,17 @@ import jsonschema
 import msgspec
 import numpy as np
 import pytest
+from board_fakes import COUNT, board, code, committed, contents, entry_of, kept, runs, whole  # noqa: F401
 from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks import forging
 from hthor import jsonio, tasks
 from hthor.errors import HthorError, RunError
-from hthor.eval import provenance, record, setup
+from hthor.eval import provenance, setup
 from hthor.guest import manifest
 from hthor.leaderboard import (
+    admission,
     archive,
     checks,
     enter,
@@ -44,66 +47,6 @@ from hthor.leaderboard import (
     verify,
     worth,
 )
-from hthor.leaderboard.entry import Verification
-from hthor.tasks.commitment import Commitment
-
-COUNT = 20
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _code():
-    with mock.patch.object(provenance, "code_sha256", return_value="34" * 32):
-        yield
-
-
-@pytest.fixture(scope="module")
-def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Runs as their folders, with the control beside them."""
-    base = tmp_path_factory.mktemp("runs")
-    for name in ("helper", "clumsy", "silent"):
-        plan, dealt = fakes.run_of(COUNT, name=name, absent=name == "silent")
-        jsonio.write(base / name / "run.json", jsonio.pretty(plan))
-        made = [one for session in dealt for one in fakes.player()(session)]
-        jsonio.write(base / name / "trials.jsonl", b"".join(record.encode(one) for one in made))
-        if name != "silent":
-            held = {"level": "L3", "memory": "2048 MiB"}
-            jsonio.write(base / name / "isolation.json", jsonio.pretty(held))
-        else:
-            text = (base / name / "run.json").read_text().replace('"silent.py"', '"hthor.agents.silent"')
-            (base / name / "run.json").write_text(text)
-    return base
-
-
-def committed(board: Path) -> Path:
-    """A board that knows the made-up suite as an official one."""
-    suite = fakes.suite(COUNT)
-    made = Commitment(
-        name="fake", salt="0" * 64, houses=3, tasks=COUNT, suite_sha256=suite.sha256, files={}, made_with={}
-    )
-    jsonio.write(board / "suites" / "fake.json", jsonio.pretty(made))
-    return board
-
-
-@pytest.fixture(scope="module")
-def whole(runs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    board = committed(tmp_path_factory.mktemp("board"))
-    enter.add(runs, board)
-    publish.build(board)
-    return board
-
-
-@pytest.fixture
-def board(whole: Path, tmp_path: Path) -> Path:
-    return shutil.copytree(whole, tmp_path / "board")
-
-
-def entry_of(board: Path, name: str) -> Path:
-    return next(path for path in files.entry_paths(board) if path.name.startswith(name))
-
-
-def _files(folder: Path) -> dict[str, bytes]:
-    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-
 
 # ------------------------------------------------------------------------------------------------------- entries
 
@@ -133,7 +76,7 @@ def test_twice_is_once_in_any_order_and_the_control_comes_too(whole: Path, runs:
     for name in ("clumsy", "helper", "clumsy"):
         enter.add(runs / name, other)
     publish.build(other)
-    assert _files(other) == _files(whole)
+    assert contents(other) == contents(whole)
     assert [path.name.partition("-")[0] for path in files.entry_paths(other)] == ["clumsy", "helper", "silent"]
 
 
@@ -193,7 +136,8 @@ def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
 CHANGES = {
     "metrics.sr.mean": ("metrics.sr", lambda one: one["metrics"]["sr"].update(mean=0.99)),
     "metrics.sr.ci95": ("metrics.sr.ci95[0]", lambda one: one["metrics"]["sr"].update(ci95=[0.0, 1.0])),
-    "metrics.idle_s": ("metrics.idle_s", lambda one: one["metrics"]["idle_s"].update(mean=1e6)),
+    "usefulness": ("metrics.usefulness.mean", lambda one: one["metrics"]["usefulness"].update(mean=0.5)),
+    "messages": ("counts.messages", lambda one: one["counts"].update(messages=3)),
     "twsr": (
         "metrics.twsr.mean",
         lambda one: one["metrics"]["twsr"].update(mean=one["metrics"]["twsr"]["mean"] + 1e-3),
@@ -202,7 +146,7 @@ CHANGES = {
     "uplift": ("uplift.sr.difference", lambda one: one["uplift"]["sr"].update(difference=0.9)),
     "control": ("uplift.control", lambda one: one["uplift"].update(control="0" * 64)),
     "faults": ("counts.faults", lambda one: one["counts"].update(faults=7)),
-    "kinds of faults": ("counts.faults_by_kind", lambda one: one["counts"]["faults_by_kind"].update(raised=9)),
+    "kinds of faults": ("counts.faults_by_kind", lambda one: one["counts"]["faults_by_kind"].clear()),
     "successes": ("counts.successes", lambda one: one["counts"].update(successes=0)),
     "a bit": ("hashes.merkle", lambda one: one["trials"].update(met=packing.bits(np.ones(COUNT)))),
     "bits beyond": ("trials.met", lambda one: one["trials"].update(met=packing.bits(np.ones(COUNT + 4)))),
@@ -217,8 +161,9 @@ CHANGES = {
     "isolation": ("isolation", lambda one: one.update(isolation=None)),
     "id": ("id", lambda one: one.update(id="helper-fake-0123456789")),
     "overrides": ("overrides", lambda one: one.update(overrides={"limit": "9"})),
-    "unknown field": ("$", lambda one: one.update(note="hello")),
-    "missing field": ("$", lambda one: one.pop("mode")),
+    "unknown field": ("note", lambda one: one.update(note="hello")),
+    "brought verification": ("verification", lambda one: one.update(verification={"tier": "V1", "passed": True})),
+    "missing field": ("mode", lambda one: one.pop("mode")),
     "type": ("run.seed", lambda one: one["run"].update(seed="0")),
     "hash": ("hashes.run", lambda one: one["hashes"].update(run="xyz")),
 }
@@ -231,7 +176,7 @@ def _split(one: dict) -> dict:
 @pytest.mark.parametrize("change", CHANGES)
 def test_what_was_changed_is_named(board: Path, change: str):
     field, spoil = CHANGES[change]
-    path = entry_of(board, "clumsy" if change == "splits" else "helper")
+    path = entry_of(board, "clumsy" if change in ("splits", "kinds of faults") else "helper")
     document = json.loads(path.read_bytes())
     spoil(document)
     path.write_bytes(jsonio.pretty(document))
@@ -259,7 +204,7 @@ def test_another_spelling_is_refused_and_can_be_fixed(board: Path, whole: Path):
     path.write_text(json.dumps(json.loads(path.read_bytes())))
     assert [one.field for one in checks.problems(board)] == [form.SPELLING]
     assert form.fix(files.entry_paths(board)) == [path]
-    assert _files(board) == _files(whole)
+    assert contents(board) == contents(whole)
     (board / "leaderboard.json").write_bytes(b"{}")
     assert [one.file for one in publish.differences(board)] == [str(board / "leaderboard.json")]
 
@@ -268,21 +213,11 @@ def test_a_forger_who_makes_all_follow_passes_the_laws_but_not_an_old_verificati
     path = entry_of(board, "helper")
     control = files.read(entry_of(board, "silent"))
     true = files.read(path)
-    seal = Verification(
-        tier="V1", passed=True, entry=true.digest, draw="x", drawn=1, compared=1, equal=1, same_bytes=1,
-        platform="0" * 64, why="tested",
-    )  # fmt: skip
-    files.write(path, msgspec.structs.replace(true, verification=seal))
-    assert checks.problems(board) == []
-    for field, value in (("passed", False), ("drawn", 2), ("equal", 0)):
-        wrong = msgspec.structs.replace(seal, **{field: value})
-        files.write(path, msgspec.structs.replace(true, verification=wrong))
-        assert {one.field.partition(".")[0] for one in checks.problems(board)} == {"verification"}
     lie = forging.forged(true, 0.2, control)
     files.write(path, lie)
     assert checks.problems(board) == []  # all of it follows from its trials, which never were
-    files.write(path, msgspec.structs.replace(lie, verification=seal))
-    assert [one.field for one in checks.problems(board)] == ["verification.entry"]
+    assert kept(true).of(true) is not None
+    assert kept(true).of(lie) is None
 
 
 def test_numbers_of_older_statistics_are_worked_out_anew(board: Path, whole: Path):
@@ -292,7 +227,7 @@ def test_numbers_of_older_statistics_are_worked_out_anew(board: Path, whole: Pat
         files.write(path, msgspec.structs.replace(entry, metrics=msgspec.structs.replace(entry.metrics, sr=sr)))
     assert checks.problems(board) != []
     assert rescore.rescore(board) == files.entry_paths(board)
-    assert _files(board) == _files(whole)
+    assert contents(board) == contents(whole)
     assert rescore.rescore(board) == []
 
 
@@ -307,9 +242,10 @@ def test_one_false_outcome_in_twenty_is_caught_by_two_hundred_trials(tier: Liter
 
 def test_ranks_follow_from_entries_alone(whole: Path):
     entries = [files.read(path) for path in files.entry_paths(whole)]
-    found = listing.board(entries)
-    assert jsonio.pretty(found) == (whole / "leaderboard.json").read_bytes()
-    assert listing.board(entries[::-1]) == found
+    taken = admission.load(whole)
+    assert jsonio.pretty(listing.board(entries, taken=taken)) == (whole / "leaderboard.json").read_bytes()
+    found = listing.board(entries, kept(*entries), taken)
+    assert listing.board(entries[::-1], kept(*entries), taken) == found
     (section,) = found.sections
     ranks = {row.name: row.ranks for row in section.rows}
     assert ranks["no robot"] is None
@@ -331,8 +267,9 @@ def test_only_what_can_be_compared_is_ranked_together(whole: Path):
 
 
 def test_the_page_says_what_the_list_says_and_needs_nothing_else(whole: Path):
-    text = (whole / "index.html").read_text()
-    for stranger in ("http", "src=", "@import", "url(", "fetch"):
+    entries = [files.read(path) for path in files.entry_paths(whole)]
+    text = page.render(listing.board(entries, kept(*entries), admission.load(whole)))
+    for stranger in ("http:", "https:", "src=", "@import", "url(", "fetch"):
         assert stranger not in text
     for word in (
         "no robot",
@@ -343,13 +280,7 @@ def test_the_page_says_what_the_list_says_and_needs_nothing_else(whole: Path):
         "n 20, could have seen",
     ):
         assert word in text
-    found = listing.board([files.read(path) for path in files.entry_paths(whole)])
-    (section,) = found.sections
-    rows = tuple(msgspec.structs.replace(row, name="<b>x", id="<i>") for row in section.rows)
-    assert "<b>x" not in page.render(
-        msgspec.structs.replace(found, sections=(msgspec.structs.replace(section, rows=rows),))
-    )
-    assert "no entry yet" in page.render(listing.board([]))
+    assert "no ranked entry yet" in page.render(listing.board([]))
 
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")

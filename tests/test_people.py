@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -102,6 +103,19 @@ def test_files_are_found_by_path_and_again_from_anywhere(files: Path, monkeypatc
     assert found[0].sha256 == found[1].sha256
     assert len({one.sha256 for one in found}) == len(found) - 1
     assert type(found[3].make(0, 1)).__name__ == "Model"
+
+
+def test_a_file_that_is_called_like_people_of_ours_is_not_taken_for_them(tmp_path: Path):
+    """Their names stand in tables and on pages; a home-made proxy.json must not pass there as the proxy."""
+    kind = (Path(kinds.__file__).parent / "fast.json").read_text()
+    names = set()
+    for name in ("proxy", "paper", "cautious", "mine"):
+        path = tmp_path / f"{name}.json"
+        path.write_text(kind.replace('"name": "fast"', f'"name": "{name}"'))
+        names.add(people.find(str(path)).name)
+    assert "mine" in names
+    assert not names & {"proxy", "paper", "cautious"}
+    assert all(re.fullmatch(r"mine|(proxy|paper|cautious)-[0-9a-f]{6}", name) for name in names)
 
 
 def test_the_hash_covers_model_population_and_kind(files: Path):

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hthor.cli import screen
 from hthor.cli.giving import AgentArgs, Readable
 from hthor.cli.runs import Json
+
+if TYPE_CHECKING:
+    from hthor.leaderboard.verification import Verification
 
 app = typer.Typer(no_args_is_help=True, help="The leaderboard's files.")
 
@@ -153,6 +156,31 @@ def rescore(board: Board = BOARD, json: Json = False) -> None:
     sys.stderr.write(f"{len(changed)} of {len(list(board.glob('entries/*.json')))} entries came out otherwise\n")
 
 
+@app.command("open")
+def open_(
+    season: Annotated[
+        Path | None,
+        typer.Argument(metavar="[COMMITMENT]", help="The commitment of an official suite that is to be ranked."),
+    ] = None,
+    board: Board = BOARD,
+    json: Json = False,
+) -> None:
+    """Let a board take this version's people and suites, and rank an official suite: for the board's keeper.
+
+    Writes admission.json, and the commitment to the suite.
+    """
+    from hthor.leaderboard import admission, files
+    from hthor.tasks import commitment
+
+    made = commitment.load(season) if season is not None else None
+    written = [board / admission.NAME]
+    files.write(written[0], admission.opened(board, made))
+    if made is not None:
+        written.append(board / files.SUITES / f"{made.name}.json")
+        files.write(written[1], made)
+    screen.put_files(written, json)
+
+
 @app.command("verify")
 def verify(
     entry: Annotated[Path, typer.Argument(metavar="ENTRY", help="An entry's file.")],
@@ -164,24 +192,36 @@ def verify(
     agent_args: AgentArgs = None,
     readable: Readable = None,
     suite: Annotated[str, typer.Option(help="Where the suite lies, when it is not hthor's own.")] = "",
-    sample: Annotated[int, typer.Option(min=1, help="How many trials are drawn; more than there are means all.")] = 200,
+    sample: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            help="How many trials are drawn; more than there are means all. "
+            "[default: 200; all of an agent that does not repeat itself]",
+            show_default=False,
+        ),
+    ] = None,
+    fresh: Annotated[int, typer.Option(min=0, help="How many fresh tasks the agent plays; 0 for none.")] = 200,
+    official: Annotated[bool, typer.Option("--official", help="The official workflow made the entry.")] = False,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Worker processes.")] = None,
     require_isolation: Annotated[str, typer.Option(help="The least level that holds the agent.")] = "",
     by: Annotated[str, typer.Option(help="Who verifies, for the record.")] = "",
     date: Annotated[str, typer.Option(help="When, for the record; nothing looks at a clock.")] = "",
     board: Annotated[Path | None, typer.Option(help="The leaderboard's folder. [default: the entry's]")] = None,
+    out: Annotated[Path | None, typer.Option(help="Write the outcome to this file.", show_default=False)] = None,
     write: Annotated[
-        bool, typer.Option("--write", help="Put the outcome into the entry, and build the board.")
+        bool, typer.Option("--write", help="Put the outcome into the board's folder, and build the board.")
     ] = False,
     json: Json = False,
 ) -> None:
-    """Play a sample of an entry's trials again, drawn after it was handed in, and compare.
+    """Play trials of an entry and of its control again, drawn after it was handed in, and fresh tasks like them.
 
-    Byte for byte on the platform that it was played on (tier V1), by outcomes on another (V2), statistically for an
-    agent that does not repeat itself (V3).
+    Trials are compared byte for byte on the platform that they were played on (tier V1), by outcomes on another (V2),
+    statistically for an agent that does not repeat itself (V3). An agent that does worse at tasks which nobody had seen
+    is flagged.
     """
     from hthor.guest import given
-    from hthor.leaderboard import publish
+    from hthor.leaderboard import files, publish, verification
     from hthor.leaderboard import verify as verifying
 
     where = board or entry.resolve().parents[1]
@@ -191,21 +231,56 @@ def verify(
         given=given.read(agent_args or (), readable or ()),
         suite=suite,
         sample=sample,
+        fresh=fresh,
+        official=official,
         jobs=jobs,
         require_isolation=require_isolation,
         by=by,
         date=date,
     )
-    _, found = verifying.verify(entry, where, request)
+    held, found = verifying.verify(entry, where, request)
+    if out is not None:
+        files.write(out, found)
     if write:
-        verifying.record(entry, found)
+        verification.keep(where, held, found)
         publish.build(where)
     if json:
         screen.put_json(found)
     else:
-        sys.stdout.write(f"{found.tier}: {'stands' if found.passed else 'REFUTED'}: {found.why}\n")
-    if not found.passed:
+        _tell_verification(found)
+    if found.refuted or found.fell:
         raise typer.Exit(_REFUTED_EXIT)
+
+
+@app.command("record")
+def record(
+    outcome: Annotated[Path, typer.Argument(metavar="VERIFICATION", help="What 'verify --out' wrote.")],
+    board: Board = BOARD,
+    json: Json = False,
+) -> None:
+    """Put a verification from elsewhere beside the entry that it is of, and build the board: for its keeper."""
+    from hthor.leaderboard import files, publish, verification
+
+    found = verification.read(outcome)
+    held = files.read(verification.place(board, found))
+    written = verification.keep(board, held, found)
+    publish.build(board)
+    screen.put_files(written, json)
+
+
+def _tell_verification(found: Verification) -> None:
+    """The verdicts, a line each."""
+    from hthor.leaderboard.verification import ENOUGH
+
+    for what, one in (("agent", found.trials), ("control", found.control)):
+        if one is not None:
+            verdict = "stands" if one.passed else "REFUTED"
+            power = f"Three false outcomes in sixty would have been caught with {100 * one.caught:.0f} %"
+            sys.stdout.write(f"{what}: {one.tier}: {verdict}: {one.why} {power}.\n")
+            if one.passed and one.caught < ENOUGH:
+                sys.stdout.write(f"{what}: that is too little for a rank: draw more trials with --sample\n")
+    if found.fresh is not None:
+        sys.stdout.write(f"fresh tasks: {'FELL' if found.fell else 'no fall'}: {found.fresh.why}.\n")
 
 
 def _tell(found: list, json: bool, well: str) -> None:  # type: ignore[type-arg]

@@ -10,7 +10,7 @@ from hthor import rules
 Range = tuple[float, float]
 AMOUNT: Range = (0.0, math.inf)
 """The range of whatever is counted and has no bound above."""
-_SHARES = ("sr", "twsr", "adoption", "progress", "precision", "work")
+_SHARES = ("sr", "twsr", "adoption", "progress", "precision", "usefulness", "work")
 _TIMES = ("time_s", "idle_s", "hindered_s", "hindered_by", "first_useful_s")
 """Metrics in seconds of a trial, which ends at its time limit."""
 

@@ -40,7 +40,8 @@ class TrialMetrics(Struct, frozen=True, kw_only=True):
 
     ``precision`` is the share of the robots' claims that were true, None where there were none. ``first_useful_s`` [s]
     is when the first true message was sent that the person confirmed, None without one. ``interruptions_per_min`` is
-    how many messages a minute came up before the person's eyes.
+    how many messages a minute came up before the person's eyes. ``useful`` counts the confirmed messages that were true
+    and new to the person, ``usefulness`` is their share among the confirmed, None where none was.
     """
 
     sr: int
@@ -61,6 +62,8 @@ class TrialMetrics(Struct, frozen=True, kw_only=True):
     precision: float | None = None
     first_useful_s: float | None = None
     interruptions_per_min: float | None = None
+    useful: int | None = None
+    usefulness: float | None = None
     work: dict[str, float] = {}
     hindered_by: dict[str, float] = {}
 
@@ -88,6 +91,8 @@ def measure(spec: TrialSpec, log: EpisodeLog) -> TrialMetrics:
         precision=None if alone else _maybe(channel.precision(log)),
         first_useful_s=None if alone else _maybe(channel.first_useful_s(log)),
         interruptions_per_min=None if alone else _maybe(channel.interruptions_per_min(log)),
+        useful=None if alone else channel.useful(log),
+        usefulness=None if alone else _maybe(channel.usefulness(log)),
         work={} if alone else {seat: _rounded(part) for seat, part in (deeds.shares(spec, log) or {}).items()},
         hindered_by={} if alone else {pair: _rounded(value) for pair, value in hindrance.by_pair(log).items()},
     )

@@ -40,6 +40,8 @@ _MORE = (
     ("precision", "true among its claims", "%"),
     ("first_useful_s", "first useful message after", "s"),
     ("interruptions_per_min", "messages shown, a minute", ""),
+    ("useful", "messages confirmed that were true and new, a trial", ""),
+    ("usefulness", "true and new among the confirmed", "%"),
 )
 _UPLIFT = (
     ("sr", "success rate", "points"),

@@ -44,6 +44,8 @@ class Scores(Struct, frozen=True, kw_only=True):
     precision: Estimate
     first_useful_s: Estimate
     interruptions_per_min: Estimate
+    useful: Estimate
+    usefulness: Estimate
     work: dict[str, Estimate]
     hindered_by: dict[str, Estimate]
 

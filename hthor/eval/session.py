@@ -81,19 +81,21 @@ def sessions(
             step_limit_s=crews.step_limit(crew, step_limit_s),
         )
 
-    hands = people_for(len(suite.tasks))
-    count = hands if participants is None else participants
-    decks = [_deck(suite.tasks, seed, round_) for round_ in range(math.ceil(count / hands))]
+    count = people_for(len(suite.tasks)) if participants is None else participants
     return tuple(
         Session(
             participant=participant,
-            trials=tuple(
-                trial(suite.tasks[number], participant, index)
-                for index, number in enumerate(_hand(decks[participant // hands], seed, participant))
-            ),
+            trials=tuple(trial(suite.tasks[number], participant, index) for index, number in enumerate(hand)),
         )
-        for participant in range(count)
+        for participant, hand in enumerate(hands(suite.tasks, seed, range(count)))
     )
+
+
+def hands(tasks: Sequence[TaskSpec], seed: int, participants: Sequence[int]) -> list[list[int]]:
+    """Indices of the tasks that each of these participants does, in order: `deal` for many, each deck mixed once."""
+    count = people_for(len(tasks))
+    decks = {round_: _deck(tasks, seed, round_) for round_ in {participant // count for participant in participants}}
+    return [_hand(decks[participant // count], seed, participant) for participant in participants]
 
 
 def trials_of(tasks: int, participants: Sequence[int]) -> int:

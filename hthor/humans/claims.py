@@ -60,11 +60,12 @@ class Claims:
     def concerns(self, message: Message) -> bool:
         """Whether a message is about anything that there is to do, even if the person knows it already.
 
-        What is said of the thing in hand, and where it was, is out of date.
+        What is said of the thing in hand, and where it was, is out of date. Words that name nothing are about nothing:
+        a place without a name matters only while something is missing, which `meaning` judges.
         """
         about, held = message.object, self.me.now.holding
         if not about:
-            return not held
+            return False
         named = (duty for duty in self.duties.all.values() if duty.target != held)
         if any(about in (duty.target, duty.kind) for duty in named):
             return True
@@ -106,6 +107,8 @@ class Claims:
 
     def _meant(self, about: str, position: Vec3 | None) -> Duty | None:
         """The job that a name is about: of an object that the person does not know of, the first of its kind."""
+        if not about and position is None:
+            return None
         missing = [duty for duty in self.duties.open() if duty.known.lies is None]
         if position is not None and self.duties.many and self._is_known(about, position):
             return None

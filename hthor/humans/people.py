@@ -120,16 +120,24 @@ def _people(word: str, left: str, model: str, source: str, population: Populatio
         "changes": [] if kind is None else kind.essence,
         "ingredients": _ingredients(model, source),
     }
+    digest = jsonio.sha256(made)
     return People(
-        name="@".join(_plain(part) for part in _parts(word, left)),
+        name="@".join(_named(part, digest) for part in _parts(word, left)),
         word="@".join(_anywhere(part) for part in _parts(word, left)),
         purpose=_purpose(left, model, population, kind),
         model=_anywhere(model),
         source=source and str(Path(source).resolve()),
         population=population,
         kind=kind,
-        sha256=jsonio.sha256(made),
+        sha256=digest,
     )
+
+
+def _named(word: str, digest: str) -> str:
+    """What to call these people: a file that is called like people of ours goes by its hash too, as it is not them."""
+    name = _plain(word)
+    own = word in names() or not word.endswith((".npz", ".json", ".py"))
+    return name if own or name not in names() else f"{name}-{digest[:6]}"
 
 
 def _purpose(left: str, model: str, population: Population, kind: Kind | None) -> str:

@@ -10,8 +10,9 @@ from hthor.eval.contrast import Difference
 from hthor.eval.setup import SuiteRef
 from hthor.eval.stats import Estimate
 from hthor.leaderboard.entry import Agent, Count, Group, Harness, Sha256
+from hthor.leaderboard.verification import Fresh, Replayed
 
-SCHEMA: Final = "hthor.leaderboard/5"
+SCHEMA: Final = "hthor.leaderboard/6"
 
 
 class Standing(Struct, frozen=True, kw_only=True):
@@ -42,47 +43,67 @@ class Gain(Struct, frozen=True, kw_only=True):
 
 
 class Checked(Struct, frozen=True, kw_only=True):
-    """What came of playing trials of the entry again."""
+    """What came of playing the entry again: as in its `Verification`, which lies beside it."""
 
-    tier: Literal["V1", "V2", "V3"]
-    passed: bool
-    compared: Count
-    equal: Count
+    trials: Replayed
+    control: Replayed | None
+    fresh: Fresh | None
+    official: bool
 
 
 class Row(Struct, frozen=True, kw_only=True):
-    """An entry in short. ``ranks`` is None for a reference, and for what a verifier refuted."""
+    """An entry in short.
+
+    Attributes:
+        ranks: None where there is none; ``unranked`` says why.
+        same_as: the id of the entry that is counted in this one's place, as both are one agent; empty for none.
+        faults: trials in which the agent failed. replays: sessions that began again, as the run claims.
+        isolation: what held the agent, empty for one that is built in. It, and ``harness``, are claims unless the
+            verification says that the official workflow made the entry.
+    """
 
     id: str
     name: str
     agent: Agent
+    team: str
     bodies: tuple[str, ...]
     privileges: tuple[str, ...]
     code: tuple[str, ...]
     reference: bool
     ranks: Ranks | None
+    unranked: str
+    same_as: str
     sr: Estimate
     twsr: Estimate
     adoption: Estimate
+    usefulness: Estimate
     time_s: Estimate
     trust: Estimate
     uplift: Gain | None
     splits: dict[str, dict[str, Group]]
     faults: Count
+    replays: Count
     isolation: str
     harness: Harness
     verification: Checked | None
+
+    @property
+    def official(self) -> bool:
+        """Whether the official workflow made the entry."""
+        return self.verification is not None and self.verification.official
 
 
 class Section(Struct, frozen=True, kw_only=True):
     """Entries that played the same trials under the same code, best first; only these can be compared.
 
     Attributes:
+        standing: "ranked", or "development" where the tasks are public and no agent has a rank.
         humans: who the people are, and the hash of all that makes them. calibrated: whether they are known to fit.
         rules, code: hashes of the benchmark's constants and of the code that can move a score.
         mode: as in the entries. trials, people: how many.
     """
 
+    standing: Literal["ranked", "development"]
     suite: SuiteRef
     humans: str
     humans_sha256: Sha256
@@ -96,8 +117,17 @@ class Section(Struct, frozen=True, kw_only=True):
     rows: tuple[Row, ...]
 
 
-class Board(Struct, frozen=True, kw_only=True):
-    """Every entry. Sections are in order of suites, people, mode and code."""
+class Struck(Struct, frozen=True, kw_only=True):
+    """An entry that was refuted and does not stand: its id, the agent's name, and why."""
 
-    schema: Literal["hthor.leaderboard/5"] = SCHEMA
+    id: str
+    name: str
+    why: str
+
+
+class Board(Struct, frozen=True, kw_only=True):
+    """Every entry. Sections are in order: ranked ones first, then of suites, people, mode and code."""
+
+    schema: Literal["hthor.leaderboard/6"] = SCHEMA
     sections: tuple[Section, ...]
+    refuted: tuple[Struck, ...] = ()

@@ -11,11 +11,13 @@ from hthor import tasks
 from hthor.errors import HthorError
 from hthor.eval import bounds
 from hthor.guest import manifest
-from hthor.leaderboard import files, form, invariants, listing, outcomes, submission
+from hthor.leaderboard import admission, dealt, files, form, invariants, listing, outcomes, submission
+from hthor.leaderboard.admission import Admission
 from hthor.leaderboard.entry import Entry
 from hthor.leaderboard.files import Problem
 from hthor.leaderboard.outcomes import Outcomes, Unreadable
 from hthor.tasks import library
+from hthor.types import TaskSpec
 
 
 class _Held(Struct, frozen=True, kw_only=True):
@@ -43,8 +45,9 @@ def problems(board: Path, paths: Sequence[Path] = (), *, submissions: Path | Non
     for path in beside:  # judged in their own turn; what cannot be read cannot be a control
         trusted += list(_read(path, []))
     sizes = {one: made.tasks for one, made in files.commitments(board).items()}
+    taken = admission.load(board)
     for one in held:
-        laws = _laws(one, (*held, *trusted), sizes, submissions)
+        laws = _laws(one, (*held, *trusted), sizes, taken, submissions)
         found += [Problem(file=str(one.path), field=field, problem=problem) for field, problem in laws]
     return found
 
@@ -59,12 +62,15 @@ def _read(path: Path, found: list[Problem]) -> Iterator[_Held]:
         found.append(Problem(file=str(path), field="$", problem=str(error)))
 
 
-def _laws(one: _Held, all_: Sequence[_Held], sizes: dict[str, int], submissions: Path | None) -> invariants.Found:
+def _laws(
+    one: _Held, all_: Sequence[_Held], sizes: dict[str, int], taken: Admission, submissions: Path | None
+) -> invariants.Found:
     entry, held = one.entry, one.outcomes
     yield from invariants.hashes(entry, held)
-    yield from invariants.verification(entry)
     yield from invariants.sizes(entry, held)
+    yield from admission.problems(entry, taken)
     yield from _suite(entry, sizes)
+    yield from invariants.outcomes(entry, held, _tasks(entry))
     yield from invariants.settings(entry)
     yield from invariants.consists(entry)
     yield from invariants.numbers(entry, held)
@@ -101,6 +107,14 @@ def _suite(entry: Entry, sizes: dict[str, int]) -> invariants.Found:
         return
     if entry.run.trials != count:
         yield "run.trials", f"is {entry.run.trials}, but the suite has {count} tasks"
+
+
+def _tasks(entry: Entry) -> list[TaskSpec]:
+    """The task of each trial, where the suite is one of hthor's own as it is now; a secret one is not at hand."""
+    if entry.run.suite.name not in tasks.suites():
+        return []
+    ours = library.read(entry.run.suite.name)
+    return dealt.tasks(ours, entry) if ours.sha256 == entry.run.suite.sha256 else []
 
 
 def _submitted(entry: Entry, folder: Path) -> invariants.Found:

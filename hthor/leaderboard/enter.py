@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import msgspec
@@ -25,11 +26,12 @@ from hthor.eval import (
 )
 from hthor.eval.setup import Setup
 from hthor.guest import Manifest
-from hthor.leaderboard import checks, files, harness, invariants, outcomes, overrides, worth
-from hthor.leaderboard.entry import LOCKSTEP, REALTIME, Agent, Entry, Hashes
+from hthor.leaderboard import admission, checks, files, harness, invariants, outcomes, overrides, verification, worth
+from hthor.leaderboard.entry import LOCKSTEP, REALTIME, Agent, Counts, Entry, Hashes, Metrics
 from hthor.leaderboard.files import BoardError
 from hthor.leaderboard.submission import Submission
 
+_SHOWN = 3
 OURS = "hthor.agents."
 """Where agents come from that are references."""
 
@@ -51,9 +53,12 @@ def add(folder: Path, board: Path, submission: Submission | None = None) -> list
         for each in (run, *([beside] if beside else [])):
             made[each] = made.get(each) or of(each, submission if each == run else None)
     added = {entry.id: (entry, board / files.ENTRIES / f"{entry.id}.json") for entry in made.values()}
-    made_now = {path: _verified(entry, path) for entry, path in added.values()}
-    _refuse(board, made_now)
-    for path, entry in made_now.items():
+    new = {path: entry for entry, path in added.values() if not _there(entry, path)}
+    _refuse(board, new)
+    _struck(board, new.values())
+    if not (board / admission.NAME).is_file():
+        files.write(board / admission.NAME, admission.own())
+    for path, entry in new.items():
         files.write(path, entry)
     return list(added.values())
 
@@ -89,8 +94,15 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
         mode=REALTIME if getattr(result, "mode", "") == REALTIME else LOCKSTEP,
         platforms=machine.load(folder),
         isolation=held,
-        counts=result.counts,
-        metrics=result.metrics,
+        counts=Counts(
+            trials=len(records),
+            successes=result.counts.successes,
+            messages=int(columns.sent.sum()),
+            faults=result.counts.faults,
+            faults_by_kind=result.counts.faults_by_kind,
+            replays=result.counts.replays,
+        ),
+        metrics=Metrics(**worth.scores(columns, whose, alone=not plan.seats)),
         splits=worth.splits(columns, whose),
         uplift=gain,
         trials=outcomes.pack(columns),
@@ -155,16 +167,33 @@ def _same_files(folder: Path, agents: Sequence[Manifest], submission: Submission
         )
 
 
-def _verified(entry: Entry, path: Path) -> Entry:
-    """The entry with the verification of the one that is there, if it is the same entry."""
+def _there(entry: Entry, path: Path) -> bool:
+    """Whether the board has this very entry already, added by whichever commit.
+
+    Raises:
+        BoardError: when it has another of the same run, which is not written over: it may be the true one.
+    """
     if not path.is_file():
-        return entry
-    try:
-        there = files.read(path)
-    except BoardError:
-        return entry
-    held = there.verification
-    return msgspec.structs.replace(entry, verification=held) if held and held.entry == entry.digest else entry
+        return False
+    there = files.read(path)
+    if there.digest == msgspec.structs.replace(entry, harness=there.harness).digest:  # whichever commit adds it
+        return True
+    other = itertools.islice(invariants.unlike("", there, entry), _SHOWN)
+    told = "; ".join(f"{field.lstrip('.')} {problem}" for field, problem in other)
+    raise BoardError(
+        f"{path}: the board has another entry of this run, and it is not written over{f' ({told})' if told else ''}. "
+        "'hthor leaderboard verify' tells which is true; to replace the old one, its keeper deletes the file first."
+    )
+
+
+def _struck(board: Path, new: Iterable[Entry]) -> None:
+    kept = verification.load(board)
+    for entry in new:
+        if (struck := kept.struck(entry)) is not None:
+            raise BoardError(
+                f"{entry.id}: this run was refuted on this board, as {struck.id}: {struck.why} The board's keeper can "
+                "verify an entry of what the agent truly did."
+            )
 
 
 def _slug(name: str) -> str:

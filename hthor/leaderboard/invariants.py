@@ -10,17 +10,22 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import msgspec
+import numpy as np
 
+from hthor import rules
+from hthor.eval import metrics
 from hthor.eval.session import people_for
 from hthor.eval.stats import Estimate
 from hthor.guest import File
 from hthor.leaderboard import overrides, worth
-from hthor.leaderboard.entry import REALTIME, Entry
-from hthor.leaderboard.outcomes import Outcomes
+from hthor.leaderboard.entry import Entry
+from hthor.leaderboard.outcomes import Outcomes, labels
+from hthor.types import TaskSpec
 
 Found = Iterator[tuple[str, str]]
 _NEAR = 2e-6
 """Numbers have six decimals; the last may differ from machine to machine."""
+_MILLION, _LEAST_S = 1_000_000, 1e-9
 
 
 def hashes(entry: Entry, held: Outcomes) -> Found:
@@ -31,25 +36,6 @@ def hashes(entry: Entry, held: Outcomes) -> Found:
         yield "id", f"does not end in the first ten digits of hashes.run, '{entry.hashes.run[:10]}'"
     if (now := held.merkle) != entry.hashes.merkle:
         yield "hashes.merkle", f"is {entry.hashes.merkle[:10]}, but the root of what 'trials' holds is {now[:10]}"
-    found = entry.verification
-    if found is not None and found.entry != entry.digest:
-        yield "verification.entry", f"is of {found.entry[:10]}, but this entry is {entry.digest[:10]}: verify it again"
-
-
-def verification(entry: Entry) -> Found:
-    """What a verifier wrote holds together."""
-    found = entry.verification
-    if found is None:
-        return
-    if not found.same_bytes <= found.equal <= found.compared <= entry.trials.count:
-        told = f"{found.same_bytes} the same, {found.equal} equal, {found.compared} compared"
-        yield "verification", f"cannot be of {entry.trials.count} trials: {told}"
-    if not 1 <= found.drawn <= found.compared:
-        yield "verification.drawn", f"is {found.drawn}, but {found.compared} were compared"
-    if found.tier == "V1" and found.passed != (found.same_bytes == found.compared):
-        yield "verification.passed", f"is {found.passed} with {found.same_bytes} of {found.compared} records the same"
-    if found.tier != "V3" and (not entry.agent.deterministic or entry.mode == REALTIME):
-        yield "verification.tier", f"is {found.tier}, but the agent does not repeat itself: V3 is all that there can be"
 
 
 def sizes(entry: Entry, held: Outcomes) -> Found:
@@ -58,7 +44,6 @@ def sizes(entry: Entry, held: Outcomes) -> Found:
     for field, value in (
         ("run.trials", entry.run.trials),
         ("counts.trials", counts.trials),
-        ("counts.tasks", counts.tasks),
         ("metrics.sr.n", entry.metrics.sr.n),
     ):
         if value != trials:
@@ -67,16 +52,60 @@ def sizes(entry: Entry, held: Outcomes) -> Found:
         yield "run.participants", f"is {entry.run.participants}; {trials} tasks done once take {people_for(trials)}"
     for field, value, there in (
         ("counts.successes", counts.successes, int(held.met.sum())),
+        ("counts.messages", counts.messages, int(held.sent.sum())),
         ("counts.faults", counts.faults, int(held.faulty.sum())),
     ):
         if value != there:
             yield field, f"says {value}, but 'trials' has {there}"
-    if counts.faults_by_seat and not max(counts.faults_by_seat.values()) <= counts.faults <= sum(
-        counts.faults_by_seat.values()
+    if sum(counts.faults_by_kind.values()) < counts.faults:
+        yield "counts.faults_by_kind", f"adds up to {sum(counts.faults_by_kind.values())}, less than {counts.faults}"
+
+
+def outcomes(entry: Entry, held: Outcomes, tasks: Sequence[TaskSpec] = ()) -> Found:
+    """What became of a trial can have become of it: no time-weighted success without success, and so on.
+
+    Args:
+        tasks: of each trial, where the suite is at hand; then time, T* and what sort of task it is are compared too.
+    """
+    for field, wrong, problem in (
+        ("trials.twsr", ~held.met & (held.twsr > 0), "not met, but time-weighted success above 0"),
+        ("trials.twsr", held.met & (held.twsr == 0), "met, but time-weighted success 0"),
+        ("trials.adopted", held.adopted != (held.accepted > 0), "'adopted' does not go with how many were accepted"),
+        ("trials.accepted", held.accepted > held.sent, "more messages accepted than sent"),
+        ("trials.useful", held.useful > held.accepted, "more messages useful than accepted"),
     ):
-        yield "counts.faults_by_seat", f"cannot add up to {counts.faults} trials with a fault"
-    if sum(counts.faults_by_kind.values()) != sum(counts.faults_by_seat.values()):
-        yield "counts.faults_by_kind", f"adds up to {sum(counts.faults_by_kind.values())} faults, 'faults_by_seat' not"
+        yield from _first(field, wrong, problem)
+    if entry.alone:
+        loud = held.adopted | (held.sent > 0) | (held.trust > 0)
+        yield from _first("trials", loud, "messages or trust, but there is no robot")
+    if len(tasks) == len(held.met):
+        yield from _of_tasks(held, tasks)
+
+
+def _of_tasks(held: Outcomes, tasks: Sequence[TaskSpec]) -> Found:
+    """Times, time-weighted success and labels against the tasks themselves."""
+    limits = np.array([round(task.time_limit / rules.TICK_S) for task in tasks])
+    yield from _first("trials.time", held.time > limits, "longer than the time limit")
+    yield from _first("trials.time", ~held.met & (held.time != limits), "not met, but not until the time limit")
+    good = np.array([task.t_star for task in tasks])
+    spent = np.round(held.time * rules.TICK_S, metrics.DIGITS)
+    longest = np.maximum(np.maximum(good, spent), _LEAST_S)
+    worth = np.round(_MILLION * np.round(np.where(good + spent > 0.0, good / longest, 1.0), metrics.DIGITS))
+    off = held.met & (np.abs(held.twsr - worth) > 1)
+    yield from _first("trials.twsr", off, "not what T* and the time spent give")
+    for name, (names, codes) in labels(tasks).items():
+        there_names, there = held.labels.get(name, ((), np.zeros(0, dtype=np.int64)))
+        said = np.array([*there_names, ""])[there] if len(there) == len(codes) else np.full(len(codes), "")
+        yield from _first(
+            f"trials.labels.{name}", said != np.array(names)[codes], "not what the suite says of the task"
+        )
+
+
+def _first(field: str, wrong: np.ndarray, problem: str) -> Found:
+    """The first trial of which something wrong is so, and how many there are."""
+    places = np.flatnonzero(wrong)
+    if len(places):
+        yield field, f"{problem}: in {len(places)} trials, the first is trial {int(places[0])}"
 
 
 def settings(entry: Entry) -> Found:
@@ -145,11 +174,7 @@ def uplift(entry: Entry, held: Outcomes, control: Entry | None, without: Outcome
 def estimates(entry: Entry) -> Iterator[tuple[str, Estimate]]:
     """Every estimate of an entry and the field it stands in."""
     for name in entry.metrics.__struct_fields__:
-        found = getattr(entry.metrics, name)
-        if isinstance(found, Estimate):
-            yield f"metrics.{name}", found
-        else:
-            yield from ((f"metrics.{name}.{key}", one) for key, one in found.items())
+        yield f"metrics.{name}", getattr(entry.metrics, name)
 
 
 def unlike(field: str, there: Any, here: Any) -> Found:

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from msgspec import Struct
 
 from hthor.eval.stats import Estimate
+from hthor.leaderboard.markup import NOTHING, Markup, Piece, tag
 
 _WIDE, _HIGH, _EDGE = 150.0, 16.0, 6.0
 
@@ -31,34 +32,33 @@ def scale(some: Iterable[Estimate]) -> Scale:
     return Scale(low=max(0, low), high=min(100, max(high, low + 10)))
 
 
-def axis(on: Scale) -> str:
+def axis(on: Scale) -> Markup:
     """The head of a column of marks: its ends in numbers."""
-    low, high = on.at(on.low / 100.0), on.at(on.high / 100.0)
-    text = '<text y="11" font-size="10" fill="var(--soft)"'
-    return (
-        f'{_open("scale")}{text} x="{low - 4:g}">{on.low}</text>'
-        f'{text} x="{high + 4:g}" text-anchor="end">{on.high}</text></svg>'
+    look: dict[str, str | int] = {"y": 11, "font_size": 10, "fill": "var(--soft)"}
+    ends = (
+        tag("text", str(on.low), x=on.at(on.low / 100.0) - 4, **look),
+        tag("text", str(on.high), x=on.at(on.high / 100.0) + 4, text_anchor="end", **look),
     )
+    return _drawing("scale", *ends)
 
 
-def mark(one: Estimate, on: Scale, colour: str) -> str:
+def mark(one: Estimate, on: Scale, colour: str) -> Markup:
     """A dot for the mean, a line for the interval, thin lines at each tenth."""
     if one.mean is None:
-        return ""
+        return NOTHING
     low, high = one.ci95 or (one.mean, one.mean)
     step = 10 if on.high - on.low <= 60 else 20
-    grid = "".join(
-        f'<line x1="{on.at(tenth / 100):g}" x2="{on.at(tenth / 100):g}" y1="0" y2="{_HIGH:g}" stroke="var(--line)"/>'
+    grid = (
+        tag("line", x1=on.at(tenth / 100), x2=on.at(tenth / 100), y1=0, y2=_HIGH, stroke="var(--line)")
         for tenth in range(on.low, on.high + 1, step)
     )
-    middle = _HIGH / 2
-    bar = f'<line x1="{on.at(low):g}" x2="{on.at(high):g}" y1="{middle:g}" y2="{middle:g}" stroke-width="2.5"/>'
-    dot = f'<circle cx="{on.at(one.mean):g}" cy="{middle:g}" r="3.6"/>'
-    drawn = f'<g stroke="var(--{colour})" fill="var(--{colour})" stroke-linecap="round">{bar}{dot}</g>'
+    middle, ink = _HIGH / 2, f"var(--{colour})"
+    bar = tag("line", x1=on.at(low), x2=on.at(high), y1=middle, y2=middle, stroke_width="2.5")
+    dot = tag("circle", cx=on.at(one.mean), cy=middle, r="3.6")
     words = f"{100 * one.mean:.1f} %, 95 % interval {100 * low:.1f} to {100 * high:.1f}"
-    return f"{_open(words)}{grid}{drawn}</svg>"
+    return _drawing(words, *grid, tag("g", bar, dot, stroke=ink, fill=ink, stroke_linecap="round"))
 
 
-def _open(words: str) -> str:
-    size = f'width="{_WIDE:g}" height="{_HIGH:g}" viewBox="0 0 {_WIDE:g} {_HIGH:g}"'
-    return f'<svg role="img" {size}><title>{words}</title>'
+def _drawing(words: str, *parts: Piece) -> Markup:
+    box = f"0 0 {_WIDE:g} {_HIGH:g}"
+    return tag("svg", tag("title", words), *parts, role="img", width=_WIDE, height=_HIGH, viewBox=box)

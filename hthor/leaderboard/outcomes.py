@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
+import msgspec
 import numpy as np
 from msgspec import UNSET, Struct
 
@@ -14,17 +15,18 @@ from hthor.eval import bounds
 from hthor.eval.record import Record
 from hthor.leaderboard import merkle, packing
 from hthor.leaderboard.entry import Labels, Trials
+from hthor.types import TaskSpec
 
 LEAF = 8
 """Bytes of a record's hash that are kept: nobody finds another record with the same ones and other outcomes."""
-PROPERTIES: dict[str, Callable[[Record], str]] = {
-    "difficulty": lambda one: one.spec.task.difficulty,
-    "kind": lambda one: one.spec.task.kind,
-    "split": lambda one: one.spec.task.split,
-}
+PROPERTIES = ("difficulty", "kind", "split")
+"""What of a task its trials are sorted by."""
+UNKNOWN = "unknown"
 _ORDER = ("easy", "medium", "hard", "seen", "new")
 _MILLION = 1_000_000
-_FLAGS, _TWSR, _TIME, _TRUST = 1, 3, 2, 1
+_SIZES = {"twsr": 3, "time": 2, "trust": 1, "sent": 2, "accepted": 1, "useful": 1}
+"""Bytes of a number in each column."""
+_MESSAGES = ("sent", "accepted", "useful")
 
 
 class Unreadable(ValueError):
@@ -48,6 +50,9 @@ class Outcomes(Struct, frozen=True, kw_only=True):
     twsr: np.ndarray
     time: np.ndarray
     trust: np.ndarray
+    sent: np.ndarray
+    accepted: np.ndarray
+    useful: np.ndarray
     leaves: list[bytes]
     labels: dict[str, tuple[tuple[str, ...], np.ndarray]]
     time_limit_s: float | None = None
@@ -56,7 +61,7 @@ class Outcomes(Struct, frozen=True, kw_only=True):
     def rows(self) -> list[bytes]:
         """What there is of each trial, a few bytes: outcome first, then the hash of its record."""
         flags = self.met * 1 + self.adopted * 2 + self.faulty * 4
-        numbers = ((flags, _FLAGS), (self.twsr, _TWSR), (self.time, _TIME), (self.trust, _TRUST))
+        numbers = ((flags, 1), *((getattr(self, name), size) for name, size in _SIZES.items()))
         plain = [[int(value).to_bytes(size, "little") for value in column] for column, size in numbers]
         return [b"".join(parts) + leaf for *parts, leaf in zip(*plain, self.leaves, strict=True)]
 
@@ -64,6 +69,13 @@ class Outcomes(Struct, frozen=True, kw_only=True):
     def merkle(self) -> str:
         """The root of all rows."""
         return merkle.root(self.rows)
+
+
+def narrowed(held: Outcomes, places: Sequence[int]) -> Outcomes:
+    """The columns of some trials only, without their labels."""
+    where = np.asarray(places, dtype=np.int64)
+    columns = {name: getattr(held, name)[where] for name in ("met", "adopted", "faulty", *_SIZES)}
+    return msgspec.structs.replace(held, **columns, leaves=[held.leaves[place] for place in places], labels={})
 
 
 def outcome(row: bytes) -> bytes:
@@ -81,10 +93,18 @@ def of(records: Sequence[Record], leaves: Iterable[bytes]) -> Outcomes:
         twsr=_whole([one.twsr * _MILLION for one in values]),
         time=_whole([one.time_s / rules.TICK_S for one in values]),
         trust=np.array([one.trust or 0 for one in values], dtype=np.int64),
+        **{
+            name: _counted([getattr(one, name) or 0 for one in values], name) for name in ("sent", "accepted", "useful")
+        },
         leaves=list(leaves),
-        labels={name: _labels([value(one) or "unknown" for one in records]) for name, value in PROPERTIES.items()},
+        labels=labels([one.spec.task for one in records]),
         time_limit_s=bounds.mean_limit([one.spec.task.time_limit for one in records]) if records else None,
     )
+
+
+def labels(tasks: Sequence[TaskSpec]) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """What sort of task each is, as `Outcomes` has it."""
+    return {name: _labels([getattr(task, name) or UNKNOWN for task in tasks]) for name in PROPERTIES}
 
 
 def leaf(line: bytes) -> bytes:
@@ -99,9 +119,7 @@ def pack(held: Outcomes) -> Trials:
         met=packing.bits(held.met),
         adopted=packing.bits(held.adopted),
         faulty=packing.bits(held.faulty),
-        twsr=packing.numbers(held.twsr, _TWSR),
-        time=packing.numbers(held.time, _TIME),
-        trust=packing.numbers(held.trust, _TRUST),
+        **{name: packing.numbers(getattr(held, name), size) for name, size in _SIZES.items()},
         leaves=packing.pieces(held.leaves),
         labels={
             name: Labels(names=names, of=packing.digits(codes.tolist())) for name, (names, codes) in held.labels.items()
@@ -118,8 +136,7 @@ def unpack(trials: Trials) -> Outcomes:
     """
     count = trials.count
     bits = {name: _read(name, packing.unbits, getattr(trials, name), count) for name in ("met", "adopted", "faulty")}
-    sizes = {"twsr": _TWSR, "time": _TIME, "trust": _TRUST}
-    numbers = {name: _read(name, packing.unnumbers, getattr(trials, name), count, size) for name, size in sizes.items()}
+    numbers = {name: _read(name, packing.unnumbers, getattr(trials, name), count, n) for name, n in _SIZES.items()}
     for name, most in (("twsr", _MILLION), ("trust", rules.TRUST_MAX)):
         if int(numbers[name].max()) > most:
             raise Unreadable(name, f"holds {int(numbers[name].max())}, which is more than {most}")
@@ -140,6 +157,11 @@ def _read(field: str, read: Callable[..., Any], *given: Any) -> Any:
         return read(*given)
     except ValueError as error:
         raise Unreadable(field, str(error)) from None
+
+
+def _counted(values: Sequence[int], name: str) -> np.ndarray:
+    """Counts, cut to what their column can hold."""
+    return np.minimum(np.array(values, dtype=np.int64), (1 << (8 * _SIZES[name])) - 1)
 
 
 def _whole(values: Sequence[float]) -> np.ndarray:

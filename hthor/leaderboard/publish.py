@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hthor import jsonio
 from hthor.errors import HthorError
-from hthor.leaderboard import checks, files, listing, page, schema
+from hthor.leaderboard import admission, checks, files, listing, page, schema, verification
 from hthor.leaderboard.files import Problem
 
 
@@ -28,7 +28,8 @@ def build(board: Path) -> list[Path]:
 def made(board: Path) -> dict[str, bytes]:
     """The files that a board's entries make, by name."""
     files.refuse(checks.problems(board))
-    found = listing.board([files.read(path) for path in files.entry_paths(board)])
+    entries = [files.read(path) for path in files.entry_paths(board)]
+    found = listing.board(entries, verification.load(board), admission.load(board))
     return {
         files.LIST: jsonio.pretty(found),
         files.SCHEMA: jsonio.pretty(schema.document()),

@@ -17,7 +17,7 @@ from hthor import guest
 from hthor.eval import cast, crews, engines, guarded, programme, provenance, record, session, setup
 from hthor.eval.crews import Crew
 from hthor.eval.engines import Make
-from hthor.eval.news import Played
+from hthor.eval.news import Lost, Played
 from hthor.eval.programme import Programme
 from hthor.eval.record import Record
 from hthor.eval.session import Session
@@ -28,6 +28,8 @@ from hthor.leaderboard.enter import OURS
 from hthor.leaderboard.entry import REALTIME, Entry
 from hthor.leaderboard.files import BoardError
 from hthor.tasks import library
+
+_SHOWN = 3
 
 
 def play(
@@ -48,25 +50,47 @@ def play(
         given: arguments and files that it is given.
 
     Raises:
-        BoardError: when this is not what the entry says was played, naming the field.
+        BoardError: when this is not what the entry says was played, naming the field; when a trial that is wanted could
+            not be played, as nothing follows from a part of a draw.
     """
     guest.confine_guests(given=given)
     chosen = programme.choose(suite or entry.run.suite.name, "")
-    crew, who = _crew(entry, agent), people.find(entry.run.humans.source)
+    crew, who = crew_of(entry, agent), people.find(entry.run.humans.source)
     _same(entry, chosen, crew, who)
-    whole = session.sessions(chosen.suite, agent=crew, human=who, **_dealt(entry))
+    whole = session.sessions(chosen.suite, agent=crew, human=who, **dealt(entry))
     wanted, seats = _cut(whole, places)
-    make = _make(suite, crew, who, require_isolation, given)
-    found: dict[int, tuple[Record, bytes]] = {}
+    played = perform(entry, wanted, player(suite, crew, who, require_isolation, given), jobs)
+    return {seats[one.spec.participant, one.spec.index]: (one, line) for one, line in played}
+
+
+def perform(entry: Entry, wanted: Sequence[Session], make: Make, jobs: int | None) -> list[tuple[Record, bytes]]:
+    """The records of these sessions, every trial of them, with their lines.
+
+    Raises:
+        BoardError: when a trial could not be played, with the cause.
+    """
+    found: list[tuple[Record, bytes]] = []
+    lost: list[str] = []
     with closing(engines.find(engines.LOCAL, jobs=jobs).perform(wanted, make)) as stream:
         for news in stream:
             if isinstance(news, Played):
-                one = record.decode(news.line)
-                found[seats[one.spec.participant, one.spec.index]] = (one, news.line)
+                found.append((record.decode(news.line), news.line))
+            elif isinstance(news, Lost):
+                lost.append(f"participant {news.participant}: {news.cause.rstrip('.')}")
+    asked = {(one.participant, index) for one in wanted for index in range(len(one.trials))}
+    missing = asked - {(one.spec.participant, one.spec.index) for one, _ in found}
+    if missing:
+        causes = f" ({'; '.join(lost[:_SHOWN])})" if lost else ""
+        raise BoardError(
+            f"{entry.id}: {len(missing)} of the {len(asked)} trials that were drawn could not be played{causes}. A "
+            "verification needs all of them: verify it again, with fewer --jobs if memory ran out. An agent that ends "
+            "its own process cannot be verified."
+        )
     return found
 
 
-def _crew(entry: Entry, agent: str) -> Crew:
+def crew_of(entry: Entry, agent: str) -> Crew:
+    """The robots of an entry, with the submitted agent from its file."""
     minds: list[str] = []
     for robot in entry.run.robots:
         ours = robot.agent.source.startswith(OURS)
@@ -80,14 +104,14 @@ def _crew(entry: Entry, agent: str) -> Crew:
 
 def _same(entry: Entry, chosen: Programme, crew: Crew, who: People) -> None:
     """See that the same configuration comes out; versions of libraries belong to the platform."""
-    here = setup.settle(chosen.suite, crew, human=who, **_dealt(entry))
+    here = setup.settle(chosen.suite, crew, human=who, **dealt(entry))
     there, here = (msgspec.structs.replace(plan, versions={}) for plan in (entry.run, here))
     if there != here:
         told = "; ".join(setup.differences(there, here))
         raise BoardError(f"{entry.id}: this is not what was played: {told} ('there' is the entry).")
 
 
-def _dealt(entry: Entry) -> dict[str, Any]:
+def dealt(entry: Entry) -> dict[str, Any]:
     """How its people were dealt their tasks, and whether thinking took time."""
     clock = {"realtime": True} if entry.mode == REALTIME else {}
     return {"seed": entry.run.seed, "participants": entry.run.participants, **clock}
@@ -108,8 +132,13 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
     return wanted, seats
 
 
-def _make(suite: str, crew: Crew, who: People, required: str, given: Given | None) -> Make:
-    """What plays a session, as in the run that the entry is of."""
+def player(suite: str, crew: Crew, who: People, required: str, given: Given | None = None) -> Make:
+    """What plays a session, as in the run that the entry is of.
+
+    Args:
+        suite: where the suite lies, empty for one of hthor's own. required: the least level that holds the agents.
+        given: arguments and files that they are given.
+    """
     provenance.keep_compiled()
     own = bool(suite) and Path(suite).exists() and bool(library.own_houses(suite))
     folder = Path(suite) if Path(suite).is_dir() else Path(suite).parent

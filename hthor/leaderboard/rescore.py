@@ -34,13 +34,9 @@ def _fresh(entry: Entry, control: Entry | None) -> Entry:
     columns = outcomes.unpack(entry.trials)
     whose = worth.people(entry.trials.count, entry.run.participants)
     scores: dict[str, object] = {**worth.scores(columns, whose, alone=entry.alone)}
-    fresh = msgspec.structs.replace(
+    return msgspec.structs.replace(
         entry,
         metrics=msgspec.structs.replace(entry.metrics, **scores),
         splits=worth.splits(columns, whose),
         uplift=worth.uplift(entry, columns, control, outcomes.unpack(control.trials)) if control else entry.uplift,
     )
-    seal = entry.verification
-    if seal is None or seal.entry != entry.digest:
-        return fresh
-    return msgspec.structs.replace(fresh, verification=msgspec.structs.replace(seal, entry=fresh.digest))

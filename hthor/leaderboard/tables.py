@@ -1,11 +1,11 @@
-"""Tables whose heads sort them, as HTML; knows nothing of what is in the cells."""
+"""Tables whose heads sort them; knows nothing of what is in the cells."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from html import escape
 
 from hthor.leaderboard.cells import Cell
+from hthor.leaderboard.markup import Markup, Piece, join, tag
 
 SORT = """
 for(const th of document.querySelectorAll("th[data-k]")){
@@ -22,38 +22,44 @@ for(const th of document.querySelectorAll("th[data-k]")){
  th.addEventListener("keydown",key=>{if(key.key==="Enter"||key.key===" "){key.preventDefault();go();}});
 }
 """
-_N = ' class="n"'
+_LINE = "\n"
 
 
 def table(
-    head: Iterable[tuple[str, int, str]],
+    head: Iterable[tuple[Piece, int]],
     lines: Sequence[tuple[str, Sequence[Cell]]],
     *,
     words: Iterable[int],
     named: int = 1,
-) -> str:
-    """A table whose heads sort it; columns in ``words`` hold no numbers, the one of ``named`` is the row's name."""
+) -> Markup:
+    """A table whose heads sort it.
+
+    Args:
+        head: each column's title and which way it sorts first: 1 up, -1 down, 0 not at all.
+        lines: each row's class and cells.
+        words: columns that hold no numbers. named: the column that is the row's name.
+    """
     wordy = set(words)
-    tops = []
-    for place, (word, way, drawn) in enumerate(head):
-        sorts = f' data-k="{way}"' if way else ""
-        tops.append(
-            f'<th scope="col"{"" if place in wordy else _N}{sorts}>{drawn or f"<span>{escape(word)}</span>"}</th>'
+    tops = [
+        tag("th", tag("span", title), scope="col", class_=None if place in wordy else "n", data_k=way or None)
+        for place, (title, way) in enumerate(head)
+    ]
+    body = [
+        tag(
+            "tr",
+            *(_cell(part, place == named, place in wordy) for place, part in enumerate(parts)),
+            class_=kind or None,
         )
-    body = []
-    for kind, parts in lines:
-        held = "".join(_cell(part, place == named, place in wordy) for place, part in enumerate(parts))
-        body.append(f"<tr{kind}>{held}</tr>")
-    whole = f"<table><thead><tr>{''.join(tops)}</tr></thead>\n<tbody>\n" + "\n".join(body) + "\n</tbody></table>"
-    return f'<div class="wide">{whole}</div>'
+        for kind, parts in lines
+    ]
+    return tag("div", tag("table", tag("thead", tag("tr", *tops)), tag("tbody", join(body, _LINE))), class_="wide")
 
 
-def _cell(part: Cell, named: bool, wordy: bool) -> str:
-    tag = "th" if named else "td"
-    kind = ' scope="row"' if named else "" if wordy else _N
-    return f'<{tag}{kind} data-v="{part.order:g}">{part.html}</{tag}>'
+def _cell(part: Cell, named: bool, wordy: bool) -> Markup:
+    kind = {"scope": "row"} if named else {"class_": None if wordy else "n"}
+    return tag("th" if named else "td", part.shown, **kind, data_v=float(part.order))
 
 
-def fold(title: str, inside: str) -> str:
+def fold(title: str, *inside: Piece) -> Markup:
     """Something that is shown when its title is clicked."""
-    return f"<details><summary>{escape(title)}</summary>{inside}</details>"
+    return tag("details", tag("summary", title), *inside)

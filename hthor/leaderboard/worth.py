@@ -13,23 +13,34 @@ from hthor.eval.uplift import Uplift
 from hthor.leaderboard.entry import Entry, Group
 from hthor.leaderboard.outcomes import Outcomes
 
-MEASURED = ("sr", "twsr", "adoption", "time_s", "trust")
+MEASURED = ("sr", "twsr", "adoption", "usefulness", "time_s", "trust")
 """Metrics that can be worked out from what an entry carries."""
 _MILLION = 1_000_000
 
 
 def values(held: Outcomes, metric: str, *, alone: bool) -> np.ndarray:
-    """A metric's value in each trial (N,), none (0,) where it has no meaning without a robot."""
-    if alone and metric in ("adoption", "trust"):
+    """A metric's value in each trial (N,), none (0,) where it has no meaning without a robot.
+
+    Usefulness has one only in trials with a message that was accepted: (M,), see `asked`.
+    """
+    if alone and metric in ("adoption", "usefulness", "trust"):
         return np.zeros(0)
+    some = asked(held)
     columns = {
         "sr": held.met.astype(np.float64),
         "twsr": held.twsr / _MILLION,
         "adoption": held.adopted.astype(np.float64),
+        "usefulness": np.round(held.useful[some] / held.accepted[some], metrics.DIGITS),
         "time_s": np.round(held.time * rules.TICK_S, metrics.DIGITS),
         "trust": held.trust.astype(np.float64),
     }
-    return columns[metric]
+    found: np.ndarray = columns[metric]
+    return found
+
+
+def asked(held: Outcomes) -> np.ndarray:
+    """The trials in which a message was accepted, as places."""
+    return np.flatnonzero(held.accepted > 0)
 
 
 def people(count: int, participants: int) -> list[int]:
@@ -40,8 +51,10 @@ def people(count: int, participants: int) -> list[int]:
 
 def scores(held: Outcomes, whose: Sequence[int], *, alone: bool) -> dict[str, Estimate]:
     """Means and intervals of all that is `MEASURED`."""
+    owners = {"usefulness": [whose[place] for place in asked(held).tolist()]}
     return {
-        metric: _estimate(values(held, metric, alone=alone), whose, metric, held.time_limit_s) for metric in MEASURED
+        metric: _estimate(values(held, metric, alone=alone), owners.get(metric, whose), metric, held.time_limit_s)
+        for metric in MEASURED
     }
 
 

@@ -1,21 +1,27 @@
-"""Takes references off a board that another version of the code played than the newest: `stale.py BOARD`."""
+"""Takes the references off a board, with their verifications, so that others can take their place: `stale.py BOARD`."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
-from hthor.eval import provenance
-from hthor.leaderboard import files
+from hthor.leaderboard import files, verification
+from hthor.leaderboard.entry import SCHEMA
+from hthor.leaderboard.files import BoardError
 
 
 def main(board: Path) -> None:
-    """Delete their files; entries of submitted agents stay."""
+    """Delete their files; entries of submitted agents stay, and those of another version, which cannot be read."""
     for path in files.entry_paths(board):
-        entry = files.read(path)
-        if entry.reference and entry.run.code_sha256 != provenance.code_sha256():
-            sys.stdout.write(f"{path}: played by {entry.run.code_sha256[:10]}, taken off\n")
+        try:
+            entry = files.read(path)
+        except BoardError as error:
+            sys.stdout.write(f"{path}: is no {SCHEMA}, left as it is: {error}\n")
+            continue
+        if entry.reference:
+            sys.stdout.write(f"{path}: taken off\n")
             path.unlink()
+            (board / verification.VERIFICATIONS / path.name).unlink(missing_ok=True)
 
 
 if __name__ == "__main__":

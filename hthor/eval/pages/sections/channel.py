@@ -12,6 +12,7 @@ from hthor.eval.stats import NOTHING
 TITLE = "Communication, and being in the way"
 _SAID = (
     ("adoption", "adoption: trials with a confirmed message [%]", 100.0, 1),
+    ("usefulness", "true and new among the confirmed [%]", 100.0, 1),
     ("precision", "precision of claims [%]", 100.0, 1),
     ("false_claims", "false claims a trial", 1.0, 2),
     ("first_useful_s", "first useful message [s]", 1.0, 1),

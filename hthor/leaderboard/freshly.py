@@ -1,0 +1,129 @@
+"""Playing an entry's agent at tasks that were drawn after it was handed in, by the recipe of the entry's suite.
+
+The people are those of the entry: the same population, drawn with the same seed.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from hthor import jsonio, tasks
+from hthor.eval import metrics, programme, session, soundness, stats
+from hthor.guest import Given
+from hthor.humans import people
+from hthor.leaderboard import falling, files, outcomes, replay, worth
+from hthor.leaderboard.entry import Entry
+from hthor.leaderboard.files import BoardError
+from hthor.leaderboard.verification import Fresh
+from hthor.tasks import fresh, library, official
+from hthor.tasks.salt import Salt
+from hthor.types import TaskSpec
+
+TASKS = 200
+"""Fresh tasks: what fall of success they show, the verification says."""
+_HOUSE_TASKS = 10
+"""Tasks in each fresh house of an official suite."""
+
+
+def verify(
+    entry: Entry,
+    board: Path,
+    word: str,
+    count: int,
+    *,
+    agent: str = "",
+    jobs: int | None = None,
+    required: str = "",
+    given: Given | None = None,
+) -> Fresh:
+    """Draw tasks, have the agent play them, and compare.
+
+    Args:
+        word: public chance that came to be after the entry was handed in. count: how many tasks.
+        agent: the agent's file, for one that is not hthor's own. required: the least level that holds it.
+        given: arguments and files that it is given.
+
+    Raises:
+        BoardError: when the recipe is not known, or a trial could not be played.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        _draw(entry, board, word, count, Path(folder), jobs)
+        chosen = programme.choose(folder, "")
+        crew, who = replay.crew_of(entry, agent), people.find(entry.run.humans.source)
+        clock = {name: value for name, value in replay.dealt(entry).items() if name != "participants"}
+        whole = session.sessions(chosen.suite, agent=crew, human=who, **clock)
+        played = replay.perform(entry, whole, replay.player(folder, crew, who, required, given), jobs)
+    records = sorted((one for one, _ in played), key=lambda one: (one.spec.participant, one.spec.index))
+    owners = [one.spec.participant for one in records]
+    values = {
+        "sr": np.array([float(one.metrics.sr) for one in records]),
+        "twsr": np.array([one.metrics.twsr for one in records]),
+    }
+    return judged(entry, chosen.suite.sha256, values, owners)
+
+
+def judged(entry: Entry, digest: str, values: dict[str, np.ndarray], owners: Sequence[int]) -> Fresh:
+    """The verdict over success and time-weighted success at fresh tasks of this hash, with the person of each."""
+    held = outcomes.unpack(entry.trials)
+    whose = worth.people(entry.trials.count, entry.run.participants)
+    claimed = {name: worth.values(held, name, alone=entry.alone) for name in values}
+    falls = {name: falling.of(claimed[name], whose, row, owners) for name, row in values.items()}
+    seen = falling.detectable(claimed["sr"], whose, len(owners))
+    fell = any(one.seen for one in falls.values())
+    told = "; ".join(
+        f"{title} of {_percent(claimed[name])} was claimed, {_percent(values[name])} came out (p = {falls[name].p:.2g})"
+        for name, title in (("sr", "success"), ("twsr", "time-weighted success"))
+    )
+    power = "no fall of success would" if seen is None else f"a fall of success by {100 * seen:.0f} points would"
+    return Fresh(
+        suite=digest,
+        n=len(owners),
+        **{name: _estimate(row, owners) for name, row in values.items()},
+        claimed_sr=round(float(claimed["sr"].mean()), metrics.DIGITS),
+        claimed_twsr=round(float(claimed["twsr"].mean()), metrics.DIGITS),
+        fell=fell,
+        detectable=seen,
+        why=f"{told}; {power} have shown in four of five such draws",
+    )
+
+
+def _draw(entry: Entry, board: Path, word: str, count: int, folder: Path, jobs: int | None) -> None:
+    """Write a suite of fresh tasks to a folder."""
+    name = entry.run.suite.name
+    lot = hashlib.sha256(f"hthor fresh\n{word}\n{entry.digest}\n".encode()).hexdigest()
+    if name in tasks.suites():
+        drawn = fresh.suite(name, int(lot[:30], 16), count, functools.partial(_possible, jobs=jobs))
+        jsonio.write(folder / official.SUITE, library.encode(drawn))
+        return
+    season = files.commitments(board).get(entry.run.suite.sha256)
+    if season is None:
+        raise BoardError(f"{entry.id}: run.suite.sha256: no recipe of this suite is known for fresh tasks.")
+    from hthor.world.soundness import prove
+
+    homes = max(1, min(season.houses, count // _HOUSE_TASKS))
+    order = official.Order(name=f"fresh-{lot[:10]}", houses=homes, tasks=count)
+    proof = official.Proof(house=prove, task=lambda task: not soundness.examine(task).faults)
+    for path, data in official.files(order, Salt(lot), proof).items():
+        jsonio.write(folder / path, data)
+
+
+def _possible(drafts: Sequence[TaskSpec], jobs: int | None) -> list[bool]:
+    """Whether each can be done, as by 'hthor tasks check'."""
+    found = {one.task: not one.faults for one in soundness.verdicts(drafts, jobs=jobs or len(os.sched_getaffinity(0)))}
+    return [found[task.id] for task in drafts]
+
+
+def _percent(row: np.ndarray) -> str:
+    return f"{100 * float(row.mean()):.1f} %"
+
+
+def _estimate(row: np.ndarray, owners: Sequence[int]) -> stats.Estimate:
+    values = row.tolist()
+    return stats.estimate(values, [str(place) for place in range(len(values))], owners, within=stats.SHARE)

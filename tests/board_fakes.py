@@ -1,0 +1,114 @@
+"""Boards of made-up runs that need no engine, for the tests of the leaderboard."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from pathlib import Path
+from unittest import mock
+
+import eval_fakes as fakes
+import msgspec
+import pytest
+
+from hthor import jsonio
+from hthor.eval import crews, provenance, record
+from hthor.leaderboard import admission, enter, files, publish
+from hthor.leaderboard.entry import Entry
+from hthor.leaderboard.verification import Kept, Replayed, Verification
+from hthor.tasks.commitment import Commitment
+from hthor.types import AgentRef
+
+COUNT = 20
+
+
+@pytest.fixture(scope="module", autouse=True)
+def code():
+    with mock.patch.object(provenance, "code_sha256", return_value="34" * 32):
+        yield
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Runs as their folders, with the control beside them."""
+    base = tmp_path_factory.mktemp("runs")
+    for name in ("helper", "clumsy", "silent"):
+        with mock.patch.object(fakes, "character", character):
+            plan, dealt = fakes.run_of(COUNT, name=name, absent=name == "silent")
+        jsonio.write(base / name / "run.json", jsonio.pretty(plan))
+        made = [one for session in dealt for one in fakes.player()(session)]
+        made = [late(one) for one in made] if name == "clumsy" else made
+        jsonio.write(base / name / "trials.jsonl", b"".join(record.encode(one) for one in made))
+        if name != "silent":
+            held = {"level": "L3", "memory": "2048 MiB"}
+            jsonio.write(base / name / "isolation.json", jsonio.pretty(held))
+        else:
+            text = (base / name / "run.json").read_text().replace('"silent.py"', '"hthor.agents.silent"')
+            (base / name / "run.json").write_text(text)
+    return base
+
+
+def character(name: str = "helper", *, absent: bool = False) -> crews.Character:
+    """Agents whose code is not the same, as their names are not."""
+    return crews.Character(
+        ref=AgentRef(name=name, source=f"{name}.py", sha256=hashlib.sha256(name.encode()).hexdigest()), absent=absent
+    )
+
+
+def late(one: record.Record) -> record.Record:
+    """The same trial, but what succeeds takes three seconds longer, so that the agent is another."""
+    if not one.met or one.ticks > 870:
+        return one
+    events = (*one.events[:-1], msgspec.structs.replace(one.events[-1], tick=one.ticks + 30))
+    return record.of(one.spec, msgspec.structs.replace(one.log, ticks=one.ticks + 30, events=events))
+
+
+def committed(board: Path) -> Path:
+    """A board that knows the made-up suite as an official one, and takes the made-up people."""
+    suite = fakes.suite(COUNT)
+    made = Commitment(
+        name="fake", salt="0" * 64, houses=3, tasks=COUNT, suite_sha256=suite.sha256, files={}, made_with={}
+    )
+    jsonio.write(board / "suites" / "fake.json", jsonio.pretty(made))
+    who = admission.Named(name="proxy", sha256=fakes.persons().sha256)
+    files.write(board / admission.NAME, msgspec.structs.replace(admission.opened(board, made), people=(who,)))
+    return board
+
+
+@pytest.fixture(scope="module")
+def whole(runs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    board = committed(tmp_path_factory.mktemp("board"))
+    enter.add(runs, board)
+    publish.build(board)
+    return board
+
+
+@pytest.fixture
+def board(whole: Path, tmp_path: Path) -> Path:
+    return shutil.copytree(whole, tmp_path / "board")
+
+
+def entry_of(board: Path, name: str) -> Path:
+    return next(path for path in files.entry_paths(board) if path.name.startswith(name))
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def replayed(**changed) -> Replayed:
+    """Trials that were played again and bear an entry out."""
+    given = {"tier": "V1", "passed": True, "drawn": 1, "compared": 1, "equal": 1, "same_bytes": 1, "caught": 1.0}
+    return Replayed(**{**given, "why": "tested.", **changed})
+
+
+def verified(entry: Entry, /, **changed) -> Verification:
+    """The keeper's verification of an entry."""
+    control = None if entry.alone else replayed()
+    given = {"id": entry.id, "entry": entry.digest, "draw": "x", "trials": replayed(), "control": control}
+    return Verification(**{**given, "platform": "0" * 64, **changed})
+
+
+def kept(*entries: Entry) -> Kept:
+    """What a keeper wrote who verified these entries."""
+    return Kept(verifications={one.id: verified(one) for one in entries}, refutations=())
