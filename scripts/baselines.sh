@@ -3,11 +3,11 @@
 # A folder with the runs is finished, or only read. Entries that other code played are taken off the board.
 source "$(dirname "$0")/leaderboard/common.sh"
 folder=${1:-$ROOT/runs/baselines} board=${2:-$ROOT/leaderboard}
-hthor eval --agent silent --agent frontier --agent oracle --suite standard --quiet --out "$folder"
+hthor eval --agent none --agent frontier --agent oracle --suite standard --quiet --out "$folder"
 hthor leaderboard add "$folder" --board "$board"
 PYTHONPATH="$ROOT" "$PYTHON" "$ROOT/scripts/leaderboard/stale.py" "$board"
 for entry in "$board"/entries/*-standard-*.json; do
-  case "$(basename "$entry")" in silent-* | frontier-* | oracle-*) ;; *) continue ;; esac
+  case "$(basename "$entry")" in none-* | silent-* | frontier-* | oracle-*) ;; *) continue ;; esac
   hthor leaderboard verify "$entry" --draw "$(git -C "$ROOT" rev-parse HEAD)" --sample "${SAMPLE:-200}" --by baselines.sh --write --board "$board"
 done
 hthor leaderboard build --board "$board"

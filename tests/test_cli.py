@@ -230,7 +230,7 @@ def _printed(text: str) -> list[str]:
 
 def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(crews, "introduce", fakes.character)
+    monkeypatch.setattr(crews, "introduce", lambda name: fakes.character(name, absent=name in ("none", "silent")))
     drawn: list[str] = []
     hazel = houses.load("hazel")
     monkeypatch.setattr(redraw, "house", lambda _: hazel)
@@ -245,7 +245,7 @@ def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor,
     # An unmarked run is drawn as a block of several lines.
     listed = [line for one in re.findall(r"<pre>(.*?)</pre>", page, re.S) for line in html.unescape(one).splitlines()]
     commands = [*next_ones, *_printed(page), *(line for line in listed if line.startswith("hthor "))]
-    assert {one.split()[1] for one in commands} >= {"replay", "score", "eval", "agent"}
+    assert {one.split()[1] for one in commands} >= {"replay", "score", "eval"}
     for one in dict.fromkeys(commands):
         typed = shlex.split(one)[1:]
         if typed[:2] == ["agent", "run"]:  # plays with a guest; the folder that it names has to be there
@@ -262,7 +262,7 @@ def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor,
 
 def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(crews, "introduce", fakes.character)
+    monkeypatch.setattr(crews, "introduce", lambda name: fakes.character(name, absent=name == "none"))
     assert hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--quiet").code == 0
     run = next((tmp_path / "runs").iterdir())
     hazel = houses.load("hazel")

@@ -9,7 +9,7 @@ from msgspec import Struct
 
 from hthor import documents, jsonio
 from hthor.errors import RunError
-from hthor.eval import setup
+from hthor.eval import crews, setup
 from hthor.eval.peoples import HumansRef
 from hthor.eval.setup import AssetsRef, KindRef, SuiteRef
 from hthor.eval.stats import Estimate
@@ -120,6 +120,11 @@ class Result(Struct, frozen=True, kw_only=True):
     assets: AssetsRef
     isolation: Isolation | None = None
     effort: Effort | None = None
+
+    @property
+    def label(self) -> str:
+        """What to call the run in tables and sentences."""
+        return crews.label(self.name, self.robots)
 
 
 def load(folder: Path) -> Result | None:
