@@ -54,7 +54,7 @@ def hthor(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
 @pytest.fixture
 def done(hthor, tmp_path: Path) -> Path:
     """A finished run."""
-    assert hthor("eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "run"), "--quiet").code == 0
+    assert hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "run"), "--quiet").code == 0
     return tmp_path / "run"
 
 
@@ -76,25 +76,25 @@ def test_version(hthor):
     ("words", "hints"),
     [
         (("evla",), ("No such command 'evla'", "eval")),
-        (("eval", "--agnet", "silent"), ("No such option", "--agent")),
+        (("eval", "--agnet", "none"), ("No such option", "--agent")),
         (("houses", "chekc", "x"), ("No such command 'chekc'", "check")),
         (("eval",), ("name an agent with --agent", "--robots tall:oracle")),
         (("eval", "--robots", "tall"), ("'tall' has no mind", "--agent")),
         (("eval", "--robots", "tall:oracle", "--robot", "scout"), ("leave out --robot",)),
-        (("eval", "--agent", "silent", "--kind", "colect"), ("unknown kind of task 'colect'", "'collect'")),
-        (("eval", "--agent", "silent", "--jobs", "0"), ("--jobs", "greater than or equal to 1")),
+        (("eval", "--agent", "none", "--kind", "colect"), ("unknown kind of task 'colect'", "'collect'")),
+        (("eval", "--agent", "none", "--jobs", "0"), ("--jobs", "greater than or equal to 1")),
         (
-            ("eval", "--agent", "silnt", "--suite", "fake"),
-            ("unknown agent 'silnt'. Did you mean 'silent'?", "my_agent.py"),
+            ("eval", "--agent", "frontir", "--suite", "fake"),
+            ("unknown agent 'frontir'. Did you mean 'frontier'?", "my_agent.py"),
         ),
-        (("eval", "--agent", "silent", "--suite", "smokey"), ("unknown suite 'smokey'",)),
+        (("eval", "--agent", "none", "--suite", "smokey"), ("unknown suite 'smokey'",)),
         (
-            ("eval", "--agent", "silent", "--suite", "fake", "--humans", "prox"),
+            ("eval", "--agent", "none", "--suite", "fake", "--humans", "prox"),
             ("unknown people 'prox'", "'proxy'", "my_human.py"),
         ),
-        (("eval", "--agent", "silent", "--suite", "fake", "--robot", "scuot"), ("unknown robot 'scuot'", "'scout'")),
+        (("eval", "--agent", "none", "--suite", "fake", "--robot", "scuot"), ("unknown robot 'scuot'", "'scout'")),
         (
-            ("eval", "--agent", "silent", "--suite", "fake", "--detector", "perfect"),
+            ("eval", "--agent", "none", "--suite", "fake", "--detector", "perfect"),
             ("unknown detector 'perfect'", "own, ideal, noisy"),
         ),
         (("score", "nowhere"), ("nowhere is not a run's folder", "hthor eval")),
@@ -121,7 +121,7 @@ def test_an_agent_file_that_is_missing_or_broken(hthor, tmp_path: Path):
 
 def test_eval_writes_what_json_shows(hthor, tmp_path: Path):
     said = hthor(
-        "eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "run"), "--json", "--jobs", "1"
+        "eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "run"), "--json", "--jobs", "1"
     )
     assert said.code == 0
     (one,) = json.loads(said.out)["runs"]
@@ -147,7 +147,7 @@ def test_the_document_of_eval_has_one_shape_however_many_agents_there_are(hthor,
 
 def test_eval_again_only_scores(hthor, done: Path):
     before = (done / "result.json").read_bytes()
-    said = hthor("eval", "--agent", "silent", "--suite", "fake", "--out", str(done))
+    said = hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(done))
     assert said.code == 0
     assert "20 of them played before" in said.err
     assert "success rate" in said.out
@@ -156,31 +156,31 @@ def test_eval_again_only_scores(hthor, done: Path):
 
 
 def test_eval_of_something_else_in_the_same_folder_is_refused(hthor, done: Path):
-    said = hthor("eval", "--agent", "silent", "--suite", "fake", "--out", str(done), "--seed", "5")
+    said = hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(done), "--seed", "5")
     assert said.code == 2
     assert "seed is 0 there and 5 here" in said.err
 
 
 def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     real = crews.introduce
-    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "silent" else fakes.character(name))
-    said = hthor("eval", "--agent", "silent", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path), "--quiet")
+    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "none" else fakes.character(name))
+    said = hthor("eval", "--agent", "none", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path), "--quiet")
     assert said.code == 3, "done, but an agent failed in some trials"
-    assert "silent" in said.out
+    assert "none" in said.out
     assert "clumsy" in said.out
     assert "trials with a fault" in said.out
-    assert {path.name for path in tmp_path.iterdir()} == {"silent", "clumsy"}
+    assert {path.name for path in tmp_path.iterdir()} == {"none", "clumsy"}
 
 
 def test_the_control_is_played_too_once_and_the_uplift_is_reported(hthor, tmp_path: Path, monkeypatch):
     real = crews.introduce
-    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "silent" else fakes.character(name))
+    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "none" else fakes.character(name))
     words = ("eval", "--agent", "helper", "--suite", "fake", "--jobs", "1")
     said = hthor(*words, "--out", str(tmp_path / "run"))
     assert said.code == 0
     assert "control, no robot" in said.err
     assert "uplift: success rate" in said.out
-    assert json.loads((tmp_path / "run" / "control" / "result.json").read_bytes())["name"] == "silent"
+    assert json.loads((tmp_path / "run" / "control" / "result.json").read_bytes())["name"] == "none"
     again = hthor(*words, "--out", str(tmp_path / "run"))
     assert "control, no robot" not in again.err
     assert "uplift: success rate" in again.out
@@ -190,13 +190,13 @@ def test_the_control_is_played_too_once_and_the_uplift_is_reported(hthor, tmp_pa
 def test_runs_are_compared_and_a_worse_one_fails(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.setattr(cast, "player", fakes.leaning_player)
     real = crews.introduce
-    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "silent" else fakes.character(name))
-    agents = ("--agent", "silent", "--agent", "helper")
+    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "none" else fakes.character(name))
+    agents = ("--agent", "none", "--agent", "helper")
     hthor("eval", *agents, "--suite", "fake", "--participants", "16", "--out", str(tmp_path), "--quiet")
-    silent, helper = str(tmp_path / "silent"), str(tmp_path / "helper")
+    silent, helper = str(tmp_path / "none"), str(tmp_path / "helper")
     said = hthor("compare", silent, helper, "--fail-if-worse")
     assert said.code == 0
-    assert "helper is better than silent by" in said.out
+    assert "helper is better than no robot by" in said.out
     assert "could have seen" in said.out
     assert hthor("compare", helper, silent, "--fail-if-worse").code == 6
     document = json.loads(hthor("compare", silent, helper, "--json").out)
@@ -230,13 +230,13 @@ def _printed(text: str) -> list[str]:
 
 def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(crews, "introduce", lambda name: fakes.character(name, absent=name in ("none", "silent")))
+    monkeypatch.setattr(crews, "introduce", lambda name: fakes.character(name, absent=name == "none"))
     drawn: list[str] = []
     hazel = houses.load("hazel")
     monkeypatch.setattr(redraw, "house", lambda _: hazel)
     monkeypatch.setattr(redraw, "draw", lambda record, path, video: drawn.append(record.key))
     words = ("--suite", "fake", "--out", "my runs/demo", "--jobs", "1")
-    said = hthor("eval", "--agent", "silent", "--agent", "helper", "--agent", "clumsy", *words)
+    said = hthor("eval", "--agent", "none", "--agent", "helper", "--agent", "clumsy", *words)
     single = hthor("eval", "--agent", "helper", "--suite", "fake", "--out", "my runs/one", "--jobs", "1")
     next_ones = [one for one in _printed(single.out) if "leaderboard" not in one]
     assert next_ones == ["hthor replay 'my runs/one' 0", "hthor score 'my runs/one' --all"]

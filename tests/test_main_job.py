@@ -526,7 +526,7 @@ def test_leaderboard(
     assert say("leaderboard", "build", "--check", *on).code == 0
     assert "V1" in (here / "index.html").read_text()
 
-    control = files.read(next(here.glob("entries/silent-*.json")))
+    control = files.read(next(here.glob("entries/none-*.json")))
     lie = forging.forged(files.read(entry), 1.0, control)
     elsewhere = ({**lie.platforms[0], "libc": "another"},)
     monkeypatch.setattr(engines, "find", lambda *_, **__: fakes.Here())

@@ -18,7 +18,7 @@ from hthor.guest.manifest import Manifest
 from hthor.types import AgentRef, RobotSeat
 
 ALIASES = {"tall": "tender", "small": "puck"}
-"""Other words for robots: what the paper's figure calls them."""
+"""Other words for robots: what the article's figure calls them."""
 NOBODY, NO_ROBOT = "none", "no robot"
 """The agent that stands for no robot, and what tables and sentences call it."""
 _EXAMPLE = "--robots tall:oracle,small:frontier"
