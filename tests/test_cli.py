@@ -120,9 +120,7 @@ def test_an_agent_file_that_is_missing_or_broken(hthor, tmp_path: Path):
 
 
 def test_eval_writes_what_json_shows(hthor, tmp_path: Path):
-    said = hthor(
-        "eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "run"), "--json", "--jobs", "1"
-    )
+    said = hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "run"), "--json", "--jobs", "1")
     assert said.code == 0
     (one,) = json.loads(said.out)["runs"]
     assert one["folder"] == str(tmp_path / "run")
@@ -272,6 +270,35 @@ def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_p
     assert html.escape(told, quote=False) in html.unescape((tmp_path / "rep" / "report.html").read_text("utf-8"))
     assert hthor(*shlex.split(told)[1:]).code == 0
     assert "uplift: success" in hthor("score", str(run)).out
+
+
+def test_what_the_people_were_not_calibrated_for_is_said_once_and_last(hthor, tmp_path: Path, monkeypatch):
+    monkeypatch.setattr(crews, "introduce", lambda name: fakes.character(name, absent=name == "none"))
+    agents = ("--agent", "none", "--agent", "helper", "--agent", "twin")
+    said = hthor("eval", *agents, "--suite", "fake", "--out", str(tmp_path), "--jobs", "1")
+    told = [line for line in said.out.splitlines() + said.err.splitlines() if "was calibrated" in line]
+    assert told == [said.out.splitlines()[-1]]
+    assert told[0].startswith(
+        "note: the population study was calibrated on the tasks of the suite paper, not on those "
+    )
+    assert "silent" not in said.out
+    assert "no robot" in said.out
+    scored = hthor("score", str(tmp_path / "helper"))
+    assert (scored.out + scored.err).count("was calibrated") == 1
+
+
+def test_each_thing_has_one_word_and_the_words_of_before_are_read(hthor, tmp_path: Path):
+    for words, name, before in ((("agents", "list"), "none", "silent"), (("humans", "list"), "study", "paper")):
+        listed = [row["name"] for row in json.loads(hthor(*words, "--json").out)]
+        assert name in listed
+        assert before not in listed
+    runs = []
+    for agent, people in (("none", "study"), ("silent", "paper")):
+        folder = tmp_path / agent
+        words = ("--agent", agent, "--humans", people, "--suite", "fake", "--out", str(folder), "--quiet")
+        assert hthor("eval", *words, "--jobs", "1").code == 0
+        runs.append((folder / "run.json").read_bytes())
+    assert runs[0] == runs[1]
 
 
 def test_real_time_is_another_run_and_says_so(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

@@ -72,8 +72,8 @@ def _trust(found: Findings) -> list[str]:
 
 def _standing(found: Findings) -> list[str]:
     sentences = [
-        "“Gradually converging” trust in the frontier robot is neither fitted nor claimed: the article says so in words "
-        "and prints no number that a model could be held to."
+        "“Gradually converging” trust in the frontier robot is neither fitted nor claimed: the article says so "
+        "in words and prints no number that a model could be held to."
     ]
     inferred = [count for count in found.published.counts if count.inferred]
     if inferred:
