@@ -9,7 +9,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 .PHONY: demo test install clean python
 
 demo: .venv/.installed
-	$(BIN)/hthor eval --agent silent --agent frontier --agent oracle --humans proxy --suite smoke
+	$(BIN)/hthor eval --agent none --agent frontier --agent oracle --humans proxy --suite smoke
 
 test: .venv/.installed-dev
 	$(BIN)/ruff check .

@@ -1,8 +1,8 @@
 """The docs' pictures: ``python -m benchmarks.pictures [NAME...]`` makes them, ``--check`` says which are out of date.
 
 `docs/images/pictures.json` holds, for each picture, the hash of its file and of its origin: the task with its T*, the
-house, the benchmark's rules, how trials go (the reference trial of `hthor doctor`) and the code that draws. A picture is
-out of date when one of the two is another now. Checking plays nothing and takes a second.
+house, the benchmark's rules, how trials go (the reference trial of `hthor doctor`) and the code that draws. A picture
+is out of date when one of the two is another now. Checking plays nothing and takes a second.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ TRIALS = {
     "tidy.png": "tidy/maple/02",
     "carry.png": "carry/rowan/01",
 }
-"""Trials with the oracle, in the robots' bodies that the kind of task is made for: a task, whose suite is its first word."""
+"""Trials with the oracle, in the bodies that the kind of task is made for: a task, whose suite is its first word."""
 
 
 def names() -> list[str]:

@@ -24,6 +24,8 @@ _PACKAGES = {
     "task kind": ("hthor.tasks.kinds", "KIND"),
 }
 _SUFFIX = ".py"
+_FILES = {("agent", "none"): "silent"}
+"""Files of plug-ins that are called otherwise than their files; both words are read."""
 
 
 @functools.cache
@@ -35,7 +37,18 @@ def names(sort: str) -> tuple[str, ...]:
     """
     package, _ = _PACKAGES[sort]
     folder = Path(__file__).parent.joinpath(*package.split(".")[1:])
-    return tuple(sorted(path.stem for path in folder.glob("*.py") if not path.stem.startswith("_")))
+    stems = (path.stem for path in folder.glob("*.py") if not path.stem.startswith("_"))
+    return tuple(sorted(called(sort, stem) for stem in stems))
+
+
+def called(sort: str, file: str) -> str:
+    """What the plug-in in the file of this name is called, mostly the same."""
+    return next((name for (one, name), stem in _FILES.items() if (one, stem) == (sort, file)), file)
+
+
+def stem(sort: str, name: str) -> str:
+    """The name of a plug-in's file."""
+    return _FILES.get((sort, name), name)
 
 
 def load(sort: str, name: str) -> Any:
@@ -50,8 +63,8 @@ def load(sort: str, name: str) -> Any:
     """
     package, attribute = _PACKAGES[sort]
     known = names(sort)
-    if name in known:
-        module = importlib.import_module(f"{package}.{name}")
+    if called(sort, name) in known:
+        module = importlib.import_module(f"{package}.{stem(sort, name)}")
     elif name.endswith(_SUFFIX):
         module = _from_file(sort, Path(name))
     elif (there := loaded(sort, name)) is not None:
@@ -67,7 +80,7 @@ def load(sort: str, name: str) -> Any:
 def loaded(sort: str, name: str) -> ModuleType | None:
     """The plug-in's module if it was loaded before, from wherever it lies."""
     package, _ = _PACKAGES[sort]
-    return sys.modules.get(f"{package}.{name}")
+    return sys.modules.get(f"{package}.{stem(sort, name)}")
 
 
 @functools.cache
@@ -78,7 +91,7 @@ def purpose(sort: str, name: str) -> str:
         name: its name, or the path of a user's file.
     """
     package, _ = _PACKAGES[sort]
-    own = Path(__file__).parent.joinpath(*package.split(".")[1:]) / f"{name}{_SUFFIX}"
+    own = Path(__file__).parent.joinpath(*package.split(".")[1:]) / f"{stem(sort, name)}{_SUFFIX}"
     file = Path(name) if name.endswith(_SUFFIX) else own
     text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
     return " ".join(text.split("\n\n")[0].split()).split("; ")[0].rstrip(".")
@@ -94,7 +107,7 @@ def _from_file(sort: str, path: Path) -> ModuleType:
     package, _ = _PACKAGES[sort]
     if not path.is_file():
         raise UnknownName(sort, str(path), names(sort), "A path must lead to a Python file.")
-    if path.stem in names(sort) or not path.stem.isidentifier():
+    if called(sort, path.stem) in names(sort) or not path.stem.isidentifier():
         raise HthorError(f"{path}: a {sort}'s file name must be a Python name that no {sort} of ours has; rename it.")
     name, place = f"{package}.{path.stem}", path.resolve()
     there = sys.modules.get(name)

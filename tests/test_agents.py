@@ -253,14 +253,15 @@ def oracle() -> Any:
 
 def test_every_agent_follows_the_contract() -> None:
     names = plugins.names("agent")
-    assert {"frontier", "oracle", "silent"} <= set(names)
-    for name in ("frontier", "oracle", "silent"):
+    assert {"frontier", "oracle", "none"} <= set(names)
+    for name in ("frontier", "oracle", "none"):
         made = plugins.load("agent", name)
         assert isinstance(made.privileges, tuple)
         assert made.__doc__
         assert callable(made.begin)
         assert callable(made.act)
-    assert plugins.load("agent", "silent").absent
+    assert plugins.load("agent", "none").absent
+    assert plugins.load("agent", "silent") is plugins.load("agent", "none"), "the word of before"
 
 
 def test_the_silent_agent_waits() -> None:

@@ -164,7 +164,7 @@ def a_task(kind: str, limit: float) -> TaskSpec:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("agent", [name for name in plugins.names("agent") if name in ("frontier", "oracle", "silent")])
+@pytest.mark.parametrize("agent", [name for name in plugins.names("agent") if name in ("frontier", "oracle", "none")])
 def test_every_agent_takes_part_in_every_kind_with_every_body(kind: str, agent: str) -> None:
     log, _ = run(a_task(kind, 8.0), f"tender:{agent}", f"puck:{agent}", f"porter:{agent}")
     assert not log.faults

@@ -54,7 +54,7 @@ def hthor(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
 @pytest.fixture
 def done(hthor, tmp_path: Path) -> Path:
     """A finished run."""
-    assert hthor("eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "run"), "--quiet").code == 0
+    assert hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "run"), "--quiet").code == 0
     return tmp_path / "run"
 
 
@@ -76,25 +76,25 @@ def test_version(hthor):
     ("words", "hints"),
     [
         (("evla",), ("No such command 'evla'", "eval")),
-        (("eval", "--agnet", "silent"), ("No such option", "--agent")),
+        (("eval", "--agnet", "none"), ("No such option", "--agent")),
         (("houses", "chekc", "x"), ("No such command 'chekc'", "check")),
         (("eval",), ("name an agent with --agent", "--robots tall:oracle")),
         (("eval", "--robots", "tall"), ("'tall' has no mind", "--agent")),
         (("eval", "--robots", "tall:oracle", "--robot", "scout"), ("leave out --robot",)),
-        (("eval", "--agent", "silent", "--kind", "colect"), ("unknown kind of task 'colect'", "'collect'")),
-        (("eval", "--agent", "silent", "--jobs", "0"), ("--jobs", "greater than or equal to 1")),
+        (("eval", "--agent", "none", "--kind", "colect"), ("unknown kind of task 'colect'", "'collect'")),
+        (("eval", "--agent", "none", "--jobs", "0"), ("--jobs", "greater than or equal to 1")),
         (
-            ("eval", "--agent", "silnt", "--suite", "fake"),
-            ("unknown agent 'silnt'. Did you mean 'silent'?", "my_agent.py"),
+            ("eval", "--agent", "frontir", "--suite", "fake"),
+            ("unknown agent 'frontir'. Did you mean 'frontier'?", "my_agent.py"),
         ),
-        (("eval", "--agent", "silent", "--suite", "smokey"), ("unknown suite 'smokey'",)),
+        (("eval", "--agent", "none", "--suite", "smokey"), ("unknown suite 'smokey'",)),
         (
-            ("eval", "--agent", "silent", "--suite", "fake", "--humans", "prox"),
+            ("eval", "--agent", "none", "--suite", "fake", "--humans", "prox"),
             ("unknown people 'prox'", "'proxy'", "my_human.py"),
         ),
-        (("eval", "--agent", "silent", "--suite", "fake", "--robot", "scuot"), ("unknown robot 'scuot'", "'scout'")),
+        (("eval", "--agent", "none", "--suite", "fake", "--robot", "scuot"), ("unknown robot 'scuot'", "'scout'")),
         (
-            ("eval", "--agent", "silent", "--suite", "fake", "--detector", "perfect"),
+            ("eval", "--agent", "none", "--suite", "fake", "--detector", "perfect"),
             ("unknown detector 'perfect'", "own, ideal, noisy"),
         ),
         (("score", "nowhere"), ("nowhere is not a run's folder", "hthor eval")),
@@ -120,9 +120,7 @@ def test_an_agent_file_that_is_missing_or_broken(hthor, tmp_path: Path):
 
 
 def test_eval_writes_what_json_shows(hthor, tmp_path: Path):
-    said = hthor(
-        "eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "run"), "--json", "--jobs", "1"
-    )
+    said = hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "run"), "--json", "--jobs", "1")
     assert said.code == 0
     (one,) = json.loads(said.out)["runs"]
     assert one["folder"] == str(tmp_path / "run")
@@ -147,7 +145,7 @@ def test_the_document_of_eval_has_one_shape_however_many_agents_there_are(hthor,
 
 def test_eval_again_only_scores(hthor, done: Path):
     before = (done / "result.json").read_bytes()
-    said = hthor("eval", "--agent", "silent", "--suite", "fake", "--out", str(done))
+    said = hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(done))
     assert said.code == 0
     assert "20 of them played before" in said.err
     assert "success rate" in said.out
@@ -156,31 +154,31 @@ def test_eval_again_only_scores(hthor, done: Path):
 
 
 def test_eval_of_something_else_in_the_same_folder_is_refused(hthor, done: Path):
-    said = hthor("eval", "--agent", "silent", "--suite", "fake", "--out", str(done), "--seed", "5")
+    said = hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(done), "--seed", "5")
     assert said.code == 2
     assert "seed is 0 there and 5 here" in said.err
 
 
 def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     real = crews.introduce
-    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "silent" else fakes.character(name))
-    said = hthor("eval", "--agent", "silent", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path), "--quiet")
+    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "none" else fakes.character(name))
+    said = hthor("eval", "--agent", "none", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path), "--quiet")
     assert said.code == 3, "done, but an agent failed in some trials"
-    assert "silent" in said.out
+    assert "none" in said.out
     assert "clumsy" in said.out
     assert "trials with a fault" in said.out
-    assert {path.name for path in tmp_path.iterdir()} == {"silent", "clumsy"}
+    assert {path.name for path in tmp_path.iterdir()} == {"none", "clumsy"}
 
 
 def test_the_control_is_played_too_once_and_the_uplift_is_reported(hthor, tmp_path: Path, monkeypatch):
     real = crews.introduce
-    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "silent" else fakes.character(name))
+    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "none" else fakes.character(name))
     words = ("eval", "--agent", "helper", "--suite", "fake", "--jobs", "1")
     said = hthor(*words, "--out", str(tmp_path / "run"))
     assert said.code == 0
     assert "control, no robot" in said.err
     assert "uplift: success rate" in said.out
-    assert json.loads((tmp_path / "run" / "control" / "result.json").read_bytes())["name"] == "silent"
+    assert json.loads((tmp_path / "run" / "control" / "result.json").read_bytes())["name"] == "none"
     again = hthor(*words, "--out", str(tmp_path / "run"))
     assert "control, no robot" not in again.err
     assert "uplift: success rate" in again.out
@@ -190,13 +188,13 @@ def test_the_control_is_played_too_once_and_the_uplift_is_reported(hthor, tmp_pa
 def test_runs_are_compared_and_a_worse_one_fails(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.setattr(cast, "player", fakes.leaning_player)
     real = crews.introduce
-    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "silent" else fakes.character(name))
-    agents = ("--agent", "silent", "--agent", "helper")
+    monkeypatch.setattr(crews, "introduce", lambda name: real(name) if name == "none" else fakes.character(name))
+    agents = ("--agent", "none", "--agent", "helper")
     hthor("eval", *agents, "--suite", "fake", "--participants", "16", "--out", str(tmp_path), "--quiet")
-    silent, helper = str(tmp_path / "silent"), str(tmp_path / "helper")
+    silent, helper = str(tmp_path / "none"), str(tmp_path / "helper")
     said = hthor("compare", silent, helper, "--fail-if-worse")
     assert said.code == 0
-    assert "helper is better than silent by" in said.out
+    assert "helper is better than no robot by" in said.out
     assert "could have seen" in said.out
     assert hthor("compare", helper, silent, "--fail-if-worse").code == 6
     document = json.loads(hthor("compare", silent, helper, "--json").out)
@@ -230,13 +228,13 @@ def _printed(text: str) -> list[str]:
 
 def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(crews, "introduce", fakes.character)
+    monkeypatch.setattr(crews, "introduce", lambda name: fakes.character(name, absent=name == "none"))
     drawn: list[str] = []
     hazel = houses.load("hazel")
     monkeypatch.setattr(redraw, "house", lambda _: hazel)
     monkeypatch.setattr(redraw, "draw", lambda record, path, video: drawn.append(record.key))
     words = ("--suite", "fake", "--out", "my runs/demo", "--jobs", "1")
-    said = hthor("eval", "--agent", "silent", "--agent", "helper", "--agent", "clumsy", *words)
+    said = hthor("eval", "--agent", "none", "--agent", "helper", "--agent", "clumsy", *words)
     single = hthor("eval", "--agent", "helper", "--suite", "fake", "--out", "my runs/one", "--jobs", "1")
     next_ones = [one for one in _printed(single.out) if "leaderboard" not in one]
     assert next_ones == ["hthor replay 'my runs/one' 0", "hthor score 'my runs/one' --all"]
@@ -245,7 +243,7 @@ def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor,
     # An unmarked run is drawn as a block of several lines.
     listed = [line for one in re.findall(r"<pre>(.*?)</pre>", page, re.S) for line in html.unescape(one).splitlines()]
     commands = [*next_ones, *_printed(page), *(line for line in listed if line.startswith("hthor "))]
-    assert {one.split()[1] for one in commands} >= {"replay", "score", "eval", "agent"}
+    assert {one.split()[1] for one in commands} >= {"replay", "score", "eval"}
     for one in dict.fromkeys(commands):
         typed = shlex.split(one)[1:]
         if typed[:2] == ["agent", "run"]:  # plays with a guest; the folder that it names has to be there
@@ -262,7 +260,7 @@ def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor,
 
 def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(crews, "introduce", fakes.character)
+    monkeypatch.setattr(crews, "introduce", lambda name: fakes.character(name, absent=name == "none"))
     assert hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--quiet").code == 0
     run = next((tmp_path / "runs").iterdir())
     hazel = houses.load("hazel")
@@ -272,6 +270,35 @@ def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_p
     assert html.escape(told, quote=False) in html.unescape((tmp_path / "rep" / "report.html").read_text("utf-8"))
     assert hthor(*shlex.split(told)[1:]).code == 0
     assert "uplift: success" in hthor("score", str(run)).out
+
+
+def test_what_the_people_were_not_calibrated_for_is_said_once_and_last(hthor, tmp_path: Path, monkeypatch):
+    monkeypatch.setattr(crews, "introduce", lambda name: fakes.character(name, absent=name == "none"))
+    agents = ("--agent", "none", "--agent", "helper", "--agent", "twin")
+    said = hthor("eval", *agents, "--suite", "fake", "--out", str(tmp_path), "--jobs", "1")
+    told = [line for line in said.out.splitlines() + said.err.splitlines() if "was calibrated" in line]
+    assert told == [said.out.splitlines()[-1]]
+    assert told[0].startswith(
+        "note: the population study was calibrated on the tasks of the suite paper, not on those "
+    )
+    assert "silent" not in said.out
+    assert "no robot" in said.out
+    scored = hthor("score", str(tmp_path / "helper"))
+    assert (scored.out + scored.err).count("was calibrated") == 1
+
+
+def test_each_thing_has_one_word_and_the_words_of_before_are_read(hthor, tmp_path: Path):
+    for words, name, before in ((("agents", "list"), "none", "silent"), (("humans", "list"), "study", "paper")):
+        listed = [row["name"] for row in json.loads(hthor(*words, "--json").out)]
+        assert name in listed
+        assert before not in listed
+    runs = []
+    for agent, people in (("none", "study"), ("silent", "paper")):
+        folder = tmp_path / agent
+        words = ("--agent", agent, "--humans", people, "--suite", "fake", "--out", str(folder), "--quiet")
+        assert hthor("eval", *words, "--jobs", "1").code == 0
+        runs.append((folder / "run.json").read_bytes())
+    assert runs[0] == runs[1]
 
 
 def test_real_time_is_another_run_and_says_so(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

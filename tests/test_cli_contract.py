@@ -43,10 +43,10 @@ def run(*words: str, play: str = "player") -> tuple[int, object, str]:
 def both(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Two finished runs, of which one is much better."""
     folder = tmp_path_factory.mktemp("both")
-    words = ("--agent", "silent", "--agent", "helper", "--suite", "fake", "--participants", "16")
+    words = ("--agent", "none", "--agent", "helper", "--suite", "fake", "--participants", "16")
     code, document, _ = run("eval", *words, "--out", str(folder), play="leaning_player")
     assert code == 0
-    assert [one["name"] for one in document] == ["silent", "helper"]
+    assert [one["result"]["name"] for one in document["runs"]] == ["none", "helper"]
     return folder
 
 
@@ -61,12 +61,12 @@ def failed(said: tuple[int, object, str], code: int) -> str:
 
 
 def test_1_is_a_fault_of_our_own(tmp_path: Path) -> None:
-    said = run("eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "a"), play="failing_player:own")
+    said = run("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "a"), play="failing_player:own")
     assert "ZeroDivisionError" in failed(said, 1)
 
 
 def test_2_is_a_wrong_word() -> None:
-    assert "--agent" in failed(run("eval", "--agnet", "silent"), 2)
+    assert "--agent" in failed(run("eval", "--agnet", "none"), 2)
 
 
 def test_3_is_an_agent_that_failed(tmp_path: Path) -> None:
@@ -88,20 +88,20 @@ def test_5_is_too_little_isolation(tmp_path: Path) -> None:
 
 
 def test_6_is_a_run_that_is_worse(both: Path) -> None:
-    code, document, _ = run("compare", str(both / "helper"), str(both / "silent"), "--fail-if-worse")
+    code, document, _ = run("compare", str(both / "helper"), str(both / "none"), "--fail-if-worse")
     assert code == 6
     assert document["pairs"][0]["better"] == "helper"
 
 
 def test_75_is_a_run_that_another_process_writes(both: Path) -> None:
-    with (both / "silent" / ".lock").open("rb") as file:
+    with (both / "none" / ".lock").open("rb") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
-        words = ("--agent", "silent", "--suite", "fake", "--participants", "16", "--out", str(both / "silent"))
+        words = ("--agent", "none", "--suite", "fake", "--participants", "16", "--out", str(both / "none"))
         assert "is being written" in failed(run("eval", *words), 75)
 
 
 def test_130_is_an_interruption_and_the_same_command_resumes(tmp_path: Path) -> None:
-    words = ("eval", "--agent", "silent", "--suite", "fake", "--out", str(tmp_path / "a"), "--jobs", "1")
+    words = ("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "a"), "--jobs", "1")
     process = start(*words, "--json", play="slow_player:0.4")
     until = time.monotonic() + 60.0
     while not (log := tmp_path / "a" / "trials.jsonl").exists() or not log.stat().st_size:
@@ -189,8 +189,8 @@ def complete(words: str, folder: Path, shell: str = "bash") -> list[str]:
 
 def test_the_shell_completes_values(both: Path) -> None:
     assert complete("hthor eval --agent fr", both) == ["frontier"]
-    assert complete("hthor compare s", both) == ["silent"]
-    assert "paper" in complete("hthor humans describe pa", both, "zsh")[-1]
+    assert complete("hthor compare n", both) == ["none"]
+    assert "study" in complete("hthor humans describe st", both, "zsh")[-1]
 
 
 def test_what_is_offered_is_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -55,10 +55,10 @@ def test_bodies_and_minds_are_read_in_order():
 
 
 def test_bodies_without_a_mind_take_the_agents_in_turn():
-    first, second = crews.read("tall,small:frontier", ("oracle", "silent"))
+    first, second = crews.read("tall,small:frontier", ("oracle", "none"))
     assert pairs(first) == [("robot", "tender", "oracle"), ("robot2", "puck", "frontier")]
-    assert pairs(second) == [("", "", "silent"), ("robot", "puck", "frontier")], "who wants no robot has no seat"
-    assert crew_name(second.listed) == "silent+puck-frontier"
+    assert pairs(second) == [("", "", "none"), ("robot", "puck", "frontier")], "who wants no robot has no seat"
+    assert crew_name(second.listed) == "none+puck-frontier"
     assert [robot.seat for robot in second.seats] == ["robot"]
 
 
@@ -75,9 +75,9 @@ def test_a_comma_within_an_agent_is_escaped(monkeypatch: pytest.MonkeyPatch):
 
 
 def test_a_crew_of_nobody_is_one_silent_agent():
-    (crew,) = crews.read("tall,small", ("silent",))
-    assert pairs(crew) == [("", "", "silent")]
-    assert crew_name(crew.listed) == "silent"
+    (crew,) = crews.read("tall,small", ("none",))
+    assert pairs(crew) == [("", "", "none")]
+    assert crew_name(crew.listed) == "none"
 
 
 @pytest.mark.parametrize(

@@ -76,9 +76,29 @@ def test_floats_in_events_are_rounded_once(value: float, text: str):
     trial = _trial()
     log = msgspec.structs.replace(
         fakes.episode(trial),
-        events=(Event(tick=1, seat="robot", kind="sent", data={"message": 0, "p": (value, text)}),),
+        events=(Event(tick=1, seat="robot", kind="sent", data={"message": 0, "text": "", "p": (value, text)}),),
     )
     line = record.encode(record.of(trial, log))
     back = record.decode(line)
     assert back.events[0].data["p"][0] == pytest.approx(value, abs=1e-4)
     assert record.encode(record.of(trial, back.log)) == line
+
+
+@pytest.mark.parametrize(
+    ("kind", "data", "field"),
+    [
+        ("sent", {"message": 0, "text": "here", "off": [1.0]}, "off"),
+        ("sent", {"message": [], "text": "here"}, "message"),
+        ("sent", {"text": "here"}, "message"),
+        ("confirmed", {}, "message"),
+        ("progress", {"value": "half"}, "value"),
+        ("placed", {"on": {}}, "on"),
+    ],
+)
+def test_what_is_scored_of_an_event_has_its_type(kind: str, data: dict[str, object], field: str):
+    """Such a line has the right checksum and key, and its record could not be scored or drawn."""
+    whole = record.decode(_LINE)
+    bad = msgspec.structs.replace(whole, events=(*whole.events, Event(tick=1, seat="robot", kind=kind, data=data)))
+    with pytest.raises(record.Damaged) as caught:
+        record.decode(record.encode(bad))
+    assert caught.value.field == f"events[{len(whole.events)}].data.{field}"

@@ -156,14 +156,14 @@ def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path
     real = tasks.suite
     monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
     monkeypatch.setattr(cast, "player", fakes.lonely_player)
-    options = intent.Options(agents=("silent", "frontier"), suite="fake", jobs=1, out=tmp_path)
+    options = intent.Options(agents=("none", "frontier"), suite="fake", jobs=1, out=tmp_path)
     with pytest.raises(course.InternalFailure, match=r"participant 1: ZeroDivisionError.* 10 of 20 trials are missing"):
         list(campaign.conduct(options, lambda _: progress.Silent()))
     assert result_file.load(tmp_path / "frontier").counts.trials == 20
-    assert result_file.load(tmp_path / "silent") is None
+    assert result_file.load(tmp_path / "none") is None
     monkeypatch.setattr(cast, "player", fakes.player)
     done = [one.plan.name for one in campaign.conduct(options, lambda _: progress.Silent())]
-    assert done == ["silent", "frontier"]
+    assert done == ["none", "frontier"]
     assert result_file.load(tmp_path / "frontier").uplift is not None
 
 

@@ -9,6 +9,7 @@ import py_compile
 import sqlite3
 import sys
 import textwrap
+import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -26,7 +27,7 @@ from typer.testing import CliRunner
 from hthor import guest
 from hthor.cli import app
 from hthor.errors import AgentError, HthorError, RunError
-from hthor.eval import cast, crews, engines, setup
+from hthor.eval import cast, crews, engines
 from hthor.guest import Given, Guest, GuestFault, IsolationError, identity, manifest, recording, scanning
 from hthor.guest import given as giving
 from hthor.guest.grounds import Grounds
@@ -228,7 +229,8 @@ def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Pa
 
 ARGS = """
 def __init__(self, checkpoint="", speed=0.5, loud: bool = False):
-    self.text = open(checkpoint).read() if checkpoint else "none"
+    from pathlib import Path
+    self.text = Path(checkpoint).read_text() if checkpoint else "none"
     self.speed, self.loud = speed, loud
 def begin(self, briefing): pass
 def act(self, observation):
@@ -349,6 +351,61 @@ def test_what_is_readable_must_be_there(tmp_path: Path) -> None:
         giving.read(readable=[tmp_path / "a" / "w", tmp_path / "b" / "w"])
 
 
+def test_a_served_agent_says_what_it_consists_of_and_that_is_marked(taking: Path) -> None:
+    pytest.importorskip("websockets")
+    from hthor.guest import serving
+
+    out = taking.parents[1] / "out" / "net.txt"
+    server = serving.serve(str(taking), "127.0.0.1", 0, giving.read([f"checkpoint={out}"]))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    try:
+        url = serving.address(server)
+        first = crews.introduce(url)
+        made = first.manifest
+        assert made is not None
+        assert made.claimed
+        assert made.sha256 == first.ref.sha256
+        assert [file.path for file in made.files] == ["../net.txt", "agent.py"]
+        with Guest(url) as mind:
+            mind.begin(BRIEFING)
+            assert getattr(mind.act(look()).say, "text", None) == "learned False"
+        out.write_text("more")
+        assert crews.introduce(url).ref.sha256 != first.ref.sha256
+        with pytest.raises(HthorError, match="--agent-args is for 'hthor agent serve' there"):
+            Guest(url, given=giving.read(["speed=1"]))
+    finally:
+        server.shutdown()
+
+
+def test_compiled_files_beside_a_program_in_python_are_not_run(tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text("raise SystemExit('stale')\n")
+    py_compile.compile(
+        str(tmp_path / "helper.py"), invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH, doraise=True
+    )
+    (tmp_path / "helper.py").write_text("raise SystemExit('fresh')\n")
+    (tmp_path / "mind.py").write_text("import helper\n")
+    with pytest.raises(AgentError, match="fresh"):
+        guest.load_info(f"cmd:{sys.executable} {tmp_path / 'mind.py'}")
+
+
+def test_a_folder_with_too_many_files_is_not_made_readable(taking: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(identity, "_MOST_READABLE", 1)
+    guest.confine_guests(given=giving.read(readable=[taking.parents[1] / "out"]))
+    assert len(names(taking)) == 2
+    (taking.parents[1] / "out" / "more.txt").write_text("")
+    with pytest.raises(AgentError, match=r"has more than 1 files.*Name the folders or files in there"):
+        names(taking)
+
+
+def test_what_no_source_names_can_be_made_part_of_an_agent(tmp_path: Path) -> None:
+    path = write(tmp_path / "a")
+    (tmp_path / "a" / "w").mkdir()
+    (tmp_path / "a" / "w" / "net.bin").write_bytes(b"1")
+    assert names(path) == ["agent.py"]
+    guest.confine_guests(given=giving.read(readable=[tmp_path / "a" / "w"]))
+    assert names(path) == ["agent.py", "w/net.bin"]
+
+
 class Quick(cast.Stage):
     """Trials of some dozen ticks in a world without an engine."""
 
@@ -368,7 +425,8 @@ def evaluate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., A
     monkeypatch.setattr(engines, "find", lambda *_, **__: eval_fakes.Here())
 
     def run(*words: str) -> Any:
-        fixed = ["--kind", "object_goal_navigation", "--participants", "2", "--no-control", "--quiet", "--json"]
+        fixed = ["--kind", "object_goal_navigation", "--limit", "3", "--participants", "2", "--isolation", "L1"]
+        fixed += ["--no-control", "--quiet", "--json"]
         return invoke("eval", "--agent", "a/agent.py", *fixed, *words)
 
     return run
@@ -406,18 +464,20 @@ def test_an_agent_that_was_changed_is_played_as_another(evaluate: Any, tmp_path:
     assert first.exit_code == 0, first.output
     before = json.loads(first.stdout)
     assert changed in [file["path"] for file in before["agents"][0]["files"]]
-    assert json.loads(evaluate().stdout) == before  # nothing is played again
-    assert len(list((tmp_path / "runs").iterdir())) == 1
     (tmp_path / "a" / changed).write_text("X = 2\n")
     after = json.loads(evaluate().stdout)
     assert len(list((tmp_path / "runs").iterdir())) == 2
     assert after["hashes"]["run"] != before["hashes"]["run"]
-    named = evaluate("--out", str(next((tmp_path / "runs").glob("*"))))
-    there = setup.load(next((tmp_path / "runs").glob("*")))
-    assert named.exit_code in (0, 2)
-    if there.sha256 == before["hashes"]["run"]:
-        assert named.exit_code == 2
-        assert f"{changed}.sha256 is" in named.output
+
+
+def test_a_folder_of_an_agent_that_was_changed_is_refused_by_the_files_name(evaluate: Any, tmp_path: Path) -> None:
+    own(tmp_path / "a", top="import helper")
+    first = evaluate("--out", "mine")
+    assert evaluate("--out", "mine").stdout == first.stdout  # nothing is played again
+    (tmp_path / "a" / "helper.py").write_text("X = 2\n")
+    refused = evaluate("--out", "mine")
+    assert refused.exit_code == 2
+    assert "agents.0.files.helper.py.sha256 is" in refused.output
 
 
 OPENED = "name = 'net' + '-big.txt'\nopen(HERE / 'weights' / name).read()"

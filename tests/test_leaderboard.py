@@ -25,7 +25,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks import forging
-from hthor import jsonio
+from hthor import jsonio, tasks
 from hthor.errors import HthorError, RunError
 from hthor.eval import provenance, setup
 from hthor.guest import manifest
@@ -49,6 +49,26 @@ from hthor.leaderboard import (
 )
 
 # ------------------------------------------------------------------------------------------------------- entries
+
+
+def test_a_run_of_other_people_is_refused_in_one_sentence_that_says_what_would_do(runs: Path, tmp_path: Path):
+    with mock.patch.object(overrides, "tasks_of", return_value=60), pytest.raises(HthorError) as refused:
+        enter.add(runs / "helper", tmp_path / "board")
+    said = str(refused.value)
+    assert "was played with --participants 2, and cannot stand on the leaderboard" in said
+    assert "each of the 60 tasks of 'fake' done once, by 6 people; this run has 20 trials" in said
+    assert "Play it again without this option" in said
+    assert "\n" not in said, "no list of mismatches"
+    assert not (tmp_path / "board").exists()
+
+
+def test_half_and_twice_the_people_of_a_shipped_suite_are_a_setting_of_its_own():
+    plan, _ = fakes.run_of(COUNT)
+    smoke = tasks.suite("smoke")
+    suite = setup.SuiteRef(name="smoke", version=str(smoke.version), sha256=smoke.sha256)
+    for participants, trials, found in ((6, 60, {}), (2, 20, {"participants": "2"}), (12, 120, {"participants": "12"})):
+        some = msgspec.structs.replace(plan, suite=suite, participants=participants, trials=trials)
+        assert overrides.of(some) == found
 
 
 def test_twice_is_once_in_any_order_and_the_control_comes_too(whole: Path, runs: Path, tmp_path: Path):

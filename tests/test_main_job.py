@@ -536,7 +536,7 @@ def test_leaderboard(
     assert say("leaderboard", "build", "--check", *on).code == 0
     assert "V1" in (here / "index.html").read_text()
 
-    alone = next(here.glob("entries/silent-*.json"))
+    alone = next(here.glob("entries/none-*.json"))
     control, true = files.read(alone), files.read(entry)
     lie = forging.forged(true, 1.0, control, brief)
     elsewhere = ({**lie.platforms[0], "libc": "another"},)

@@ -225,7 +225,7 @@ def test_a_damaged_run_is_refused_with_file_and_field(folders: list[Path], tmp_p
     broken = shutil.copytree(folders[1], tmp_path / "broken")
     lines = (broken / "trials.jsonl").read_bytes().replace(b'"met":true', b'"met":null', 1)
     (broken / "trials.jsonl").write_bytes(lines)
-    with pytest.raises(RunError, match=r"broken/trials\.jsonl, line \d+: \$\.met"):
+    with pytest.raises(RunError, match=r"broken/trials\.jsonl, line \d+: met"):
         write.report([broken], tmp_path / "out")
     other = shutil.copytree(folders[1], tmp_path / "foreign")
     (other / "trials.jsonl").write_bytes((folders[2] / "trials.jsonl").read_bytes())

@@ -20,7 +20,7 @@ from rich.console import Console
 
 from hthor import cli, plugins, rules, tasks
 from hthor.errors import HthorError, PeopleError, UnknownName
-from hthor.eval import bracket, campaign, cast, intent, matrix, peoples, progress, report, session, setup
+from hthor.eval import bracket, campaign, cast, intent, matrix, peoples, progress, report, result_file, session, setup
 from hthor.eval.peoples import HumansRef
 from hthor.humans import effects, kinds, people, person, population_file, portrait, ranges, registry
 from hthor.humans.parameters import Parameters
@@ -79,12 +79,14 @@ def test_the_proxy_has_the_calibrated_population_once_it_ships(tmp_path: Path, m
     assert people.default() == "literature"
     made = msgspec.structs.replace(small(), name="paper")
     made.save(tmp_path / "paper")
-    assert people.default() == "paper"
-    for word in ("proxy", "paper"):
+    assert people.default() == "study"
+    for word in ("proxy", "study", "paper"):
         assert people.find(word).population.sha256 == made.sha256
     for word in ("slow", "greedy"):
         assert people.find(word).population.name == "paper"
-    assert "paper" in people.names()
+    assert "study" in people.names()
+    assert "paper" not in people.names(), "a word for them that is still read"
+    assert people.find("paper").name == people.find("study").name == "study"
 
 
 def test_files_are_found_by_path_and_again_from_anywhere(files: Path, monkeypatch: pytest.MonkeyPatch):
@@ -107,13 +109,13 @@ def test_a_file_that_is_called_like_people_of_ours_is_not_taken_for_them(tmp_pat
     """Their names stand in tables and on pages; a home-made proxy.json must not pass there as the proxy."""
     kind = (Path(kinds.__file__).parent / "fast.json").read_text()
     names = set()
-    for name in ("proxy", "paper", "cautious", "mine"):
+    for name in ("proxy", "study", "cautious", "mine"):
         path = tmp_path / f"{name}.json"
         path.write_text(kind.replace('"name": "fast"', f'"name": "{name}"'))
         names.add(people.find(str(path)).name)
     assert "mine" in names
-    assert not names & {"proxy", "paper", "cautious"}
-    assert all(re.fullmatch(r"mine|(proxy|paper|cautious)-[0-9a-f]{6}", name) for name in names)
+    assert not names & {"proxy", "study", "cautious"}
+    assert all(re.fullmatch(r"mine|(proxy|study|cautious)-[0-9a-f]{6}", name) for name in names)
 
 
 def test_the_hash_covers_model_population_and_kind(files: Path):
@@ -245,7 +247,7 @@ def test_every_robot_meets_the_same_people(files: Path):
         fakes.crew("helper"),
         fakes.crew("other"),
         fakes.crew("helper", "other"),
-        fakes.crew("silent", absent=True),
+        fakes.crew("none", absent=True),
     ]
     dealt = [session.sessions(suite, agent=crew, human=word, seed=4) for crew in crews]
     stage = cast.Stage(cast.Sources(people=people.find(word).word))
@@ -302,7 +304,7 @@ def refer(population: Population, count: int = 20, crew: Any = None) -> HumansRe
 def test_people_are_valid_where_they_were_calibrated():
     ref = refer(small())
     assert (ref.valid, ref.notes, ref.name, ref.source, ref.population) == (True, (), "pop", "pop.npz", "pop")
-    assert refer(small(), crew=fakes.crew("silent", absent=True)).valid
+    assert refer(small(), crew=fakes.crew("none", absent=True)).valid
 
 
 def test_elsewhere_they_are_not_and_it_says_where():
@@ -314,7 +316,7 @@ def test_elsewhere_they_are_not_and_it_says_where():
             assert word in ref.notes[0]
 
     noted(small(), "calibrated on the suite 'fake', not on other tasks", count=10)
-    noted(small(suite="paper", suite_sha256="ab" * 32), "the suite 'paper', not on 'fake'")
+    noted(small(suite="paper", suite_sha256="ab" * 32), "the suite paper, not on those of the suite fake")
     noted(small(simulation=rules.SIMULATION + 1), f"version {rules.SIMULATION + 1} of the world")
     noted(small(mind=registry.MIND + 1), f"version {registry.MIND + 1} of the proxy's mind")
     noted(small(rules_sha256="ab" * 32), "other constants of the benchmark")
@@ -353,7 +355,7 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("fake")
 def test_each_people_is_a_run_of_its_own(files: Path):
     words = (f"{files}/pop.npz", f"slow@{files}/pop.npz")
-    options = intent.Options(agents=("silent", "frontier"), humans=words, suite="fake", jobs=1, out=files / "out")
+    options = intent.Options(agents=("none", "frontier"), humans=words, suite="fake", jobs=1, out=files / "out")
     told: list[str] = []
 
     class Watcher(progress.Silent):
@@ -362,15 +364,15 @@ def test_each_people_is_a_run_of_its_own(files: Path):
 
     done = list(campaign.conduct(options, lambda _: Watcher()))
     assert [(one.plan.humans.name, one.plan.name) for one in done] == [
-        *(("pop", "silent"), ("pop", "frontier"), ("slow@pop", "silent"), ("slow@pop", "frontier")),
+        *(("pop", "none"), ("pop", "frontier"), ("slow@pop", "none"), ("slow@pop", "frontier")),
     ]
     assert [one.folder for one in done] == [files / "out" / one.plan.humans.name / one.plan.name for one in done]
     assert all(one.result.humans.valid for one in done)
     assert told == []
-    assert done[2].plan.folder_name.startswith("silent-fake-slow@pop-")
+    assert done[2].plan.folder_name.startswith("none-fake-slow@pop-")
     assert done[0].result.hashes.human != done[2].result.hashes.human
     whole = matrix.of([one.result for one in done])
-    assert whole.agents == ("silent", "frontier")
+    assert whole.agents == ("none", "frontier")
     assert set(whole.cells) == {"pop", "slow@pop"}
     assert whole.cells["pop"]["frontier"].adoption.n > 0
     assert whole.conclusions == ()
@@ -385,12 +387,12 @@ def test_each_people_is_a_run_of_its_own(files: Path):
 def test_the_bracket_says_what_becomes_of_each_conclusion(files: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(cast, "player", fakes.leaning_player)
     assert peoples.EXTREMES == bracket.ENDS
-    words, agents = (f"bracket@{files}/pop.npz", f"slow@{files}/pop.npz"), ("silent", "frontier")
+    words, agents = (f"bracket@{files}/pop.npz", f"slow@{files}/pop.npz"), ("none", "frontier")
     options = intent.Options(agents=agents, humans=words, suite="fake", jobs=1, out=files / "out")
     whole = matrix.of([one.result for one in campaign.conduct(options, lambda _: progress.Silent())])
     assert [ref.name for ref in whole.peoples] == ["greedy@pop", "random@pop", "pop", "slow@pop"]
     assert {(one.better, one.worse, one.metric, one.verdict) for one in whole.conclusions} == {
-        *(("frontier", "silent", metric, "flips") for metric in ("sr", "twsr"))
+        *(("frontier", "none", metric, "flips") for metric in ("sr", "twsr"))
     }
     for found in whole.conclusions:
         (middle, *ends) = found.gaps
@@ -416,14 +418,16 @@ def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
             told.append(text)
 
     options = intent.Options(
-        agents=("silent", "frontier"), humans=(f"{files}/pop.npz",), suite="fake", jobs=1, out=files / "out"
+        agents=("none", "frontier"), humans=(f"{files}/pop.npz",), suite="fake", jobs=1, out=files / "out"
     )
     done = list(campaign.conduct(options, lambda _: Watcher()))
-    assert told == ["'pop' was calibrated on the suite 'paper', not on 'fake'."]
+    assert told == [], "it is said at the end"
+    (said,) = report.notes([one.result for one in done])
+    assert said.startswith("note: the population pop was calibrated on the tasks of the suite paper, not on those of ")
     stored = json.loads((files / "out" / "frontier" / "result.json").read_bytes())
-    assert stored["schema"] == "hthor.result/5"
+    assert stored["schema"] == result_file.SCHEMA
     assert stored["humans"]["valid"] is False
-    assert stored["humans"]["notes"] == [told[0].rstrip(".")]
+    assert [one in said for one in stored["humans"]["notes"]] == [True]
     assert stored["humans"]["population_sha256"] == small().sha256
     assert setup.load(done[0].folder).humans == done[0].result.humans
     console = Console(record=True, width=150, file=io.StringIO())
@@ -439,7 +443,7 @@ def test_a_worker_finds_files_by_path(files: Path):
     (files / "mine.py").write_text('"""Mine."""\n' + model)
     suite = fakes.frozen("one", 1, tasks.suite("smoke").tasks[:1])
     found = people.find(f"{files}/mine.py@{files}/pop.npz")
-    (one,) = session.sessions(suite, agent="silent", human=found, participants=1)
+    (one,) = session.sessions(suite, agent="none", human=found, participants=1)
     code = (
         "import sys, msgspec\nfrom hthor.eval import cast\nfrom hthor.types import TrialSpec\n"
         "trial = msgspec.json.decode(sys.stdin.buffer.read(), type=TrialSpec)\n"
@@ -533,14 +537,14 @@ def test_sample_shows_whom_a_study_meets(hthor):
 
 @pytest.mark.usefixtures("fake")
 def test_eval_with_several_peoples_compares_them(hthor, files: Path):
-    words = ("eval", "--agent", "silent", "--agent", "frontier", "--suite", "fake", "--jobs", "1")
+    words = ("eval", "--agent", "none", "--agent", "frontier", "--suite", "fake", "--jobs", "1")
     names = ("pop", "slow@pop")
     whom = ("--humans", str(files / "pop.npz"), "--humans", f"slow@{files}/pop.npz", "--out", str(files / "out"))
     code, out, _ = hthor(*words, *whom, "--quiet")
     assert code == 0
     assert all(name in out for name in names)
     worst = [line for line in out.splitlines() if ": * worst with " in line or ": no people are worse off" in line]
-    assert [line.split(":")[0] for line in worst] == ["silent", "frontier"]
+    assert [line.split(":")[0] for line in worst] == ["no robot", "frontier"]
     code, out, _ = hthor(*words, *whom, "--quiet", "--json")  # the runs are there: only scored
     document = json.loads(out)
     assert document["schema"] == "hthor.eval/1"
@@ -549,6 +553,6 @@ def test_eval_with_several_peoples_compares_them(hthor, files: Path):
     assert [(ref["name"], ref["kind"]) for ref in told["peoples"]] == [("pop", ""), ("slow@pop", "slow")]
     results = [one["result"] for one in document["runs"]]
     assert [(one["humans"]["name"], one["name"]) for one in results] == [
-        (name, agent) for name in names for agent in ("silent", "frontier")
+        (name, agent) for name in names for agent in ("none", "frontier")
     ]
-    assert set(told["worst"]) == {"silent", "frontier"}
+    assert set(told["worst"]) == {"none", "frontier"}

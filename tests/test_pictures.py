@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 from pathlib import Path
 
 import cv2
+import msgspec
+import numpy as np
 import pytest
+from matplotlib.colors import to_rgba
 from matplotlib.text import Text
 
+from benchmarks import pictures
 from hthor import houses, tasks
-from hthor.episode import EpisodeLog
-from hthor.eval import picture, video
+from hthor.episode import EpisodeLog, Fault
+from hthor.eval import lettering, overhead, picture, plan, record, trace, video
+from hthor.eval.pages import ink
+from hthor.eval.pages.figures import trial_map
 from hthor.types import AgentRef, Event, RobotSeat, TrialSpec
 
 TASK = next(task for task in tasks.suite("smoke").tasks if task.kind == "mobile_manipulation")
@@ -64,8 +72,163 @@ def test_a_picture_names_rooms_target_times_and_messages(spec: TrialSpec, log: E
 
 
 def test_a_film_lasts_as_long_as_the_trial(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
-    path = tmp_path / "film.mp4"
+    path = tmp_path / "film.webm"
     video.write(path, spec, log, houses.load(TASK.house))
     film = cv2.VideoCapture(str(path))
     seconds = film.get(cv2.CAP_PROP_FRAME_COUNT) / film.get(cv2.CAP_PROP_FPS)
     assert seconds == pytest.approx(14.1 / video.SPEED + video.HOLD_S, abs=0.1)
+
+
+HOSTILE = r"$\frac{1}{$ <b>x</b> & a_b^2 $x$ 😀 \u202e"
+
+
+@pytest.fixture
+def failed(log: EpisodeLog) -> EpisodeLog:
+    """The robot's agent failed after 3.3 s; before, it sent a message at every tick that no formula is."""
+    sent = [
+        Event(tick=n, seat="robot", kind="sent", data={"message": n, "text": HOSTILE, "position": (1.0, 2.0, 0.5)})
+        for n in range(30)
+    ]
+    fault = Fault(seat="robot", kind="raised", tick=33, detail=HOSTILE)
+    return msgspec.structs.replace(log, events=(*sent, *log.events[-4:]), faults=(fault,))
+
+
+def test_words_of_agents_are_no_formulas(spec: TrialSpec, failed: EpisodeLog, tmp_path: Path) -> None:
+    house = houses.load(TASK.house)
+    for suffix in (".png", ".svg", ".pdf"):
+        lettering.save(picture.figure(spec, failed, house), tmp_path / f"x{suffix}")
+    one = record.of(spec, failed)
+    svg = ink.svg(trial_map.figure(one, house, None), "map", HOSTILE)
+    assert svg.startswith("<svg")
+    short = msgspec.structs.replace(failed, paths={seat: way[:3] for seat, way in failed.paths.items()})
+    video.write(tmp_path / "x.webm", spec, short, house)
+
+
+def test_no_picture_is_made_without_plain_words(root: Path) -> None:
+    """Whoever makes a figure of trials makes it where words stand as they are."""
+    for path in (root / "hthor" / "eval").rglob("*.py"):
+        text = path.read_text()
+        if "Figure(" in text.replace("-> Figure:", ""):
+            assert "lettering.plain()" in text or path.name == "ink.py", path
+        assert ".savefig(" not in text or path.name in ("lettering.py", "ink.py"), path
+
+
+def test_a_robot_that_failed_is_a_cross_and_its_way_ends_there(spec: TrialSpec, failed: EpisodeLog) -> None:
+    sheet = picture.figure(spec, failed, houses.load(TASK.house))
+    told = "\n".join(text.get_text() for text in sheet.findobj(Text))
+    assert told.count("raised at 3.3 s") == 2, "on the plan and along the clock"
+    assert "the agent failed at 3.3 s (raised)" in told
+    shade = to_rgba(trace.colour("robot"))[:3]
+    ways = [line for line in sheet.axes[0].lines if to_rgba(line.get_color())[:3] == shade]
+    last = trace.at(failed, "robot", 33)[0]
+    assert max(float(line.get_xdata()[-1]) for line in ways) <= last + 1e-9
+    assert trace.at(failed, "robot", 141)[0] > last + 1.0, "the body has gone on, in the log"
+
+
+def test_messages_that_would_hide_one_another_share_a_badge(spec: TrialSpec, failed: EpisodeLog) -> None:
+    sheet = picture.figure(spec, failed, houses.load(TASK.house))
+    sheet.canvas.draw()
+    for ax in sheet.axes[:2]:
+        boxes = [text.get_bbox_patch().get_window_extent() for text in ax.texts if text.get_bbox_patch() is not None]
+        assert boxes
+        for number, box in enumerate(boxes):
+            assert not any(box.overlaps(other) for other in boxes[number + 1 :])
+
+
+@pytest.mark.parametrize(
+    ("numbers", "words"),
+    [([3], "3"), ([1, 2], "1, 2"), ([1, 2, 3], "1–3"), ([1, 2, 3, 7], "1–3, 7"), ([1, 3, 5, 9], "1 … 9")],
+)
+def test_numbers_are_written_as_ranges(numbers: list[int], words: str) -> None:
+    assert trace.ranges(numbers) == words
+
+
+def test_a_badge_at_the_edge_takes_no_room_from_the_plan(spec: TrialSpec, log: EpisodeLog) -> None:
+    house = houses.load(TASK.house)
+    far = {seat: [(-300, y, yaw) for _, y, yaw in way] for seat, way in log.paths.items()}
+    wide = [picture.figure(spec, one, house) for one in (log, msgspec.structs.replace(log, paths=far))]
+    for sheet in wide:
+        sheet.canvas.draw()
+    first, second = (sheet.axes[0].get_position().width for sheet in wide)
+    assert first == pytest.approx(second)
+
+
+def test_a_rug_is_a_covering_of_the_floor_below_everything(spec: TrialSpec, log: EpisodeLog) -> None:
+    house = houses.load(TASK.house)
+    rugs = [thing for thing in house.things if plan.is_flat(thing)]
+    assert rugs
+    assert {thing.kind for thing in rugs} == {"rug"}
+    sheet = picture.figure(spec, log, house)
+    hatched = [patch for patch in sheet.axes[0].patches if patch.get_hatch()]
+    assert len(hatched) == len(rugs)
+    solid = [patch for patch in sheet.axes[0].patches if to_rgba(patch.get_facecolor()) == to_rgba("#d9d4cb")]
+    assert max(patch.get_zorder() for patch in hatched) < min(patch.get_zorder() for patch in solid)
+    assert "rug, flat" in [text.get_text() for text in sheet.findobj(Text)]
+
+
+def test_the_same_trial_gives_the_same_film(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
+    short = msgspec.structs.replace(log, paths={seat: way[:4] for seat, way in log.paths.items()})
+    for name in ("one", "two"):
+        video.write(tmp_path / f"{name}.webm", spec, short, houses.load(TASK.house))
+    one, two = ((tmp_path / f"{name}.webm").read_bytes() for name in ("one", "two"))
+    assert one == two
+    assert b"V_VP8" in one[:1000], "what browsers play"
+
+
+def test_a_films_words_lie_apart_from_the_plan(spec: TrialSpec, failed: EpisodeLog) -> None:
+    stage = video._Stage(spec, failed, houses.load(TASK.house))
+    frame = stage.draw(failed, 10)
+    height = frame.shape[0]
+    changed = np.argwhere((frame != stage.empty).any(axis=2))
+    words = changed[changed[:, 0] > video._CLOCK_Y - 30]
+    assert len(words)
+    strip = stage.empty[video._CLOCK_Y - 14 : video._MESSAGE_Y + 8]
+    assert (strip == 255).all(), "neither the scale nor the legend is written over"
+    assert words[:, 0].max() < height - 40
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
+def test_a_browser_plays_a_film(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
+    short = msgspec.structs.replace(log, paths={seat: way[:10] for seat, way in log.paths.items()})
+    video.write(tmp_path / "film.webm", spec, short, houses.load(TASK.house))
+    (tmp_path / "page.html").write_text(PAGE)
+    options = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=20000"]
+    options += [f"--user-data-dir={tmp_path / 'browser'}", "--dump-dom", f"file://{tmp_path / 'page.html'}"]
+    done = subprocess.run(["chromium", *options], capture_output=True, text=True, timeout=180, check=True)
+    assert "shows 960 x 800" in done.stdout
+
+
+PAGE = """<video id="film" muted src="film.webm"></video><p id="told">nothing</p><script>
+const film = document.getElementById("film"), told = document.getElementById("told");
+film.onerror = () => { told.textContent = "error " + film.error.code; };
+film.onloadeddata = () => { told.textContent = "shows " + film.videoWidth + " x " + film.videoHeight; };
+</script>"""
+
+
+def test_a_house_is_shown_with_its_rooms_and_a_scale() -> None:
+    house = houses.load(TASK.house)
+    bare = np.full((300, 320, 3), 128, np.uint8)
+    named = overhead.captioned(bare, house, (0.0, 0.0, 10.7, 10.0))
+    plain = overhead.captioned(bare, house, (0.0, 0.0, 10.7, 10.0), named=False)
+    assert named.shape == plain.shape == (334, 320, 3)
+    assert (plain[:300] == bare).all()
+    assert (named[:300] != bare).any()
+    scale = np.argwhere((plain[317] < 100).all(axis=1))[:, 0]
+    assert 25 <= sum(scale < 45) <= 36, "a metre is some thirty pixels"
+
+
+def test_pictures_of_the_docs_are_known_and_tell_when_they_are_old(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert set(pictures.problems(tmp_path)) == {f"{name}: is missing" for name in pictures.names()}
+    monkeypatch.setattr(pictures, "names", lambda: ["replay.png"])
+    monkeypatch.setattr(pictures, "_maker", lambda name: lambda path: path.write_bytes(b"drawn"))
+    pictures.make(["replay.png"], tmp_path)
+    assert pictures.problems(tmp_path) == []
+    (tmp_path / "replay.png").write_bytes(b"drawn by hand")
+    assert "is not the file that was made last" in pictures.problems(tmp_path)[0]
+    (tmp_path / "replay.png").write_bytes(b"drawn")
+    monkeypatch.setattr(pictures.rules, "sha256", lambda: "other rules")
+    assert "is out of date" in pictures.problems(tmp_path)[0]
+    (tmp_path / "other.png").write_bytes(b"")
+    assert pictures.problems(tmp_path)[-1] == "other.png: nothing makes it"

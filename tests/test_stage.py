@@ -250,3 +250,26 @@ def test_a_sheet_has_four_views_and_a_plan(drawn: World, monkeypatch: pytest.Mon
 def test_a_house_that_cannot_be_read_is_an_error(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert sheet.main([str(tmp_path / "none.json"), "--out", str(tmp_path)]) == 2
     assert "none.json" in capsys.readouterr().err
+
+
+def test_an_observation_is_of_one_profile(drawn: World) -> None:
+    drawn.teleport(HUMAN, AT_THE_FRIDGE)
+    senses, view = drawn.senses(HUMAN), drawn.look(HUMAN)
+    assert drawn.profile == "nice"
+    for mode in ("rgb", "depth", "segmentation"):
+        picture, other = drawn.picture(HUMAN, mode), drawn.picture(HUMAN, mode, profile="fast")
+        assert (getattr(senses, mode)() == picture).all()
+        assert (getattr(view, mode) == picture).all()
+        assert (picture != other).any()
+
+
+def test_labels_and_depth_end_where_colours_do(drawn: World) -> None:
+    drawn.teleport(HUMAN, Pose(x=4.3, y=3.4, yaw=-math.pi / 2, pitch=-0.9))
+    view = drawn.look(HUMAN, (192, 192), "nice")
+    grey, owner = view.rgb.astype(float).mean(axis=2), view.segmentation
+    across = owner[:, 1:] != owner[:, :-1]
+    steps = np.abs(np.diff(grey, axis=1))
+    assert steps[across].mean() > 3.0 * steps[~across].mean()
+    shifted = np.roll(across, 4, axis=1)
+    assert steps[across].mean() > 2.0 * steps[shifted & ~across].mean()
+    assert view.depth.max() <= 80.0

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import functools
+import sys
+from pathlib import Path
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmarks import worldfuzz
 from hthor.world import World
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from benchmarks import worldfuzz
 
 
 @functools.cache

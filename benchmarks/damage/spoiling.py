@@ -70,6 +70,8 @@ def change(data: bytes, dice: random.Random) -> bytes:
         return replace(data, dice)
     for _ in range(dice.choice((1, 1, 1, 3))):
         holder, name = dice.choice(places)
+        if isinstance(holder, list) and name >= len(holder):
+            continue
         how = dice.randrange(6)
         if how == 0 and isinstance(holder, dict):
             holder.pop(name, None)
@@ -82,8 +84,6 @@ def change(data: bytes, dice: random.Random) -> bytes:
         elif how == 4:
             other, key = dice.choice(places)
             holder[name] = other.get(key) if isinstance(other, dict) else None
-        elif isinstance(holder, list) and name >= len(holder):
-            continue
         else:
             holder[name] = dice.choice(VALUES)
     try:

@@ -105,6 +105,8 @@ def view_run(
         screen.put_line(f"{len(found.trials)} of {found.done} trials", shape)
     if result is not None and (not trials or shape is Format.TABLE):
         screen.put_rich(report.result_table(result), shape)
+        for note in report.notes([result]):
+            screen.put_line(note, shape)
     if found.done < found.total:
         screen.put_line(f"{found.done} of {found.total} trials are played; the numbers are of these.", shape)
     if result is not None and result.counts.faults:

@@ -45,6 +45,8 @@ def score(
         screen.put_rich(report.result_table(result, everything=everything), shape)
         if everything and len(result.by_kind) > 1:
             screen.put_rich(report.kinds_table(result), shape)
+    for note in report.notes([result]):
+        say(note)
     missing = plan.trials - result.counts.trials
     if missing:
         say(f"{missing} of {plan.trials} trials are missing, so this is no result yet and was not stored.")

@@ -18,12 +18,16 @@ _ALIASES = ("tall", "small")
 
 def agents() -> list[str]:
     """Built-in minds."""
-    return _stems("agents", "py")
+    return sorted("none" if name == "silent" else name for name in _stems("agents", "py"))
 
 
 def people() -> list[str]:
     """Populations, kinds of people, human models, and the words for several."""
-    files = (*_stems("humans/populations", "json"), *_stems("humans/kinds", "json"), *_stems("humans/models", "py"))
+    files = (
+        *("study" if name == "paper" else name for name in _stems("humans/populations", "json")),
+        *_stems("humans/kinds", "json"),
+        *_stems("humans/models", "py"),
+    )
     return sorted({*files, "literature", "kinds", "bracket"})
 
 

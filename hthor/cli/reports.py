@@ -21,7 +21,7 @@ def report(
     out: Annotated[Path, typer.Option(help="The report's folder.")] = Path("report"),
     json: Json = False,
 ) -> None:
-    """Tell of runs of one suite on one page: results against no robot and the paper, figures, best and worst trials.
+    """Tell of runs of one suite on one page: results against no robot and the article, figures, best and worst trials.
 
     Writes report.html, which needs nothing else, report.json with every number, and figures/*.svg. Runs of several
     peoples make a section by kind of person; the rest is of the first run's people. Nothing is simulated.

@@ -291,7 +291,9 @@ def evaluate(
     if len(done) > 1:
         for one in done:
             whose = f", {one.plan.humans.name} people" if whole is not None else ""
-            _say(paper, f"{one.plan.name}{whose}: {one.folder}/")
+            _say(paper, f"{one.plan.label}{whose}: {one.folder}/")
+    for note in report.notes(results):
+        _say(paper, note)
     if json:
         held = tuple(evaluation.Evaluated(folder=str(one.folder), result=one.result) for one in done)
         screen.put_json(evaluation.Evaluation(runs=held, peoples=whole))

@@ -35,6 +35,8 @@ def merge(
         from hthor.eval import report
 
         screen.console().print(report.result_table(done.result))
+        for note in report.notes([done.result]):
+            screen.put_line(note)
     talk = screen.console(talk=True)
 
     def say(text: str) -> None:

@@ -184,7 +184,8 @@ def make_suite(
     if json:
         screen.put_json({"suite": str(path), "name": recipe.name, "tasks": total, "houses": len(given)})
         return
-    sys.stdout.write(f"{path}: {total} tasks in {len(given)} houses, each proved\n")
+    where = f"{len(given)} houses" if len(given) > 1 else "one house"
+    sys.stdout.write(f"{path}: {total} tasks in {where}, each proved\n")
     sys.stdout.write(f"next:  {command}\n")
 
 

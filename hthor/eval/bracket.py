@@ -129,7 +129,7 @@ def _conclusion(runs: Sequence[Result], pair: tuple[int, int], metric: str, gaps
         helps=helps,
         verdict=verdict,
         gaps=gaps,
-        sentence=_sentence(better.name, worse.name, METRICS[metric], helps, verdict, gaps),
+        sentence=_sentence(better.label, worse.label, METRICS[metric], helps, verdict, gaps),
     )
 
 

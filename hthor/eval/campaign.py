@@ -103,7 +103,7 @@ def _perform(
 ) -> Result:
     """One run. What was ``told`` of an earlier one is not told again."""
     crew, plan, folder = part.crew, part.plan, part.folder
-    for note in (*chosen.notes, *(f"{note}." for note in plan.humans.notes)):
+    for note in chosen.notes:
         if note not in told:
             told.add(note)
             watch.note(note)

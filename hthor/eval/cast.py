@@ -68,6 +68,7 @@ class Stage:
         self._sources = sources or Sources()
         self._worlds: dict[object, World] = {}
         self._people: People | None = None
+        self._seen: dict[str, tuple[File, ...]] = {}  # what agents opened and their manifests do not list, by seat
         garbage.release_with(self)
         if self._sources.houses:
             from hthor import houses
@@ -142,7 +143,7 @@ class Stage:
         for seat, mind in company.minds.items():
             if isinstance(mind, Watched) and seat in self._sources.manifests:
                 identity.check(self._sources.manifests[seat], mind.mind.grounds)
-                identity.examine(company.opened.get(seat, ()), mind.mind.grounds)
+                identity.examine(self._seen.get(seat, ()), mind.mind.grounds)
 
     def _opened(self, company: Company) -> dict[str, tuple[File, ...]]:
         """What agents opened of their own in the trial that was played, and no manifest lists."""
@@ -152,7 +153,7 @@ class Stage:
                 known, grounds = self._sources.manifests[seat], mind.mind.grounds
                 if files := identity.later(mind.mind.take_opened(), known, grounds, mind.mind.reference.path):
                     found[seat] = files
-                    company.opened[seat] = tuple(sorted({*company.opened.get(seat, ()), *files}))
+                    self._seen[seat] = tuple(sorted({*self._seen.get(seat, ()), *files}))
         return found
 
     def _persons(self, trial: TrialSpec) -> People:
@@ -207,17 +208,13 @@ def _changed(path: str) -> str:
 
 
 class Company:
-    """One session's person and minds. Use as a context manager: guests are processes and must be let go.
-
-    ``opened`` are files that agents have opened in trials so far and that their manifests do not list, by seat.
-    """
+    """One session's person and minds. Use as a context manager: guests are processes and must be let go."""
 
     def __init__(self, human: HumanModel, seats: Sequence[RobotSeat], make: Callable[[RobotSeat], Mind]) -> None:
         self.human: Any = human
         self._seats = tuple(seats)
         self._make = make
         self._minds: dict[str, Mind] = {}
-        self.opened: dict[str, tuple[File, ...]] = {}
 
     def __enter__(self) -> Company:
         return self

@@ -10,6 +10,7 @@ import msgspec
 
 from hthor import cameras
 from hthor.detectors import OWN
+from hthor.eval.crews import NOBODY
 from hthor.eval.setup import PROCEDURAL, Setup
 from hthor.eval.shard import whole_folder
 from hthor.guest import Manifest
@@ -17,8 +18,6 @@ from hthor.types import AgentRef, RobotSeat
 
 OURS = "hthor.agents."
 """Where built-in agents come from."""
-NO_ROBOT = "silent"
-"""The agent that stands for no robot."""
 
 
 def of(folder: Path, plan: Setup, out: Path | None = None) -> str:
@@ -75,7 +74,7 @@ def near(path: Path) -> Path:
 
 def alone(plan: Setup) -> str:
     """The command that plays the same people at the same tasks without a robot."""
-    nobody = RobotSeat(seat="", robot="", agent=AgentRef(name=NO_ROBOT, source=f"{OURS}{NO_ROBOT}", sha256=""))
+    nobody = RobotSeat(seat="", robot="", agent=AgentRef(name=NOBODY, source=f"{OURS}{NOBODY}", sha256=""))
     return of(Path(), msgspec.structs.replace(plan, robots=(nobody,), realtime=msgspec.UNSET)).removesuffix(" --out .")
 
 

@@ -152,7 +152,7 @@ def pairs(read_: Sequence[Read]) -> tuple[Comparison, ...]:
 def read(folders: Sequence[Path]) -> tuple[Read, ...]:
     """The runs in these folders, scored anew from their events, with a name each."""
     held = [(folder, *score.measured(folder)) for folder in folders]
-    names = [plan.name for _, plan, _ in held]
+    names = [plan.label for _, plan, _ in held]
     distinct = _names(names, folders)
     return tuple(
         Read(name=name, folder=folder, plan=plan, records=tuple(records))

@@ -12,19 +12,19 @@ from hthor.errors import RunError
 from hthor.eval import log, metrics, pairing, result_file, setup, uplift
 from hthor.eval.record import Record
 from hthor.eval.setup import Setup
-from hthor.eval.uplift import Uplift
+from hthor.eval.uplift import Kept, Uplift
 
 FOLDER = "control"
 """Where a run keeps a control of its own."""
 
 
-def beside(folder: Path, plan: Setup, records: Sequence[Record]) -> Uplift | None:
+def beside(folder: Path, plan: Setup, records: Sequence[Record]) -> Kept | None:
     """What the run in a folder adds over its control.
 
     Where no control is at hand, as in a folder that was copied elsewhere, what the run's result has recorded is kept,
     with a note. None where that has nothing either, or the run has no robot.
     """
-    return measure(folder, plan, records) or _recorded(folder, plan)
+    return uplift.kept(measure(folder, plan, records)) or _recorded(folder, plan)
 
 
 def measure(folder: Path, plan: Setup, records: Sequence[Record]) -> Uplift | None:
@@ -46,7 +46,7 @@ def place(folder: Path, plan: Setup) -> Path | None:
     return next((candidate for candidate, _, _ in _whole(folder, plan, _anywhere(folder))), None)
 
 
-def _recorded(folder: Path, plan: Setup) -> Uplift | None:
+def _recorded(folder: Path, plan: Setup) -> Kept | None:
     """The uplift that stands in the run's result already."""
     if not plan.seats:
         return None

@@ -18,9 +18,9 @@ from hthor.guest.manifest import Manifest
 from hthor.types import AgentRef, RobotSeat
 
 ALIASES = {"tall": "tender", "small": "puck"}
-"""Other words for robots: what the paper's figure calls them."""
-MIND_ALIASES = {"none": "silent"}
-"""Other words for minds: what the paper calls the condition."""
+"""Other words for robots: what the article's figure calls them."""
+NOBODY, NO_ROBOT = "none", "no robot"
+"""The agent that stands for no robot, and what tables and sentences call it."""
 _EXAMPLE = "--robots tall:oracle,small:frontier"
 
 
@@ -208,16 +208,22 @@ def introduce(agent: str) -> Character:
         UnknownName: when it is neither.
         AgentError: when it does not load.
     """
-    name = MIND_ALIASES.get(agent, agent)
+    name = plugins.called("agent", agent)
     return _own(name) if name in plugins.names("agent") else _guest(agent)
+
+
+def label(name: str, robots: Sequence[RobotSeat]) -> str:
+    """What tables and sentences call a run: its name, or "no robot" where it has none and nobody named it."""
+    nobody = not any(robot.seat for robot in robots)
+    return NO_ROBOT if nobody and name in (NOBODY, *(robot.agent.name for robot in robots)) else name
 
 
 def _own(name: str) -> Character:
     made: Any = plugins.load("agent", name)
-    file = Path(plugins.__file__).with_name("agents") / f"{name}.py"
+    file = Path(plugins.__file__).with_name("agents") / f"{plugins.stem('agent', name)}.py"
     ref = AgentRef(
         name=name,
-        source=f"hthor.agents.{name}",
+        source=f"hthor.agents.{plugins.stem('agent', name)}",
         sha256=hashlib.sha256(file.read_bytes()).hexdigest(),
         privileges=tuple(getattr(made, "privileges", ())),
     )

@@ -115,7 +115,7 @@ def settle(options: Options) -> Intent:
 
 def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dict[Path, Part]:
     """For the folder of each run with robots that has no control yet, the run that is its control."""
-    crew = crews.form(["scout"], ["silent"])
+    crew = crews.form(["scout"], [crews.NOBODY])
     found: dict[Path, Part] = {}
     for part in parts:
         if not part.plan.seats or control.find(part.folder, part.plan) is not None:
@@ -142,7 +142,7 @@ def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dic
             folder = RUNS / plan.folder_name
         else:
             folder = part.folder / control.FOLDER if len(same) == 1 else part.folder.parent / plan.crew
-        title = part.title.replace(part.plan.name, "control, no robot", 1)
+        title = part.title.replace(part.plan.name, crews.NO_ROBOT, 1)
         found[part.folder] = Part(crew=crew, people=part.people, plan=plan, folder=folder, title=title)
     return found
 

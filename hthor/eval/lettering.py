@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import matplotlib as mpl
 from matplotlib.figure import Figure
@@ -27,7 +27,7 @@ def plain() -> Iterator[None]:
         yield
 
 
-def save(made: Figure, path: Path, **more: Any) -> None:
+def save(made: Figure, where: Path | IO[bytes], **more: Any) -> None:
     """Write a figure to a file."""
     with plain():
-        made.savefig(path, **more)
+        made.savefig(where, **more)

@@ -46,7 +46,8 @@ def captioned(picture: Any, house: HouseSpec, bounds: tuple[float, float, float,
     strip.plot((x0 + edge, x0 + edge + 1.0), (0.5, 0.5), color=trace.INK, lw=2.0, solid_capstyle="butt")
     strip.text(x0 + 1.6 * edge + 1.0, 0.5, "1 m", va="center", fontsize=9, color=trace.INK)
     if wide > 160 + _TITLE_CHARACTERS * len(house.id):
-        words = f"{house.id}, {x1 - x0:.1f} × {y1 - y0:.1f} m"
+        xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
+        words = f"{house.id}, {max(xs) - min(xs):.1f} × {max(ys) - min(ys):.1f} m"
         strip.text(x1 - edge, 0.5, words, ha="right", va="center", fontsize=9, color=trace.INK)
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()

@@ -11,7 +11,7 @@ from msgspec import Struct
 from hthor import plugins, rules
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.crews import Crew, Shape
-from hthor.humans import kinds, people, registry
+from hthor.humans import kinds, people, population_file, registry
 from hthor.humans.people import People
 from hthor.humans.population import Validity
 from hthor.tasks import Suite
@@ -92,7 +92,7 @@ def refer(found: People, suite: Suite, crew: Crew) -> HumansRef:
         source=re.sub(r"(^|[:@])[^:@]*/", r"\1", found.word),
         model=Path(found.model).stem if found.model.endswith(".py") else found.model,
         kind=found.kind.name if found.kind is not None else "",
-        population=found.population.name if drawn else "",
+        population=population_file.called(found.population.name) if drawn else "",
         population_sha256=found.population.sha256 if drawn else "",
         sha256=found.sha256,
         valid=not notes,
@@ -121,16 +121,16 @@ def _find(word: str) -> People:
 
 def _differences(found: People, suite: Suite, crew: Crew) -> Iterator[str]:
     """What is other than where the population was fitted, a sentence each."""
-    name, its = found.population.name, found.population.validity
+    name, its = f"the population {population_file.called(found.population.name)}", found.population.validity
     if not its.suite_sha256:
-        yield f"'{name}' was fitted to no data: every parameter is drawn from its prior"
+        yield f"{name} was fitted to no data: every parameter is drawn from its prior"
     elif its.suite_sha256 != suite.sha256:
-        again = "other tasks" if suite.name == its.suite else f"'{suite.name}'"
-        yield f"'{name}' was calibrated on the suite '{its.suite}', not on {again}"
+        again = "other tasks" if suite.name == its.suite else f"those of the suite {suite.name}"
+        yield f"{name} was calibrated on the tasks of the suite {its.suite}, not on {again}"
     yield from _versions(name, its)
     if found.population.missing:
         listed = ", ".join(found.population.missing)
-        yield f"'{name}' was made before there was {listed}; defaults stand in"
+        yield f"{name} was made before there was {listed}; defaults stand in"
     yield from _robots(name, its.settings, crew)
 
 
@@ -138,9 +138,9 @@ def _versions(name: str, its: Validity) -> Iterator[str]:
     pairs = (("world", its.simulation, rules.SIMULATION), ("proxy's mind", its.mind, registry.MIND))
     for what, then, now in pairs:
         if then != now:
-            yield f"'{name}' was calibrated with version {then} of the {what}, this is version {now}"
+            yield f"{name} was calibrated with version {then} of the {what}, this is version {now}"
     if its.simulation == rules.SIMULATION and its.rules_sha256 != rules.sha256():
-        yield f"'{name}' was calibrated under other constants of the benchmark"
+        yield f"{name} was calibrated under other constants of the benchmark"
 
 
 def _robots(name: str, its: dict[str, str | float], crew: Crew) -> Iterator[str]:
@@ -152,7 +152,7 @@ def _robots(name: str, its: dict[str, str | float], crew: Crew) -> Iterator[str]
         other = [key for key in here if key in its and its[key] != here[key]]
         if other:
             told = ", ".join(f"{key} {_short(its[key])}, not {_short(here[key])}" for key in other)
-            yield f"'{name}' was calibrated with another robot: {told}"
+            yield f"{name} was calibrated with another robot: {told}"
 
 
 def _short(value: str | float) -> str:

@@ -228,30 +228,31 @@ def handles(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool 
     Args:
         moving: whether it is for a film, which has no marks for starts, ends, deeds and messages.
     """
-    handles: list[Artist] = [_line(trace.PERSON, "person")]
-    handles += [_line(trace.colour(robot.seat), trace.who(robot)) for robot in spec.robots]
-    handles += [
-        _mark("o", "white", "start", edge="#555555"),
-        _mark("o", "#555555", "end"),
-        _mark("*", trace.TARGET, "target at the start", size=9),
-    ]
-    if any(job.place is not None for job in spec.task.goal.todo):
-        handles.append(_mark("*", "white", "where it belongs", edge=trace.TARGET, size=8))
+    found: list[Artist] = [_line(trace.PERSON, "person")]
+    found += [_line(trace.colour(robot.seat), trace.who(robot)) for robot in spec.robots]
+    if not moving:
+        found += [_mark("o", "white", "start", edge="#555555"), _mark("o", "#555555", "end")]
+    found.append(_mark("*", trace.TARGET, "target at the start", size=9))
+    if any(job.place is not None for job in spec.task.goal.todo) and not moving:
+        found.append(_mark("*", "white", "where it belongs", edge=trace.TARGET, size=8))
     if trace.destinations(spec, house):
-        handles.append(_mark("s", plan.MARKED, "destination", edge=plan.MARKED_EDGE))
-    if trace.messages(log):
-        handles += [
-            _mark("o", shade, f"message, {word}", size=7)
-            for shade, word in ((trace.MESSAGE, "confirmed"), (trace.IDLE_MESSAGE, "not confirmed"))
-            if shade in {trace.tint(log, event) for event in trace.messages(log)}
-        ]
-    present = {event.kind for event in log.events}
+        found.append(_mark("s", plan.MARKED, "destination", edge=plan.MARKED_EDGE))
+    if moving and trace.messages(log):
+        found.append(_mark("o", "none", "where a message says it is", edge=trace.MESSAGE, size=9))
     if log.faults:
-        handles.append(_mark("X", trace.FAILED, "the agent failed", size=8))
+        found.append(_mark("X", trace.FAILED, "the agent failed", size=8))
     if any(plan.is_flat(thing) for thing in house.things):
-        handles.append(Patch(facecolor=plan.RUG, edgecolor=plan.RUG_EDGE, hatch=plan.RUG_HATCH, label="rug, flat"))
-    handles += [_mark(mark, "#555555", f"{verb}") for kind, (mark, verb) in trace.ACTS.items() if kind in present]
-    return handles
+        found.append(Patch(facecolor=plan.RUG, edgecolor=plan.RUG_EDGE, hatch=plan.RUG_HATCH, label="rug, flat"))
+    return found if moving else [*found, *_marks(log)]
+
+
+def _marks(log: EpisodeLog) -> list[Artist]:
+    """What stands for messages and deeds."""
+    shades = {trace.tint(log, event) for event in trace.messages(log)}
+    words = {trace.MESSAGE: "confirmed", trace.IDLE_MESSAGE: "not confirmed"}
+    found: list[Artist] = [_mark("o", shade, f"message, {words[shade]}", size=7) for shade in words if shade in shades]
+    present = {event.kind for event in log.events}
+    return found + [_mark(mark, "#555555", verb) for kind, (mark, verb) in trace.ACTS.items() if kind in present]
 
 
 def _line(shade: str, label: str) -> Line2D:

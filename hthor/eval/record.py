@@ -10,6 +10,7 @@ from msgspec import Struct
 
 from hthor import documents, jsonio
 from hthor.episode import EpisodeLog, Fault
+from hthor.eval import event_data
 from hthor.eval.metrics import TrialMetrics, measure
 from hthor.guest.manifest import File
 from hthor.types import Event, TrialSpec
@@ -91,6 +92,7 @@ def decode(line: bytes) -> Record:
         raise Damaged("check", f"{check[10:18].decode('ascii', 'replace')} is not the line's checksum")
     if record.key != key(record.spec):
         raise Damaged("key", f"'{record.key}' is not the key of the trial in 'spec', '{key(record.spec)}'")
+    event_data.check(record.events)
     return record
 
 

@@ -6,16 +6,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from hthor.eval.contrast import Difference
+from hthor.eval.crews import NO_ROBOT, NOBODY
 from hthor.eval.result_file import Result, Scores
 from hthor.eval.setup import REALTIME
 from hthor.eval.stats import Estimate
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
     from rich.table import Table
 
     from hthor.eval.matrix import Matrix
-    from hthor.eval.peoples import HumansRef
 
 Row = tuple[str, str, Estimate]
 """Title, unit and value."""
@@ -54,13 +53,13 @@ MAIN = tuple(name for name, _, _ in _MAIN)
 """The metrics that every table of results has."""
 
 
-def result_table(result: Result, *, everything: bool = False) -> RenderableType:
+def result_table(result: Result, *, everything: bool = False) -> Table:
     """One run: a row a metric.
 
     Args:
         everything: with all that is counted, not only the main metrics.
     """
-    title = f"{result.name}: {result.suite.name}, {result.counts.trials} trials, {result.humans.name} people"
+    title = f"{result.label}: {result.suite.name}, {result.counts.trials} trials, {result.humans.name} people"
     table = _table(title + (", in real time" if result.mode == REALTIME else ""))
     for heading in ("mean", "95 % interval", "could have seen", "trials"):
         table.add_column(heading, justify="right", overflow="fold")
@@ -74,13 +73,26 @@ def result_table(result: Result, *, everything: bool = False) -> RenderableType:
         ends = "–" if gain.ci95 is None else " … ".join(_gain(end, unit) for end in gain.ci95)
         seen = least(gain.mde80, 100.0 if unit == "points" else 1.0, room=unit == "points")
         table.add_row(f"uplift: {title}", f"{_gain(gain.difference, unit)} {unit}", ends, seen, str(gain.n))
-    notes = [f"uplift: {result.uplift.note}"] if result.uplift and result.uplift.note else []
-    return _doubted(table, [result.humans], notes)
+    return table
+
+
+def notes(results: Iterable[Result]) -> Iterator[str]:
+    """What a reader of these results' tables has to know beside their numbers, each thing once."""
+    held = list(results)
+    outside = dict.fromkeys(note for result in held for note in result.humans.notes)
+    if outside:
+        yield (
+            f"note: {'; '.join(outside)}. Robots can be compared with each other; absolute figures are less certain "
+            "than their intervals."
+        )
+    for result in held:
+        if result.uplift is not None and result.uplift.note:
+            yield f"note: uplift of {result.label}: {result.uplift.note}."
 
 
 def kinds_table(result: Result) -> Table:
     """One run of several kinds of task: a column a kind, the main metrics with their intervals below."""
-    table = _table(f"{result.name}: by kind of task (95 % interval)")
+    table = _table(f"{result.label}: by kind of task (95 % interval)")
     for kind in result.by_kind:
         table.add_column(kind.replace("_", " "), justify="right", overflow="fold")
     for name, title, unit in _MAIN:
@@ -90,13 +102,13 @@ def kinds_table(result: Result) -> Table:
     return table
 
 
-def comparison_table(results: Sequence[Result]) -> RenderableType:
+def comparison_table(results: Sequence[Result]) -> Table:
     """Several runs: a column a run, the mean with its interval below."""
     first = results[0]
     title = f"{first.suite.name}, {first.counts.trials} trials, {first.humans.name} people (95 % interval)"
     table = _table(title)
     for result in results:
-        table.add_column(result.name, justify="right", overflow="fold")
+        table.add_column(result.label, justify="right", overflow="fold")
     for name, title, unit in _MAIN:
         estimates = [getattr(result.metrics, name) for result in results]
         if any(estimate.n for estimate in estimates) or name not in _ONLY_WHERE_KNOWN:
@@ -105,13 +117,13 @@ def comparison_table(results: Sequence[Result]) -> RenderableType:
         table.add_row("uplift of success", *(_uplift_cell(result) for result in results))
     if any(result.counts.faults for result in results):
         table.add_row("trials with a fault", *(str(result.counts.faults) for result in results))
-    return _doubted(table, [result.humans for result in results])
+    return table
 
 
-def peoples_table(matrix: Matrix) -> RenderableType:
+def peoples_table(matrix: Matrix) -> Table:
     """Agents with several peoples: a row a people, three columns an agent, the worst of each agent marked."""
     table = _table(f"{matrix.suite.name}, {matrix.trials} trials with each people")
-    for agent in matrix.agents:
+    for agent in map(_called, matrix.agents):
         for heading in (f"{agent}\nsuccess %", "\nTWSR %", "\nadoption %"):
             table.add_column(heading, justify="right", overflow="fold")
     for people in matrix.peoples:
@@ -121,17 +133,22 @@ def peoples_table(matrix: Matrix) -> RenderableType:
             mark = "*" if worst is not None and people.name in worst.peoples else ""
             cells += [mark + _bare(cell.sr), _bare(cell.twsr), _bare(cell.adoption)]
         table.add_row(people.name, *cells)
-    return _doubted(table, matrix.peoples)
+    return table
 
 
 def worst_lines(matrix: Matrix) -> Iterator[str]:
     """With whom each agent fares worst, a line an agent."""
-    for agent, worst in matrix.worst.items():
+    for name, worst in matrix.worst.items():
+        agent = _called(name)
         rate, behind = f"{worst.sr * 100.0:.1f} %", f"{worst.behind * 100.0:.1f} points"
         if worst.base in worst.peoples:
             yield f"{agent}: no people are worse off than {worst.base}, success {rate}"
         else:
             yield f"{agent}: * worst with {', '.join(worst.peoples)}: success {rate}, {behind} below {worst.base}"
+
+
+def _called(agent: str) -> str:
+    return NO_ROBOT if agent == NOBODY else agent
 
 
 def _bare(estimate: Estimate) -> str:
@@ -196,16 +213,6 @@ def _uplift_cell(result: Result) -> str:
 
 def _scaled(value: float, unit: str) -> str:
     return f"{value * 100.0:.1f}" if unit == "%" else f"{value:.1f}"
-
-
-def _doubted(table: Table, whom: Iterable[HumansRef], more: Sequence[str] = ()) -> RenderableType:
-    """The table, and below it where these people are not known to fit, and what ``more`` there is to know."""
-    from rich.console import Group
-    from rich.text import Text
-
-    notes = dict.fromkeys(note for people in whom for note in people.notes)
-    said = [*([f"not calibrated for this: {'; '.join(notes)}"] if notes else []), *more]
-    return Group(table, *map(Text, said)) if said else table
 
 
 def _table(title: str) -> Table:

@@ -9,11 +9,11 @@ from msgspec import Struct
 
 from hthor import documents, jsonio
 from hthor.errors import RunError
-from hthor.eval import setup
+from hthor.eval import crews, setup
 from hthor.eval.peoples import HumansRef
 from hthor.eval.setup import AssetsRef, KindRef, SuiteRef
 from hthor.eval.stats import Estimate
-from hthor.eval.uplift import Uplift
+from hthor.eval.uplift import Kept
 from hthor.guest import Isolation, Manifest
 from hthor.types import RobotSeat
 
@@ -115,13 +115,18 @@ class Result(Struct, frozen=True, kw_only=True):
     metrics: Scores
     by_kind: dict[str, Scores]
     trust_by_trial: tuple[Estimate, ...] = ()
-    uplift: Uplift | None = None
+    uplift: Kept | None = None
     counts: Counts
     versions: dict[str, str]
     hashes: Hashes
     assets: AssetsRef
     isolation: Isolation | None = None
     effort: Effort | None = None
+
+    @property
+    def label(self) -> str:
+        """What to call the run in tables and sentences."""
+        return crews.label(self.name, self.robots)
 
 
 def load(folder: Path) -> Result | None:
@@ -145,10 +150,10 @@ class _Gained(Struct, frozen=True):
     """The part of a result that `uplift` reads, whatever the version of the rest."""
 
     hashes: _Named = _Named()
-    uplift: Uplift | None = None
+    uplift: Kept | None = None
 
 
-def uplift(folder: Path, *, run: str) -> Uplift | None:
+def uplift(folder: Path, *, run: str) -> Kept | None:
     """The uplift that a run's result has recorded, whatever its version; None where it has none for this run's hash."""
     try:
         held = msgspec.json.decode((folder / "result.json").read_bytes(), type=_Gained)

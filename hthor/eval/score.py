@@ -17,7 +17,7 @@ from hthor.eval.record import Record
 from hthor.eval.result_file import Counts, Effort, Hashes, Result, Scores
 from hthor.eval.setup import Setup
 from hthor.eval.stats import Estimate
-from hthor.eval.uplift import Uplift
+from hthor.eval.uplift import Uplift, kept
 from hthor.guest import Isolation
 
 
@@ -58,7 +58,7 @@ def summarise(
         metrics=whole,
         by_kind=by_kind,
         trust_by_trial=by_trial(records),
-        uplift=uplift,
+        uplift=kept(uplift),
         counts=Counts(
             trials=len(records),
             tasks=len({record.spec.task.id for record in records}),

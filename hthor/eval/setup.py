@@ -125,6 +125,11 @@ class Setup(Struct, frozen=True, kw_only=True):
         return self.title or self.crew
 
     @property
+    def label(self) -> str:
+        """What tables and sentences call the run."""
+        return crews.label(self.name, self.robots)
+
+    @property
     def crew(self) -> str:
         """What to call the robots and their minds."""
         return crew_name(self.robots)

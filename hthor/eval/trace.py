@@ -11,6 +11,7 @@ from msgspec import Struct
 
 from hthor import rules
 from hthor.episode import EpisodeLog, Fault
+from hthor.errors import RunError
 from hthor.types import HUMAN, Event, HouseSpec, Job, Placement, RobotSeat, TrialSpec, Vec2
 
 if TYPE_CHECKING:
@@ -80,14 +81,27 @@ def colour(seat: str) -> str:
 
 def points(log: EpisodeLog, seat: str) -> np.ndarray:
     """(N, 2) [m], where the seat was at every logged tick."""
-    return np.array(log.paths[seat], dtype=float)[:, :2] / 1000.0
+    return np.array(_path(log, seat), dtype=float)[:, :2] / 1000.0
 
 
 def at(log: EpisodeLog, seat: str, tick: int) -> Vec2:
     """Where the seat was at ``tick`` [m], to the nearest logged pose."""
-    path = log.paths[seat]
+    path = _path(log, seat)
     x, y, _ = path[min(tick // rules.LOG_EVERY_TICKS, len(path) - 1)]
     return (x / 1000.0, y / 1000.0)
+
+
+def _path(log: EpisodeLog, seat: str) -> list[tuple[int, int, int]]:
+    """Where the seat was.
+
+    Raises:
+        RunError: when the log does not say, as one that was changed by hand.
+    """
+    if not (path := log.paths.get(seat)):
+        raise RunError(
+            f"the trial's record has no path of '{seat}', so the trial cannot be drawn; 'hthor score' can do."
+        )
+    return path
 
 
 def messages(log: EpisodeLog) -> list[Event]:

@@ -17,15 +17,30 @@ RECORDED = "the control's log was not at hand; these are the numbers that were r
 class Uplift(Struct, frozen=True, kw_only=True):
     """The run less its control, trial by trial: the same people, on the same days, at the same tasks.
 
-    ``control`` is the hash of the control's configuration, as its result has it in ``hashes.run``. ``note`` is there
-    only where the control's log was not at hand when the run was scored, so that the numbers are the recorded ones.
+    ``control`` is the hash of the control's configuration, as its result has it in ``hashes.run``.
     """
 
     control: str
     sr: Difference
     twsr: Difference
     time_s: Difference
+
+
+class Kept(Uplift, frozen=True, kw_only=True):
+    """An uplift as a run's result has it.
+
+    ``note`` is there only where the control's log was not at hand when the run was scored, so that the numbers are the
+    recorded ones.
+    """
+
     note: str | msgspec.UnsetType = msgspec.UNSET
+
+
+def kept(one: Uplift | None) -> Kept | None:
+    """The same as a result has it."""
+    if one is None or isinstance(one, Kept):
+        return one
+    return Kept(control=one.control, sr=one.sr, twsr=one.twsr, time_s=one.time_s)
 
 
 def over(control: Sequence[Record], records: Sequence[Record], *, run: str) -> Uplift | None:

@@ -100,7 +100,7 @@ class _Stage:
         ax = sheet.add_axes(_PLAN)
         plan.draw_house(ax, house, marked=trace.destinations(spec, house))
         sheet.text(0.015, 0.985, picture.headline(spec, log), fontsize=11, color=trace.INK, va="top")
-        handles = picture.handles(spec, log, house)
+        handles = picture.handles(spec, log, house, moving=True)
         sheet.legend(handles=handles, loc="lower left", ncols=6, fontsize=8, frameon=False, columnspacing=1.2)
         canvas.draw()
         self.empty: Any = cv2.cvtColor(np.asarray(canvas.buffer_rgba()), cv2.COLOR_RGBA2BGR)

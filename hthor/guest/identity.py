@@ -24,6 +24,7 @@ from hthor.types import BodySpec, Briefing
 
 _SKIPPED = (".git", "runs", "__pycache__")
 _RUN = "run.json"
+_MOST_READABLE = 20_000
 
 
 def settle(guest: Guest, name: str) -> Manifest:
@@ -180,15 +181,22 @@ def _readable(grounds: Grounds) -> Iterator[str]:
         if os.path.isfile(place):
             yield place
             continue
-        hidden = _hidden(place)
+        hidden, count = _hidden(place), 0
         for folder, inner, names in os.walk(place):
             inner[:] = sorted(
                 name for name in inner if name not in _SKIPPED and not os.path.isfile(os.path.join(folder, name, _RUN))
             )
             for name in sorted(names):
                 path = os.path.join(folder, name)
-                if os.path.isfile(path) and not grounds.owns(path) and not _below_any(path, hidden):
-                    yield path
+                if not os.path.isfile(path) or _below_any(path, hidden):
+                    continue
+                count += 1
+                if count > _MOST_READABLE:
+                    raise AgentError(
+                        f"--readable {place} has more than {_MOST_READABLE} files, all of which would be part of the "
+                        "agent. Name the folders or files in there that it needs."
+                    )
+                yield path
 
 
 def _hidden(folder: str, agent: str = "") -> list[str]:

@@ -16,6 +16,7 @@ from hthor.guest.confinement.kernel import Refused
 
 _OURS = ("PYTHONPATH", "PYTHONHASHSEED", "PYTHONDONTWRITEBYTECODE", "NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
 _FRAMES = 3
+_MOST_FOLDERS = 1000
 
 
 def become(words: Sequence[str], folder: str, pipes: tuple[int, int], shared: int, word: bytes) -> NoReturn:
@@ -31,6 +32,8 @@ def become(words: Sequence[str], folder: str, pipes: tuple[int, int], shared: in
     env = {name: value for name, value in os.environ.items() if name not in (*_OURS, frames.VARIABLE)}
     read, write = (os.dup(handle) for handle in pipes)
     held = os.dup(shared) if shared >= 0 else -1
+    if folder and _has_compiled(folder):
+        env["PYTHONPYCACHEPREFIX"] = os.path.join(env["TMPDIR"], "compiled")
     try:
         os.chdir(folder or env["TMPDIR"])
         os.dup2(read, 0)
@@ -45,3 +48,15 @@ def become(words: Sequence[str], folder: str, pipes: tuple[int, int], shared: in
         os.execve(words[0], list(words), env)
     except OSError as error:
         raise Refused(f"starting {words[0]}: {error.strerror}") from None
+
+
+def _has_compiled(folder: str) -> bool:
+    """Whether modules lie there compiled, which a Python program would believe whatever their sources say now.
+
+    Then it compiles all that it imports, which takes libraries a second; where nothing is compiled they need not.
+    """
+    for count, (_, inner, _) in enumerate(os.walk(folder)):
+        if "__pycache__" in inner or count > _MOST_FOLDERS:
+            return True
+        inner[:] = [name for name in inner if not name.startswith(".") and name != "site-packages"]
+    return False

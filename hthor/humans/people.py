@@ -2,7 +2,7 @@
 
 Knows nothing of trials.
 
-A word for people is the name of a population ("paper"), of a kind of people ("cautious"), of a human model ("greedy"),
+A word for people is the name of a population ("study"), of a kind of people ("cautious"), of a human model ("greedy"),
 or the path of a file that holds one (pop.npz, my_kind.json, my_human.py). A model that is made from something has that
 after a colon ("replay:runs/demo"). ``WORD@POPULATION`` puts a kind or a model on another population than the default.
 """
@@ -24,7 +24,6 @@ from hthor.humans.population import Population
 
 PROXY = "proxy"
 """The human model that populations are of; as a word for people, that model with the default population."""
-_CALIBRATED = "paper"
 _SORT = "human model"
 _HINT = "Or give a path: pop.npz of a population, my_kind.json of a kind of people, my_human.py of a human model."
 
@@ -69,7 +68,7 @@ class People(Struct, frozen=True, kw_only=True, eq=False):
 
 def default() -> str:
     """The population that people are of where none is named."""
-    return _CALIBRATED if _CALIBRATED in population_file.names() else population_file.MADE
+    return population_file.CALIBRATED if population_file.CALIBRATED in population_file.names() else population_file.MADE
 
 
 def names() -> tuple[str, ...]:
@@ -85,6 +84,7 @@ def find(word: str) -> People:
         PeopleError: when a file of people cannot be used.
         HthorError: when a human model's file does not load.
     """
+    word = "@".join(map(population_file.called, word.split("@")))
     left, base = _split(word)
     if left in population_file.names() or left.endswith(".npz") or _schema(left) == population_file.SCHEMA:
         if base is not None:

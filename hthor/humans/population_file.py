@@ -25,6 +25,10 @@ SCHEMA = "hthor.population/1"
 FOLDER = Path(__file__).parent / "populations"
 MADE = "literature"
 """The population that is no file: it is drawn from the priors of now."""
+CALIBRATED = "study"
+"""The population that is calibrated to the published user study."""
+_STEMS = {CALIBRATED: "paper"}
+"""Files of populations that are called otherwise than their files, whose bytes and hashes stay; both words are read."""
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
 _DAMAGED = (
     "it was changed or cut off after it was written; restore both files, or make them again with 'hthor calibrate'"
@@ -59,7 +63,12 @@ class Document(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 def names() -> tuple[str, ...]:
     """The populations that come with hthor."""
-    return tuple(sorted({MADE, *(path.stem for path in FOLDER.glob("*.json"))}))
+    return tuple(sorted({MADE, *(called(path.stem) for path in FOLDER.glob("*.json"))}))
+
+
+def called(name: str) -> str:
+    """What a population of this name, or of this file's stem, is called."""
+    return next((word for word, stem in _STEMS.items() if stem == name), name)
 
 
 def load(name_or_path: str | Path) -> Population:
@@ -69,7 +78,7 @@ def load(name_or_path: str | Path) -> Population:
         UnknownName: when no population has that name.
         PeopleError: when a file is missing, damaged or not a population's, or a value is out of its range.
     """
-    word = str(name_or_path)
+    word = called(str(name_or_path))
     if word in names():
         return _shipped(word)
     path = Path(word)
@@ -125,7 +134,7 @@ def _shipped(name: str) -> Population:
         from hthor.humans import literature
 
         return literature.population()
-    return _read(FOLDER / f"{name}.json")
+    return _read(FOLDER / f"{_STEMS.get(name, name)}.json")
 
 
 def _read(path: Path) -> Population:

@@ -12,7 +12,7 @@ from hthor.types import Vec3
 
 __all__ = ["VERSION", "Material", "Mesh", "Piece", "fingerprint", "look", "textures"]
 
-VERSION = 1
+VERSION = 2
 """Counts up whenever a mesh or a texture changes."""
 
 

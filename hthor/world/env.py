@@ -119,7 +119,7 @@ class FastEnv(Environment):
     def _advance(self) -> None:
         """One step of the engine, in as many parts as the fastest object asks for."""
         haste = float((np.abs(self.data.qvel[self._free]) / self._limits).max(initial=0.0))
-        parts = min(_FINEST, math.ceil(haste))
+        parts = math.ceil(haste) if haste < _FINEST else _FINEST  # what is no number too: the engine will say so
         if parts <= 1 and self._restless < WEARY_TICKS:
             mujoco.mj_step(self.model, self.data)
             return

@@ -2,4 +2,4 @@
 # control.sh SUITE OUT: plays the suite without a robot, which every agent is measured against.
 source "$(dirname "$0")/common.sh"
 [ $# = 2 ] || usage
-hthor eval --agent silent --suite "$1" --quiet --out "$2"
+hthor eval --agent none --suite "$1" --quiet --out "$2"

@@ -49,7 +49,7 @@ class Setting(Struct, frozen=True, kw_only=True):
 
 
 class Count(Struct, frozen=True, kw_only=True):
-    """A published share ``k`` of ``n`` trials; ``inferred`` where the paper prints only the percentage."""
+    """A published share ``k`` of ``n`` trials; ``inferred`` where the article prints only the percentage."""
 
     figure: str
     k: int

@@ -48,7 +48,7 @@ def _held_out(found: Findings) -> list[str]:
 def _time(found: Findings) -> list[str]:
     return [
         f"The lower quartile of the time spent is {words.signed(one.value)} s with {words.CONDITION[one.a]} against "
-        f"{words.CONDITION[one.b]}, where the paper reports no significant difference."
+        f"{words.CONDITION[one.b]}, where the article reports no significant difference."
         for one in found.differences
         if one.statistic == "lower quartile" and abs(one.value) > QUARTILE_S
     ]
@@ -63,7 +63,7 @@ def _trust(found: Findings) -> list[str]:
     if found.trust.above < trials:
         sentences.append(
             f"Mean trust in the oracle is above that in the frontier robot at {found.trust.above} of {trials} trials; "
-            "in the paper it is so at every one."
+            "in the article it is so at every one."
         )
     if oracle.slope <= 0.0:
         sentences.append(f"Trust in the oracle does not rise ({words.signed(oracle.slope, 3)} points a trial).")
@@ -72,11 +72,11 @@ def _trust(found: Findings) -> list[str]:
 
 def _standing(found: Findings) -> list[str]:
     sentences = [
-        "“Gradually converging” trust in the frontier robot is neither fitted nor claimed: the paper says so in words "
-        "and prints no number that a model could be held to."
+        "“Gradually converging” trust in the frontier robot is neither fitted nor claimed: the article says so "
+        "in words and prints no number that a model could be held to."
     ]
     inferred = [count for count in found.published.counts if count.inferred]
     if inferred:
         named = words.listed(f"{count.k} of {count.n} ({words.figure(count.figure)})" for count in inferred)
-        sentences.append(f"Counts that the paper does not print and that were inferred: {named}.")
+        sentences.append(f"Counts that the article does not print and that were inferred: {named}.")
     return sentences

@@ -107,7 +107,7 @@ def _data(found: Findings) -> list[str]:
             "study is that of one group of six people, so a model is compared with groups of six, not with its own "
             "mean alone."
         ),
-        "<h3>What the paper says in words</h3>" + html.bullets(says) if says else "",
+        "<h3>What the article says in words</h3>" + html.bullets(says) if says else "",
     ]
 
 

@@ -195,7 +195,7 @@ def quartiles(parts: Sequence[Spent], pairs: Sequence[Difference]) -> str:
     )
     seen = "would hardly see it" if _holds_zero(worst.group) else "would tend to see it"
     return (
-        f"Lower quartiles: {each}. The largest difference is {size}; {far}. The paper reports no significant "
+        f"Lower quartiles: {each}. The largest difference is {size}; {far}. The article reports no significant "
         f"difference. Between groups of six that difference is {signed(worst.group.median)} s [{span(worst.group)}] "
         f"here, so that a study of that size {seen}."
     )
@@ -208,7 +208,7 @@ def minima(pairs: Sequence[Difference]) -> str:
         for one in pairs
         if one.statistic == "minimum"
     )
-    return f"Shortest times: {listed(each)}. The paper calls those of the two robots about equal."
+    return f"Shortest times: {listed(each)}. The article calls those of the two robots about equal."
 
 
 def reach(parts: Sequence[Reach]) -> str:

@@ -60,7 +60,7 @@ def findings(here: Course | str) -> list[Finding]:
     name = "determinism"
     if isinstance(here, str):
         says = f"the process that plays a trial failed: {here}"
-        return [Finding(name=name, status="fail", says=says, fix="hthor eval --agent silent --participants 1 --jobs 1")]
+        return [Finding(name=name, status="fail", says=says, fix="hthor eval --agent none --participants 1 --jobs 1")]
     there = reference()
     if here.sha256 == there.sha256:
         return [Finding(name=name, says=f"{here.trial} goes as in the reference, byte for byte")]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from hthor import houses, jsonio
 from hthor.errors import HthorError, RunError, UnknownName
-from hthor.eval import redraw
+from hthor.eval import lettering, redraw
 from hthor.eval.pages import filming, gather, ink, moments, svg_file
 from hthor.eval.pages.figures import case
 from hthor.eval.pages.figures.case import Row
@@ -64,7 +64,7 @@ def study(
     jsonio.write(drawn, svg_file.text(ink.svg(made, "case", words)).encode())
     pixels = io.BytesIO()
     with ink.style():
-        made.savefig(pixels, format="png", dpi=_DPI, metadata={"Software": None})
+        lettering.save(made, pixels, format="png", dpi=_DPI, metadata={"Software": None})
     jsonio.write(seen, pixels.getvalue())
     return drawn, seen
 

@@ -52,7 +52,7 @@ class Published(Struct, frozen=True, kw_only=True):
 class Arm(Struct, frozen=True, kw_only=True):
     """One run's robots with the report's people: ``label`` is their name on the page.
 
-    ``condition`` is none, frontier or oracle where the paper had such a robot, else empty; ``folder`` the run's name.
+    ``condition`` is none, frontier or oracle where the article had such a robot, else empty; ``folder`` the run's name.
     """
 
     label: str

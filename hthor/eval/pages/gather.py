@@ -11,10 +11,11 @@ from msgspec import Struct
 
 from hthor.errors import RunError
 from hthor.eval import control, metrics, reading, setup
+from hthor.eval.crews import NO_ROBOT
 from hthor.eval.record import Record
 from hthor.eval.setup import Setup
 
-NONE = "no robot"
+NONE = NO_ROBOT
 Pair = tuple[int, int, int, str]
 """What two runs' trials share when they are of the same person at the same task: seed, person, place, task."""
 

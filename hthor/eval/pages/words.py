@@ -62,7 +62,7 @@ def sentence(pair: Comparison) -> str:
 
 
 def published(found: Findings) -> str:
-    """What the paper's figures are, and whether these runs can be set against them."""
+    """What the article's figures are, and whether these runs can be set against them."""
     study = found.published
     if study is None:
         return ""

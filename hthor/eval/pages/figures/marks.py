@@ -31,7 +31,7 @@ class Mark(Struct, frozen=True, kw_only=True):
 
 
 def of(arms: Sequence[Arm], more: Iterable[str] = ()) -> dict[str, Mark]:
-    """A mark for each run by its label; the paper's three conditions always look alike, the first of each at least.
+    """A mark for each run by its label; the article's three conditions always look alike, the first of each at least.
 
     Args:
         more: labels that may be of none of the runs.

@@ -22,7 +22,7 @@ _MANY = 4
 
 
 def figure(found: Findings) -> Figure:
-    """Means with 95 % intervals; diamonds are the paper's, with intervals of their own where it tells counts."""
+    """Means with 95 % intervals; diamonds are the article's, with intervals of their own where it tells counts."""
     own, rows = marks.of(found.arms), len(found.arms)
     held = [name for name in METRICS if any(getattr(arm.scores, name).n for arm in found.arms)]
     study = found.published is not None and any(arm.condition for arm in found.arms)

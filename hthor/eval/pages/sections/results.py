@@ -1,4 +1,4 @@
-"""The table against the baselines and the paper."""
+"""The table against the baselines and the article."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
             drawings,
             "scores",
             "Success, time-weighted success and adoption, with 95 % intervals. "
-            + ("Open diamonds: what the paper printed for the same kind of robot." if found.published else ""),
+            + ("Open diamonds: what the article printed for the same kind of robot." if found.published else ""),
         ),
     ]
 
 
 def _published(found: Findings, metrics: list[str]) -> Iterator[list[Piece] | Band]:
-    """The paper's rows."""
+    """The article's rows."""
     study = found.published
     if study is None:
         return

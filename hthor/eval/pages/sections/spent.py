@@ -1,4 +1,4 @@
-"""Time spent, as the paper's box plots have it."""
+"""Time spent, as the article's box plots have it."""
 
 from __future__ import annotations
 
