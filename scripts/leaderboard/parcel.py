@@ -17,7 +17,7 @@ import tarfile
 from pathlib import Path, PurePosixPath
 
 MAC = 32
-RUN = r"(run|result|platform|isolation)\.json|trials\.jsonl"
+RUN = r"(run|result|platform|isolation|replays)\.json|trials\.jsonl"
 EXPECTED = {
     "suite": r"suite/((suite|commitment)\.json|houses/h[0-9a-f]{12}\.json)",
     "control": rf"runs/control/({RUN})",
