@@ -41,15 +41,16 @@ def number(name: str, value: object, unit: str, low: float = -math.inf, high: fl
     return float(plain)
 
 
-def whole(name: str, value: object, low: int = 0) -> int:
+def whole(name: str, value: object, low: int, high: int) -> int:
     """``value`` as an int.
 
     Raises:
-        HthorError: when it is no whole number, or below ``low``.
+        HthorError: when it is no whole number, or not from ``low`` to ``high``.
     """
     plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value
-    if isinstance(plain, bool) or not isinstance(plain, int) or plain < low:
-        raise HthorError(f"{name} must be a whole number, at least {low}, got {value!r:.40}")
+    if isinstance(plain, bool) or not isinstance(plain, int) or not low <= plain <= high:
+        given = repr(value) if not isinstance(plain, int) or abs(plain) < 10**20 else "far more"
+        raise HthorError(f"{name} must be a whole number from {low} to {high}, got {given:.40}")
     return plain
 
 
