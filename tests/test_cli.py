@@ -278,9 +278,7 @@ def test_what_the_people_were_not_calibrated_for_is_said_once_and_last(hthor, tm
     said = hthor("eval", *agents, "--suite", "fake", "--out", str(tmp_path), "--jobs", "1")
     told = [line for line in said.out.splitlines() + said.err.splitlines() if "was calibrated" in line]
     assert told == [said.out.splitlines()[-1]]
-    assert told[0].startswith(
-        "note: the population study was calibrated on the tasks of the suite paper, not on those "
-    )
+    assert told[0].startswith("note: the population study was calibrated on the tasks of the suite paper, not on th")
     assert "silent" not in said.out
     assert "no robot" in said.out
     scored = hthor("score", str(tmp_path / "helper"))
