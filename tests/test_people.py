@@ -94,7 +94,8 @@ def test_files_are_found_by_path_and_again_from_anywhere(files: Path, monkeypatc
     words = ("pop.npz", "pop.json", "half.json", "still.py", "half.json@pop.npz", "still.py@pop.json", "slow@pop.npz")
     found = [people.find(word) for word in words]
     assert [one.name for one in found] == ["pop", "pop", "half", "still", "half@pop", "still@pop", "slow@pop"]
-    assert [one.population.name for one in found] == ["pop", "pop", people.default(), people.default(), *["pop"] * 3]
+    drawn = [population_file.called(one.population.name) for one in found]
+    assert drawn == ["pop", "pop", people.default(), people.default(), *["pop"] * 3]
     monkeypatch.chdir("/")
     for one in found:
         again = people.find(one.word)
