@@ -170,6 +170,19 @@ def test_a_refuted_entry_does_not_stand_and_nothing_brings_it_back(board: Path, 
     assert verification.load(board).struck(entry) is not None
 
 
+def test_a_refuted_control_takes_the_uplift_from_whoever_is_measured_against_it(board: Path):
+    entry, control = (files.read(entry_of(board, name)) for name in ("helper", "silent"))
+    verification.keep(board, entry, verified(entry, control=replayed(passed=False, why="made worse.")))
+    kept_ = verification.load(board)
+    assert kept_.struck(control) is not None
+    assert kept_.struck(entry) is None
+    entries = [files.read(path) for path in files.entry_paths(board)]
+    row = rows(entries, kept_, admission.load(board))["helper"]
+    assert (row.ranks, row.uplift) == (None, None)
+    assert row.unranked == "refuted, or its control was"
+    publish.build(board)
+
+
 def test_a_verification_is_of_one_entry_and_is_called_after_it(board: Path):
     entry, other = (files.read(entry_of(board, name)) for name in ("helper", "clumsy"))
     with pytest.raises(BoardError, match="this verification is of"):

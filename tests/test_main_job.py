@@ -29,7 +29,7 @@ from hthor.eval import cast, crews, engines, find, guarded
 from hthor.eval.log import Log
 from hthor.eval.record import Record
 from hthor.eval.session import Session, sessions
-from hthor.leaderboard import enter, files
+from hthor.leaderboard import enter, files, outcomes, worth
 from hthor.tasks import library
 from hthor.tasks.commitment import Commitment
 from hthor.types import HUMAN
@@ -499,13 +499,20 @@ def board(reference: Path, brief: tasks.Suite) -> Path:
     made = Commitment(
         name="brief", salt="0" * 64, houses=2, tasks=TRIALS, suite_sha256=brief.sha256, files={}, made_with={}
     )
-    jsonio.write(FOLDER / "board" / "suites" / "brief.json", jsonio.pretty(made))
+    jsonio.write(FOLDER / "commitment.json", jsonio.pretty(made))
+    opened = hthor("leaderboard", "open", str(FOLDER / "commitment.json"), "--board", str(FOLDER / "board"), cwd=FOLDER)
+    assert opened.returncode == 0, opened.stderr
     enter.add(both / "run", FOLDER / "board")
     return FOLDER / "board"
 
 
 def test_leaderboard(
-    board: Path, reference: Path, say: Callable[..., Said], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    board: Path,
+    reference: Path,
+    brief: tasks.Suite,
+    say: Callable[..., Said],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ):
     """Put on the board, verified by real physics on this platform and as on another; a forged copy is caught."""
     here = shutil.copytree(board, tmp_path / "board")
@@ -515,27 +522,43 @@ def test_leaderboard(
     assert say("leaderboard", "build", *on).code == say("leaderboard", "build", "--check", *on).code == 0
     entry = next(here.glob("entries/frontier-*.json"))
     metrics = json.loads(entry.read_bytes())["metrics"]
-    assert metrics == json.loads((reference / "result.json").read_bytes())["metrics"]
+    whole = json.loads((reference / "result.json").read_bytes())["metrics"]
+    assert metrics == {name: whole[name] for name in metrics}
 
-    verify = ("leaderboard", "verify", entry, "--suite", SUITE, "--draw", "0123abcd", "--json")
+    verify = ("leaderboard", "verify", entry, "--suite", SUITE, "--draw", "0123abcd", "--json", "--fresh", "0")
     said = say(*verify, "--sample", "3", "--by", "a test", "--date", "2027-01-01", "--write")
     assert said.code == 0, said.err
     found = json.loads(said.out)
-    assert (found["tier"], found["drawn"], found["passed"]) == ("V1", 3, True)
-    assert found["compared"] == found["equal"] == found["same_bytes"] >= 3
-    assert json.loads(entry.read_bytes())["verification"] == found
+    for part in (found["trials"], found["control"]):
+        assert (part["tier"], part["drawn"], part["passed"]) == ("V1", 3, True)
+        assert part["compared"] == part["equal"] == part["same_bytes"] >= 3
+        assert 0.0 < part["caught"] <= 1.0
+    assert json.loads((here / "verifications" / entry.name).read_bytes()) == found
     assert say("leaderboard", "build", "--check", *on).code == 0
     assert "V1" in (here / "index.html").read_text()
 
-    control = files.read(next(here.glob("entries/none-*.json")))
-    lie = forging.forged(files.read(entry), 1.0, control)
+    alone = next(here.glob("entries/none-*.json"))
+    control, true = files.read(alone), files.read(entry)
+    lie = forging.forged(true, 1.0, control, brief)
     elsewhere = ({**lie.platforms[0], "libc": "another"},)
     monkeypatch.setattr(engines, "find", lambda *_, **__: fakes.Here())
     for platforms, tier in ((lie.platforms, "V1"), (elsewhere, "V2")):
         files.write(entry, msgspec.structs.replace(lie, platforms=platforms))
         assert say("leaderboard", "validate", *on).code == 0  # all of it follows from its trials, which never were
         said = say(*verify)
-        assert (said.code, json.loads(said.out)["tier"]) == (5, tier)
+        assert (said.code, json.loads(said.out)["trials"]["tier"]) == (5, tier)
+    worse = forging.forged(control, 1.0, None, brief)
+    uplift = worth.uplift(true, outcomes.unpack(true.trials), worse, outcomes.unpack(worse.trials))
+    files.write(alone, worse)
+    files.write(entry, msgspec.structs.replace(true, uplift=uplift))
+    said = say(*verify)
+    parts = json.loads(said.out)
+    assert (said.code, parts["trials"]["passed"], parts["control"]["passed"]) == (5, True, False)
+    assert say(*verify, "--write").code == 5
+    listed = json.loads((here / "leaderboard.json").read_bytes())
+    assert [one["id"] for one in listed["refuted"]] == [control.id], "it is the control that does not stand"
+    (row,) = [row for section in listed["sections"] for row in section["rows"]]
+    assert (row["id"], row["uplift"]) == (true.id, None)
 
     text = entry.read_text().replace('"seed": 0', '"seed": 1')
     entry.write_text(text)

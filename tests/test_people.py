@@ -110,13 +110,13 @@ def test_a_file_that_is_called_like_people_of_ours_is_not_taken_for_them(tmp_pat
     """Their names stand in tables and on pages; a home-made proxy.json must not pass there as the proxy."""
     kind = (Path(kinds.__file__).parent / "fast.json").read_text()
     names = set()
-    for name in ("proxy", "paper", "cautious", "mine"):
+    for name in ("proxy", "study", "cautious", "mine"):
         path = tmp_path / f"{name}.json"
         path.write_text(kind.replace('"name": "fast"', f'"name": "{name}"'))
         names.add(people.find(str(path)).name)
     assert "mine" in names
-    assert not names & {"proxy", "paper", "cautious"}
-    assert all(re.fullmatch(r"mine|(proxy|paper|cautious)-[0-9a-f]{6}", name) for name in names)
+    assert not names & {"proxy", "study", "cautious"}
+    assert all(re.fullmatch(r"mine|(proxy|study|cautious)-[0-9a-f]{6}", name) for name in names)
 
 
 def test_the_hash_covers_model_population_and_kind(files: Path):

@@ -84,6 +84,8 @@ def _unranked(entry: Entry, kept: Kept, standing: admission.Standing, controls: 
     found = kept.of(entry)
     if entry.reference:
         return "reference"
+    if found is not None and found.refuted:
+        return "refuted, or its control was"
     if standing != admission.RANKED:
         return "public tasks"
     if found is None:

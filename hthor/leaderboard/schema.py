@@ -11,11 +11,16 @@ import msgspec
 
 from hthor.eval.setup import Setup
 from hthor.leaderboard.board import Board
-from hthor.leaderboard.entry import Entry
+from hthor.leaderboard.entry import Entry, Trials
+from hthor.types import RobotSeat
 
 NEVER = "shard"
 """The one field of a run that no entry has: an entry is a whole run."""
-_MAYBE = {field.name for field in msgspec.structs.fields(Setup) if field.default is msgspec.UNSET}
+_MAYBE = {
+    record.__name__: {field.name for field in msgspec.structs.fields(record) if field.default is msgspec.UNSET}
+    for record in (Setup, RobotSeat, Trials)
+}
+"""Fields that are there only where they say something."""
 _HASH = {"pattern": "^([0-9a-f]{64})?$"}
 _MORE: dict[tuple[str, str], dict[str, Any]] = {
     ("Estimate", "n"): {"minimum": 0},
@@ -63,7 +68,7 @@ def _strict(name: str, record: dict[str, Any]) -> dict[str, Any]:
         **about,
         "type": "object",
         "additionalProperties": False,
-        "required": sorted(set(held) - _MAYBE) if name == "Setup" else sorted(held),
+        "required": sorted(set(held) - _MAYBE.get(name, set())),
         "properties": held,
     }
 

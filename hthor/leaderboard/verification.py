@@ -195,7 +195,7 @@ def place(board: Path, found: Verification) -> Path:
 
 
 def keep(board: Path, entry: Entry, found: Verification) -> list[Path]:
-    """Write a verification, and a refutation where it is one; the files.
+    """Write a verification, and a refutation of what it does not bear out: of the entry or of its control; the files.
 
     Raises:
         BoardError: when it is not of this entry as it is.
@@ -205,23 +205,35 @@ def keep(board: Path, entry: Entry, found: Verification) -> list[Path]:
         raise files.BoardError(f"{entry.id}: this verification is of {there}; the entry's is {entry.digest[:10]}.")
     written = [board / VERIFICATIONS / f"{entry.id}.json"]
     files.write(written[0], found)
-    if found.refuted:
-        why = "; ".join(one.why for one in (found.trials, found.control) if one is not None and not one.passed)
-        struck = Refutation(
-            id=entry.id,
-            name=entry.agent.name,
-            entry=found.entry,
-            merkle=entry.hashes.merkle,
-            run=entry.hashes.run,
-            code=entry.code,
-            draw=found.draw,
-            why=why,
-            by=found.by,
-            date=found.date,
-        )
-        written.append(board / REFUTATIONS / f"{struck.merkle}.json")
-        files.write(written[1], struck)
+    for one, played in ((entry, found.trials), (control_of(board, entry), found.control)):
+        if one is not None and played is not None and not played.passed:
+            struck = _refutation(one, found, played.why)
+            written.append(board / REFUTATIONS / f"{struck.merkle}.json")
+            files.write(written[-1], struck)
     return written
+
+
+def control_of(board: Path, entry: Entry) -> Entry | None:
+    """The entry on the board that the uplift of this one is over; None where there is none."""
+    if entry.uplift is None:
+        return None
+    beside = (files.read(path) for path in files.entry_paths(board))
+    return next((one for one in beside if one.alone and one.hashes.run == entry.uplift.control), None)
+
+
+def _refutation(entry: Entry, found: Verification, why: str) -> Refutation:
+    return Refutation(
+        id=entry.id,
+        name=entry.agent.name,
+        entry=entry.digest,
+        merkle=entry.hashes.merkle,
+        run=entry.hashes.run,
+        code=entry.code,
+        draw=found.draw,
+        why=why,
+        by=found.by,
+        date=found.date,
+    )
 
 
 def _read(path: Path, sort: type[_T], name: str) -> _T:

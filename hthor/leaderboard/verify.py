@@ -24,6 +24,7 @@ from hthor.leaderboard import (
     outcomes,
     replay,
     verdict,
+    verification,
     worth,
 )
 from hthor.leaderboard.entry import REALTIME, Entry
@@ -71,7 +72,7 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
     _noted(entry, request)
     _sorts(path, entry, request)
     drawn = draw.sample(request.word, entry.digest, entry.trials.count, _size(entry, request))
-    control = _control(entry, board)
+    control = verification.control_of(board, entry)
     found = Verification(
         id=entry.id,
         entry=entry.digest,
@@ -151,14 +152,6 @@ def _sorts(path: Path, entry: Entry, request: Request) -> None:
     if suite.sha256 == entry.run.suite.sha256:
         laws = invariants.outcomes(entry, outcomes.unpack(entry.trials), dealt.tasks(suite, entry))
         files.refuse(Problem(file=str(path), field=field, problem=problem) for field, problem in laws)
-
-
-def _control(entry: Entry, board: Path) -> Entry | None:
-    """The entry that the uplift is over; `checks` saw that it is there."""
-    if entry.uplift is None:
-        return None
-    beside = (files.read(path) for path in files.entry_paths(board))
-    return next((one for one in beside if one.alone and one.hashes.run == entry.uplift.control), None)
 
 
 def _again(entry: Entry, drawn: Sequence[int], request: Request) -> dict[int, tuple[Record, bytes]]:
