@@ -85,7 +85,8 @@ def _above(found: spread.Spread, low: float, quantile: np.ndarray) -> tuple[np.n
     """The score interval of an amount that has only a least value: its variance grows with its mean, as a count's."""
     mean = np.maximum(found.mean - low, 0.0)
     some = quantile**2 * np.where(mean > 0.0, found.variance / np.where(mean > 0.0, mean, 1.0), found.variance)
-    half = np.sqrt(some * mean + some**2 / 4.0)
+    with np.errstate(invalid="ignore"):  # too few tasks to know the variance: it is infinite, and there is no interval
+        half = np.sqrt(some * mean + some**2 / 4.0)
     upper = mean + some / 2.0 + half
     lower = np.where(
         upper > 0.0, mean**2 / np.where(upper > 0.0, upper, 1.0), 0.0
