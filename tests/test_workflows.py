@@ -250,6 +250,30 @@ def test_of_what_a_shard_sealed_only_its_records_are_taken(tmp_path: Path, how: 
     assert not Path("/tmp/hthor-smuggled").exists()
 
 
+def test_all_that_a_merge_needs_of_a_shard_is_taken(tmp_path: Path):
+    folder = tmp_path / "runs" / "mine-shard-1-of-2"
+    (folder / "houses").mkdir(parents=True)
+    (folder / "faults").mkdir()
+    wanted = [
+        "run.json",
+        "trials.jsonl",
+        "isolation.json",
+        "platform.json",
+        "effort.json",
+        "replays.json",
+        "suite.json",
+    ]
+    wanted += ["houses/h0123456789ab.json"]
+    for name in (*wanted, ".lock", "faults/0123.json"):
+        (folder / name).write_text("{}")
+    sealed = _sealed(tmp_path, "runs")
+    other = tmp_path / "other"
+    other.mkdir()
+    done = _run(STEPS / "unseal.sh", tmp_path / "salt", "shard", sealed, cwd=other)
+    assert done.returncode == 0, done.stderr
+    assert _there(other / "runs" / "mine-shard-1-of-2") == sorted(wanted)
+
+
 def test_nothing_is_unpacked_over_what_is_there(tmp_path: Path):
     (tmp_path / "suite").mkdir()
     (tmp_path / "suite" / "suite.json").write_text("a")

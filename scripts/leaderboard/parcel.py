@@ -17,9 +17,10 @@ import tarfile
 from pathlib import Path, PurePosixPath
 
 MAC = 32
-RUN = r"(run|result|platform|isolation)\.json|trials\.jsonl"
+HOUSE = r"houses/h[0-9a-f]{12}\.json"
+RUN = rf"(run|result|platform|isolation|replays|effort|suite)\.json|trials\.jsonl|{HOUSE}"
 EXPECTED = {
-    "suite": r"suite/((suite|commitment)\.json|houses/h[0-9a-f]{12}\.json)",
+    "suite": rf"suite/((suite|commitment)\.json|{HOUSE})",
     "control": rf"runs/control/({RUN})",
     "shard": rf"runs/mine-shard-\d{{1,4}}-of-\d{{1,4}}/({RUN})",
 }
