@@ -316,7 +316,7 @@ def test_elsewhere_they_are_not_and_it_says_where():
         for word in words:
             assert word in ref.notes[0]
 
-    noted(small(), "calibrated on the suite 'fake', not on other tasks", count=10)
+    noted(small(), "calibrated on the tasks of the suite fake, not on other tasks", count=10)
     noted(small(suite="paper", suite_sha256="ab" * 32), "the suite paper, not on those of the suite fake")
     noted(small(simulation=rules.SIMULATION + 1), f"version {rules.SIMULATION + 1} of the world")
     noted(small(mind=registry.MIND + 1), f"version {registry.MIND + 1} of the proxy's mind")
