@@ -82,11 +82,12 @@ class Chaos:
         self._log = folder / "trials.jsonl"
 
     def kill(self, kills: int, total: int, room: int) -> None:
-        """Kill so many processes at random moments over a run of ``total`` trials, each kind as often.
+        """Kill so many processes at random moments over a run of ``total`` trials: one guest, else runners and workers.
 
+        A run has one do-over for a guest that is killed; of another it would have the fault.
         After the first two deaths of the runner the disk has ``room`` for so many more bytes.
         """
-        kinds = [("runner", "worker", "guest")[number % 3] for number in range(kills)]
+        kinds = ["guest", *(("runner", "worker", "worker")[number % 3] for number in range(kills - 1))]
         self._chance.shuffle(kinds)
         aims = sorted(self._chance.uniform(0.02, 0.85) * total for _ in kinds)
         process: subprocess.Popen[str] | None = None

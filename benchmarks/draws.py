@@ -52,7 +52,7 @@ class Late(frontier.Agent):
 
 
 AGENTS: dict[str, tuple[str, type[Mind] | None]] = {
-    "none": ("silent", None),
+    "none": ("none", None),
     "frontier": ("frontier", frontier.Agent),
     "late": ("frontier", Late),
     "oracle": ("oracle", oracle.Agent),

@@ -1,6 +1,6 @@
 """How far equal draws of chance reduce the trials that a comparison needs: `python -m benchmarks.pairing FOLDER`.
 
-Plays `silent`, `frontier` and `oracle` on a suite, and prints for each two how their outcomes hang together, and
+Plays `none`, `frontier` and `oracle` on a suite, and prints for each two how their outcomes hang together, and
 how many times fewer trials it takes to compare them than with other people at other tasks for each.
 """
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from hthor.eval import campaign, compare, intent, progress
 
-AGENTS = ("silent", "frontier", "oracle")
+AGENTS = ("none", "frontier", "oracle")
 
 
 def main() -> None:

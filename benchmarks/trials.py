@@ -12,7 +12,7 @@ from hthor.episode import play
 from hthor.eval import cast, crews
 from hthor.eval.crews import Crew
 
-AGENTS = {"silent": "no robot that does anything", "frontier": "frontier robot", "oracle": "oracle robot"}
+AGENTS = {"none": "no robot that does anything", "frontier": "frontier robot", "oracle": "oracle robot"}
 BAR_MS = 90.0
 CREWS = {
     "collect": "tall:oracle,small:oracle",

@@ -32,7 +32,7 @@ DEEP_M = 0.015
 EDGE_M = 0.15
 """Nor are they farther than this outside all rooms, as in a doorway."""
 ODD = (
-    math.nan, math.inf, -math.inf, 1e308, -1e308, 1e300, 5e-324, 0.0, -0.0, 10**400, -(10**400), 2**63, "a", "", None,
+    math.nan, math.inf, -math.inf, 1e308, -1e308, 1e300, 5e-324, 0.0, -0.0, 10**400, -(10**5000), 2**63, "a", "", None,
     True, np.float64(0.3), np.float32(0.3), np.nan, (), (1.0,), b"x",
 )  # fmt: skip
 """Numbers that are none, or that nobody expects."""
@@ -321,7 +321,7 @@ class Fuzz:
     # ------------------------------------------------------------------------------------------------------ values
 
     def _call(self, name: str, function: Callable[..., Any], *given: Any, **named: Any) -> Call:
-        listed = [*(f"{value!r:.60}" for value in given), *(f"{key}={value!r:.60}" for key, value in named.items())]
+        listed = [*(_shown(value) for value in given), *(f"{key}={_shown(value)}" for key, value in named.items())]
         self.words = f"{name}({', '.join(listed)})"
         return name.rpartition(".")[2], lambda: function(*given, **named)
 
@@ -382,6 +382,13 @@ class Fuzz:
                 5,
             )
         )
+
+
+def _shown(value: object) -> str:
+    try:
+        return f"{value!r:.60}"
+    except ValueError:  # a whole number of more digits than Python prints
+        return "10**5000"
 
 
 if __name__ == "__main__":

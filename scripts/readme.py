@@ -18,7 +18,8 @@ ROOT = Path(__file__).resolve().parents[1]
 NAME = "hthor, as a reader has it"
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 INLINE = re.compile(r"`((?:hthor|make|python) [^`]+)`")
-LEFT_OUT = ("--install-completion",)  # changes the reader's own shell
+NOT_TYPED = ("hthor --install-completion", "hthor eval", "hthor tasks make")
+"""Inline words that name a command without its arguments, or change the reader's own shell."""
 
 
 def commands(text: str) -> list[str]:
@@ -27,7 +28,7 @@ def commands(text: str) -> list[str]:
     for part in re.split(r"(^```.*?^```)", text, flags=re.MULTILINE | re.DOTALL):
         block = BLOCK.match(part)
         if block is None:
-            found += [word for word in INLINE.findall(part) if not any(out in word for out in LEFT_OUT)]
+            found += [word for word in INLINE.findall(part) if word not in NOT_TYPED]
         elif block[1] == "python":
             found.append(_python(block[2]))
         elif not block[1]:

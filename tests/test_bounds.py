@@ -146,3 +146,11 @@ def test_they_hold_the_truth_as_often_near_a_bound_with_few_people(metric: str, 
     within, mean = bounds.of(metric, bounded.LIMIT_S), bounded.truth(sort, level)
     low, high = stats.interval(spread.two_way(values, tasks, people), 60, within)
     assert 0.93 <= np.mean((low <= mean) & (mean <= high)) <= 0.98
+
+
+def test_an_amount_of_unknown_variance_has_no_interval_and_no_warning_of_the_library() -> None:
+    """As in a run of three trials in which nothing was counted."""
+    one = np.ones(2)
+    found = spread.Spread(mean=np.array([0.0, 2.0]), variance=np.inf * one, freedom=one, uneven=one, single=one)
+    low, high = stats.interval(found, 3, (0.0, math.inf))
+    assert not np.isfinite(high - low).any()

@@ -23,7 +23,7 @@ from hthor.types import Pose, RobotSeat
 from hthor.world import World, avatar, camera
 from hthor.world.labels import Labels
 
-BODIES = [avatar.HUMAN, *(plugins.load("robot", name).SPEC for name in ("scout", "tender", "puck", "porter"))]
+BODIES = [avatar.HUMAN, *(plugins.load("robot", name) for name in ("scout", "tender", "puck", "porter"))]
 sides = st.integers(1, 2000)
 
 

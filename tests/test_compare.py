@@ -71,7 +71,7 @@ def test_what_is_better_is_said_to_be_and_by_how_much(runs: Path):
     pair = found.pairs[0]
     assert pair.better == "better"
     assert pair.differences["sr"].p < 0.001
-    assert pair.sentence.startswith("better is better than alone by 4")
+    assert pair.sentence.startswith("better is better than no robot by 4")
     assert "p < 0.001" in pair.sentence
     assert "adoption" not in pair.differences, "without a robot there is nothing to adopt"
     assert set(pair.groups) == {"kind", "scene"}

@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 from hthor.cli import app, export, reference
 from hthor.cli.export import Format
+from hthor.errors import HthorError
 
 CELLS = st.text(
     st.characters(codec="utf-8", exclude_characters="\r\n\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"), max_size=12
@@ -101,3 +102,18 @@ def test_commands_with_tables_of_results_have_formats() -> None:
 def test_the_page_names_every_format(root: Path) -> None:
     text = (root / "docs" / "cli.md").read_text()
     assert all(f"`--format {shape}`" in text for shape in Format if shape is not Format.TABLE)
+
+
+def test_the_board_is_listed_from_what_was_built(root: Path, tmp_path: Path) -> None:
+    def said(*more: str) -> str:
+        found = CliRunner().invoke(app.app, ["leaderboard", "list", "--board", str(root / "leaderboard"), *more])
+        assert found.exit_code == 0, found.output
+        return found.stdout
+
+    entries = list((root / "leaderboard" / "entries").glob("*.json"))
+    rows = list(csv.DictReader(io.StringIO(said("--format", "csv"))))
+    assert len(rows) == len(entries)
+    assert all(0.0 <= float(row["sr_mean"]) <= 1.0 for row in rows)
+    assert all(row["agent"] in said() for row in rows)
+    with pytest.raises(HthorError, match="hthor leaderboard build"):
+        CliRunner().invoke(app.app, ["leaderboard", "list", "--board", str(tmp_path)], catch_exceptions=False)

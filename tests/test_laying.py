@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 from hthor import catalog, houses, plugins
 from hthor.eval import soundness
 from hthor.houses import laying, loader, thing_rules
-from hthor.tasks import generate
+from hthor.tasks import generate, making
+from hthor.tasks.making import Recipe
 from hthor.tasks.placing import Shelves
 from hthor.tasks.validate import faults
 from hthor.types import Goal, HouseSpec, Placement, TaskSpec, Thing
@@ -149,6 +150,18 @@ def crowded() -> HouseSpec:
                 height = place["y"] + size[2] / 2 + 0.11 + catalog.kind("bowl").size[2] / 2
                 row["children"].append(_row(f"{row['id']} {i} {j}", "hthor_bowl", {"x": x, "z": z}, height))
     return loader.build(changed, "crowded")
+
+
+def test_tasks_in_houses_of_others_start_with_everything_apart(samples: list[Path]):
+    for path in samples[4:6]:
+        house = houses.load(path)
+        world = World(house)
+        for made in making.in_house(Recipe(name="samples", tasks=3), str(path)):
+            assert not list(faults(made, house))
+            world.reset(made)
+            for placed in made.objects:
+                x, y, z = placed.position
+                world.put_object(placed.id, (x, y, z + 0.002), yaw=placed.yaw)
 
 
 def test_an_object_in_a_thing_of_the_house_is_named_without_an_engine():

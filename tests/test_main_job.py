@@ -313,7 +313,8 @@ FAULTY = {
     "raises in act": ({"act": "raise KeyError('x')"}, "raised", "KeyError: 'x'"),
     "hangs": ({"act": "while True: pass"}, "timeout", "gave no answer within 0.5 s"),
     "exits": ({"act": "sys.exit(3)"}, "raised", "SystemExit: 3"),
-    "is killed": ({"act": "os.kill(os.getpid(), 9)"}, "killed", "SIGKILL"),
+    "kills itself": ({"act": "os.kill(os.getpid(), 9)"}, "raised", "PermissionError"),
+    "aborts": ({"act": "os.abort()"}, "died", "SIGABRT"),
     "gives nothing": ({"act": "return None"}, "wrong_type", "act must return an hthor.types.Action, got NoneType"),
     "gives a text as motion": ({"act": "return Action(motion='forward')"}, "garbage", "motion: Expected `object`"),
     "gives a short position": (

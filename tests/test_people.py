@@ -94,7 +94,8 @@ def test_files_are_found_by_path_and_again_from_anywhere(files: Path, monkeypatc
     words = ("pop.npz", "pop.json", "half.json", "still.py", "half.json@pop.npz", "still.py@pop.json", "slow@pop.npz")
     found = [people.find(word) for word in words]
     assert [one.name for one in found] == ["pop", "pop", "half", "still", "half@pop", "still@pop", "slow@pop"]
-    assert [one.population.name for one in found] == ["pop", "pop", people.default(), people.default(), *["pop"] * 3]
+    drawn = [population_file.called(one.population.name) for one in found]
+    assert drawn == ["pop", "pop", people.default(), people.default(), *["pop"] * 3]
     monkeypatch.chdir("/")
     for one in found:
         again = people.find(one.word)
@@ -315,7 +316,7 @@ def test_elsewhere_they_are_not_and_it_says_where():
         for word in words:
             assert word in ref.notes[0]
 
-    noted(small(), "calibrated on the suite 'fake', not on other tasks", count=10)
+    noted(small(), "calibrated on the tasks of the suite fake, not on other tasks", count=10)
     noted(small(suite="paper", suite_sha256="ab" * 32), "the suite paper, not on those of the suite fake")
     noted(small(simulation=rules.SIMULATION + 1), f"version {rules.SIMULATION + 1} of the world")
     noted(small(mind=registry.MIND + 1), f"version {registry.MIND + 1} of the proxy's mind")

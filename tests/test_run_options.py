@@ -132,7 +132,9 @@ def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds
     slow = crews.introduce(str(tmp_path / "slow.py"))
     who = crews.form(["scout"], [slow])
     trials = session.sessions(suite(1), agent=who, human="greedy", step_limit_s=seconds)[0].trials
-    with cast.Stage(cast.Sources(minds=who.minds)).enter(Session(participant=0, trials=trials)) as company:
+    with cast.Stage(cast.Sources(minds=who.minds, manifests=who.manifests)).enter(
+        Session(participant=0, trials=trials)
+    ) as company:
         mind = company.robots()["robot"]
         mind.begin(test_guest.BRIEFING)
         if seconds is None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import pytest
 
-from hthor import houses, tasks
+from hthor import cli, houses, tasks
 from hthor.errors import HthorError, TaskError, UnknownName
 from hthor.eval import command, homemade, intent, programme, setup, soundness, vetting
 from hthor.houses.assets import DATABASE
@@ -136,6 +137,17 @@ def test_every_unsound_task_is_named(suite: Path):
     assert "2 of the suite's 3 tasks cannot be run as they are" in str(error.value)
     assert all(found.tasks[number].id in str(error.value) for number in (0, 2))
     assert "hthor tasks check" in str(error.value)
+
+
+def test_the_check_lists_every_task(suite: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    ids = [task.id for task in library.read(broken(suite, 0, 1, 2)).tasks]
+    monkeypatch.setattr(sys, "argv", ["hthor", "tasks", "check", str(suite), "--jobs", "1"])
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    assert end.value.code == 1
+    said = capsys.readouterr()
+    assert [line.split(": ")[0] for line in said.out.splitlines() if "rests on no surface" in line] == ids
+    assert "tasks, 3 unsound" in said.err
 
 
 def test_one_fault_is_told_as_it_is(suite: Path):

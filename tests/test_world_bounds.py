@@ -205,8 +205,9 @@ def test_what_lies_on_the_floor_beside_a_table_lies_on_nothing(world: World) -> 
         (lambda world: world.put_object("apple", (4.0, 3.0, 1e300)), r"\(4.00, 3.00, 1e\+300\) is in no room"),
         (lambda world: world.put_object("apple", on=TABLE, yaw=math.nan), "yaw must be a finite number of radians"),
         (lambda world: world.put_object("apple", (4.0, 3.0, 1.0), velocity=(1e308,) * 3), "at most 20 m/s"),
-        (lambda world: world.step(-1), "ticks must be a whole number, at least 0, got -1"),
+        (lambda world: world.step(-1), "ticks must be a whole number from 0 to 864000, got -1"),
         (lambda world: world.step(1.5), "ticks must be a whole number"),
+        (lambda world: world.step(10**400), "ticks must be a whole number from 0 to 864000, got 1000"),
         (lambda world: world.settle(math.inf), "seconds must be a finite number of seconds, got inf"),
         (lambda world: world.hidden("apple", (0.0, math.nan, 0.0)), r"eye\[1\] must be a finite number of metres"),
     ],
@@ -228,6 +229,10 @@ def test_numbers_that_are_none_are_refused_by_name(world: World, call, words: st
         (lambda world: world.robot.wait(1e308), "wait is 1e+308 s long; at most 3600 s"),
         (lambda world: world.robot.do(Wait(seconds=10**400)), "seconds must be a finite number"),
         (lambda world: world.robot.rotate(10**400), "yaw must be a finite number"),
+        (
+            lambda world: world.robot.rotate(10**5000),
+            "yaw must be a finite number, got a number of thousands of digits",
+        ),
     ],
 )
 def test_motions_that_cannot_be_are_refused(world: World, call, words: str) -> None:
@@ -254,7 +259,7 @@ def test_a_seat_that_there_is_not_is_named(world: World) -> None:
 def test_numbers_of_numpy_are_numbers() -> None:
     assert numbers.number("x", np.float32(0.5), "metres") == 0.5
     assert numbers.point3("p", np.array((1.0, 2.0, 3.0))) == (1.0, 2.0, 3.0)
-    assert numbers.whole("n", np.int64(3)) == 3
+    assert numbers.whole("n", np.int64(3), 0, 5) == 3
 
 
 # ------------------------------------------------------------------------------------------------ going to objects

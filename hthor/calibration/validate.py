@@ -10,7 +10,7 @@ from pathlib import Path
 
 from msgspec import Struct
 
-from hthor import jsonio, rules, tasks
+from hthor import jsonio, plugins, rules, tasks
 from hthor.calibration import rounds, targets
 from hthor.calibration import table as tables
 from hthor.calibration.report import assemble, evidence, measures, page, trials
@@ -96,7 +96,7 @@ class _Stage:
         for done in campaign.conduct(
             rounds.asked(self._options, one), lambda title: self._watcher(f"{name} people, {title}")
         ):
-            condition = CONDITIONS[AGENTS.index(done.plan.name)]
+            condition = CONDITIONS[AGENTS.index(plugins.stem("agent", done.plan.name))]
             runs[condition] = reading.records(done.folder, done.plan)[1]
             self.notes = self.notes or done.plan.humans.notes
         return trials.table(runs, tasks.suite(one.suite))

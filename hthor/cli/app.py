@@ -29,6 +29,7 @@ from hthor.cli import (
     runs,
     serving,
     shards,
+    standings,
     suite,
     tasks,
 )
@@ -51,6 +52,7 @@ app.command("case")(reports.case)
 app.command("calibrate")(calibrate.calibrate)
 app.command("doctor")(doctor.doctor)
 app.add_typer(folders.app, name="runs")
+boards.app.command("list")(standings.list_entries)
 app.add_typer(boards.app, name="leaderboard")
 app.add_typer(assets.app, name="assets")
 app.add_typer(homes.app, name="houses")

@@ -75,9 +75,9 @@ def put_rich(shown: RenderableType, shape: Format = Format.TABLE) -> None:
     if shape is Format.TABLE:
         console().print(shown)
         return
-    for number, (title, headings, rows) in enumerate(export.tables(shown)):
-        gap = "\n" if number else ""
-        sys.stdout.write(gap + export.render(headings, rows, shape, title))
+    for title, headings, rows in export.tables(shown):
+        gap = "" if shape is Format.CSV else "\n"  # two tables of Markdown without one between them would be one
+        sys.stdout.write(export.render(headings, rows, shape, title) + gap)
 
 
 def put_records(rows: Sequence[Mapping[str, object]]) -> None:

@@ -206,7 +206,8 @@ def check_tasks(
 
     shelves = [_some(library.read(name), name) for name in suites]
     workers = jobs or len(os.sched_getaffinity(0))
-    rows, faults = [], list[Fault]()
+    rows: list[dict[str, Any]] = []
+    faults: list[Fault] = []
     for shelf in shelves:
         began = time.monotonic()
         with _watched(shelf.name, len(shelf.tasks), quiet) as tell:

@@ -188,7 +188,7 @@ class Stage:
             changed = guest.load().sha256 != seat.agent.sha256
         except Unreachable:  # a server that is gone for a while costs its trials, not the run
             return Watched(guest)
-        if changed and (known is None or known.claimed):
+        if changed and known is not None and known.claimed:
             guest.close()
             raise AgentError(_changed(path))
         return Watched(guest)

@@ -17,7 +17,7 @@ from hthor.eval import crews, points, provenance
 from hthor.eval.crews import Character
 from hthor.eval.points import Finding
 from hthor.eval.rehearsal import Rehearsal
-from hthor.guest import Given, Guest, Isolation, confine_guests
+from hthor.guest import Given, Guest, Isolation, confine_guests, identity
 
 SCHEMA = "hthor.check/1"
 CHECKS = ("loads", "files", "begins", "acts", "deterministic", "keeps nothing", "fast enough", "held")
@@ -57,20 +57,22 @@ def check(
         raise HthorError(f"'{agent}' ships with hthor; give an agent of your own, such as my_agent.py.")
     confine_guests(isolation, given=given)
     provenance.keep_compiled()
-    began = time.perf_counter()
     try:
         character = crews.introduce(agent)
     except AgentError as error:
         broken = Finding(check="loads", status="broken", told=str(error), advice="Mend that, and check again.")
         return _report(agent, [broken], {})
-    load_s = time.perf_counter() - began
     if character.absent:
         raise HthorError(f"{agent} says that there is no robot at all (absent = True), so there is nothing to check.")
     rehearsal = Rehearsal(character, robot or (character.bodies[0] if character.bodies else "scout"), camera)
     with Guest(agent) as guest:
+        began = time.perf_counter()
         info = guest.load()
+        load_s = time.perf_counter() - began
         (first,) = rehearsal.play(guest, [rehearsal.a])
-    findings = [points.loads(load_s, character), points.files(character), *points.plays(first, agent)]
+        known = character.manifest
+        later = identity.later(guest.take_opened(), known, guest.grounds, guest.reference.path) if known else ()
+    findings = [points.loads(load_s, character), points.files(character, later), *points.plays(first, agent)]
     figures = {"load_s": load_s, **points.figures(first)}
     if not first.faults:
         with Guest(agent) as guest:

@@ -193,7 +193,7 @@ def hidden(options: Options) -> tuple[str, ...]:
     """What no agent may read, even if it lies in its own folder: runs, tasks and people."""
     words = (*options.humans, options.suite, options.kind, str(options.out or ""))
     places = [RUNS, *(Path(word.rpartition("@")[2]) for word in words if word)]
-    if options.suite and Path(options.suite).exists():
+    if options.suite and Path(options.suite).is_file():
         places.append(library.houses_of(Path(options.suite)))
     return tuple(str(path.resolve()) for path in places if path.exists())
 

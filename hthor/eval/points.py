@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import statistics
+from collections.abc import Sequence
 from typing import Literal
 
 from msgspec import Struct
@@ -13,6 +14,7 @@ from hthor.episode import Fault
 from hthor.eval import impersonal
 from hthor.eval.crews import Character
 from hthor.eval.rehearsal import Notes
+from hthor.guest import File
 from hthor.humans.parameters import Parameters
 
 Status = Literal["ok", "broken", "warning", "skipped"]
@@ -55,14 +57,20 @@ def loads(seconds: float, character: Character) -> Finding:
     return Finding(check="loads", status="warning", told=told, advice=advice)
 
 
-def files(character: Character) -> Finding:
-    """Which files it consists of, as far as that shows before it plays."""
+def files(character: Character, later: Sequence[File] = ()) -> Finding:
+    """Which files it consists of.
+
+    Args:
+        later: those that it opened only while it played.
+    """
     held = character.manifest.files if character.manifest else ()
     names = [file.path for file in held]
     shown = ", ".join(names[:_FILES]) + (f" and {len(names) - _FILES} more" if len(names) > _FILES else "")
     size = sum(file.bytes for file in held)
     claim = ", as its server says" if character.manifest and character.manifest.claimed else ""
     told = f"{shown or 'none named'} ({size} bytes){claim}"
+    if later:
+        told += f"; only in play: {', '.join(file.path for file in later[:_FILES])}"
     return Finding(check="files", status="ok", told=told)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import msgspec
 from msgspec import Struct
 
 from hthor import documents, jsonio
@@ -156,8 +155,8 @@ class _Gained(Struct, frozen=True):
 def uplift(folder: Path, *, run: str) -> Kept | None:
     """The uplift that a run's result has recorded, whatever its version; None where it has none for this run's hash."""
     try:
-        held = msgspec.json.decode((folder / "result.json").read_bytes(), type=_Gained)
-    except (OSError, msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+        held = documents.decode((folder / "result.json").read_bytes(), _Gained)
+    except (OSError, documents.Unreadable):
         return None
     return held.uplift if held.hashes.run == run else None
 

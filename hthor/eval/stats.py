@@ -84,13 +84,15 @@ def interval(found: spread.Spread, count: int, within: Range = ANY) -> tuple[np.
 def _above(found: spread.Spread, low: float, quantile: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The score interval of an amount that has only a least value: its variance grows with its mean, as a count's."""
     mean = np.maximum(found.mean - low, 0.0)
-    some = quantile**2 * np.where(mean > 0.0, found.variance / np.where(mean > 0.0, mean, 1.0), found.variance)
+    known = np.isfinite(found.variance)
+    variance = np.where(known, found.variance, 0.0)
+    some = quantile**2 * np.where(mean > 0.0, variance / np.where(mean > 0.0, mean, 1.0), variance)
     half = np.sqrt(some * mean + some**2 / 4.0)
     upper = mean + some / 2.0 + half
     lower = np.where(
         upper > 0.0, mean**2 / np.where(upper > 0.0, upper, 1.0), 0.0
     )  # their product is the mean's square
-    return low + lower, low + upper
+    return low + np.where(known, lower, 0.0), np.where(known, low + upper, np.inf)
 
 
 def detectable(found: spread.Spread, count: int, within: Range = ANY) -> np.ndarray:

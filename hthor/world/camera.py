@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hthor.types import BodySpec, Camera, CameraSpec, Pose, Vec2
-from hthor.world import sight
+from hthor.world import numbers, sight
 
 OWN = CameraSpec()
 SIDE, _ROUND = 128, 8
@@ -81,8 +81,9 @@ def check(size: tuple[int, int]) -> None:
     except (TypeError, ValueError):
         fits = False
     if not fits:
+        given = numbers.shown(size)
         raise ValueError(
-            f"size must be (width, height) in whole pixels, 1 to 4096 each, such as (128, 128); got {size!r}"
+            f"size must be (width, height) in whole pixels, 1 to 4096 each, such as (128, 128); got {given}"
         )
 
 

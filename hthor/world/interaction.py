@@ -199,7 +199,7 @@ class Hands:
         if item is None:
             return f"{seat.name} holds nothing to place", _NOWHERE
         if motion.position is not None and not _is_point(motion.position):
-            return f"position must be three finite numbers or None, got {motion.position!r:.60}", _NOWHERE
+            return f"position must be three finite numbers or None, got {numbers.shown(motion.position)}", _NOWHERE
         surfaces = self._places.of(motion.on) if isinstance(motion.on, str) else ()
         if not surfaces:
             return f"nothing can be placed on '{motion.on!s:.40}'", _NOWHERE

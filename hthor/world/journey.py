@@ -71,7 +71,8 @@ def _out_of_hand(world: World, actor: Actor, target: str) -> str:
     states = {state.id: state for state in world.truth()}
     reason = world.out_of_hand(actor.seat, target) if _small(world, target) else ""
     inside = states.get(states[target].support) if reason else None
-    return reason if inside is None or inside.open else f"{reason}; {inside.id} is closed"
+    closed = inside is not None and not inside.open and reason.endswith("out of sight")
+    return f"{reason}; {states[target].support} is closed" if closed else reason
 
 
 def _small(world: World, target: str) -> bool:

@@ -64,7 +64,7 @@ def _is_plain(value: object) -> bool:
 def _finite(**given: object) -> str:
     for name, value in given.items():
         if not numbers.finite(value):
-            return f"{name} must be a finite number, got {value!r:.40}"
+            return f"{name} must be a finite number, got {numbers.shown(value)}"
     return ""
 
 

@@ -21,6 +21,14 @@ def finite(value: object) -> bool:
         return False
 
 
+def shown(value: object) -> str:
+    """What was given, for a message."""
+    try:
+        return f"{value!r:.40}"
+    except ValueError:  # a whole number of more digits than Python prints
+        return "a number of thousands of digits"
+
+
 def short(value: float) -> str:
     """A number for a message: to the hundredth, or as a power of ten where that would be long."""
     return f"{value:.2f}" if abs(value) < 1e6 else f"{value:.3g}"
@@ -34,22 +42,22 @@ def number(name: str, value: object, unit: str, low: float = -math.inf, high: fl
     """
     plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value  # numpy's own
     if not finite(plain):
-        raise HthorError(f"{name} must be a finite number of {unit}, got {value!r:.40}")
+        raise HthorError(f"{name} must be a finite number of {unit}, got {shown(value)}")
     if not low <= plain <= high:
         limits = f"at least {low:g}" if high == math.inf else f"at most {high:g}" if low == -math.inf else ""
-        raise HthorError(f"{name} must be {limits or f'from {low:g} to {high:g}'} {unit}, got {value!r:.40}")
+        raise HthorError(f"{name} must be {limits or f'from {low:g} to {high:g}'} {unit}, got {shown(value)}")
     return float(plain)
 
 
-def whole(name: str, value: object, low: int = 0) -> int:
+def whole(name: str, value: object, low: int, high: int) -> int:
     """``value`` as an int.
 
     Raises:
-        HthorError: when it is no whole number, or below ``low``.
+        HthorError: when it is no whole number, or not from ``low`` to ``high``.
     """
     plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value
-    if isinstance(plain, bool) or not isinstance(plain, int) or plain < low:
-        raise HthorError(f"{name} must be a whole number, at least {low}, got {value!r:.40}")
+    if isinstance(plain, bool) or not isinstance(plain, int) or not low <= plain <= high:
+        raise HthorError(f"{name} must be a whole number from {low} to {high}, got {shown(value)}")
     return plain
 
 
@@ -75,5 +83,5 @@ def pose(value: Pose) -> Pose:
 def _vector(name: str, value: object, size: int, unit: str) -> tuple[float, ...]:
     parts = list(value) if isinstance(value, Iterable) and not isinstance(value, (str, bytes, dict)) else []
     if len(parts) != size:
-        raise HthorError(f"{name} must be {size} numbers of {unit}, got {value!r:.60}")
+        raise HthorError(f"{name} must be {size} numbers of {unit}, got {shown(value)}")
     return tuple(number(f"{name}[{axis}]", part, unit) for axis, part in enumerate(parts))

@@ -93,7 +93,9 @@ class Pictures:
     def top_view(self, pixels_per_metre: float, profile: str | None) -> Any:
         """The house from above now, (H, W, 3) uint8."""
         if not numbers.finite(pixels_per_metre) or not 0.0 < pixels_per_metre <= 500.0:
-            raise ValueError(f"pixels_per_metre must be more than 0 and at most 500, got {pixels_per_metre!r:.40}")
+            raise ValueError(
+                f"pixels_per_metre must be more than 0 and at most 500, got {numbers.shown(pixels_per_metre)}"
+            )
         return self._draw(profile).top_view(self._moment(), self.bounds, pixels_per_metre)
 
     @property

@@ -35,6 +35,10 @@ _LIMIT_TICKS = 36_000
 """An hour: a call that is not done by then never will be."""
 
 
+_MOST_TICKS = 864_000
+"""A day: more than any study, and not yet without end."""
+
+
 class World(SeenWorld):
     """A house with one person and any number of robots in it, for notebooks, studies and scripts.
 
@@ -160,7 +164,7 @@ class World(SeenWorld):
     def step(self, ticks: int = 1) -> tuple[Event, ...]:
         """Let ``ticks`` of 0.1 s pass; returns what happened in them, which `events` keeps too."""
         news: list[Event] = []
-        for _ in range(numbers.whole("ticks", ticks)):
+        for _ in range(numbers.whole("ticks", ticks, 0, _MOST_TICKS)):
             happened = self.advance()
             self.note(happened)
             news += happened

@@ -41,7 +41,7 @@ def _own(found: Findings) -> str:
 
 
 def _robots(one: Origin) -> str:
-    return "; ".join(f"{robot.robot} with {robot.agent.name}" if robot.robot else "none" for robot in one.robots)
+    return "; ".join(f"{robot.robot} with {robot.agent.name}" if robot.robot else "no robot" for robot in one.robots)
 
 
 def _agents(one: Origin) -> Piece:
