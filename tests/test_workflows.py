@@ -291,8 +291,8 @@ def test_nothing_is_unpacked_over_what_is_there(tmp_path: Path):
 
 def test_only_new_entries_are_placed_on_a_board(tmp_path: Path):
     made, board = tmp_path / "made", tmp_path / "board"
-    for folder in (made, board):
-        (folder / "entries").mkdir(parents=True)
+    (made / "entries").mkdir(parents=True)
+    board.mkdir()
     name = "entries/mine-suite-0123456789.json"
     (made / name).write_text("{}")
     assert _run(STEPS / "place.sh", made, board, cwd=tmp_path).stdout == f"{board / name}\n"

@@ -116,6 +116,7 @@ def place(source: str, board: str) -> None:
         if there.is_file():
             _demand(there.read_bytes() == path.read_bytes(), f"{there} is another entry, and is not written over")
         else:
+            there.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(path, there)
         sys.stdout.write(f"{there}\n")
 
