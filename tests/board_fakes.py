@@ -31,7 +31,11 @@ def code():
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Runs as their folders, with the control beside them."""
-    base = tmp_path_factory.mktemp("runs")
+    return play(tmp_path_factory.mktemp("runs"))
+
+
+def play(base: Path) -> Path:
+    """Write made-up runs of two agents, and one without a robot, to a folder."""
     for name in ("helper", "clumsy", "silent"):
         with mock.patch.object(fakes, "character", character):
             plan, dealt = fakes.run_of(COUNT, name=name, absent=name == "silent")
@@ -77,7 +81,12 @@ def committed(board: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def whole(runs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    board = committed(tmp_path_factory.mktemp("board"))
+    return filled(runs, tmp_path_factory.mktemp("board"))
+
+
+def filled(runs: Path, folder: Path) -> Path:
+    """A board with these runs."""
+    board = committed(folder)
     enter.add(runs, board)
     publish.build(board)
     return board

@@ -8,7 +8,9 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
+import board_fakes
 import jsonschema
 import pytest
 from hypothesis import given, settings
@@ -19,7 +21,7 @@ from hthor.calibration import ledger, targets
 from hthor.calibration.report import evidence
 from hthor.catalog import procthor
 from hthor.errors import HouseError, HthorError, PeopleError, RunError, TaskError
-from hthor.eval import guarded, log, machine, remains, result_file, setup
+from hthor.eval import guarded, log, machine, provenance, remains, result_file, setup
 from hthor.eval.pages import origin
 from hthor.guest import Isolation
 from hthor.houses import schema as house_file
@@ -172,13 +174,20 @@ def _places(document: Any, where: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]
 _VALUES = (None, 0, -1, 1.5, 2**70, "", "x", "L9", "served", [], {}, True, "0" * 64)
 
 
+@pytest.fixture(scope="module")
+def entry(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of a made-up entry."""
+    with mock.patch.object(provenance, "code_sha256", return_value="34" * 32):
+        board = board_fakes.filled(board_fakes.play(tmp_path_factory.mktemp("runs")), tmp_path_factory.mktemp("board"))
+    return board_fakes.entry_of(board, "helper")
+
+
 @settings(max_examples=150, deadline=None)
 @given(data=st.data())
 def test_the_schema_is_kept_without_a_library_for_schemas(
-    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+    data: st.DataObject, entry: Path, tmp_path_factory: pytest.TempPathFactory
 ):
-    root = Path(__file__).parent.parent
-    source = sorted((root / "leaderboard" / "entries").glob("*.json"))[0]
+    source = entry
     document = json.loads(source.read_bytes())
     place = data.draw(st.sampled_from(_places(document)[1:]))
     changed = copy.deepcopy(document)
