@@ -432,6 +432,11 @@ def evaluate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., A
     return run
 
 
+def told(said: Any) -> Any:
+    """The result of the one run that a command played."""
+    return json.loads(said.stdout)["runs"][0]["result"]
+
+
 def invoke(*words: str) -> Any:
     """A command as a user types it; an error of theirs is exit code 2 and its words."""
     result = CliRunner().invoke(app.app, list(words))
@@ -462,10 +467,10 @@ def test_an_agent_that_was_changed_is_played_as_another(evaluate: Any, tmp_path:
     own(tmp_path / "a", **parts)
     first = evaluate()
     assert first.exit_code == 0, first.output
-    before = json.loads(first.stdout)
+    before = told(first)
     assert changed in [file["path"] for file in before["agents"][0]["files"]]
     (tmp_path / "a" / changed).write_text("X = 2\n")
-    after = json.loads(evaluate().stdout)
+    after = told(evaluate())
     assert len(list((tmp_path / "runs").iterdir())) == 2
     assert after["hashes"]["run"] != before["hashes"]["run"]
 
@@ -488,7 +493,7 @@ def test_what_is_opened_only_in_play_is_checked_before_a_run_goes_on(evaluate: A
     assert names(tmp_path / "a" / "agent.py") == ["agent.py"]
     first = evaluate()
     assert first.exit_code == 0, first.output
-    files = json.loads(first.stdout)["agents"][0]["files"]
+    files = told(first)["agents"][0]["files"]
     assert [file["path"] for file in files] == ["agent.py", "weights/net-big.txt"]
     log = next((tmp_path / "runs").glob("*/trials.jsonl"))
     whole = log.read_bytes()
@@ -529,7 +534,7 @@ def test_a_file_that_changes_during_a_run_ends_it_and_is_named(
 
 def test_shards_have_one_manifest_between_them_or_are_not_merged(evaluate: Any, tmp_path: Path) -> None:
     own(tmp_path / "a", act=OPENED)
-    whole = json.loads(evaluate("--out", "whole").stdout)
+    whole = told(evaluate("--out", "whole"))
     for shard in ("1/2", "2/2"):
         assert evaluate("--out", "part", "--shard", shard).exit_code == 0
     merge = ["merge", "part-shard-1-of-2", "part-shard-2-of-2"]
@@ -552,10 +557,10 @@ def test_files_of_readable_folders_are_part_of_the_run(evaluate: Any, tmp_path: 
     (tmp_path / "more").mkdir()
     (tmp_path / "more" / "net.bin").write_bytes(b"1")
     (tmp_path / "more" / "runs").mkdir()
-    found = json.loads(evaluate("--readable", "more").stdout)
+    found = told(evaluate("--readable", "more"))
     assert [file["path"] for file in found["agents"][0]["files"]] == ["../more/net.bin", "agent.py"]
     (tmp_path / "more" / "new.bin").write_bytes(b"2")
-    again = json.loads(evaluate("--readable", "more").stdout)
+    again = told(evaluate("--readable", "more"))
     assert again["hashes"]["run"] != found["hashes"]["run"]
 
 

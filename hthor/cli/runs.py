@@ -122,7 +122,7 @@ def evaluate(
     ] = None,
     difficulty: Annotated[
         Literal["easy", "medium", "hard"] | None,
-        typer.Option(help="Only tasks so hard. Neither such a run nor one with --house is ranked.", show_default="all"),
+        typer.Option(help="Only tasks so hard. A run of a part of a suite is not ranked.", show_default="all"),
     ] = None,
     limit: Annotated[
         int | None,
