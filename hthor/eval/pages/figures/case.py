@@ -160,12 +160,18 @@ def _badge(seat: str) -> dict[str, Any]:
 def _headline(row: Row) -> str:
     record, seconds = row.record, row.record.ticks * rules.TICK_S
     end = f"done in {seconds:.1f} s" if record.met else f"not done in {seconds:.0f} s"
+    sent = trace.messages(record.log)
+    failed = [
+        f"{fault.seat} failed at {fault.tick * rules.TICK_S:.1f} s ({fault.kind})"
+        for seat in record.paths
+        if (fault := trace.failure(record.log, seat)) is not None
+    ]
     said = [
-        f"message {number} ({trace.fate(record.log, event.data['message'])}): “{event.data['text']}”"
-        for number, event in enumerate(trace.messages(record.log), 1)
+        f"message {number} of {len(sent)} ({trace.fate(record.log, event.data['message'])}): “{event.data['text']}”"
+        for number, event in enumerate(sent, 1)
         if any(moment.tick == event.tick for moment in row.moments)
     ]
-    return "; ".join([f"{row.label}: {end}", *said[:1]])
+    return "; ".join([f"{row.label}: {end}", *failed, *said[:1]])
 
 
 def _task(record: Record) -> str:
@@ -185,6 +191,8 @@ def _legend(rows: Sequence[Row], *, destined: bool) -> list[Line2D]:
         Line2D([], [], ls="", marker="o", mfc=ink.SOFT, mec="white", label="end"),
         Line2D([], [], ls="", marker="*", mfc=trace.TARGET, mec="white", ms=9, label="target at the start"),
     ]
+    if any(row.record.faults for row in rows):
+        marks.append(Line2D([], [], ls="", marker="X", mfc=trace.FAILED, mec="white", ms=7.5, label="the agent failed"))
     if destined:
         marks.append(Line2D([], [], ls="", marker="s", mfc=plan.MARKED, mec=plan.MARKED_EDGE, label="destination"))
     return [*ways, *marks]
