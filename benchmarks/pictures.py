@@ -3,30 +3,44 @@
 `docs/images/pictures.json` holds, for each picture, the hash of its file and of its origin: the task with its T*, the
 house, the benchmark's rules, how trials go (the reference trial of `hthor doctor`) and the code that draws. A picture
 is out of date when one of the two is another now. Checking plays nothing and takes a second.
+
+The pictures of a report and of a case are of one evaluation of the suite smoke, of some minutes; they need OpenGL and
+Chromium, whose versions and fonts can change their bytes, but not whether they are out of date.
 """
 
 from __future__ import annotations
 
 import argparse
+import functools
 import hashlib
 import json
+import shutil
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import cv2
+
 from hthor import houses, jsonio, rules, tasks
 from hthor.eval import cast, crews, lettering, picture, programme, session
 from hthor.eval.record import Record
+from hthor.types import TaskSpec
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "images"
 MANIFEST = FOLDER / "pictures.json"
 _REFERENCE = "hthor/eval/health/reference.json"
-_DRAWING = ("lettering", "picture", "plan", "timeline", "trace")
+_DRAWING = ("lettering", "picture", "plan", "text_fit", "timeline", "trace")
 _SHEETS = ("hthor/world/sheet.py", "hthor/world/rendering.py")
-BY_HAND = ("robots.png", "report.png", "case.jpg")
-"""Pictures that need a longer run or a camera of their own; docs/report.md has the commands of the last two."""
+BY_HAND = ("robots.png",)
+"""Pictures that need a stage and a camera of their own."""
+AGENTS, SUITE, CASE = ("none", "frontier", "oracle"), "smoke", "smoke/birch/manipulation-01"
+"""Of which runs the pictures of a report and of a case are, and of which task the case is."""
+_BROWSER = "chromium"
+_PAGE_PX, _PAGE_SCALE, _CASE_PX = (860, 1344), 1.4, 1360
+"""Pixels of the page in the browser, how much finer its picture is, and how wide the picture of the case is."""
 
 TRIALS = {
     "replay.png": "smoke/birch/manipulation-01",
@@ -40,7 +54,7 @@ TRIALS = {
 
 def names() -> list[str]:
     """All pictures that this makes."""
-    return [*TRIALS, *(f"scenes/{name}.jpg" for name in houses.names())]
+    return [*TRIALS, *_OF_RUNS, *(f"scenes/{name}.jpg" for name in houses.names())]
 
 
 def origin(name: str) -> str:
@@ -50,6 +64,8 @@ def origin(name: str) -> str:
         code = [f"hthor/eval/{part}.py" for part in _DRAWING]
         facts = [TRIALS[name], task, houses.load(task.house).sha256, rules.sha256(), _sha256(ROOT / _REFERENCE)]
         return jsonio.sha256([*facts, *(_sha256(ROOT / path) for path in code)])
+    if name in _OF_RUNS:
+        return jsonio.sha256([AGENTS, CASE, tasks.suite(SUITE).sha256, rules.sha256(), *map(_sha256, _code_of_pages())])
     return jsonio.sha256([houses.load(Path(name).stem).sha256, *(_sha256(ROOT / path) for path in _SHEETS)])
 
 
@@ -96,7 +112,15 @@ def played(task_id: str) -> Record:
     raise ValueError(f"the suite {suite.name} has no task {task_id}")
 
 
+def _code_of_pages() -> list[Path]:
+    """The files that decide how a report and a case look, and the reference of how trials go."""
+    pages = sorted((ROOT / "hthor" / "eval" / "pages").rglob("*.py"))
+    return [*pages, *(ROOT / f"hthor/eval/{part}.py" for part in _DRAWING), ROOT / _REFERENCE]
+
+
 def _maker(name: str) -> Callable[[Path], None]:
+    if name in _OF_RUNS:
+        return _OF_RUNS[name]
     if name in TRIALS:
         return lambda path: _draw_trial(path, TRIALS[name])
     return _draw_scene
@@ -108,6 +132,46 @@ def _draw_trial(path: Path, task_id: str) -> None:
     lettering.save(made, path, metadata={"Software": None})
 
 
+@functools.cache
+def _runs() -> tuple[Path, ...]:
+    """The folders of the runs, which are played once."""
+    folder = Path(tempfile.mkdtemp(prefix="hthor-pictures-"))
+    robots = [part for agent in AGENTS for part in ("--agent", agent)]
+    _hthor("eval", *robots, "--suite", SUITE, "--out", folder)
+    return tuple(folder / agent for agent in AGENTS)
+
+
+def _hthor(*words: str | Path) -> None:
+    subprocess.run([sys.executable, "-m", "hthor", *map(str, words)], check=True, stdout=subprocess.DEVNULL)
+
+
+def _draw_report(path: Path) -> None:
+    """The first page of a report, as a browser shows it."""
+    if shutil.which(_BROWSER) is None:
+        raise SystemExit(f"{path.name} is a picture of a page in a browser, and {_BROWSER} is not installed.")
+    with tempfile.TemporaryDirectory() as folder:
+        _hthor("report", *_runs(), "--out", folder)
+        size = ",".join(map(str, _PAGE_PX))
+        options = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", f"--user-data-dir={folder}/own"]
+        options += [f"--window-size={size}", f"--force-device-scale-factor={_PAGE_SCALE}", f"--screenshot={path}"]
+        subprocess.run([_BROWSER, *options, f"file://{folder}/report.html"], check=True, stderr=subprocess.DEVNULL)
+
+
+def _draw_case(path: Path) -> None:
+    """One task under the three conditions, as `hthor case --nice` draws it."""
+    with tempfile.TemporaryDirectory() as folder:
+        _hthor("case", *_runs(), CASE, "--nice", "--out", folder)
+        (drawn,) = Path(folder).glob("*.png")
+        whole = cv2.imread(str(drawn))
+    assert whole is not None
+    high, wide = whole.shape[:2]
+    small = cv2.resize(whole, (_CASE_PX, round(high * _CASE_PX / wide)), interpolation=cv2.INTER_AREA)
+    cv2.imwrite(str(path), small, [cv2.IMWRITE_JPEG_QUALITY, 88])
+
+
+_OF_RUNS: dict[str, Callable[[Path], None]] = {"report.png": _draw_report, "case.jpg": _draw_case}
+
+
 def _draw_scene(path: Path) -> None:
     from hthor.world import sheet
 
@@ -117,7 +181,7 @@ def _draw_scene(path: Path) -> None:
         path.write_bytes(made.read_bytes())
 
 
-def _task(task_id: str) -> object:
+def _task(task_id: str) -> TaskSpec:
     return next(task for task in tasks.suite(task_id.partition("/")[0]).tasks if task.id == task_id)
 
 

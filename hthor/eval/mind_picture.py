@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon, Wedge
 
 from hthor import geometry, rules
-from hthor.eval import lettering, mind_timeline, plan, trace
+from hthor.eval import lettering, mind_timeline, plan, text_fit, trace
 from hthor.eval.mind import Stream
 from hthor.eval.record import Record
 from hthor.types import HUMAN, Event, HouseSpec, Vec2
@@ -28,6 +28,8 @@ _MOMENTS, _TALL = 4, 1.1
 """Plans of houses that are so much deeper than wide stand in one row, others in two."""
 _WIDE, _WIDER = 11.0, 14.0
 """Inches, with two plans in a row and with more."""
+_TITLE_PT, _EDGE_IN = 11.0, 0.3
+"""Points of the title's letters, and inches left free beside it."""
 _SHADES = colormaps["YlOrBr"]
 _TOP, _NAMED = 0.35, 0.03
 """A place that is so likely has the darkest shade; less likely ones than the second bear no number."""
@@ -59,8 +61,9 @@ def figure(record: Record, house: HouseSpec, stream: Stream) -> Figure:
     _write(sheet.add_subplot(grid[rows + 1, :]), words)
     spec = record.spec
     whose = f"{spec.task.id}, participant {spec.participant}, trial {spec.index + 1}"
-    sheet.suptitle(f"“{spec.task.instruction}”   {whose}", fontsize=11, x=0.01, ha="left", color=trace.INK)
-    sheet.legend(handles=_legend(), loc="outside lower center", ncols=6, fontsize=7.5, frameon=False)
+    title = text_fit.broken(f"“{spec.task.instruction}”   {whose}", inches - _EDGE_IN, _TITLE_PT)
+    sheet.suptitle(title, fontsize=_TITLE_PT, x=0.01, ha="left", color=trace.INK)
+    text_fit.legend(sheet, _legend(), 6, loc="outside lower center")
     return sheet
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -11,10 +10,11 @@ from matplotlib import patheffects
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.transforms import blended_transform_factory
 
 from hthor import rules
 from hthor.episode import EpisodeLog, Fault
-from hthor.eval import lettering, plan, timeline, trace
+from hthor.eval import lettering, plan, text_fit, timeline, trace
 from hthor.types import HouseSpec, TrialSpec, Vec2
 
 if TYPE_CHECKING:
@@ -23,8 +23,10 @@ if TYPE_CHECKING:
 
 _CORNERS, _CROWDED_M = ((1, 1), (-1, -1), (-1, 1), (1, -1)), 1.5
 """Where the names of targets stand that are so near each other."""
-_LINES, _LINE_MAX, _HEAD_MAX = 10, 110, 70
-"""Messages whose words are shown, and characters of a line of words and of the headline."""
+_LINES, _WIDE_IN = 10, 8.0
+"""Messages whose words are shown, and inches of the figure."""
+_EDGE_IN, WORDS_PT, HEAD_PT = 0.15, 7.5, 10.0
+"""Inches left free beside a line of words; points of messages' words and of the headline."""
 _COLUMNS, _DEEPEST = 5, 8.5
 """Entries of the legend side by side, and inches of a plan's height at most."""
 _LETTER_IN, _BADGE_IN, _BESIDE_M = 0.065, 0.17, 0.15
@@ -52,7 +54,8 @@ def figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
     _draw_targets(above, spec, house)
     draw_messages(above, log)
     _draw_acts(above, log)
-    above.set_title(headline(spec, log), fontsize=10, loc="left", color=trace.INK)
+    title = headline(spec, log, _WIDE_IN - 2 * _EDGE_IN, HEAD_PT)
+    sheet.suptitle(title, x=_EDGE_IN / _WIDE_IN, ha="left", fontsize=HEAD_PT, color=trace.INK)
     _legend(sheet, handles(spec, log, house))
     timeline.draw_timeline(below, spec, log)
     for ax in rest:
@@ -145,12 +148,11 @@ def _words(log: EpisodeLog) -> list[tuple[str, str]]:
     """A line for each message, with its colour; of many the first and the last few."""
     lines = []
     for number, event in enumerate(trace.messages(log), 1):
-        text = textwrap.shorten(event.data["text"], _LINE_MAX, placeholder=" …")
         fate = trace.fate(log, event.data["message"])
-        end = "unanswered" if fate in ("sent", "shown") else fate
-        lines.append(
-            (f"{number}  {event.tick * rules.TICK_S:.1f} s  {event.seat}: “{text}” ({end})", trace.tint(log, event))
-        )
+        head = f"{number}  {event.tick * rules.TICK_S:.1f} s  {event.seat}: “"
+        end = f"” ({'unanswered' if fate in ('sent', 'shown') else fate})"
+        room = _WIDE_IN - 2 * _EDGE_IN - text_fit.width(head + end, WORDS_PT)
+        lines.append((head + text_fit.shortened(event.data["text"], room, WORDS_PT) + end, trace.tint(log, event)))
     half = _LINES // 2
     left = len(lines) - 2 * half
     return lines if left <= 0 else [*lines[:half], (f"… and {left} more", trace.INK), *lines[-half:]]
@@ -158,9 +160,10 @@ def _words(log: EpisodeLog) -> list[tuple[str, str]]:
 
 def _write_words(ax: Axes, words: Sequence[tuple[str, str]]) -> None:
     ax.axis("off")
+    across = blended_transform_factory(ax.get_figure(root=True).transFigure, ax.transAxes)  # type: ignore[union-attr]
     for row, (line, shade) in enumerate(words):
         height = 1.0 - (row + 0.5) / len(words)
-        told = ax.text(0.0, height, line, transform=ax.transAxes, fontsize=7.5, color=shade, va="center")
+        told = ax.text(_EDGE_IN / _WIDE_IN, height, line, transform=across, fontsize=WORDS_PT, color=shade, va="center")
         told.set_in_layout(False)  # a long line takes no room from the plan
 
 
@@ -181,7 +184,14 @@ def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
             ax.annotate("", (claim[0], claim[1]), here, arrowprops=arrow | line, zorder=11)
     inch = _metres(ax)
     for group in trace.grouped(log, sent, _LETTER_IN * inch, _BADGE_IN * inch):
-        trace.badge(ax, group.place, group.words, group.shade)
+        trace.badge(ax, _on_plan(ax, group, inch), group.words, group.shade)
+
+
+def _on_plan(ax: Axes, group: trace.Group, inch: float) -> Vec2:
+    """Where a badge stands: at its place, or so far from the edge that it is not cut."""
+    half = 0.5 * _LETTER_IN * inch * (len(group.words) + 2)
+    west, east = ax.get_xlim()
+    return (min(max(group.place[0], west + half), east - half), group.place[1])
 
 
 def _metres(ax: Axes) -> float:
@@ -200,26 +210,27 @@ def _draw_acts(ax: Axes, log: EpisodeLog) -> None:
             )
 
 
-def headline(spec: TrialSpec, log: EpisodeLog) -> str:
-    """What was asked, by whom it was helped, and how it ended, in lines."""
+def headline(spec: TrialSpec, log: EpisodeLog, inches: float, size: float) -> str:
+    """What was asked, by whom it was helped, and how it ended, in lines.
+
+    Args:
+        inches: that a line is wide at most. size: of its letters [pt].
+    """
     agents = " and ".join(dict.fromkeys(robot.agent.name for robot in spec.robots)) or "no robot"
     seconds = log.ticks * rules.TICK_S
     end = f"done in {seconds:.1f} s" if log.met else f"not done in {seconds:.0f} s"
     if not log.met and log.progress is not None:
         end += f", {100.0 * log.progress:.0f} % of it done"
-    told = "\n".join(textwrap.wrap(f"“{spec.task.instruction}”", _HEAD_MAX))
-    lines = [told, f"{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"]
+    lines = [f"“{spec.task.instruction}”", f"{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"]
     for robot in spec.robots:
         if (fault := trace.failure(log, robot.seat)) is not None:
             whose = f"{robot.seat}'s agent" if len(spec.robots) > 1 else "the agent"
             lines.append(f"{whose} failed at {fault.tick * rules.TICK_S:.1f} s ({fault.kind}) and did nothing more")
-    return "\n".join(lines)
+    return "\n".join(text_fit.broken(line, inches, size) for line in lines)
 
 
 def _legend(sheet: Figure, entries: list[Artist]) -> None:
-    sheet.legend(
-        handles=entries, loc="outside lower left", ncols=_COLUMNS, fontsize=7.5, frameon=False, handlelength=1.6
-    )
+    text_fit.legend(sheet, entries, _COLUMNS, loc="outside lower left", handlelength=1.6)
 
 
 def handles(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool = False) -> list[Artist]:
@@ -269,5 +280,4 @@ def _size(house: HouseSpec) -> tuple[float, float]:
     corners: Sequence[Vec2] = [point for room in house.rooms for point in room.polygon]
     wide = max(x for x, _ in corners) - min(x for x, _ in corners)
     deep = max(y for _, y in corners) - min(y for _, y in corners)
-    width = 8.0
-    return (width, max(4.2, min((width - 0.8) * deep / wide, _DEEPEST) + 2.7))
+    return (_WIDE_IN, max(4.2, min((_WIDE_IN - 0.8) * deep / wide, _DEEPEST) + 2.7))

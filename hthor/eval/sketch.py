@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from hthor import catalog
 from hthor.errors import HthorError
-from hthor.eval import lettering, plan, trace
+from hthor.eval import lettering, plan, text_fit, trace
 from hthor.eval.all_knowing import PACE_M_S, Feat
 from hthor.eval.redraw import PICTURES
 from hthor.types import HouseSpec, Placement, Pose, TaskSpec
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 _OTHER = "#6b6f76"
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.2, foreground="white")]
 _APART_M = 0.45
+_WIDE_IN, _TITLE_PT = 8.0, 10.0
+"""Inches of the figure, and points of its title's letters."""
 
 
 def draw(task: TaskSpec, house: HouseSpec, feat: Feat, path: Path) -> None:
@@ -44,7 +46,7 @@ def draw(task: TaskSpec, house: HouseSpec, feat: Feat, path: Path) -> None:
 def figure(task: TaskSpec, house: HouseSpec, feat: Feat) -> Figure:
     """Draw a task, about 8 inches wide."""
     xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
-    sheet = Figure(figsize=(8.0, max(3.6, 6.0 * (max(ys) - min(ys)) / (max(xs) - min(xs)) + 1.0)), dpi=200)
+    sheet = Figure(figsize=(_WIDE_IN, max(3.6, 6.0 * (max(ys) - min(ys)) / (max(xs) - min(xs)) + 1.0)), dpi=200)
     sheet.set_layout_engine("constrained")
     ax = sheet.subplots()
     wanted = {name for job in task.goal.todo for name in job.destinations}
@@ -53,7 +55,8 @@ def figure(task: TaskSpec, house: HouseSpec, feat: Feat) -> Figure:
     _draw_objects(ax, task)
     for number, pose in enumerate((task.human_start, *task.robot_starts)):
         _draw_start(ax, pose, number)
-    ax.set_title(_headline(task, feat), fontsize=10, loc="left", color=trace.INK)
+    title = "\n".join(text_fit.broken(line, _WIDE_IN - 0.3, _TITLE_PT) for line in _headline(task, feat))
+    sheet.suptitle(title, x=0.015, ha="left", fontsize=_TITLE_PT, color=trace.INK)
     _legend(sheet, bool(wanted))
     return sheet
 
@@ -102,10 +105,10 @@ def _draw_start(ax: Axes, pose: Pose, number: int) -> None:
         ax.text(pose.x, pose.y, str(number), fontsize=6, color=shade, ha="center", va="center_baseline", zorder=12)
 
 
-def _headline(task: TaskSpec, feat: Feat) -> str:
+def _headline(task: TaskSpec, feat: Feat) -> tuple[str, str]:
     how = f"{feat.seconds:.1f} s at {PACE_M_S:g} m/s" if feat.met else "not done alone"
     level = f", {task.difficulty}" if task.difficulty else ""
-    return f"“{task.instruction}”\n{task.id}: T* {task.t_star:.1f} s{level}; all-knowing person {how}"
+    return f"“{task.instruction}”", f"{task.id}: T* {task.t_star:.1f} s{level}; all-knowing person {how}"
 
 
 def _legend(sheet: Figure, destined: bool) -> None:
@@ -122,4 +125,4 @@ def _legend(sheet: Figure, destined: bool) -> None:
         mark("o", "white", "robots' starts", trace.ROBOTS[0], 7),
         Line2D([], [], color=trace.PERSON, lw=1.5, ls=(0, (4, 2)), label="shortest walk"),
     ]
-    sheet.legend(handles=handles, loc="outside lower center", ncols=6, fontsize=7.5, frameon=False, handlelength=1.8)
+    text_fit.legend(sheet, handles, len(handles), loc="outside lower center", handlelength=1.8)

@@ -23,7 +23,7 @@ from tqdm import tqdm
 from hthor import rules
 from hthor.episode import EpisodeLog
 from hthor.errors import HthorError
-from hthor.eval import lettering, picture, plan, trace
+from hthor.eval import lettering, picture, plan, text_fit, trace
 from hthor.types import HouseSpec, TrialSpec
 
 SPEED = 4
@@ -35,6 +35,8 @@ _SHIFT = 4  # cv2 draws at 1/16 pixel
 _WIDE, _HIGH, _DPI = 9.6, 8.0, 100
 _PLAN = (0.01, 0.165, 0.98, 0.755)
 """Where the plan lies in the picture; the title is above it, the clock, the messages and the legend are below."""
+_TITLE_IN, _TITLE_PT, _TITLE_LINES = 9.3, 11.0, 3
+"""Inches that the title is wide, points of its letters, and lines for which there is room; of more they are smaller."""
 _CLOCK_Y, _MESSAGE_Y = 676, 706
 """Pixels from the top to the line of the clock and to that of the newest message."""
 _WORDS_MAX = 110
@@ -99,9 +101,11 @@ class _Stage:
         canvas = FigureCanvasAgg(sheet)
         ax = sheet.add_axes(_PLAN)
         plan.draw_house(ax, house, marked=trace.destinations(spec, house))
-        sheet.text(0.015, 0.985, picture.headline(spec, log), fontsize=11, color=trace.INK, va="top")
+        words = picture.headline(spec, log, _TITLE_IN, _TITLE_PT)
+        size = _TITLE_PT * min(1.0, _TITLE_LINES / (words.count("\n") + 1))
+        sheet.text(0.015, 0.985, words, fontsize=size, color=trace.INK, va="top")
         handles = picture.handles(spec, log, house, moving=True)
-        sheet.legend(handles=handles, loc="lower left", ncols=6, fontsize=8, frameon=False, columnspacing=1.2)
+        text_fit.legend(sheet, handles, 6, size=8.0, loc="lower left", columnspacing=1.2)
         canvas.draw()
         self.empty: Any = cv2.cvtColor(np.asarray(canvas.buffer_rgba()), cv2.COLOR_RGBA2BGR)
         self._to_pixels = ax.transData

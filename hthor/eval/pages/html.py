@@ -8,6 +8,8 @@ from html import escape
 
 from msgspec import Struct
 
+_WORD_MAX, _PARTS = 24, re.compile(r"[^_+/.:-]+[_+/.:-]*|[_+/.:-]+")
+"""Letters of a word that is not broken, and what a longer one is made of."""
 _MANY = 3
 """Of more columns with intervals than these the intervals stand below the numbers."""
 
@@ -67,7 +69,7 @@ def table(
     for row in held:
         for i, cell in enumerate(() if isinstance(row, Band) else row):
             kinds[i] = "v" if isinstance(cell, Value) else kinds[i]
-    top = "".join(f'<th scope="col"{_class(kind)}>{escape(word)}</th>' for kind, word in zip(kinds, head, strict=True))
+    top = "".join(f'<th scope="col"{_class(kind)}>{_held(word)}</th>' for kind, word in zip(kinds, head, strict=True))
     body = "\n".join(_row(row, kinds) for row in held)
     title = f"<caption><span>{_held(caption)}</span></caption>" if caption else ""
     high = _class("high" if kinds.count("v") > _MANY else "")
@@ -110,7 +112,7 @@ def folded(title: str, *parts: str) -> str:
 def section(number: int, name: str, title: str, *parts: str) -> str:
     """A numbered section; empty parts are left out."""
     body = "\n".join(part for part in parts if part)
-    return f'<section id="{escape(name)}">\n<h2><span>{number}</span> {escape(title)}</h2>\n{body}\n</section>'
+    return f'<section id="{escape(name)}">\n<h2><span>{number}</span> {_held(title)}</h2>\n{body}\n</section>'
 
 
 def mark(yes: bool, good: str = "yes", bad: str = "no") -> Mark:
@@ -148,8 +150,15 @@ def inside(cell: Piece) -> str:
 
 
 def _held(text: str) -> str:
-    """Text whose numbers stay with their units."""
-    return re.sub(r"(?<=\d) (?=(?:%|s|m)(?!\w))", "\u00a0", escape(text))
+    """Text whose numbers stay with their units, and whose overlong words, such as names, may be broken."""
+    whole = re.sub(r"(?<=\d) (?=(?:%|s|m)(?!\w))", "\u00a0", text)
+    return "".join(_broken(word) if len(word) > _WORD_MAX else escape(word) for word in re.split(r"(\s+)", whole))
+
+
+def _broken(word: str) -> str:
+    """A word with places where a line may end: after marks that join words, else after so many letters."""
+    parts = (part[at : at + _WORD_MAX] for part in _PARTS.findall(word) for at in range(0, len(part), _WORD_MAX))
+    return "<wbr>".join(escape(part) for part in parts)
 
 
 def _class(name: str) -> str:

@@ -130,7 +130,7 @@ def svg(made: Figure, name: str, words: str) -> str:
     text = _short(text)
     for colour, variable in VARIABLES.items():
         text = re.sub(colour, f"var(--{variable})", text, flags=re.IGNORECASE)
-    text = text.replace("'DejaVu Sans'", "inherit").replace("font-family: inherit", "")
+    text = re.sub(r"font-family: [^;\"]*;? ?", "", text)
     head = re.match(r"<svg [^>]*>", text)
     assert head is not None
     width, height = (float(value) for value in re.findall(r'(?:width|height)="([\d.]+)pt"', head.group(0)))

@@ -48,7 +48,8 @@ li{margin:.15rem 0}
  h1{font-size:1.4rem}
  figure:not(.map) svg{min-width:36rem}
  .maps{grid-template-columns:1fr}
- .wide td,.wide th{white-space:nowrap}
+ .wide thead th{min-width:4.5rem}
+ .wide td:not(.n,.v){min-width:8rem}
 }
 @media print{
  .maps{grid-template-columns:1fr 1fr}
@@ -83,7 +84,7 @@ def _head(found: Findings, title: str) -> str:
     return "\n".join(
         (
             html.paragraph("hthor report", "over"),
-            f"<h1>{escape(title)}</h1>",
+            f"<h1>{html.inside(title)}</h1>",
             html.paragraph(verdict.lead(found), "lead"),
             html.paragraph(words.facts(found), "facts"),
             *(html.paragraph(note, "note") for note in notes.of(found)),

@@ -42,6 +42,7 @@ td.v{white-space:nowrap}
 td.v>span{display:inline-block;min-width:2.9em;text-align:right}
 td.v small,th.v{padding-left:.55em}
 .high td.v>span{min-width:0;font-weight:600}
+.high td,.high th{padding-right:.65rem}
 .high td.v i{display:block;margin-left:0}
 .high td.v small,.high th.v{padding-left:0}
 tr.band>th{padding-top:.6rem;font-style:italic;white-space:normal;color:var(--soft)}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import string
-import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +12,7 @@ from matplotlib.lines import Line2D
 from msgspec import Struct
 
 from hthor import rules
-from hthor.eval import picture, plan, trace
+from hthor.eval import picture, plan, text_fit, trace
 from hthor.eval.pages import ink
 from hthor.eval.pages.filming import Views
 from hthor.eval.pages.moments import MANY, Moment
@@ -29,7 +28,10 @@ _HEAD, _EDGES = 0.36, 0.5
 _MAP_HIGH = 3.3
 """Inches that a map may take at most."""
 _NEAR_M, _BESIDE_M = 0.5, 0.6
-_WORDS_MAX = 80
+_LETTER_PT, _BADGE_IN = 6.5, 0.12
+"""Points of a letter on a badge, and inches of a badge beside its letters."""
+_HEAD_PT, _TASK_PT, _EDGE_IN = 8.5, 9.0, 0.2
+"""Points of the words above a row and above all, and inches left free beside them."""
 _CORNERS: tuple[Vec2, ...] = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0))
 
 
@@ -49,8 +51,9 @@ def figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
     deep = min(deep, _MAP_HIGH)
     seats = [list(row.record.paths) for row in rows]
     highs = [max(deep, 0.75 * _VIEW_WIDE * len(held) + 0.2) + _HEAD for held in seats]
+    wide = _MAP_WIDE + MANY * _VIEW_WIDE
     with ink.style():
-        made = ink.sheet(sum(highs) + _EDGES, _MAP_WIDE + MANY * _VIEW_WIDE)
+        made = ink.sheet(sum(highs) + _EDGES, wide)
         made.set_facecolor("white")
         bands = made.subfigures(len(rows), 1, height_ratios=highs, squeeze=False)[:, 0]
         for band, row, held in zip(bands, rows, seats, strict=True):
@@ -63,11 +66,13 @@ def figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
                     ax = band.add_subplot(grid[line, column + 1])
                     ax.set_anchor("C" if len(held) == 1 else "S" if line == 0 else "N")
                     _draw_view(ax, view, seat, column, moment, first=line == 0)
-            band.suptitle(_headline(row), x=0.012, ha="left", fontsize=8.5, weight="bold", color=ink.INK)
+            words = text_fit.shortened(_headline(row), wide - _EDGE_IN, _HEAD_PT, bold=True)
+            band.suptitle(words, x=0.012, ha="left", fontsize=_HEAD_PT, weight="bold", color=ink.INK)
         destined = bool(trace.destinations(rows[0].record.spec, house))
         handles = _legend(rows, destined=destined)
-        made.legend(handles=handles, loc="outside lower left", ncols=len(handles), fontsize=7, columnspacing=1.4)
-        made.suptitle(_task(rows[0].record), x=0.012, ha="left", fontsize=9, color=ink.INK)
+        text_fit.legend(made, handles, len(handles), size=7.0, loc="outside lower left", columnspacing=1.4)
+        task = text_fit.shortened(_task(rows[0].record), wide - _EDGE_IN, _TASK_PT)
+        made.suptitle(task, x=0.012, ha="left", fontsize=_TASK_PT, color=ink.INK)
     return made
 
 
@@ -82,9 +87,19 @@ def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
     marks = [(seat, place, letters) for seat in record.paths for place, letters in _places(row, seat)]
     for seat, place, letters in marks:
         others = [other for _, other, _ in marks if other != place]
-        side = max(_CORNERS, key=lambda side: _room(place, side, [*busy, *others]))
+        inside = [side for side in _CORNERS if _is_on_map(ax, place, letters, side)] or _CORNERS
+        side = max(inside, key=lambda side: _room(place, side, [*busy, *others]))
         _letter(ax, place, letters, seat, side)
         busy.append(_beside(place, side))
+
+
+def _is_on_map(ax: Axes, place: Vec2, letters: str, side: Vec2) -> bool:
+    """Whether the letters at this corner end before the map does: beyond it they could be cut."""
+    (west, east), (south, north) = ax.get_xlim(), ax.get_ylim()
+    metres = max((east - west) / _MAP_WIDE, (north - south) / _MAP_HIGH)  # in an inch of the map
+    wide = _BADGE_IN + text_fit.width(letters, _LETTER_PT, bold=True)
+    x, y = place[0] + side[0] * metres * wide, place[1] + side[1] * metres * 2.0 * _BADGE_IN
+    return west <= x <= east and south <= y <= north
 
 
 def _room(place: Vec2, side: Vec2, busy: Sequence[Vec2]) -> float:
@@ -139,19 +154,24 @@ def _draw_view(ax: Axes, view: Any, seat: str, column: int, moment: Moment, *, f
 def _badge(seat: str) -> dict[str, Any]:
     """A letter in a seat's colour, as it stands on the map and on the view."""
     box = {"boxstyle": "round,pad=0.2,rounding_size=0.5", "fc": trace.colour(seat), "ec": "white", "lw": 0.7}
-    return {"fontsize": 6.5, "weight": "bold", "color": "white", "bbox": box, "zorder": 15}
+    return {"fontsize": _LETTER_PT, "weight": "bold", "color": "white", "bbox": box, "zorder": 15}
 
 
 def _headline(row: Row) -> str:
     record, seconds = row.record, row.record.ticks * rules.TICK_S
     end = f"done in {seconds:.1f} s" if record.met else f"not done in {seconds:.0f} s"
+    sent = trace.messages(record.log)
+    failed = [
+        f"{fault.seat} failed at {fault.tick * rules.TICK_S:.1f} s ({fault.kind})"
+        for seat in record.paths
+        if (fault := trace.failure(record.log, seat)) is not None
+    ]
     said = [
-        f"message {number}: “{textwrap.shorten(event.data['text'], _WORDS_MAX, placeholder=' …')}” "
-        f"({trace.fate(record.log, event.data['message'])})"
-        for number, event in enumerate(trace.messages(record.log), 1)
+        f"message {number} of {len(sent)} ({trace.fate(record.log, event.data['message'])}): “{event.data['text']}”"
+        for number, event in enumerate(sent, 1)
         if any(moment.tick == event.tick for moment in row.moments)
     ]
-    return "; ".join([f"{row.label}: {end}", *said[:1]])
+    return "; ".join([f"{row.label}: {end}", *failed, *said[:1]])
 
 
 def _task(record: Record) -> str:
@@ -171,6 +191,8 @@ def _legend(rows: Sequence[Row], *, destined: bool) -> list[Line2D]:
         Line2D([], [], ls="", marker="o", mfc=ink.SOFT, mec="white", label="end"),
         Line2D([], [], ls="", marker="*", mfc=trace.TARGET, mec="white", ms=9, label="target at the start"),
     ]
+    if any(row.record.faults for row in rows):
+        marks.append(Line2D([], [], ls="", marker="X", mfc=trace.FAILED, mec="white", ms=7.5, label="the agent failed"))
     if destined:
         marks.append(Line2D([], [], ls="", marker="s", mfc=plan.MARKED, mec=plan.MARKED_EDGE, label="destination"))
     return [*ways, *marks]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from hthor.eval import trace
+from hthor.eval import text_fit, trace
 from hthor.eval.pages import ink
 from hthor.eval.pages.figures import marks
 from hthor.eval.pages.findings import Arm
@@ -51,11 +51,6 @@ def figure(arms: Sequence[Arm]) -> Figure:
             ink.bare(ax)
         bars.set_yticks(range(rows), [f"{marks.label(arm.label)}\nn = {arm.trials}" for arm in arms])
         bars.set_ylim(rows - 0.45, -0.55)
-        made.legend(
-            handles=[Patch(facecolor=shade, edgecolor="none", label=word) for word, shade in FATES.values()],
-            loc="outside lower left",
-            ncols=len(FATES),
-            handlelength=1.0,
-            handleheight=0.9,
-        )
+        handles = [Patch(facecolor=shade, edgecolor="none", label=word) for word, shade in FATES.values()]
+        text_fit.legend(made, handles, len(FATES), loc="outside lower left", handlelength=1.0, handleheight=0.9)
     return made

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from matplotlib.lines import Line2D
 from msgspec import Struct
 
+from hthor.eval import text_fit
 from hthor.eval.pages import ink
 from hthor.eval.pages.findings import Arm
 from hthor.eval.stats import Estimate
@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 _OTHERS = ("#9a5fb5", "#2f9270", "#c4587f", "#7f7a2c", "#4a79c4")
 _SHAPES = {"none": "o", "frontier": "s", "oracle": "^"}
-_NAME_MAX = 22
+_NAME_IN, _NAME_PT = 1.35, 8.0
+"""Inches that a name is wide at most, and points of its letters."""
+LINE_IN = 0.135
+"""Inches of a line of a name."""
 _MORE = ("v", "P", "X", "p", "h")
 
 
@@ -80,36 +83,79 @@ def window(
     return max(low, most[0]), min(max(high, low + step), most[1])
 
 
-def names(ax: Axes, ends: Sequence[tuple[float, float, str, Mark]], apart: float) -> None:
-    """Names of curves at their right ends, moved up where one would touch the one below.
+def names(ax: Axes, ends: Sequence[tuple[float, float, str, Mark]], line: float) -> None:
+    """Names of curves on the right of all of them, each as near to its curve's end as the others let it be.
+
+    The axes' limits of y must be set: no name leaves them.
 
     Args:
-        ends: x, y, name and mark of each. apart: the least distance between two names, in units of y.
+        ends: x, y, name and mark of each. line: the height of a line of a name, in units of y.
     """
-    lowest = -math.inf
-    for x, y, name, mark in sorted(ends, key=lambda end: end[1]):
-        height = max(y, lowest)
-        lowest = height + apart
+    if not ends:
+        return
+    right = max(x for x, _, _, _ in ends)  # a name that began at its own curve's end would lie below others' marks
+    ordered = sorted(ends, key=lambda end: end[1])
+    words = [label(name) for _, _, name, _ in ordered]
+    highs = [line * (text.count("\n") + 1) for text in words]
+    places = _apart([y for _, y, _, _ in ordered], highs, ax.get_ylim())
+    for (_, _, _, mark), text, y in zip(ordered, words, places, strict=True):
         ax.annotate(
-            label(name),
-            (x, height),
+            text,
+            (right, y),
             (9, 0),
             textcoords="offset points",
             color=mark.shade,
+            fontsize=_NAME_PT,
             va="center",
             annotation_clip=False,
         )
 
 
+def _apart(middles: Sequence[float], highs: Sequence[float], within: tuple[float, float]) -> list[float]:
+    """The middles, lowest first, moved so that nothing so high touches another or leaves the limits, if there is room.
+
+    What meets moves by as little as it can, in either direction: each group lies around the mean of its wishes.
+    """
+    groups: list[tuple[list[float], list[float]]] = []  # wishes and heights
+    for middle, high in zip(middles, highs, strict=True):
+        groups.append(([middle], [high]))
+        while len(groups) > 1 and _foot(groups[-1], within) < _foot(groups[-2], within) + sum(groups[-2][1]):
+            wishes, tall = groups.pop()
+            groups[-1][0].extend(wishes)
+            groups[-1][1].extend(tall)
+    found: list[float] = []
+    for group in groups:
+        foot = _foot(group, within)
+        for high in group[1]:
+            found.append(foot + high / 2.0)
+            foot += high
+    return found
+
+
+def _foot(group: tuple[list[float], list[float]], within: tuple[float, float]) -> float:
+    """Where a group begins."""
+    wishes, highs = group
+    starts = [
+        wish - high / 2.0 - sum(highs[:place]) for place, (wish, high) in enumerate(zip(wishes, highs, strict=True))
+    ]
+    foot = sum(starts) / len(starts)
+    return max(within[0], min(foot, within[1] - sum(highs)))
+
+
 def label(name: str) -> str:
     """A long name in lines that are short enough for an axis."""
-    return "\n".join(textwrap.wrap(name.replace("+", "+ "), _NAME_MAX)).replace("+ ", "+")
+    return text_fit.broken(name, _NAME_IN, _NAME_PT)
 
 
 def high(names: Iterable[str], least: float = 0.36) -> float:
     """Inches that a row takes whose name has a line for n below."""
     lines = 1 + max(label(name).count("\n") + 1 for name in names)
-    return max(least, 0.135 * lines + 0.08)
+    return max(least, LINE_IN * lines + 0.08)
+
+
+def column(names: Iterable[str]) -> float:
+    """Inches of all names, one below another."""
+    return sum(LINE_IN * (label(name).count("\n") + 1) for name in names)
 
 
 def handle(mark: Mark, label: str) -> Line2D:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 from msgspec import Struct
 
+from hthor.eval import text_fit
 from hthor.eval.pages import ink
 from hthor.eval.pages.figures import marks
 from hthor.eval.pages.figures.marks import Mark
@@ -20,6 +21,8 @@ _ROW = 0.13
 """Inches that each robot takes up within a group."""
 _HEAD = 0.45
 """Height of the name of a split, in groups."""
+_LEGEND = 5
+"""Entries of the legend side by side at most."""
 _LONG = 8
 """More groups than these stand in two columns."""
 
@@ -64,7 +67,7 @@ def figure(splits: Sequence[Split], arms: Sequence[Arm], *, ranked: bool = False
             ax.set_xlabel("success rate [%]")
         panels[0].set_xlim(marks.window(ends, 10.0, (-1.0, 101.0)))
         handles = [marks.handle(own[label], label) for label in labels]
-        made.legend(handles=handles, loc="outside upper left", ncols=min(5, len(handles)))
+        text_fit.legend(made, handles, _LEGEND, loc="outside upper left")
     return made
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from hthor.eval import text_fit
 from hthor.eval.pages import ink
 from hthor.eval.pages.figures import marks
 from hthor.eval.pages.findings import Findings
@@ -45,7 +46,7 @@ def figure(found: Findings) -> Figure:
             word = f"published ({found.published.name}), 95 % from its counts where it has any"
             handles = [Line2D([], [], color=ink.SOFT, lw=1.6, marker="o", ms=5, mec=ink.PAPER, label="mean and 95 %")]
             handles.append(Line2D([], [], color=ink.PUBLISHED, lw=0.9, marker="D", mfc="none", ms=4.6, label=word))
-            made.legend(handles=handles, loc="outside lower right", ncols=2)
+            text_fit.legend(made, handles, 2, loc="outside lower right")
     return made
 
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from hthor.eval.pages.figures.marks import Mark
 
-_APART = 8.0
-"""Least distance between two names of curves [per cent]."""
+_EDGES_IN = 0.8
+"""Inches of title and labels."""
 _MANY = 6
 """So many curves are named at their ends; boxes have the names of more."""
 
@@ -28,7 +28,9 @@ def figure(parts: Sequence[Spent], arms: Sequence[Arm]) -> Figure:
     own = marks.of(arms)
     longest = max(max(one.most for one in parts), len(parts[0].solved) - 1.0)
     with ink.style():
-        made = ink.sheet(max(2.3, 0.75 + len(parts) * marks.high((one.arm for one in parts), 0.38)))
+        rows = len(parts) * marks.high((one.arm for one in parts), 0.38)
+        high_in = max(2.3, 0.75 + rows)
+        made = ink.sheet(high_in)
         boxes, curves = made.subplots(1, 2, width_ratios=(1.15, 1.0))
         for y, one in enumerate(parts):
             _box(boxes, y, one, own[one.arm])
@@ -40,8 +42,8 @@ def figure(parts: Sequence[Spent], arms: Sequence[Arm]) -> Figure:
         boxes.set_title("time spent [s]")
         curves.set_title("trials solved by then [%]")
         ends = [(len(one.solved) - 1.0, 100.0 * one.solved[-1], one.arm, own[one.arm]) for one in parts]
-        marks.names(curves, ends if len(ends) <= _MANY else [], _APART)
         curves.set_ylim(0.0, 100.0)
+        marks.names(curves, ends if len(ends) <= _MANY else [], 100.0 * marks.LINE_IN / (high_in - _EDGES_IN))
         for ax, grid in ((boxes, "x"), (curves, "both")):
             ax.set_xlim(0.0, 1.01 * longest)
             ax.xaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 1.5, 3, 5, 10]))

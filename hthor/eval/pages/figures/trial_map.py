@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hthor.eval import picture, plan, trace
+from hthor.eval import picture, plan, text_fit, trace
 from hthor.eval.pages import ink
 from hthor.eval.record import Record
 from hthor.types import HUMAN, HouseSpec
@@ -69,13 +69,8 @@ def legend(seats: Collection[str], *, alone: bool, destined: bool, failed: bool 
     with ink.style():
         made = ink.sheet(0.5)
         made.set_facecolor("white")  # as the plans have it
-        made.legend(
-            handles=handles,
-            loc="center left",
-            ncols=columns,
-            columnspacing=1.6,
-            handlelength=1.8,
-            labelcolor=trace.INK,
+        text_fit.legend(
+            made, handles, columns, loc="center left", columnspacing=1.6, handlelength=1.8, labelcolor=trace.INK
         )
     return made
 

@@ -12,16 +12,17 @@ from hthor.eval.pages.figures import marks
 from hthor.eval.pages.findings import Arm, Curve
 
 _SIDE = 0.06
-_APART = 0.07
-"""Least distance between two names at the right, as a share of the axis."""
+_HIGH_IN, _EDGES_IN = 2.7, 0.75
+"""Inches of the figure, and of its title and labels."""
 
 
 def figure(curves: Sequence[Curve], arms: Sequence[Arm]) -> Figure:
     """Means with bars and bands of their 95 % intervals."""
     own, ends = marks.of(arms), []
     low, high = window(curves)
+    high_in = max(_HIGH_IN, _EDGES_IN + marks.column(curve.arm for curve in curves))
     with ink.style():
-        made = ink.sheet(2.7)
+        made = ink.sheet(high_in)
         ax = made.subplots()
         for number, curve in enumerate(curves):
             mark = own[curve.arm]
@@ -35,7 +36,7 @@ def figure(curves: Sequence[Curve], arms: Sequence[Arm]) -> Figure:
         ax.set_xticks(sorted({trial for curve in curves for trial in curve.trial}))
         ax.set_yticks(range(round(low), round(high) + 1))
         ax.set_ylim(low, high)
-        marks.names(ax, ends, _APART * (high - low))
+        marks.names(ax, ends, marks.LINE_IN / (high_in - _EDGES_IN) * (high - low))
         ax.set_xlabel("trial of the session")
         ax.set_title(f"trust, {rules.TRUST_MIN} to {rules.TRUST_MAX}")
         ink.bare(ax, grid="y")

@@ -1,0 +1,211 @@
+"""Words in pictures and on pages are whole, whatever robots are called: nothing is cut, covered or beyond the edge."""
+
+from __future__ import annotations
+
+import itertools
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from html import unescape
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.axis import Axis, Tick
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from test_pages import PUBLISHED, run
+
+from hthor import houses
+from hthor.episode import EpisodeLog, Fault
+from hthor.eval import lettering, picture, redraw, text_fit
+from hthor.eval.pages import assemble, drawings, gather, html, ink, moments, write
+from hthor.eval.pages.drawings import Scene
+from hthor.eval.pages.figures import case, marks, trust
+from hthor.eval.pages.findings import Findings
+from hthor.eval.record import Record
+from hthor.types import RobotSeat, TrialSpec
+
+LONG = "a_policy_whose_name_has_sixty_characters_as_some_people_like"
+WIDE = "WWWWWWWWWWWWWWW MMMMMMMMMMMMMMM-WWWWWWWWWWWWWWWMMMMMMMMMMMMM"
+NAMES = ("frontier", "control", LONG, WIDE)
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    base = tmp_path_factory.mktemp("runs")
+    robots = [run(base / str(number), name) for number, name in enumerate(NAMES)]
+    return [run(base / "alone", "silent", absent=True), *robots]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _known_house() -> Iterator[None]:
+    plan = houses.load("hazel")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(redraw, "house", lambda _: plan)
+        yield
+
+
+@pytest.fixture(scope="module")
+def found(folders: list[Path]) -> Findings:
+    return assemble.findings(gather.runs(folders), PUBLISHED)
+
+
+@pytest.fixture(scope="module")
+def long_trial(folders: list[Path]) -> Record:
+    """A trial of the robot with the long name, which fails in the middle of it."""
+    one = gather.runs(folders)[3].records[0]
+    robot = one.spec.robots[0]
+    seat = RobotSeat(seat=robot.seat, robot=robot.robot, agent=msgspec.structs.replace(robot.agent, name=WIDE))
+    return msgspec.structs.replace(one, spec=msgspec.structs.replace(one.spec, robots=(seat,)))
+
+
+def cut(made: Figure) -> list[str]:
+    """Words of a figure that are not wholly on it."""
+    FigureCanvasAgg(made)
+    with ink.style():
+        made.canvas.draw()
+    whole = made.bbox.padded(1.0)
+    undrawn = {tick.label1 for ax in made.axes for axis in (ax.xaxis, ax.yaxis) for tick in _beyond(axis)}
+    texts = [text for text in made.findobj(Text) if text not in undrawn]
+    shown = [text for text in texts if text.get_visible() and text.get_text().strip()]
+    boxes = [(text, text.get_window_extent()) for text in shown]
+    return [
+        text.get_text()
+        for text, box in boxes
+        if box.x0 < whole.x0 or box.y0 < whole.y0 or box.x1 > whole.x1 or box.y1 > whole.y1
+    ]
+
+
+def _beyond(axis: Axis) -> list[Tick]:
+    """Ticks that are not drawn, as they lie beyond the axis's ends."""
+    low, high = sorted(axis.get_view_interval())
+    return [tick for tick in axis.get_major_ticks() if not low <= tick.get_loc() <= high]
+
+
+def test_every_figure_of_a_report_has_its_words_whole(found: Findings, folders: list[Path]) -> None:
+    assert all(len(name) == 60 for name in (LONG, WIDE))
+    record = gather.runs(folders)[1].records[0]
+    scenes = [Scene(record=record, alone=None, house=houses.load("hazel"))] * 2
+    drawn = {one.name: one.figure for one in drawings.draw(found, scenes)}
+    assert {"scores", "compared", "time-spent", "trust", "channel", "scenes", "legend"} <= drawn.keys()
+    assert {name: cut(made) for name, made in drawn.items()} == {name: [] for name in drawn}
+
+
+def test_names_of_curves_lie_right_of_all_marks_and_apart(found: Findings) -> None:
+    """Each began where its own curve ended, and the marks of the others hid its first letters."""
+    made = trust.figure(found.trust, found.arms)
+    assert cut(made) == []
+    (ax,) = made.axes
+    named = {marks.label(name) for name in NAMES}
+    boxes = [text.get_window_extent() for text in ax.texts if text.get_text() in named]
+    assert len(boxes) == len(NAMES)
+    to_pixels = ax.transData.transform
+    last = max(to_pixels((float(np.max(line.get_xdata())), 0.0))[0] for line in ax.lines)
+    assert all(box.x0 > last + 4.0 for box in boxes)
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
+    within = ax.get_window_extent().padded(2.0)
+    assert all(within.y0 <= box.y0 and box.y1 <= within.y1 for box in boxes)
+
+
+def test_a_picture_and_a_case_have_their_words_whole(long_trial: Record) -> None:
+    house, spec = houses.load("hazel"), long_trial.spec
+    event = msgspec.structs.replace(
+        next(one for one in long_trial.log.events if one.kind == "sent"),
+        data={"message": 0, "text": WIDE * 4, "position": None},
+    )
+    others = [one for one in long_trial.log.events if one.kind != "sent"]
+    fault = Fault(seat="robot", kind="raised", tick=33, detail="no")
+    log = msgspec.structs.replace(long_trial.log, events=(event, *others), faults=(fault,))
+    assert cut(_pictured(spec, log)) == []
+    grey = np.full((24, 32, 3), 128, np.uint8)
+    held = moments.of(long_trial, house)
+    views = {moment.tick: dict.fromkeys(long_trial.paths, grey) for moment in held}
+    row = case.Row(label=WIDE, record=long_trial, moments=held, views=views)
+    assert cut(case.figure([row, row], house)) == []
+
+
+def _pictured(spec: TrialSpec, log: EpisodeLog) -> Figure:
+    with lettering.plain():
+        return picture.figure(spec, log, houses.load("hazel"))
+
+
+@given(st.text(alphabet="aW_-/ .+:é$\\", max_size=80), st.floats(0.3, 3.0))
+def test_lines_are_as_wide_as_they_may_be_and_lose_no_letter(words: str, inches: float) -> None:
+    lines = text_fit.lines(words, inches, 8.0)
+    assert "".join(lines).replace(" ", "") == words.replace(" ", "")
+    assert all(text_fit.width(line, 8.0) <= inches for line in lines)
+    line = text_fit.shortened(words, inches, 8.0)
+    assert text_fit.width(line, 8.0) <= inches
+    assert line.endswith("…") or line == " ".join(words.split())
+
+
+def test_long_names_may_be_broken_on_a_page_and_are_copied_whole() -> None:
+    broken = html.paragraph(f"<{LONG}> helps 12 % of people at smoke/maple/01")
+    assert "a_<wbr>policy_<wbr>whose_" in broken
+    assert "smoke/maple/01" in broken
+    assert unescape(re.sub(r"</?p>|<wbr>", "", broken)).replace("\xa0", " ") == (
+        f"<{LONG}> helps 12 % of people at smoke/maple/01"
+    )
+
+
+def test_letters_in_a_figure_have_a_size_and_no_font_of_their_own(found: Findings) -> None:
+    for one in drawings.draw(found, []):
+        styles = re.findall(r'<text style="([^"]*)"', ink.svg(one.figure, one.name, one.words))
+        assert styles
+        for style in styles:
+            parts = [part.strip().partition(":")[0] for part in style.split(";")]
+            assert "font-size" in parts, style
+            assert all(part and "," not in part and part not in ("font", "font-family") for part in parts), style
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
+@pytest.mark.parametrize("width", [1280, 700])
+def test_four_runs_fit_a_page(folders: list[Path], tmp_path: Path, width: int) -> None:
+    """At 1280 pixels nothing is wider than the page; at 700 tables that are slide within it, and the page does not."""
+    write.report([folders[0], *folders[1:3], folders[3]], tmp_path / "report", PUBLISHED)
+    page = (tmp_path / "report" / "report.html").read_text().replace("</body>", f"{PROBE}</body>")
+    (tmp_path / "page.html").write_text(page)
+    options = [
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--virtual-time-budget=4000",
+        f"--window-size={width},900",
+    ]
+    options += [f"--user-data-dir={tmp_path / 'browser'}", "--dump-dom", f"file://{tmp_path / 'page.html'}"]
+    done = subprocess.run(["chromium", *options], capture_output=True, text=True, timeout=180, check=True)
+    told = re.search(r'<pre id="told">(.*?)</pre>', done.stdout, re.DOTALL)
+    assert told is not None
+    lines = unescape(told.group(1)).splitlines()
+    assert lines[0] == "page fits"
+    assert [line for line in lines if line.startswith("cut")] == []
+    if width == 1280:
+        assert [line for line in lines if line.startswith("slides")] == []
+
+
+PROBE = """<script>addEventListener("load", () => {
+document.querySelectorAll("details").forEach(one => { one.open = true; });
+const all = document.documentElement, told = [all.scrollWidth <= all.clientWidth ? "page fits" : "page is wider"];
+for (const one of document.querySelectorAll("svg")) {
+  const box = one.getBoundingClientRect();
+  for (const text of one.querySelectorAll("text")) {
+    const own = text.getBoundingClientRect();
+    if (own.left < box.left - 1 || own.right > box.right + 1) told.push("cut: " + text.textContent);
+  }
+}
+for (const one of document.querySelectorAll("main *")) {
+  if (one.closest("svg") || !one.clientWidth || one.scrollWidth <= one.clientWidth + 1) continue;
+  if (getComputedStyle(one).overflowX === "visible") continue;
+  told.push("slides: " + one.className + " " + one.scrollWidth + " > " + one.clientWidth);
+}
+const out = document.createElement("pre");
+out.id = "told";
+out.textContent = told.join("\\n");
+document.body.append(out);
+});</script>"""
