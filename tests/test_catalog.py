@@ -203,7 +203,7 @@ def test_an_asset_database(tmp_path: Path) -> None:
     with pytest.raises(HouseError, match=r"db\.json.*Bed_1\.boundingBox.*positive"):
         procthor.read(path)
     path.write_text("[1, 2")
-    with pytest.raises(HouseError, match="not a ProcTHOR asset database"):
+    with pytest.raises(HouseError, match="expected a ProcTHOR asset database"):
         procthor.read(path)
     with pytest.raises(HouseError, match="cannot read"):
         procthor.read(tmp_path / "absent.json")
