@@ -205,7 +205,7 @@ def test_an_asset_database(tmp_path: Path) -> None:
     path.write_text("[1, 2")
     with pytest.raises(HouseError, match="expected a ProcTHOR asset database"):
         procthor.read(path)
-    with pytest.raises(HouseError, match="cannot read"):
+    with pytest.raises(HouseError, match="cannot be read"):
         procthor.read(tmp_path / "absent.json")
 
 
