@@ -111,7 +111,7 @@ from hthor.guest import Guest
 from tests.test_guest import BRIEFING
 guest = Guest(sys.argv[1], isolation=sys.argv[2])
 guest.load()
-print(guest._process._ground, flush=True)
+print(guest._process._ground or guest._process.policy.scratch, flush=True)
 guest.begin(BRIEFING)
 """
 DAEMON = """
