@@ -178,7 +178,8 @@ def test_what_is_left_of_an_agent_is_shown_with_the_command_that_plays_it_again(
     left = {"schema": "hthor.faults/1", "key": first.key, "failures": [told], "again": f"hthor agent run x {first.key}"}
     jsonio.write(mine / "faults" / f"{first.key}.json", msgspec.json.encode(left))
     _, text = _told(mine)
-    for said in ("KeyError: &lt;i&gt;", "last &amp; least", left["again"], first.replay):
+    again = f"hthor agent run {mine} {first.key}"  # with the run's folder as it is reached from here
+    for said in ("KeyError: &lt;i&gt;", "last &amp; least", again, first.replay):
         assert said in text
     jsonio.write(mine / "faults" / f"{first.key}.json", b"torn")
     assert failures.of(gather.runs([mine])[0])[0] == first
@@ -198,8 +199,9 @@ def test_what_held_the_agents_and_where_they_were_played_is_told(folders: list[P
     }
     jsonio.write(mine / "platform.json", msgspec.json.encode([there]))
     found, text = _told(mine)
-    assert found.origins[0].command == (
-        "hthor eval --agent helper.py --robot scout --humans proxy --suite fake --seed 0 --participants 2 --out mine"
+    own = next(one for one in found.origins if not one.beside)
+    assert own.command == (
+        f"hthor eval --agent helper.py --robot scout --humans proxy --suite fake --seed 0 --participants 2 --out {mine}"
     )
     assert "L2: Landlock (ABI 7), seccomp, memory 4096 MB. Not higher: no bubblewrap" in text
     assert "Linux, x86_64, znver3, AVX2, glibc 2.36" in text

@@ -18,12 +18,12 @@ from hypothesis import strategies as st
 from matplotlib.axis import Axis, Tick
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.text import Text
+from matplotlib.text import Annotation, Text
 from test_pages import PUBLISHED, run
 
 from hthor import houses
 from hthor.episode import EpisodeLog, Fault
-from hthor.eval import lettering, picture, redraw, text_fit
+from hthor.eval import lettering, picture, redraw, text_fit, trace
 from hthor.eval.pages import assemble, drawings, gather, html, ink, moments, write
 from hthor.eval.pages.drawings import Scene
 from hthor.eval.pages.figures import case, marks, trust
@@ -209,3 +209,28 @@ out.id = "told";
 out.textContent = told.join("\\n");
 document.body.append(out);
 });</script>"""
+
+
+def test_hundreds_of_messages_share_few_badges_that_do_not_touch(long_trial: Record) -> None:
+    """Joining them pair by pair, again from the start after each, took minutes."""
+    sent = next(one for one in long_trial.log.events if one.kind == "sent")
+    events = [
+        msgspec.structs.replace(sent, tick=n, data={"message": n, "text": "x", "position": (2.0, 2.0, 0.5)})
+        for n in range(900)
+    ]
+    log = msgspec.structs.replace(long_trial.log, events=tuple(events))
+    marked = [(n + 1, event, (0.01 * n, 0.0)) for n, event in enumerate(events)]
+    groups = trace.grouped(log, marked, 0.05, 0.2)
+    assert len(groups) < 40
+    for one, other in itertools.combinations(groups, 2):
+        wide = 0.5 * 0.05 * sum(1.6 + len(group.words) for group in (one, other))
+        assert abs(one.place[0] - other.place[0]) >= wide
+    made = _pictured(long_trial.spec, log)
+    assert cut(made) == []
+    arrows = [text for text in made.axes[0].texts if isinstance(text, Annotation) and text.arrow_patch is not None]
+    assert 0 < len(arrows) < 20, "of arrows that lie on one another one is drawn"
+    made.axes[1].figure.canvas.draw()
+    lane = made.axes[1]
+    badges = [text.get_bbox_patch().get_window_extent() for text in lane.texts if text.get_bbox_patch() is not None]
+    names = [tick.get_window_extent() for tick in lane.get_yticklabels()]
+    assert not any(badge.overlaps(name) for badge in badges for name in names)

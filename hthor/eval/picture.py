@@ -15,7 +15,7 @@ from matplotlib.transforms import blended_transform_factory
 from hthor import rules
 from hthor.episode import EpisodeLog, Fault
 from hthor.eval import lettering, plan, text_fit, timeline, trace
-from hthor.types import HouseSpec, TrialSpec, Vec2
+from hthor.types import Event, HouseSpec, TrialSpec, Vec2
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 _CORNERS, _CROWDED_M = ((1, 1), (-1, -1), (-1, 1), (1, -1)), 1.5
 """Where the names of targets stand that are so near each other."""
-_LINES, _WIDE_IN = 10, 8.0
-"""Messages whose words are shown, and inches of the figure."""
+_LINES, _MANY, _WIDE_IN = 10, 100, 8.0
+"""Messages whose words are shown, messages whose arrows are faint, and inches of the figure."""
 _EDGE_IN, WORDS_PT, HEAD_PT = 0.15, 7.5, 10.0
 """Inches left free beside a line of words; points of messages' words and of the headline."""
 _COLUMNS, _DEEPEST = 5, 8.5
@@ -146,16 +146,22 @@ def _name_destinations(ax: Axes, spec: TrialSpec, house: HouseSpec) -> None:
 
 def _words(log: EpisodeLog) -> list[tuple[str, str]]:
     """A line for each message, with its colour; of many the first and the last few."""
-    lines = []
-    for number, event in enumerate(trace.messages(log), 1):
-        fate = trace.fate(log, event.data["message"])
-        head = f"{number}  {event.tick * rules.TICK_S:.1f} s  {event.seat}: “"
-        end = f"” ({'unanswered' if fate in ('sent', 'shown') else fate})"
-        room = _WIDE_IN - 2 * _EDGE_IN - text_fit.width(head + end, WORDS_PT)
-        lines.append((head + text_fit.shortened(event.data["text"], room, WORDS_PT) + end, trace.tint(log, event)))
+    sent = list(enumerate(trace.messages(log), 1))
     half = _LINES // 2
-    left = len(lines) - 2 * half
-    return lines if left <= 0 else [*lines[:half], (f"… and {left} more", trace.INK), *lines[-half:]]
+    left = len(sent) - 2 * half
+    if left <= 0:
+        return [_line_of(log, number, event) for number, event in sent]
+    first, last = ([_line_of(log, number, event) for number, event in some] for some in (sent[:half], sent[-half:]))
+    return [*first, (f"… and {left} more", trace.INK), *last]
+
+
+def _line_of(log: EpisodeLog, number: int, event: Event) -> tuple[str, str]:
+    """A message's number, time, sender, words and fate in a line, and its colour."""
+    fate = trace.fate(log, event.data["message"])
+    head = f"{number}  {event.tick * rules.TICK_S:.1f} s  {event.seat}: “"
+    end = f"” ({'unanswered' if fate in ('sent', 'shown') else fate})"
+    room = _WIDE_IN - 2 * _EDGE_IN - text_fit.width(head + end, WORDS_PT)
+    return (head + text_fit.shortened(event.data["text"], room, WORDS_PT) + end, trace.tint(log, event))
 
 
 def _write_words(ax: Axes, words: Sequence[tuple[str, str]]) -> None:
@@ -175,13 +181,19 @@ def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
     sent = [
         (number, event, trace.at(log, event.seat, event.tick)) for number, event in enumerate(trace.messages(log), 1)
     ]
-    strength = 1.0 if len(sent) <= _LINES else 0.45
+    strength = 1.0 if len(sent) <= _LINES else 0.45 if len(sent) <= _MANY else 0.15
+    shades, drawn = trace.tints(log), set()
     for _, event, here in sent if arrows else ():
-        claim = event.data.get("position")
-        if claim is not None and math.dist(claim[:2], here) > _BESIDE_M:
-            arrow = {"arrowstyle": "-|>", "color": trace.tint(log, event), "alpha": strength}
+        claim, shade = event.data.get("position"), shades[event.data["message"]]
+        if claim is None or math.dist(claim[:2], here) <= _BESIDE_M:
+            continue
+        same = (shade, *(round(part / _BESIDE_M) for part in (*here, *claim[:2])))
+        if same not in drawn:  # of arrows that lie on one another one is enough
+            drawn.add(same)
+            arrow = {"arrowstyle": "-|>", "color": shade, "alpha": strength}
             line = {"lw": 1.0 if strength == 1.0 else 0.7, "ls": (0, (3, 2)), "shrinkA": 6, "shrinkB": 5}
-            ax.annotate("", (claim[0], claim[1]), here, arrowprops=arrow | line, zorder=11)
+            made = ax.annotate("", (claim[0], claim[1]), here, arrowprops=arrow | line, zorder=11)
+            made.set_in_layout(False)
     inch = _metres(ax)
     for group in trace.grouped(log, sent, _LETTER_IN * inch, _BADGE_IN * inch):
         trace.badge(ax, _on_plan(ax, group, inch), group.words, group.shade)
@@ -259,7 +271,7 @@ def handles(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool 
 
 def _marks(log: EpisodeLog) -> list[Artist]:
     """What stands for messages and deeds."""
-    shades = {trace.tint(log, event) for event in trace.messages(log)}
+    shades = set(trace.tints(log).values())
     words = {trace.MESSAGE: "confirmed", trace.IDLE_MESSAGE: "not confirmed"}
     found: list[Artist] = [_mark("o", shade, f"message, {words[shade]}", size=7) for shade in words if shade in shades]
     present = {event.kind for event in log.events}

@@ -86,8 +86,10 @@ def _moment(ax: Axes, seconds: float, name: str, shade: str, style: str, side: _
 def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float, word_s: float) -> None:
     sent = [(number, event) for number, event in enumerate(trace.messages(log), 1) if event.seat == seat]
     marks = [(number, event, (event.tick * rules.TICK_S, row)) for number, event in sent]
-    for group in trace.grouped(log, marks, _LETTER * word_s / _WORD, 1.0):
-        trace.badge(ax, group.place, group.words, group.shade)
+    letter = _LETTER * word_s / _WORD
+    for group in trace.grouped(log, marks, letter, 1.0):
+        half = 0.5 * letter * (len(group.words) + 2)  # so that the seat's name is not covered
+        trace.badge(ax, (max(group.place[0], half), row), group.words, group.shade)
     words = {**{kind: verb for kind, (_, verb) in trace.ACTS.items()}, "confirmed": "confirms", "declined": "declines"}
     last = dict.fromkeys(_LIFTS, -math.inf)
     for event in log.events:

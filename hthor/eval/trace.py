@@ -117,12 +117,24 @@ def fate(log: EpisodeLog, message: int) -> str:
 
 def tint(log: EpisodeLog, event: Event) -> str:
     """The colour of a message: strong when the person confirmed it, pale when not."""
-    return MESSAGE if fate(log, event.data["message"]) == "confirmed" else IDLE_MESSAGE
+    return tints(log)[event.data["message"]]
+
+
+def tints(log: EpisodeLog) -> dict[int, str]:
+    """The colours of all messages that were sent, by their numbers in the log."""
+    confirmed = {event.data["message"] for event in log.events if event.kind == "confirmed"}
+    sent = (event.data["message"] for event in messages(log))
+    return {number: MESSAGE if number in confirmed else IDLE_MESSAGE for number in sent}
 
 
 def failure(log: EpisodeLog, seat: str) -> Fault | None:
     """The first fault of a seat's mind; from then on the trial went on without it."""
     return next((fault for fault in log.faults if fault.seat == seat), None)
+
+
+_Mark = tuple[int, Event, Vec2]
+_Joined = tuple[list[_Mark], str]
+"""A message's number and place; messages that share a badge, with their numbers in words."""
 
 
 class Group(Struct, frozen=True, kw_only=True):
@@ -141,28 +153,28 @@ def grouped(log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], letter: f
     Args:
         letter, high: width of a letter on a badge and height of a badge, in the units of the places.
     """
-    held = [[mark] for mark in marks]
 
-    def touch(one: list[tuple[int, Event, Vec2]], other: list[tuple[int, Event, Vec2]]) -> bool:
-        (x, y), (u, v) = one[0][2], other[0][2]
-        wide = sum(_PADDED + len(_numbers(some)) for some in (one, other)) * letter / 2.0
+    def touch(one: _Joined, other: _Joined) -> bool:
+        (x, y), (u, v) = one[0][0][2], other[0][0][2]
+        wide = sum(_PADDED + len(words) for _, words in (one, other)) * letter / 2.0
         return abs(x - u) < wide and abs(y - v) < high
 
-    joined = True
-    while joined:
-        pairs = ((one, other) for place, one in enumerate(held) for other in held[place + 1 :])
-        pair = next(((one, other) for one, other in pairs if touch(one, other)), None)
-        if joined := pair is not None:
-            one, other = pair
-            held = [some for some in held if some is not other]
-            one[:] = sorted([*one, *other], key=lambda mark: mark[0])
+    shades = tints(log)
+    held: list[_Joined] = []  # no two of them touch, so that there are few, however many messages there are
+    for mark in marks:
+        one: _Joined = ([mark], _numbers([mark]))
+        while (near := next((other for other in held if touch(one, other)), None)) is not None:
+            held = [other for other in held if other is not near]
+            both = sorted([*near[0], *one[0]], key=lambda mark: mark[0])
+            one = (both, _numbers(both))
+        held.append(one)
     return [
         Group(
-            words=_numbers(some),
+            words=words,
             place=some[0][2],
-            shade=MESSAGE if any(tint(log, event) == MESSAGE for _, event, _ in some) else IDLE_MESSAGE,
+            shade=MESSAGE if any(shades[event.data["message"]] == MESSAGE for _, event, _ in some) else IDLE_MESSAGE,
         )
-        for some in held
+        for some, words in sorted(held, key=lambda one: one[0][0][0])
     ]
 
 

@@ -16,7 +16,7 @@ td,th{vertical-align:middle;padding:.34rem .9rem .34rem 0}
 small{display:block;font-size:.74rem;line-height:1.25;font-weight:normal;white-space:nowrap}
 td b{font-size:1rem}
 td svg,th svg{display:block}
-tbody th{white-space:normal;min-width:9rem;font-size:.95rem}
+tbody th{white-space:normal;overflow-wrap:anywhere;min-width:9rem;font-size:.95rem}
 tbody th a{color:inherit;text-decoration-color:var(--soft);text-underline-offset:.15em}
 tbody th small{white-space:normal}
 tr.ref th,tr.ref .n{font-style:italic}
