@@ -68,7 +68,9 @@ cp "$entry" "tampered/entries/"
 (cd "$ROOT" && "$PYTHON" -m benchmarks.forging "$work/$entry" "$work/tampered/entries/$(basename "$entry")" --share 0.5 \
   --suite "$work/suite")
 FRESH=0 refused REFUTED verify.sh "tampered/entries/$(basename "$entry")" "$mine" suite "$draw" refuted 20
-refused 'is not written over' place.sh tampered published
+mkdir -p forged/entries
+cp "tampered/entries/$(basename "$entry")" forged/entries/
+refused 'is not written over' place.sh forged published
 
 step build.sh board
 DRY_RUN=1 step pull_request.sh "$(basename "$mine")"
