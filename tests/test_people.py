@@ -231,7 +231,7 @@ def test_a_kind_that_is_no_good_is_named_with_its_field(files: Path):
         return {**whole, "changes": [{**whole["changes"][0], **fields}]}
 
     refused("{", "half.json: $: is not JSON")
-    refused({**whole, "schema": "other/1"}, "schema: it is 'other/1'")
+    refused({**whole, "schema": "other/1"}, "schema: is 'other/1'")
     refused({**whole, "name": "third"}, "name: it is 'third', but must be the file's name, 'half'")
     refused(changed(parameter="v_pase"), "changes[0].parameter", "Did you mean 'v_pace'?")
     refused(changed(verb="set", value=-1.0), "changes[0].value: -1 is out of range")
@@ -434,8 +434,7 @@ def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
     console = Console(record=True, width=150, file=io.StringIO())
     console.print(report.result_table(done[0].result))
     console.print(report.comparison_table([one.result for one in done]))
-    lines = [line for line in console.export_text().splitlines() if line.startswith("not calibrated for this: ")]
-    assert lines == [f"not calibrated for this: {told[0].rstrip('.')}"] * 2
+    assert "calibrated" not in console.export_text(), "once is enough"
 
 
 def test_a_worker_finds_files_by_path(files: Path):
