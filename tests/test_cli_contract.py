@@ -73,7 +73,7 @@ def test_3_is_an_agent_that_failed(tmp_path: Path) -> None:
     words = ("--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path / "a"), "--no-control")
     code, document, _ = run("eval", *words)
     assert code == 3
-    assert document["counts"]["faults"] == 2
+    assert document["runs"][0]["result"]["counts"]["faults"] == 2
 
 
 def test_4_is_an_agent_that_does_not_load(tmp_path: Path) -> None:
