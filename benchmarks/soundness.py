@@ -100,7 +100,7 @@ def _play(suite: Path, given: argparse.Namespace, out: Path) -> None:
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     if ended.returncode not in (0, 3):
         raise SystemExit(ended.stderr)
-    counts = json.loads(ended.stdout)["counts"]
+    counts = json.loads(ended.stdout)["runs"][0]["result"]["counts"]
     print(f"played by {given.agent}: {counts['trials']} trials, {counts['faults']} with a fault")
 
 

@@ -144,7 +144,7 @@ def test_a_dry_run_tells_all_and_writes_nothing(both: Path, tmp_path: Path) -> N
     assert code == 0
     assert files(tmp_path) == {}
     assert {one["name"]: (one["played"], one["trials"]) for one in document["runs"]} == {
-        "control, no robot": (0, 20),
+        "no robot": (0, 20),
         "helper": (0, 20),
     }
     assert document["seconds"] > 0.0
