@@ -114,7 +114,7 @@ def test_a_result_of_an_older_format_is_made_anew(tmp_path):
     assert stored is None
     assert result.counts.trials > 0
     path.write_bytes(b'{"schema": "hthor.result/5"}')
-    with pytest.raises(RunError, match="Delete the file"):
+    with pytest.raises(RunError, match="delete the file"):
         score.rescore(folder)
 
 

@@ -453,7 +453,7 @@ def test_a_log_that_was_changed(copied: Path, say: Callable[..., Said]):
     alien["spec"]["seed"] = 5
     for line, told in (
         (whole[7][:300] + b"\n", "line 8: $: "),
-        (whole[7].replace(b'"ticks":', b'"ticks":"many","t":'), "line 8: $.ticks: Expected `int`, got `str`"),
+        (whole[7].replace(b'"ticks":', b'"ticks":"many","t":'), "line 8: ticks: Expected `int`, got `str`"),
         (whole[7].replace(b'"sr":1', b'"sr":2').replace(b'"sr":0', b'"sr":2'), "line 8: check: "),
         (json.dumps(alien).encode() + b"\n", "line 8: check: "),
         (whole[6], f"trial {json.loads(whole[6])['key']} is there twice"),
