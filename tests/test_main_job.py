@@ -279,7 +279,9 @@ def dealt(agent: str, count: int = 2) -> tuple[cast.Sources, Session]:
     """Where an agent's file lies, and the first trials of its first person."""
     who = crews.form(["scout"], [agent])
     whole = sessions(tasks.suite(SUITE), agent=who, participants=1)[0]
-    return cast.Sources(minds=who.minds), msgspec.structs.replace(whole, trials=whole.trials[:count])
+    return cast.Sources(minds=who.minds, manifests=who.manifests), msgspec.structs.replace(
+        whole, trials=whole.trials[:count]
+    )
 
 
 def played(agent: str, count: int = 2) -> list[Record]:

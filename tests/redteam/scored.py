@@ -85,7 +85,9 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
     crew = crews.form(["scout"], [crews.Character(ref=ref, path=str(path))])
     plan = setup.settle(suite, crew, human="proxy", seed=0, participants=None)
     hidden = (str(home / "runs"), str(home / "official.json"))
-    make = functools.partial(guarded.player, cast.Sources(minds=crew.minds), held.level, hidden)
+    make = functools.partial(
+        guarded.player, cast.Sources(minds=crew.minds, manifests=crew.manifests), held.level, hidden
+    )
     result = run.evaluate(
         plan,
         session.sessions(suite, agent=crew),
