@@ -329,7 +329,7 @@ def test_damaged_records_name_the_field(folder: Path, tmp_path: Path):
         commitment.load(path)
     with pytest.raises(TaskError, match="hthor suite make"):
         commitment.load(tmp_path / "none.json")
-    (folder / "revealed.json").write_text(json.dumps({"name": "tiny", "salt": "ä"}))
+    (folder / "revealed.json").write_text(json.dumps({"schema": "hthor.revealed/1", "name": "tiny", "salt": "ä"}))
     with pytest.raises(TaskError, match="ASCII"):
         commitment.revealed(folder)
 
