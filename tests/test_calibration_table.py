@@ -235,7 +235,7 @@ def test_a_changed_line_is_told_of(tmp_path):
         book.append(_line("one", (1, 2)))
     path = tmp_path / ledger.FILE
     path.write_bytes(path.read_bytes().replace(b"[1,2]", b"[1,3]"))
-    with pytest.raises(RunError, match="line 1: its checksum is wrong"):
+    with pytest.raises(RunError, match="line 1: check: is not the line's checksum"):
         Ledger(tmp_path, _identity(a="1"))
 
 
