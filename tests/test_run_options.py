@@ -222,7 +222,7 @@ def test_runs_are_listed_even_beside_broken_ones(shelf: Path) -> None:
     assert 0.0 <= half["success"] <= 1.0
     assert half["faults"] > 0
     assert all(found[name]["problem"] for name in ("torn", "old", "deep/not"))
-    shown = CliRunner().invoke(app.app, ["runs", "list", str(shelf)])
+    shown = CliRunner().invoke(app.app, ["runs", "list", str(shelf)], env={"COLUMNS": "400"})  # paths do not break
     assert "12 of 20" in shown.stdout
     assert "old: cannot be read" in shown.stdout
     rows = list(
