@@ -226,7 +226,7 @@ def test_a_damaged_file_is_named_with_its_field(tmp_path: Path):
     refused(lambda _: npz.unlink(), "pop.npz: $: cannot be read", "NAME.npz and NAME.json, side by side")
     refused(lambda path: path.unlink(), "pop.json: $: cannot be read")
     refused(lambda path: path.write_bytes(path.read_bytes()[:200]), "pop.json: $: is not JSON")
-    refused(lambda path: path.write_text('{"schema": "hthor.run/3"}'), "schema: it is 'hthor.run/3'")
+    refused(lambda path: path.write_text('{"schema": "hthor.run/3"}'), "schema: is 'hthor.run/3'")
     refused(lambda path: path.write_text("[1, 2]"), "pop.json: $:")
     refused(lambda path: _edit(path, lambda d: d.pop("seed")), "missing required field `seed`")
     refused(lambda path: _edit(path, lambda d: d["parameters"][1].update(effect="x")), "parameters[", "effect")
