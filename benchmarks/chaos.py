@@ -204,7 +204,10 @@ def differences(folder: Path, reference: Path) -> list[str]:
         told.append(f"{len(set(there) - set(here))} of {len(there)} records are missing or not the same")
     mine, other = (json.loads((one / "result.json").read_bytes()) for one in (folder, reference))
     for result in (mine, other):
-        del result["effort"], result["counts"]["replays"]  # what it cost, and the do-overs that the kills made necessary
+        del (
+            result["effort"],
+            result["counts"]["replays"],
+        )  # what it cost, and what kills made necessary
     if mine != other:
         told.append("result.json is another")
     return told
