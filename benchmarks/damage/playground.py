@@ -22,7 +22,7 @@ _SUBMITTED += "    def act(self, observation):\n        return Action()\n"
 def make(folder: Path) -> Path:
     """Fill the folder; plays three short trials with no robot and with the oracle."""
     few = [one for one in tasks.suite("smoke").tasks if one.house == "hazel"][:3]
-    short = tuple(msgspec.structs.replace(one, time_limit=15.0) for one in few)
+    short = tuple(msgspec.structs.replace(one, time_limit=15.0, t_star=10.0) for one in few)
     suite = library.frozen("few", 1, short)
     jsonio.write(folder / "few.json", library.encode(suite))
     options = intent.Options(agents=("silent", "oracle"), suite=str(folder / "few.json"), jobs=1, out=folder / "runs")
