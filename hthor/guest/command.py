@@ -59,7 +59,12 @@ def _found(program: str, text: str) -> list[str]:
 def own_files(words: Sequence[str]) -> list[Path]:
     """The files of a command that do not come with the machine or with this Python."""
     files = [Path(word) for word in words if os.path.isabs(word) and Path(word).is_file()]
-    return [path for path in files if not any(path.is_relative_to(root) for root in _SYSTEM)]
+    return [path for path in files if not _comes_with_the_machine(path)]
+
+
+def _comes_with_the_machine(path: Path) -> bool:
+    """Whether a program lies in a folder of the system or of this Python, or is a link to one that does."""
+    return any(place.is_relative_to(root) for place in (path, path.resolve()) for root in _SYSTEM)
 
 
 def sha256(words: Sequence[str]) -> str:
