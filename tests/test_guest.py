@@ -368,6 +368,7 @@ def test_an_endless_import_is_refused(write: Write) -> None:
 
 @pytest.fixture
 def parked() -> Iterator[None]:
+    parking.clear()  # what runs of earlier tests in this process left waiting
     parking.keep()
     yield
     parking.clear()

@@ -71,6 +71,14 @@ def test_a_picture_names_rooms_target_times_and_messages(spec: TrialSpec, log: E
         assert words in told, words
 
 
+def test_a_t_star_beyond_the_time_limit_is_not_drawn(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
+    """Its words would stand a page away and squeeze the picture."""
+    short = msgspec.structs.replace(spec, task=msgspec.structs.replace(TASK, time_limit=15.0, t_star=300.0))
+    sheet = picture.figure(short, log, houses.load(TASK.house))
+    assert "T*" not in [text.get_text() for text in sheet.findobj(Text)]
+    sheet.savefig(tmp_path / "trial.png", dpi=40)
+
+
 def test_a_film_lasts_as_long_as_the_trial(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     path = tmp_path / "film.webm"
     video.write(path, spec, log, houses.load(TASK.house))

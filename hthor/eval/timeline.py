@@ -46,7 +46,8 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
     beside = abs(spec.task.t_star - end) < _WORD * limit  # else one would be written over the other
     sides = _SIDES if beside else ("center", "center")
     first, last = sides if spec.task.t_star <= end else sides[::-1]
-    _moment(ax, spec.task.t_star, "T*", "#777777", ":", first)
+    if spec.task.t_star <= limit:  # a T* beyond the time limit has no place on the axis
+        _moment(ax, spec.task.t_star, "T*", "#777777", ":", first)
     word, shade = ("done", trace.TARGET) if log.met else ("time is up", trace.FAILED)
     _moment(ax, end, word, shade, "-", last)
     ax.set_xlim(-1, limit + 1)
