@@ -275,6 +275,13 @@ def test_a_first_dry_run_plays_a_few_trials_and_keeps_none(tmp_path: Path, monke
     assert document["seconds"] >= 2 * 10 * 0.02, "twenty trials without and with a robot, by two workers at most"
 
 
+def test_a_slow_first_trial_is_followed_by_a_second() -> None:
+    """The first may have compiled for a minute, so that alone it would tell ten times what a run takes."""
+    assert not pace._enough([55.0])
+    assert pace._enough([55.0, 56.0])
+    assert not pace._enough([5.0, 6.0]), "a third builds a house again"
+
+
 def test_a_pace_counts_starts_and_houses_once() -> None:
     known = pace._pace([5.0, 7.0, 7.5])
     assert known == pace.Pace(trial_s=0.5, start_s=3.0, house_s=1.5, played=3)
