@@ -280,7 +280,7 @@ class Fuzz:
         if sort == 6:  # two at once, then let time pass
             other = self._chance.choice(world.seats)
             one, two = self._motion(), self._motion()
-            self.words = f"world.start('{seat}', {one}); world.start('{other}', {two}); world.step(30)"
+            self.words = f"world.start('{seat}', {_shown(one)}); world.start('{other}', {_shown(two)}); world.step(30)"
 
             def both() -> None:
                 world.start(seat, one)
@@ -386,9 +386,9 @@ class Fuzz:
 
 def _shown(value: object) -> str:
     try:
-        return f"{value!r:.60}"
+        return f"{value!r:.90}"
     except ValueError:  # a whole number of more digits than Python prints
-        return "10**5000"
+        return "something with 10**5000"
 
 
 if __name__ == "__main__":
