@@ -517,6 +517,7 @@ def test_describe_tells_every_parameter(hthor, files: Path):
     change = next(change for change in told["changes"] if change["parameter"] == "v_pace")
     assert change["after"] == pytest.approx(change["before"] * change["value"])
     assert told["reason"] == kinds.load("slow").reason
+    assert told["population"] == "study", "the word that commands take, not the name of a file"
     code, _, err = hthor("humans", "describe", "slwo")
     assert code == 2
     assert "Did you mean 'slow'?" in err

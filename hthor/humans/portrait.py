@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 from msgspec import Struct
 
+from hthor.humans import population_file
 from hthor.humans.people import People
 from hthor.humans.population import Population, Validity
 from hthor.humans.prior import Prior
@@ -90,7 +91,7 @@ def of(found: People) -> Portrait:
         kind=found.kind.name if found.kind else "",
         reason=found.kind.reason if found.kind else "",
         changes=_changes(found, whom),
-        population=whom.name,
+        population=population_file.called(whom.name),
         population_sha256=found.population.sha256,
         draws=len(whom.draws),
         effective_draws=round(whom.ess, 1),
