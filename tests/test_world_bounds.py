@@ -241,6 +241,20 @@ def test_motions_that_cannot_be_are_refused(world: World, call, words: str) -> N
     assert words in outcome.reason
 
 
+def test_a_wait_of_less_than_nothing_is_one_tick(world: World) -> None:
+    world.reset()
+    for seconds in (0.0, -1.0, -1e308):
+        before = world.tick
+        assert world.robot.wait(seconds).ok
+        assert world.tick == before + 1
+
+
+def test_a_truth_value_is_no_number_of_pixels(world: World) -> None:
+    for size in ((True, 24), (24, True)):
+        with pytest.raises(ValueError, match=r"size must be \(width, height\) in whole pixels"):
+            world.look("robot", size)
+
+
 def test_a_task_with_positions_that_are_none_is_refused(world: World) -> None:
     lost = on(TABLE, "apple")
     lost = type(lost)(id="apple", kind="apple", position=(math.nan, 0.0, 0.0))

@@ -77,7 +77,9 @@ def check(size: tuple[int, int]) -> None:
     """Raise ValueError unless ``size`` is a width and a height of 1 to 4096 pixels."""
     try:
         width, height = size
-        fits = all(isinstance(side, (int, np.integer)) and 1 <= side <= 4096 for side in (width, height))
+        sides = (width, height)
+        whole = all(isinstance(side, (int, np.integer)) and not isinstance(side, bool) for side in sides)
+        fits = whole and all(1 <= side <= 4096 for side in sides)
     except (TypeError, ValueError):
         fits = False
     if not fits:

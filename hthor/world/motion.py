@@ -160,7 +160,7 @@ class Going:
 
 def ticks(seconds: float) -> int:
     """Whole ticks that ``seconds`` take, at least one."""
-    return max(1, math.ceil(seconds / rules.TICK_S - 1e-6))
+    return max(1, math.ceil(max(0.0, seconds) / rules.TICK_S - 1e-6))
 
 
 def _clip(value: float, most: float) -> float:
