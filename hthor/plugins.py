@@ -11,6 +11,7 @@ import hashlib
 import importlib
 import importlib.util
 import sys
+import traceback
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -102,6 +103,26 @@ def sha256(path: str) -> str:
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
+def blamed(error: BaseException) -> HthorError | None:
+    """The error as one for the user to mend, where it passed through a plug-in of theirs: file, line, function, words.
+
+    None when no file of the user's that was loaded had a part in it.
+    """
+    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in _own()]
+    if not frames:
+        return None
+    words = "".join(traceback.format_exception_only(error)).strip()
+    return HthorError(f"{frames[-1].filename}:{frames[-1].lineno}, in {frames[-1].name}: {words}")
+
+
+def _own() -> set[str]:
+    """The user's files that were loaded as plug-ins."""
+    ours, packages = str(Path(__file__).parent), {package for package, _ in _PACKAGES.values()}
+    modules = [module for name, module in sys.modules.items() if name.rpartition(".")[0] in packages]
+    files = [getattr(module, "__file__", None) or "" for module in modules]
+    return {file for file in files if file and not Path(file).is_relative_to(ours)}
+
+
 def _from_file(sort: str, path: Path) -> ModuleType:
     """Load a user's file as if it lay in the package of its sort."""
     package, _ = _PACKAGES[sort]
@@ -122,7 +143,7 @@ def _from_file(sort: str, path: Path) -> ModuleType:
     sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         del sys.modules[name]
         raise HthorError(f"{path}: {type(error).__name__}: {error}. The file must load by itself.") from error
     return module

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from hthor import houses, tasks
+from hthor.cli import ending
 from hthor.errors import HthorError, UnknownName
 from hthor.eval import campaign, intent, picture, programme, progress, record, score
 from hthor.eval.session import sessions
@@ -133,6 +135,31 @@ def test_a_mistake_in_a_kind_is_told_with_its_line(few: None, tmp_path: Path):
     with pytest.raises(HthorError, match=r"hasty\.py:8, in met: KeyError: 'who knows'") as caught:
         conducted(kind=str(file), agents=("silent",), out=tmp_path / "run", jobs=1, participants=1)
     assert caught.value.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("said", "words"),
+    [
+        ("raise KeyError('who knows')", "in goals: KeyError: 'who knows'"),
+        ("open('no such file')", "in goals: FileNotFoundError"),
+        ("raise SystemExit(3)", "in goals: SystemExit: 3"),
+    ],
+)
+def test_a_mistake_in_drawing_is_told_with_its_line(
+    few: None, tmp_path: Path, said: str, words: str, capsys: pytest.CaptureFixture[str], monkeypatch: Any
+):
+    file = written(tmp_path, "early", goals=said)
+    monkeypatch.setattr("sys.argv", ["hthor", "eval"])
+    with pytest.raises(SystemExit) as caught:
+        ending.conclude(lambda **_: programme.choose("", str(file)))
+    assert caught.value.code == 2
+    assert f"{file}:11, {words}" in capsys.readouterr().err
+
+
+def test_a_file_that_ends_python_is_refused(tmp_path: Path):
+    (tmp_path / "leaving.py").write_text("raise SystemExit(3)\n")
+    with pytest.raises(HthorError, match=r"leaving\.py: SystemExit: 3\. The file must load by itself"):
+        programme.choose("", str(tmp_path / "leaving.py"))
 
 
 def test_houses_that_have_nothing_for_a_kind_are_left_out(few: None, tmp_path: Path):

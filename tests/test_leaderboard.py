@@ -131,6 +131,17 @@ def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
         verify.verify(whole, whole, verify.Request(word="chance"))
 
 
+def test_a_column_that_cannot_be_read_is_named_with_its_file(board: Path):
+    path = files.entry_paths(board)[0]
+    held = json.loads(path.read_bytes())
+    held["trials"]["time"] += "AAAA"
+    path.write_text(json.dumps(held))
+    for look in (rescore.rescore, publish.build):
+        with pytest.raises(files.BoardError, match=rf"{path.name}: trials\.time: "):
+            look(board)
+    assert "trials.time" in [one.field for one in checks.problems(board)]
+
+
 # -------------------------------------------------------------------------------------------------- what is changed
 
 CHANGES = {

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from hthor import seeds
 from hthor.errors import HthorError, PeopleError, UnknownName
-from hthor.humans import effects, literature, person, population_file, ranges, registry
+from hthor.humans import effects, literature, person, population_file, prior, ranges, registry
 from hthor.humans.parameters import Parameters
 from hthor.humans.population import Population, Validity
 
@@ -242,6 +242,9 @@ def test_a_damaged_file_is_named_with_its_field(tmp_path: Path):
     refused(lambda path: _swap(path, draws=np.array(ROWS)[:, :3]), "draws: the shape is (3, 3)")
     refused(lambda path: _swap(path, draws=np.array(ROWS) * 9), "pop.npz: draws[1].mu0", "mu0 lies from 0 to 1")
     refused(lambda path: _swap(path, log_weight=np.zeros(2)), "log_weight: the shape is (2,)")
+    refused(lambda path: _swap(path, log_weight=np.array([0.0, 800.0, 0.0])), "log_weight: the weights add up to inf")
+    refused(lambda path: _swap(path, log_weight=np.zeros(3)), "log_weight: the weights add up to 3; expected 1")
+    refused(lambda path: _edit(path, lambda d: d["parameters"][0]["prior"].update(high=0)), "parameters[0].prior: a ")
     refused(lambda path: _swap(path, draws=np.array([{}], dtype=object)), "pop.npz: $: is no NPZ archive")
 
 
@@ -257,6 +260,23 @@ def test_unknown_names_are_answered_with_the_nearest():
     with pytest.raises(UnknownName, match=r"unknown population 'litrature'\. Did you mean 'literature'"):
         Population.load("litrature")
     assert issubclass(PeopleError, HthorError)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: prior.Uniform(1.0, 1.0), "needs low below high"),
+        (lambda: prior.LogUniform(0.0, 1.0), "needs low above 0"),
+        (lambda: prior.LogUniform(2.0, 1.0), "below high"),
+        (lambda: prior.Normal(0.0, 0.0), "needs sd above 0"),
+        (lambda: prior.HalfNormal(-1.0), "needs sd above 0"),
+        (lambda: prior.LogNormal(0.0, 1.0), "needs median above 0"),
+        (lambda: prior.Beta(1.0, math.nan), "needs b above 0"),
+    ],
+)
+def test_a_prior_that_is_no_distribution_is_refused(make: Any, words: str):
+    with pytest.raises(ValueError, match=words):
+        make()
 
 
 def test_the_literature_is_the_priors():

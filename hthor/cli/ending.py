@@ -8,6 +8,7 @@ import traceback
 from collections.abc import Callable
 from typing import Any, NoReturn
 
+from hthor import plugins
 from hthor.cli import screen
 from hthor.errors import HthorError
 
@@ -66,11 +67,21 @@ def _perform(command: Callable[[], Any]) -> Any:
     except SystemExit as error:
         if isinstance(error.__context__, BrokenPipeError):  # the libraries that parse and print exit with 1 then
             _unread()
+        _blame(error)
         raise
     except OSError as error:
+        _blame(error)
         # A place that cannot be read or written, a full disk: the user's to mend, like any wrong input.
         place = f"{error.filename}: " if error.filename else ""
         _fail(f"{place}{error.strerror or error}.", USAGE)
+    except Exception as error:
+        _blame(error)
+        raise
+
+
+def _blame(error: BaseException) -> None:
+    if (own := plugins.blamed(error)) is not None:
+        _fail(str(own), own.exit_code)
 
 
 def _unread() -> NoReturn:

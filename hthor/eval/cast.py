@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -264,16 +263,12 @@ def player(sources: Sources | None = None) -> Callable[[Session], Iterator[Recor
 
 
 def _play(world: Any, company: Company, trial: TrialSpec) -> EpisodeLog:
-    """One trial; a failure in a user's own kind of task is theirs to mend, and told as such."""
+    """One trial; a failure in a plug-in of the user's is theirs to mend, and told as such."""
     from hthor.episode import play
 
     try:
         return play(trial, world, company.human, company.robots())
-    except Exception as error:
-        module = plugins.loaded("task kind", trial.task.kind) if trial.kind_sha256 else None
-        file = (module and module.__file__) or ""
-        frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
-        if not frames:
+    except (Exception, SystemExit) as error:
+        if (own := plugins.blamed(error)) is None:
             raise
-        words = "".join(traceback.format_exception_only(error)).strip()
-        raise HthorError(f"{file}:{frames[-1].lineno}, in {frames[-1].name}: {words}") from error
+        raise own from error

@@ -29,6 +29,8 @@ CALIBRATED = "study"
 """The population that is calibrated to the published user study."""
 _STEMS = {CALIBRATED: "paper"}
 """Files of populations that are called otherwise than their files, whose bytes and hashes stay; both words are read."""
+_ROUNDING = 1e-6
+"""How far from 1 a file's weights may add up."""
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
 _DAMAGED = (
     "it was changed or cut off after it was written; restore both files, or make them again with 'hthor calibrate'"
@@ -154,6 +156,10 @@ def _read(path: Path) -> Population:
             raise PeopleError(str(path), f"fixed.{name}", problem)
     if found := trouble(columns, draws, log_weight):
         raise PeopleError(str(numbers), *found)
+    with np.errstate(over="ignore"):
+        total = float(np.exp(log_weight).sum())
+    if abs(total - 1.0) > _ROUNDING:
+        raise PeopleError(str(numbers), "log_weight", f"the weights add up to {total:g}; expected 1")
     missing = tuple(name for name in known if name not in given)
     return Population(
         name=document.name,

@@ -17,6 +17,10 @@ class Uniform(Struct, tag="uniform", frozen=True):
     low: float
     high: float
 
+    def __post_init__(self) -> None:
+        if not -math.inf < self.low < self.high < math.inf:
+            raise ValueError(f"a uniform prior needs low below high; got low {self.low} and high {self.high}")
+
     def quantile(self, u: float) -> float:
         return self.low + u * (self.high - self.low)
 
@@ -29,6 +33,11 @@ class LogUniform(Struct, tag="log-uniform", frozen=True):
 
     low: float
     high: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.low < self.high < math.inf:
+            got = f"got low {self.low} and high {self.high}"
+            raise ValueError(f"a log-uniform prior needs low above 0 and below high; {got}")
 
     def quantile(self, u: float) -> float:
         return self.low * math.exp(u * math.log(self.high / self.low))
@@ -43,6 +52,9 @@ class Normal(Struct, tag="normal", frozen=True):
     mean: float
     sd: float
 
+    def __post_init__(self) -> None:
+        _positive("a normal prior", sd=self.sd)
+
     def quantile(self, u: float) -> float:
         return self.mean + self.sd * _NORMAL.inv_cdf(u)
 
@@ -54,6 +66,9 @@ class HalfNormal(Struct, tag="half-normal", frozen=True):
     """The absolute value of a normal number around 0 with standard deviation ``sd``."""
 
     sd: float
+
+    def __post_init__(self) -> None:
+        _positive("a half-normal prior", sd=self.sd)
 
     def quantile(self, u: float) -> float:
         return self.sd * _NORMAL.inv_cdf(0.5 + 0.5 * u)
@@ -68,6 +83,9 @@ class LogNormal(Struct, tag="log-normal", frozen=True):
     median: float
     sd: float
 
+    def __post_init__(self) -> None:
+        _positive("a log-normal prior", median=self.median, sd=self.sd)
+
     def quantile(self, u: float) -> float:
         return self.median * math.exp(self.sd * _NORMAL.inv_cdf(u))
 
@@ -81,6 +99,9 @@ class Beta(Struct, tag="beta", frozen=True):
     a: float
     b: float
 
+    def __post_init__(self) -> None:
+        _positive("a beta prior", a=self.a, b=self.b)
+
     def quantile(self, u: float) -> float:
         return float(_special().betaincinv(self.a, self.b, u))
 
@@ -89,6 +110,12 @@ class Beta(Struct, tag="beta", frozen=True):
 
 
 Prior = Uniform | LogUniform | Normal | HalfNormal | LogNormal | Beta
+
+
+def _positive(what: str, **given: float) -> None:
+    for name, value in given.items():
+        if not 0.0 < value < math.inf:
+            raise ValueError(f"{what} needs {name} above 0; got {value}")
 
 
 def _special() -> Any:

@@ -54,7 +54,7 @@ def problems(board: Path, paths: Sequence[Path] = (), *, submissions: Path | Non
 
 def _read(path: Path, found: list[Problem]) -> Iterator[_Held]:
     try:
-        entry = files.read(path)
+        entry = files.form(path)
         yield _Held(path=path, entry=entry, outcomes=outcomes.unpack(entry.trials))
     except Unreadable as error:
         found.append(Problem(file=str(path), field=f"trials.{error.field}", problem=str(error)))

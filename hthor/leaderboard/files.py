@@ -10,6 +10,7 @@ from msgspec import Struct
 
 from hthor import documents, jsonio
 from hthor.errors import HthorError
+from hthor.leaderboard import outcomes
 from hthor.leaderboard.entry import Entry
 from hthor.tasks import commitment
 from hthor.tasks.commitment import Commitment
@@ -64,6 +65,20 @@ def seen(board: Path) -> Path:
 
 def read(path: Path) -> Entry:
     """An entry from its file.
+
+    Raises:
+        BoardError: when it cannot be read, or a column of its trials cannot, naming the field.
+    """
+    entry = form(path)
+    try:
+        outcomes.unpack(entry.trials)
+    except outcomes.Unreadable as error:
+        raise BoardError(f"{path}: trials.{error.field}: {error}") from None
+    return entry
+
+
+def form(path: Path) -> Entry:
+    """An entry from its file; the columns of its trials may hold anything.
 
     Raises:
         BoardError: when it cannot be read, naming the field.

@@ -16,7 +16,6 @@ def rescore(board: Path) -> list[Path]:
 
     Raises:
         BoardError: when an entry cannot be read.
-        Unreadable: when a column of its trials cannot.
     """
     held = [(path, files.read(path)) for path in files.entry_paths(files.seen(board))]
     changed = []
