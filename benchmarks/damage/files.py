@@ -27,7 +27,10 @@ _RUN_READERS = (
 _DRAWN = (f"replay {RUN} 0 --out out.png", f"report runs/silent {RUN} --out out --json")
 _DRAWING = 0.05
 """Share of the damaged runs that are drawn, which takes seconds."""
-_WRITTEN = ("out", "result.json", "leaderboard.json", "index.html", "schema.json", "platform.json", ".lock", ".cache")
+_WRITTEN = (
+    *("out", "result.json", "leaderboard.json", "index.html", "schema.json", "platform.json", ".lock", ".cache"),
+    "revealed.json",
+)
 """What commands write themselves; everything else must stay as it is."""
 
 
