@@ -347,3 +347,8 @@ def test_a_plan_from_two_runs_has_their_rates_and_correlation(runs: Path):
     assert found.measured
     assert found.paired.trials < found.unpaired.trials
     assert found.second > found.first
+
+
+@pytest.mark.parametrize("value", [-0.0004, -0.0, 0.0])
+def test_nothing_has_no_minus(value: float) -> None:
+    assert report._gain(value, "points") == "+0.0"

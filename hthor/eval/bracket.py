@@ -135,7 +135,7 @@ def _conclusion(runs: Sequence[Result], pair: tuple[int, int], metric: str, gaps
 
 def _sentence(better: str, worse: str, metric: str, helps: bool, verdict: Verdict, gaps: tuple[Gap, ...]) -> str:
     claim = f"{better} helps (over {worse})" if helps else f"{better} is better than {worse}"
-    numbers = ", ".join(f"{100 * gap.mean:+.1f} {gap.people}" for gap in gaps)
+    numbers = ", ".join(f"{100 * gap.mean:+z.1f} {gap.people}" for gap in gaps)
     return f"{claim} in {metric}: {numbers} points; {_word(verdict, gaps)}"
 
 

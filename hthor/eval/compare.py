@@ -246,8 +246,8 @@ def sentence(pair: Comparison) -> str:
             f"({_evidence(pair, f'{ends[0]:.1f} to {ends[1]:.1f}')})."
         )
     told = (
-        f"These data cannot separate {pair.second} from {pair.first}: {points:+.1f} points of success "
-        f"({_evidence(pair, f'{low:+.1f} to {high:+.1f}')})"
+        f"These data cannot separate {pair.second} from {pair.first}: {points:+z.1f} points of success "
+        f"({_evidence(pair, f'{low:+z.1f} to {high:+z.1f}')})"
     )
     if not pair.mcnemar.only_first + pair.mcnemar.only_second:
         return f"{told}; success was the same in every trial."

@@ -197,7 +197,7 @@ def least(mde80: float | None, scale: float, *, room: bool) -> str:
 
 
 def _gain(value: float, unit: str) -> str:
-    return f"{100.0 * value:+.1f}" if unit == "points" else f"{value:+.1f}"
+    return f"{100.0 * value:+z.1f}" if unit == "points" else f"{value:+z.1f}"
 
 
 def _cell(estimate: Estimate, unit: str) -> str:

@@ -91,7 +91,7 @@ def _plain(value: float, unit: str) -> str:
 
 
 def _signed(value: float, unit: str) -> str:
-    return f"{100.0 * value:+.1f}" if unit == "points" else f"{value:+.1f}"
+    return f"{100.0 * value:+z.1f}" if unit == "points" else f"{value:+z.1f}"
 
 
 def _table(title: str) -> Table:

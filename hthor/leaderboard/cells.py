@@ -69,9 +69,9 @@ def gain(one: Difference | None, scale: float = 100.0) -> Cell:
     """How much more than without a robot, with the interval."""
     if one is None:
         return Cell(NOTHING, -_LAST)
-    low, high = (f"{scale * end:+.1f}" for end in one.ci95 or (one.difference, one.difference))
+    low, high = (f"{scale * end:+z.1f}" for end in one.ci95 or (one.difference, one.difference))
     ends = _minus(f"{low} to {high}")
-    return Cell(join([_minus(f"{scale * one.difference:+.1f}"), _interval(ends, one, scale)]), one.difference)
+    return Cell(join([_minus(f"{scale * one.difference:+z.1f}"), _interval(ends, one, scale)]), one.difference)
 
 
 def fresh(one: Row) -> Cell:

@@ -122,7 +122,7 @@ def as_a_whole(met: np.ndarray, twsr: np.ndarray, whose: np.ndarray) -> tuple[bo
     for name, gaps, unit in (("success", met, 1.0), ("time-weighted success", twsr, 1.0 / _MILLION)):
         chance = exchanged(gaps, whose)
         passed = passed and chance >= UNEVEN["V3"]
-        told.append(f"{100 * unit * float(gaps.mean()):+.1f} points of {name} (p = {chance:.2g})")
+        told.append(f"{100 * unit * float(gaps.mean()):+z.1f} points of {name} (p = {chance:.2g})")
     return passed, f"over {len(met)} trials the entry claims {' and '.join(told)} more than came out"
 
 
