@@ -17,6 +17,8 @@ from hthor.guest.manifest import File, Manifest
 from hthor.guest.reference import Reference, is_served
 from hthor.guest.served import Unreachable
 
+CODE_PART = "tools"
+
 __all__ = [
     "SERVED",
     "File",

@@ -21,6 +21,8 @@ from hthor.houses.freespace import Bools, FreeSpace
 from hthor.houses.sight import Sight
 from hthor.types import HouseSpec, Thing, Vec3
 
+CODE_PART = "tools"
+
 __all__ = ["STAND_M", "STRICT", "Finding", "check", "sound"]
 
 STAND_M = 1.0

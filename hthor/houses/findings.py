@@ -7,6 +7,8 @@ from typing import Literal
 
 from msgspec import Struct
 
+CODE_PART = "tools"
+
 
 class Finding(Struct, frozen=True, kw_only=True):
     """Something wrong with a house: which ``rule``, ``where`` (an id), what the ``problem`` is, in words."""

@@ -13,6 +13,8 @@ from hthor.houses.freespace import STEP_M
 from hthor.houses.solids import Slab
 from hthor.types import HouseSpec, Opening, Vec2
 
+CODE_PART = "tools"
+
 AREA_M2 = 4.0
 WIDTH_M = 1.4
 """Least area of a room, and least width of any stretch of it."""

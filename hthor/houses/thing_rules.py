@@ -12,6 +12,8 @@ from hthor.houses.findings import Finding, named, warning
 from hthor.houses.solids import Slab
 from hthor.types import HouseSpec, Joint, Part, Thing, Vec2
 
+CODE_PART = "tools"
+
 _DEEP_M = 0.15
 """How far a thing of a foreign house may reach into a wall before it is worth a word."""
 FLOAT_M = 0.01

@@ -10,6 +10,8 @@ from hthor import catalog
 from hthor.looks.mesh import Material, Mesh, Piece
 from hthor.types import Vec3
 
+CODE_PART = "pictures"
+
 __all__ = ["VERSION", "Material", "Mesh", "Piece", "fingerprint", "look", "textures"]
 
 VERSION = 2

@@ -14,6 +14,8 @@ from hthor.tasks.placing import NEAR_M
 from hthor.tasks.relation import TRIES, Wish, find
 from hthor.types import HouseSpec, Placement
 
+CODE_PART = "tools"
+
 _MOST_TRIES = 2000
 """Poses that are tried for a relation that a task is about."""
 _GRAPHS = 40

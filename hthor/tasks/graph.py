@@ -10,6 +10,8 @@ from hthor.catalog import priors
 from hthor.catalog.priors import Triplet
 from hthor.types import HouseSpec
 
+CODE_PART = "tools"
+
 
 def present(house: HouseSpec) -> frozenset[str]:
     """Kinds that a triplet may refer to in a house: those of its things, and the targets that every task brings."""

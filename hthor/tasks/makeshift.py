@@ -19,6 +19,8 @@ from hthor.tasks.placing import NEAR_M, Rest, Shelves, as_thing, laid, placed, r
 from hthor.tasks.relation import TRIES, Wish, find, near_enough, reachable
 from hthor.types import HouseSpec, Placement
 
+CODE_PART = "tools"
+
 BROUGHT = "brought"
 """Begins the id of a thing that a task brings along, such as ``brought_plate``."""
 _ARM_M = 2.1

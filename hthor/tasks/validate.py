@@ -21,6 +21,8 @@ from hthor.tasks.library import Suite
 from hthor.tasks.placing import Shelves, as_thing, footprint, rests_of, stands
 from hthor.types import HouseSpec, Placement, TaskSpec
 
+CODE_PART = "tools"
+
 _ALOFT_M = 0.01
 """How far an object may be above or below the surface it claims to rest on, or in another thing."""
 _LISTED = 20

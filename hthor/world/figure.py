@@ -10,6 +10,8 @@ from hthor.types import Vec3
 from hthor.world import avatar, skin
 from hthor.world.solid import HEAD
 
+CODE_PART = "pictures"
+
 _SKIN = skin.matte(avatar.SKIN)
 _JUMPER = skin.matte(avatar.JUMPER)
 _CUFF = skin.matte(avatar.CUFF)

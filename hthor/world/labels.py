@@ -13,6 +13,8 @@ import numpy as np
 
 from hthor import seeds
 
+CODE_PART = "pictures"
+
 
 class Labels:
     """The numbers of the owners of what is drawn.

@@ -12,6 +12,8 @@ from collections.abc import Callable, Sequence
 from types import ModuleType
 from typing import Any
 
+CODE_PART = "pictures"
+
 _MUJOCO = "mujoco.rendering.classic.gl_context"
 _DM_CONTROL = "dm_control._render"
 

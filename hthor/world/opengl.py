@@ -16,6 +16,8 @@ from typing import Any
 
 from hthor.errors import RenderingUnavailable
 
+CODE_PART = "pictures"
+
 _VARIABLE = "MUJOCO_GL"
 _PLATFORM = "PYOPENGL_PLATFORM"
 _BACKENDS = ("egl", "osmesa", "glfw")

@@ -11,6 +11,8 @@ from hthor.looks import finishes
 from hthor.types import HouseSpec
 from hthor.world import geoms, shading
 
+CODE_PART = "pictures"
+
 _BOARDS = ("planks", "parquet", "herringbone", "wicker")
 _CLOTH = ("armchair", "bed", "cloth", "curtain", "dog_bed", "ottoman", "pillow", "rug", "sofa", "teddy_bear", "towel")
 

@@ -13,6 +13,8 @@ from typing import Any
 
 import numba
 
+CODE_PART = "pictures"
+
 PLANE, SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX = 0, 2, 3, 4, 5, 6
 """The engine's numbers of shapes."""
 SIDE, ROUND = 6, 7

@@ -29,6 +29,8 @@ from hthor.world.stage.items import ABOVE, ALWAYS, INSIDE
 from hthor.world.stage.lamps import Lamps
 from hthor.world.stage.puppets import Puppets
 
+CODE_PART = "pictures"
+
 _FINER = 2
 """Colour is drawn finer and averaged: the engine's own smoothing leaves dotted edges where shadows are."""
 _FAR_AWAY = (0.0, 0.0, -200.0)

@@ -14,6 +14,8 @@ import numpy as np
 
 from hthor.world.raster import CAPSULE, ELLIPSOID, SIDE
 
+CODE_PART = "pictures"
+
 PLAIN, PLANKS, TILES, CARPET, PLASTER, BRICK, LAWN, GRAIN, CLOTH, GLOWING = range(10)
 """Patterns of surfaces."""
 _AMBIENT, _LAMP, _SKY, _SUN, _SUN_2 = 0.42, 0.34, 0.10, 0.16, 0.10

@@ -15,6 +15,8 @@ from hthor.looks import shaping, solids, sweeps
 from hthor.looks.mesh import Material, Mesh, Piece
 from hthor.types import Rgba, Vec2, Vec3
 
+CODE_PART = "pictures"
+
 Row = tuple[float, float, float, float, float]
 """One cross-section of a limb: centre x, y and height z, half width ahead and half width sideways [m]."""
 _SIDES = 28

@@ -18,6 +18,8 @@ from hthor.world.moment import Moment
 from hthor.world.scene import Scene
 from hthor.world.solid import HEAD
 
+CODE_PART = "pictures"
+
 _CLEAR = 0.5
 """What is less opaque is seen through: it tints the colours, and depth and segmentation pass it by."""
 _HIDDEN_GROUP = 5

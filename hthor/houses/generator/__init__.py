@@ -17,6 +17,8 @@ from hthor.houses.generator.chance import Dice
 from hthor.houses.generator.specs import SPECS, choose
 from hthor.houses.generator.wants import OPTIONAL, wants
 
+CODE_PART = "tools"
+
 __all__ = ["OPTIONAL", "SPECS", "VERSION", "GeneratorError", "generate", "write"]
 
 VERSION = 1
