@@ -72,13 +72,19 @@ class Sources:
             name = name.rpartition(".")[0]
         return SIMULATION
 
-    def sha256(self, roots: Iterable[str], parts: Sequence[str] = (SIMULATION,)) -> str:
+    def sha256(self, roots: Iterable[str], parts: Sequence[str] = (SIMULATION,), files: Iterable[Path] = ()) -> str:
         """Hash of what these modules do, with all that they import of the ``parts`` that count.
+
+        Args:
+            roots: names of modules.
+            parts: a module of another part counts only where it is a root.
+            files: somebody else's, of which only what they import of ours counts.
 
         Raises:
             ValueError: when the package has no such module.
+            SyntaxError: when one of the files is no Python.
         """
-        names = sorted(set(roots))
+        names = sorted({*roots, *(name for path in files for name in _parse("", path, self._path).imports)})
         if missing := [name for name in names if self.module(name) is None]:
             raise ValueError(f"there is no module {missing[0]}")
         hashes: dict[str, str] = {}
@@ -113,6 +119,15 @@ class Sources:
 def ours() -> Sources:
     """hthor's own modules, as they were when this process first asked."""
     return Sources()
+
+
+def is_python(path: Path) -> bool:
+    """Whether a file can be read as Python of this version."""
+    try:
+        ast.parse(path.read_bytes())
+    except (SyntaxError, ValueError, RecursionError):
+        return False
+    return True
 
 
 # --------------------------------------------------------------------------------------------------------- a module

@@ -52,6 +52,17 @@ def stem(sort: str, name: str) -> str:
     return _FILES.get((sort, name), name)
 
 
+def ships(sort: str, name: str) -> bool:
+    """Whether a plug-in of this name ships with hthor; one of a user's own never has the same name."""
+    return called(sort, name) in names(sort)
+
+
+def module(sort: str, name: str) -> str:
+    """The module's name of a plug-in that ships with hthor."""
+    package, _ = _PACKAGES[sort]
+    return f"{package}.{stem(sort, name)}"
+
+
 def load(sort: str, name: str) -> Any:
     """The plug-in's class or record.
 

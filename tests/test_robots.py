@@ -327,7 +327,7 @@ def test_a_run_knows_the_file_and_notices_a_change(tmp_path: Path) -> None:
 
 
 def test_robots_that_ship_with_hthor_are_covered_by_the_code_s_hash() -> None:
-    assert crews.embody("porter") == crews.Shape(name="porter")
+    assert crews.embody("porter") == crews.Shape(name="porter", sha256=provenance.robot_sha256("porter"))
     with pytest.raises(UnknownName, match="or give the path of a Python file"):
         crews.embody("portr")
 

@@ -90,7 +90,14 @@ def folder(options: Options) -> Path:
     if options.out:
         return options.out
     found, suite = people.find(options.name), tasks.suite(SUITE)
-    what = [found.sha256, suite.sha256, options.seed, options.count, rules.sha256(), provenance.code_sha256()]
+    what = [
+        found.sha256,
+        suite.sha256,
+        options.seed,
+        options.count,
+        rules.sha256(),
+        provenance.code_sha256(found.model, (task.kind for task in suite.tasks)),
+    ]
     return RUNS / f"validation-{found.name}-{jsonio.sha256(what)[:10]}"
 
 

@@ -68,7 +68,7 @@ def conduct(options: Options, watcher: Watch) -> Outcome:
     )
     findings = assemble.findings(
         _subject(found, stage.notes),
-        _setting(suite, options, len(own)),
+        _setting(found, suite, options, len(own)),
         targets.load(TARGETS),
         made,
         evidence=known,
@@ -118,7 +118,7 @@ def _subject(found: People, notes: Sequence[str]) -> Subject:
     )
 
 
-def _setting(suite: Suite, options: Options, trials: int) -> Setting:
+def _setting(found: People, suite: Suite, options: Options, trials: int) -> Setting:
     return Setting(
         suite=suite.name,
         suite_sha256=suite.sha256,
@@ -126,7 +126,7 @@ def _setting(suite: Suite, options: Options, trials: int) -> Setting:
         seed=options.seed,
         participants=options.count,
         trials=trials,
-        code_sha256=provenance.code_sha256(),
+        code_sha256=provenance.code_sha256(found.model, (task.kind for task in suite.tasks)),
         versions=provenance.versions(),
         quick=options.quick or options.count < JUDGED,
     )

@@ -63,7 +63,7 @@ def make(
         raise HthorError(f"{folder} is there and not empty. Choose another folder with --out.")
     order = official.Order(name=name, houses=houses, tasks=tasks)
     files = official.files(order, held, _proof(), _each(jobs, houses))
-    made_with = {**provenance.versions(), "code": provenance.code_sha256()}
+    made_with = {**provenance.versions(), "code": provenance.makers_sha256()}
     path = official.write(order, held, folder, files, made_with)
     made = commitment.load(path)
     if json:
@@ -131,7 +131,7 @@ def _tell_versions(held: Commitment) -> None:
     """Say what of hthor is not as it was when the suite was made: the honest reason for a difference."""
     from hthor.eval import provenance
 
-    here = {**provenance.versions(), "code": provenance.code_sha256()}
+    here = {**provenance.versions(), "code": provenance.makers_sha256()}
     other = [f"{key} {held.made_with.get(key, 'unknown')[:10]} (here {value[:10]})" for key, value in here.items()]
     changed = [text for text, key in zip(other, here, strict=True) if held.made_with.get(key) != here[key]]
     if changed:

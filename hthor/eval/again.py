@@ -20,14 +20,15 @@ def before(folder: Path, wanted: Record) -> tuple[TrialSpec, ...]:
     Raises:
         RunError: when trials before it are missing, or another version of hthor played them.
     """
-    here, logged = provenance.code_sha256(), wanted.spec.code_sha256
+    plan = setup.load(folder)
+    here, logged = provenance.code_sha256(plan.humans.model, plan.kinds), wanted.spec.code_sha256
     if here != logged:
         raise RunError(
             f"{folder} was played by another version of hthor (its code's hash was {logged[:10]} and is {here[:10]}), "
             "in which people may think otherwise. Play the run again with 'hthor eval', or look with that version."
         )
     spec = wanted.spec
-    _, records = reading.records(folder, setup.load(folder))
+    _, records = reading.records(folder, plan)
     mine = [one.spec for one in records if one.spec.participant == spec.participant and one.spec.index <= spec.index]
     if [one.index for one in mine] != list(range(spec.index + 1)):
         raise RunError(

@@ -136,7 +136,7 @@ def deal(options: Options, chosen: Programme, part: Part) -> tuple[Session, ...]
         seed=options.seed,
         participants=plan.participants,
         kind_sha256=plan.kind.sha256 if plan.kind else "",
-        assets_sha256=plan.assets.sha256 if options.assets else "",
+        assets_sha256=plan.assets.sha256,
         realtime=bool(plan.realtime),
         step_limit_s=plan.step_limit_s or None,
     )

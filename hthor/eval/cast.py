@@ -13,6 +13,7 @@ from msgspec import Struct
 from hthor import garbage, plugins
 from hthor.cameras import OWN
 from hthor.errors import AgentError, HthorError
+from hthor.eval import provenance
 from hthor.eval.watched import Watched
 from hthor.guest import identity
 from hthor.guest.manifest import File, Manifest
@@ -97,7 +98,7 @@ class Stage:
 
             specs = tuple(self._body(seat) for seat in trial.robots)
             pack = furnish(self._sources.assets)
-            if pack is not None and pack.sha256 != trial.assets_sha256:
+            if pack is not None and provenance.pictures_sha256(pack.sha256) != trial.assets_sha256:
                 raise HthorError(
                     f"the pack '{self._sources.assets}' was built anew while its run was going on; begin a new run."
                 )
@@ -168,8 +169,9 @@ class Stage:
         return self._people
 
     def _body(self, seat: RobotSeat) -> Any:
-        path = self._sources.bodies.get(seat.seat, "") if seat.robot_sha256 else ""
-        _unchanged(path, seat.robot_sha256)
+        path = self._sources.bodies.get(seat.seat, "")
+        if path:
+            _unchanged(path, seat.robot_sha256)
         return plugins.load("robot", path or seat.robot)
 
     def _mind(self, seat: RobotSeat, step_limit_s: float | None) -> Mind:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import msgspec
 
-from hthor import cameras
+from hthor import cameras, plugins
 from hthor.detectors import OWN
 from hthor.eval.crews import NOBODY
 from hthor.eval.setup import PROCEDURAL, Setup
@@ -81,7 +81,10 @@ def alone(plan: Setup) -> str:
 def _who(robots: Sequence[RobotSeat]) -> list[str]:
     """The options that name these robots."""
     minds = [robot.agent.name if robot.agent.source.startswith(OURS) else robot.agent.source for robot in robots]
-    bodies = [f"{robot.robot}.py" if robot.robot_sha256 else robot.robot for robot in robots]
+    bodies = [
+        robot.robot if not robot.robot or plugins.ships("robot", robot.robot) else f"{robot.robot}.py"
+        for robot in robots
+    ]
     if len(robots) == 1:
         return ["--agent", minds[0], *(("--robot", bodies[0]) if bodies[0] else ())]
     # a mind that wants no robot may have been asked for with any body

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,6 +13,7 @@ from msgspec import Struct
 from hthor import cameras, plugins
 from hthor.detectors import OWN
 from hthor.errors import HthorError, UnknownName
+from hthor.eval import provenance
 from hthor.guest.manifest import Manifest
 from hthor.types import AgentRef, RobotSeat
 
@@ -42,7 +42,7 @@ class Character(Struct, frozen=True, kw_only=True):
 
 
 class Shape(Struct, frozen=True, kw_only=True):
-    """A robot's body: its name, and for a user's own the hash and the path of its file."""
+    """A robot's body: its name, the hash of its code, and the path of its file when it is a user's own."""
 
     name: str
     sha256: str = ""
@@ -123,6 +123,15 @@ def step_limit(crew: Crew, seconds: float | None) -> float | msgspec.UnsetType:
     return float(seconds) if seconds is not None and crew.minds else msgspec.UNSET
 
 
+def pictures(crew: Crew, pack: str = "") -> str:
+    """Hash of what robots' pictures show and of what draws it; empty where no mind is known to take any.
+
+    Every submitted agent may, and whoever was given a camera or a furniture pack, whose own hash is ``pack``.
+    """
+    looks = crew.seats and (crew.minds or crew.camera != cameras.OWN or pack)
+    return provenance.pictures_sha256(pack) if looks else ""
+
+
 def form(
     bodies: Sequence[str | Shape], minds: Sequence[str | Character], detector: str = OWN, camera: str = cameras.OWN
 ) -> Crew:
@@ -189,7 +198,7 @@ def embody(robot: str) -> Shape:
     known = plugins.names("robot")
     name = ALIASES.get(robot, robot)
     if name in known:
-        return Shape(name=name)
+        return Shape(name=name, sha256=provenance.robot_sha256(name))
     if not robot.endswith(".py"):
         hint = "Choose one with --robot, or give the path of a Python file, such as my_robot.py."
         raise UnknownName("robot", robot, (*known, *ALIASES), hint)
@@ -220,11 +229,10 @@ def label(name: str, robots: Sequence[RobotSeat]) -> str:
 
 def _own(name: str) -> Character:
     made: Any = plugins.load("agent", name)
-    file = Path(plugins.__file__).with_name("agents") / f"{plugins.stem('agent', name)}.py"
     ref = AgentRef(
         name=name,
-        source=f"hthor.agents.{plugins.stem('agent', name)}",
-        sha256=hashlib.sha256(file.read_bytes()).hexdigest(),
+        source=plugins.module("agent", name),
+        sha256=provenance.agent_sha256(name),
         privileges=tuple(getattr(made, "privileges", ())),
     )
     return Character(

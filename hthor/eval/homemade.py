@@ -51,7 +51,7 @@ def _suite(options: Options, found: tuple[Source, ...], tell: Callable[[str], No
     kinds = (programme.find(options.kind).name,) if options.kind else ()
     recipe = Recipe(name=_name(found), tasks=TASKS, kinds=kinds, difficulty=options.difficulty)  # type: ignore[arg-type]
     specs = [houses.load(one.given) for one in found]
-    key = jsonio.sha256([making.VERSION, recipe, specs, provenance.code_sha256()])
+    key = jsonio.sha256([making.VERSION, recipe, specs, provenance.makers_sha256()])
     folder = provenance.cache() / "suites" / f"{recipe.name}-{key[:16]}"
     if not (folder / packing.SUITE).is_file():
         tell(f"making {TASKS} tasks in {', '.join(one.given for one in found)}; they are kept for the next time")

@@ -59,6 +59,7 @@ def check_origin(folder: Path, record: Record, plan: Setup) -> None:
         "code_sha256": (spec.code_sha256, plan.code_sha256),
         "robots": (spec.robots, plan.seats),
         "kind_sha256": (spec.kind_sha256, plan.kind.sha256 if plan.kind else ""),
+        "assets_sha256": (spec.assets_sha256, plan.assets.sha256),
         "realtime": (bool(spec.realtime), bool(plan.realtime)),
         "step_limit_s": (spec.step_limit_s, plan.step_limit_s),
     }

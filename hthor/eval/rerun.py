@@ -103,12 +103,14 @@ def _sources(folder: Path, spec: TrialSpec, files: Files, minds: dict[str, Chara
         raise HthorError(f"the kind '{spec.task.kind}' of this trial came from a file of its own. Give it with --kind.")
     bodies: dict[str, str] = {}
     for seat in spec.robots:
-        fits = [path for path in files.robots if seat.robot_sha256 and plugins.sha256(path) == seat.robot_sha256]
-        if seat.robot_sha256 and not fits:
+        if plugins.ships("robot", seat.robot):
+            continue
+        fits = [path for path in files.robots if plugins.sha256(path) == seat.robot_sha256]
+        if not fits:
             raise HthorError(
                 f"the body '{seat.robot}' of this run came from a file of its own. Give it, unchanged, with --robot."
             )
-        bodies |= {seat.seat: str(Path(fits[0]).resolve())} if fits else {}
+        bodies[seat.seat] = str(Path(fits[0]).resolve())
     own, shown = folder / "houses", setup.load(folder).assets.name
     return Sources(
         minds={seat: one.path for seat, one in minds.items()},

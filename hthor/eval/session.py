@@ -40,7 +40,7 @@ def sessions(
     participants: int | None = None,
     detector: str = OWN,
     kind_sha256: str = "",
-    assets_sha256: str = "",
+    assets_sha256: str | None = None,
     realtime: bool = False,
     step_limit_s: float | None = None,
 ) -> tuple[Session, ...]:
@@ -55,13 +55,15 @@ def sessions(
         human: who the people are, as `hthor.humans.people` reads it.
         participants: how many people; by default as many as let every task be done exactly once.
         kind_sha256: hash of the file of the tasks' kind, for a kind that is not one of ours.
-        assets_sha256: hash of the furniture pack that pictures show, if any.
+        assets_sha256: hash of what robots' pictures show and of what draws it, where they may take any;
+            None: of our own furniture.
         realtime: whether robots' thinking takes time of the trial.
         step_limit_s: seconds that submitted agents have for each action; None for the usual deadline.
     """
     crew = crews.form([robot], [agent], detector) if isinstance(agent, str) else agent
     who = people.find(human) if isinstance(human, str) else human
-    rules_hash, code_hash = rules.sha256(), provenance.code_sha256()
+    rules_hash = rules.sha256()
+    code_hash = provenance.code_sha256(who.model, (task.kind for task in suite.tasks))
 
     def trial(task: TaskSpec, participant: int, index: int) -> TrialSpec:
         return TrialSpec(
@@ -75,7 +77,7 @@ def sessions(
             suite_sha256=suite.sha256,
             rules_sha256=rules_hash,
             code_sha256=code_hash,
-            assets_sha256=assets_sha256,
+            assets_sha256=crews.pictures(crew) if assets_sha256 is None else assets_sha256,
             kind_sha256=kind_sha256,
             realtime=realtime or msgspec.UNSET,
             step_limit_s=crews.step_limit(crew, step_limit_s),

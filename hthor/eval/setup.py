@@ -47,10 +47,14 @@ PROCEDURAL = "procedural"
 
 
 class AssetsRef(Struct, frozen=True, kw_only=True):
-    """What the furniture in pictures is: our own, made by the code of this hash, or a pack with its own hash."""
+    """What robots' pictures show: our own furniture or a pack, and the hash of that and of what draws it.
+
+    ``sha256`` is empty where no robot can take a picture that bears on what it does: where all minds are built in and
+    none was given a camera or a pack.
+    """
 
     name: str = PROCEDURAL
-    sha256: str
+    sha256: str = ""
 
 
 class KindRef(Struct, frozen=True, kw_only=True):
@@ -65,7 +69,8 @@ class Setup(Struct, frozen=True, kw_only=True):
 
     ``title`` is the name that the user gave the run; it changes no trial, and two runs that differ only in it are the
     same. ``robots`` lists every robot with its body, mind and detector; a mind that wants no robot stands there without
-    a seat. ``kind`` is None when every task of the suite is played. ``trials`` is how many there are in a whole run.
+    a seat. ``kind`` is None when every task of the suite is played,
+    ``kinds`` are those of its tasks. ``trials`` is how many there are in a whole run.
     ``shard`` is there only in a run that was divided among machines, ``realtime`` only where robots' thinking took time
     of the trials, ``limit`` only where so many tasks were chosen from the suite, ``houses`` and ``difficulty`` only
     where its tasks in these houses or of this difficulty were, and ``step_limit_s`` only where
@@ -80,6 +85,7 @@ class Setup(Struct, frozen=True, kw_only=True):
     humans: HumansRef
     suite: SuiteRef
     kind: KindRef | None = None
+    kinds: tuple[str, ...]
     seed: int
     participants: int
     trials: int
@@ -179,11 +185,13 @@ def settle(
 ) -> Setup:
     """The configuration of a run, every default resolved; ``human`` as `hthor.humans.people` reads it.
 
+    ``assets`` is the furniture pack that pictures show, with its own hash; None for our own furniture.
     ``realtime`` says whether robots' thinking takes time of the trials; without a robot it makes no difference.
     ``limit`` is how many tasks were chosen for ``suite``; None where it is whole; ``houses`` and ``difficulty`` are
     what it was narrowed to, empty where it was not. ``step_limit_s`` is the deadline of
     an action [s]; it makes no difference where all agents are built in.
     """
+    who = people.find(human) if isinstance(human, str) else human
     hands = people_for(len(suite.tasks))
     count = hands if participants is None else participants
     whole, rest = divmod(count, hands)
@@ -191,16 +199,19 @@ def settle(
     return Setup(
         robots=crew.listed,
         agents=crew.agents,
-        humans=peoples.refer(people.find(human) if isinstance(human, str) else human, suite, crew),
+        humans=peoples.refer(who, suite, crew),
         suite=SuiteRef(name=suite.name, version=str(suite.version), sha256=suite.sha256),
         kind=kind,
+        kinds=tuple(sorted({task.kind for task in suite.tasks})),
         seed=seed,
         participants=count,
         trials=whole * size + rest * size // hands,
         rules_sha256=rules.sha256(),
-        code_sha256=provenance.code_sha256(),
+        code_sha256=provenance.code_sha256(who.model, (task.kind for task in suite.tasks)),
         versions=provenance.versions(),
-        assets=assets or AssetsRef(sha256=provenance.code_sha256()),
+        assets=AssetsRef(
+            name=assets.name if assets else PROCEDURAL, sha256=crews.pictures(crew, assets.sha256 if assets else "")
+        ),
         realtime=(realtime and bool(crew.seats)) or msgspec.UNSET,
         limit=limit or msgspec.UNSET,
         houses=tuple(houses) or msgspec.UNSET,

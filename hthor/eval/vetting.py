@@ -34,4 +34,4 @@ def suite(name_or_path: str) -> Suite:
 def _mark(found: Suite, path: str) -> Path:
     """The file that is there when the suite was found sound."""
     own = {name: hashlib.sha256(data).hexdigest() for name, data in library.own_houses(path).items()}
-    return provenance.cache() / "sound" / jsonio.sha256([found.sha256, own, provenance.code_sha256()])
+    return provenance.cache() / "sound" / jsonio.sha256([found.sha256, own, provenance.makers_sha256()])

@@ -10,7 +10,7 @@ import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from hthor import rules
+from hthor import code_identity, rules
 from hthor.errors import AgentError
 from hthor.guest import command, digests, manifest, scanning
 from hthor.guest.confinement import hiding
@@ -42,7 +42,15 @@ def settle(guest: Guest, name: str) -> Manifest:
     if not info.absent and not agent.words:
         _try_beginning(guest, info.privileges)
     args = {key: _shown(value, grounds) for key, value in guest.given.args.items()}
-    return manifest.of(name, info.source, args, files_of(agent, guest.given, grounds, guest.take_opened()))
+    files = files_of(agent, guest.given, grounds, guest.take_opened())
+    return manifest.of(name, info.source, args, files, _library(files, grounds))
+
+
+def _library(files: Iterable[File], grounds: Grounds) -> str:
+    """Hash of what the Python files among these import of hthor, and of all that needs."""
+    python = [grounds.find(file.path) for file in files if file.path.endswith(".py")]
+    read = [path for path in python if code_identity.is_python(path)]
+    return code_identity.ours().sha256((), files=read) if read else ""
 
 
 def files_of(agent: Reference, given: Given, grounds: Grounds, opened: Iterable[str]) -> tuple[File, ...]:

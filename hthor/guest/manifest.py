@@ -26,10 +26,11 @@ class Manifest(Struct, frozen=True, kw_only=True):
 
     Attributes:
         name, source: as in `AgentRef`.
-        sha256: what `AgentRef` has: the hash of source, arguments and files; of a served agent, of what its server
-            says.
+        sha256: what `AgentRef` has: the hash of source, arguments, files and library; of a served agent, of what its
+            server says.
         args: what ``--agent-args`` gave it; files stand there by their path in ``files``.
         files: sorted by path.
+        library: hash of what its files import of hthor, and of all that needs; empty where no file of it is Python.
         claimed: whether nobody but the agent's server says so.
     """
 
@@ -38,15 +39,16 @@ class Manifest(Struct, frozen=True, kw_only=True):
     sha256: str
     args: dict[str, str] = {}
     files: tuple[File, ...] = ()
+    library: str = ""
     claimed: bool = False
 
 
-def of(name: str, source: str, args: dict[str, str], files: Iterable[File]) -> Manifest:
+def of(name: str, source: str, args: dict[str, str], files: Iterable[File], library: str = "") -> Manifest:
     """The manifest of an agent that runs here."""
     kept = tuple(sorted(set(files)))
     args = dict(sorted(args.items()))
-    sha256 = jsonio.sha256({"source": source, "args": args, "files": kept})
-    return Manifest(name=name, source=source, sha256=sha256, args=args, files=kept)
+    sha256 = jsonio.sha256({"source": source, "args": args, "files": kept, "library": library})
+    return Manifest(name=name, source=source, sha256=sha256, args=args, files=kept, library=library)
 
 
 def differences(there: Iterable[File], here: Iterable[File]) -> list[str]:

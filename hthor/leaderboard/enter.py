@@ -138,7 +138,7 @@ def _whole(folder: Path, plan: Setup, there: int) -> None:
             f"{folder} lacks {plan.trials - there} of its {plan.trials} trials, and only whole runs go on the board. "
             f"Finish it: {command.of(folder, plan)}"
         )
-    if plan.code_sha256 != (here := provenance.code_sha256()):
+    if plan.code_sha256 != (here := provenance.code_sha256(plan.humans.model, plan.kinds)):
         raise RunError(
             f"{folder / 'run.json'}: code_sha256 is {plan.code_sha256[:10]}, and here it is {here[:10]}: another "
             "version of hthor played it, by which it has to be added. Or play it anew."

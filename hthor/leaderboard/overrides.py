@@ -6,7 +6,7 @@ import functools
 from collections.abc import Mapping
 from pathlib import Path
 
-from hthor import tasks
+from hthor import plugins, tasks
 from hthor.detectors import OWN
 from hthor.eval.session import people_for
 from hthor.eval.setup import PROCEDURAL, Setup
@@ -40,7 +40,7 @@ def of(plan: Setup, crew: tuple[str, ...] = (), played: int | None = None) -> di
             found["detector"] = seat.detector
         if seat.camera:
             found["camera"] = seat.camera
-        if seat.robot_sha256:
+        if not plugins.ships("robot", seat.robot):
             found["robot"] = f"{seat.robot}.py"
     bodies = tuple(seat.robot for seat in plan.seats)
     if bodies and crew and bodies != crew:

@@ -141,7 +141,7 @@ class RobotSeat(Struct, frozen=True, kw_only=True):
     """One robot of a trial: its body and its mind. ``detector`` as `hthor.detectors.read` reads it.
 
     ``camera`` is there only where it is not the body's own, as `hthor.cameras.read` reads it. ``robot_sha256`` is the
-    hash of a user's own robot file, empty for a robot that ships with hthor.
+    hash of the body's code: of the file of a user's own, of the syntax of one that ships with hthor.
     """
 
     seat: str
@@ -155,7 +155,8 @@ class RobotSeat(Struct, frozen=True, kw_only=True):
 class TrialSpec(Struct, frozen=True, kw_only=True):
     """Everything that decides a trial's course; its content hash is the trial's key.
 
-    ``assets_sha256`` is the hash of the furniture pack that the robots' pictures show, empty for our own furniture;
+    ``assets_sha256`` is the hash of what the robots' pictures show and of what draws it, empty where no mind is known
+    to take pictures;
     ``kind_sha256`` that of a user's own file of the task's kind, empty for a kind that ships with hthor. ``realtime``
     is there only where robots' thinking took time of the trial, ``step_limit_s`` only where submitted agents had
     another deadline for each action than usual [s].

@@ -215,7 +215,7 @@ class Actor:
 
     def greet(self) -> tuple[str, str, dict[str, str]]:
         """This machine's name, and which hthor it has with which libraries."""
-        return socket.gethostname(), provenance.code_sha256(), provenance.versions()
+        return socket.gethostname(), provenance.installed_sha256(), provenance.versions()
 
     def play(self, session: Session) -> Iterator[News]:
         """See `hthor.eval.worker.Player`."""
@@ -224,7 +224,7 @@ class Actor:
 
 def _compare(host: str, code: str, versions: dict[str, str]) -> None:
     """See that a machine has the hthor that this one has: other code would give other trials."""
-    here = {"code": provenance.code_sha256()[:10], **provenance.versions()}
+    here = {"code": provenance.installed_sha256()[:10], **provenance.versions()}
     there = {"code": code[:10], **versions}
     other = [
         f"{name} is {there.get(name)} there and {here[name]} here" for name in here if there.get(name) != here[name]

@@ -10,6 +10,7 @@ from importlib import metadata
 
 from packaging.requirements import Requirement
 
+from hthor import code_identity
 from hthor.eval import provenance
 from hthor.eval.health.finding import Finding
 
@@ -41,7 +42,7 @@ def findings() -> list[Finding]:
 
 def _required() -> tuple[list[Requirement], dict[str, list[Requirement]]]:
     """What hthor needs, and what each extra adds; a checkout's own file knows better than what was installed once."""
-    path = provenance.PACKAGE.parent / "pyproject.toml"
+    path = code_identity.PACKAGE.parent / "pyproject.toml"
     if path.is_file():
         project = tomllib.loads(path.read_text(encoding="utf-8"))["project"]
         more = project["optional-dependencies"]
@@ -55,7 +56,7 @@ def _required() -> tuple[list[Requirement], dict[str, list[Requirement]]]:
 
 def pinned() -> dict[str, str]:
     """The versions that this version's own results were made with; empty where hthor is no checkout."""
-    path = provenance.PACKAGE.parent / "constraints.txt"
+    path = code_identity.PACKAGE.parent / "constraints.txt"
     if not path.is_file():
         return {}
     pairs = (line.split("==") for line in path.read_text(encoding="utf-8").split() if "==" in line)
@@ -99,8 +100,8 @@ def _checkout() -> Iterator[Finding]:
     """Which code it is, and whether it is changed."""
     from hthor import __version__
 
-    code, root = provenance.code_sha256()[:10], provenance.PACKAGE.parent
-    yield Finding(name="hthor", says=f"{__version__}, code {code}, {provenance.PACKAGE}")
+    code, root = provenance.installed_sha256()[:10], code_identity.PACKAGE.parent
+    yield Finding(name="hthor", says=f"{__version__}, code {code}, {code_identity.PACKAGE}")
     if not (root / ".git").exists():
         return
     commit, changes = _git("rev-parse", "--short=10", "HEAD"), _git("status", "--porcelain", "--", "hthor")
@@ -118,7 +119,7 @@ def _checkout() -> Iterator[Finding]:
 
 
 def _git(*words: str) -> str | None:
-    root = str(provenance.PACKAGE.parent)
+    root = str(code_identity.PACKAGE.parent)
     try:
         done = subprocess.run(
             ["git", "--no-optional-locks", "-C", root, *words], capture_output=True, text=True, timeout=_GIT_LIMIT_S

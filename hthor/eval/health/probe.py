@@ -11,6 +11,7 @@ from typing import TypeVar
 
 import msgspec
 
+from hthor import code_identity
 from hthor.eval import provenance, worker
 
 _LIMIT_S = 120.0
@@ -44,7 +45,7 @@ def start(module: str) -> Iterator[Probe]:
     """Run a module as a script, in the environment that workers have; it ends with the block."""
     environment = {**os.environ, **worker.ONE_THREAD, "PYTHONHASHSEED": "0"}
     environment.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))
-    paths = [str(provenance.PACKAGE.parent), os.environ.get("PYTHONPATH", "")]  # whatever folder it is run in
+    paths = [str(code_identity.PACKAGE.parent), os.environ.get("PYTHONPATH", "")]  # whatever folder it is run in
     environment["PYTHONPATH"] = os.pathsep.join(filter(None, paths))
     command = [sys.executable, "-m", module]
     process = subprocess.Popen(
