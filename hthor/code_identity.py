@@ -133,8 +133,8 @@ def is_python(path: Path) -> bool:
 # --------------------------------------------------------------------------------------------------------- a module
 
 
-def _parse(name: str, path: Path, find: Callable[[str], Path | None]) -> Module:
-    tree = ast.parse(path.read_bytes())
+def _parse(name: str, path: Path, find: Callable[[str], Path | None], text: bytes | None = None) -> Module:
+    tree = ast.parse(path.read_bytes() if text is None else text)
     reader = _Reader(_bindings(tree, find))
     reader.read(tree)
     part = next((_marked(node) for node in tree.body if _marked(node)), "")

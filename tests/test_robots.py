@@ -15,7 +15,7 @@ from world_house import COUNTER, TABLE, do, on, reason, task
 
 from hthor import catalog, plugins, rules
 from hthor.errors import HthorError, UnknownName
-from hthor.eval import cast, crews
+from hthor.eval import cast, crews, provenance
 from hthor.types import Close, Move, Open, Part, Pick, Place, Pose, RobotSpec, Rotate
 from hthor.world import World, avatar, bodies
 

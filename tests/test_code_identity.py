@@ -1,0 +1,287 @@
+"""The hash of code: spelling and place do not count, everything that can move a score does."""
+
+from __future__ import annotations
+
+import ast
+import random
+import shutil
+import sys
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import pytest
+
+from hthor import code_identity, plugins, tasks
+from hthor.code_identity import PICTURES, SIMULATION, Sources
+from hthor.eval import cast, metrics, provenance, record, session
+
+_OWN = (("human model", "proxy"), ("agent", "frontier"), ("robot", "scout"))
+ROOTS = (
+    *(cast.__name__, metrics.__name__, record.__name__),
+    *(plugins.module("task kind", name) for name in ("mobile_manipulation", "object_goal_navigation")),
+    *(
+        plugins.module(sort, name)
+        for sort, name in (("human model", "proxy"), ("agent", "frontier"), ("robot", "scout"))
+    ),
+)
+
+
+@pytest.fixture(scope="module")
+def sources() -> Sources:
+    return Sources()
+
+
+@pytest.fixture(scope="module")
+def whole(sources: Sources) -> str:
+    return sources.sha256(ROOTS)
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    """The package's sources in another place."""
+    place = tmp_path / "hthor"
+    shutil.copytree(
+        code_identity.PACKAGE, place, ignore=shutil.ignore_patterns("__pycache__", "data", "unseen", "suites")
+    )
+    return place
+
+
+def edited(sources: Sources, changes: dict[str, str]) -> Sources:
+    """The same sources with other text in these modules."""
+    other = Sources()
+    other._read = dict(sources._read)
+    for name, text in changes.items():
+        path = sources._path(name)
+        assert path is not None
+        other._read[name] = code_identity._parse(name, path, sources._path, text.encode())
+    return other
+
+
+def text_of(sources: Sources, name: str) -> str:
+    path = sources._path(name)
+    assert path is not None
+    return path.read_text(encoding="utf-8")
+
+
+class _Annotated(ast.NodeTransformer):
+    """Other docstrings, other annotations of functions."""
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
+        self.generic_visit(node)
+        node.returns = ast.Constant("Anything")
+        for one in (*node.args.args, *node.args.kwonlyargs):
+            one.annotation = ast.Constant("Anything")
+        node.body.insert(0, ast.Expr(ast.Constant("Says what it does in other words.")))
+        return node
+
+
+class _Changed(ast.NodeTransformer):
+    """One number, chosen by its place, is another."""
+
+    def __init__(self, which: int) -> None:
+        self.left = which
+        self.line = 0
+
+    def visit_Constant(self, node: ast.Constant) -> ast.AST:
+        if type(node.value) not in (int, float):
+            return node
+        self.left -= 1
+        if self.left != -1:
+            return node
+        self.line = node.lineno
+        return ast.copy_location(ast.Constant(node.value * 2 + 1), node)
+
+
+def numbers(text: str) -> int:
+    """How many numbers stand in a module where they do something: not in what only type checkers read."""
+    tree = ast.parse(text)
+    return sum(isinstance(node, ast.Constant) and type(node.value) in (int, float) for node in ast.walk(tree))
+
+
+def mutated(text: str, which: int) -> str:
+    return ast.unparse(ast.fix_missing_locations(_Changed(which).visit(ast.parse(text))))
+
+
+def test_spelling_does_not_count(sources: Sources, whole: str) -> None:
+    """Every counted module rewritten without comments and layout, with other docstrings and annotations."""
+    other = {
+        name: "# a comment\n"
+        + ast.unparse(ast.fix_missing_locations(_Annotated().visit(ast.parse(text_of(sources, name)))))
+        for name in sources.closure(ROOTS)
+    }
+    assert edited(sources, other).sha256(ROOTS) == whole
+
+
+def test_place_does_not_count(copy: Path, whole: str) -> None:
+    """A module with another name in another package, imported as a module and by what is in it."""
+    for old, new in (("hthor.world.gaze", "hthor.world.sensing.visibility"), ("hthor.seeds", "hthor.randomness")):
+        _move(copy, old, new)
+    moved = Sources(copy)
+    assert moved.module("hthor.world.gaze") is None
+    assert moved.module("hthor.seeds") is None
+    assert moved.sha256(ROOTS) == whole
+
+
+class _Moved(ast.NodeTransformer):
+    """A module's importers, after it went from one place to another."""
+
+    def __init__(self, old: str, new: str) -> None:
+        self.old, self.new = old, new
+        self.package, self.name = old.rsplit(".", 1)
+        self.room, self.called = new.rsplit(".", 1)
+        self.is_bound = False
+
+    def visit_ImportFrom(self, node: ast.ImportFrom) -> Any:
+        if node.module == self.old:
+            return ast.ImportFrom(self.new, node.names, 0)
+        if node.module != self.package or self.name not in [alias.name for alias in node.names]:
+            return node
+        self.is_bound = True
+        others = [alias for alias in node.names if alias.name != self.name]
+        mine = [ast.alias(self.called, alias.asname) for alias in node.names if alias.name == self.name]
+        return [*([ast.ImportFrom(node.module, others, 0)] if others else []), ast.ImportFrom(self.room, mine, 0)]
+
+    def visit_Name(self, node: ast.Name) -> ast.AST:
+        return ast.Name(self.called, node.ctx) if node.id == self.name and self.is_bound else node
+
+
+def _move(root: Path, old: str, new: str) -> None:
+    """Move a module and mend the imports of it, as an editor would."""
+    move = _Moved(old, new)
+    place = root.parent.joinpath(*move.room.split("."))
+    place.mkdir(exist_ok=True)
+    (place / "__init__.py").touch()
+    shutil.move(root.parent.joinpath(*old.split(".")).with_suffix(".py"), place / f"{move.called}.py")
+    for path in root.rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        if f"{move.package} import" in text or old in text:
+            moved = _Moved(old, new).visit(ast.parse(text))
+            path.write_text(ast.unparse(ast.fix_missing_locations(moved)), encoding="utf-8")
+
+
+def test_every_number_of_every_counted_module_counts(sources: Sources) -> None:
+    """One number changed in each module changes what that module says."""
+    for name in sources.closure(ROOTS):
+        text = text_of(sources, name)
+        count = numbers(text)
+        if count:
+            before = sources.module(name)
+            after = edited(sources, {name: mutated(text, random.Random(name).randrange(count))}).module(name)
+            assert before is not None
+            assert after is not None
+            assert before.tokens != after.tokens or before.part != after.part, name
+
+
+def test_what_one_module_says_reaches_the_hash(sources: Sources, whole: str) -> None:
+    """Thirty mutations, drawn from all numbers of all counted modules."""
+    texts = {name: text_of(sources, name) for name in sources.closure(ROOTS)}
+    drawn = random.Random("thirty mutations").sample(
+        [(name, which) for name, text in texts.items() for which in range(numbers(text))], 30
+    )
+    for name, which in drawn:
+        assert edited(sources, {name: mutated(texts[name], which)}).sha256(ROOTS) != whole, (name, which)
+
+
+def test_pictures_count_only_where_they_are_asked_for(sources: Sources, whole: str) -> None:
+    drawn = sources.sha256(ROOTS, (SIMULATION, PICTURES))
+    for name in ("hthor.looks.beds", "hthor.world.shading"):
+        text = text_of(sources, name)
+        other = edited(sources, {name: mutated(text, numbers(text) // 2)})
+        assert other.sha256(ROOTS) == whole
+        assert other.sha256(ROOTS, (SIMULATION, PICTURES)) != drawn
+
+
+def test_processes_and_printing_do_not_count(sources: Sources, whole: str) -> None:
+    for name in ("hthor.guest.talk", "hthor.eval.report", "hthor.cli.runs"):
+        assert name not in sources.closure(ROOTS)
+
+
+def test_switching_an_import_counts(sources: Sources, whole: str) -> None:
+    """Two modules that both count have something of the same name: taking it from the other is another program."""
+    text = text_of(sources, "hthor.eval.metrics")
+    line = "from hthor.eval import channel"
+    assert line in text
+    other = text.replace(line, line.replace("channel", "deeds as channel"))
+    assert edited(sources, {"hthor.eval.metrics": other}).sha256(ROOTS) != whole
+
+
+def test_a_part_is_one_of_three(sources: Sources) -> None:
+    with pytest.raises(ValueError, match="CODE_PART is 'poems'; valid: 'pictures', 'simulation', 'tools'"):
+        edited(sources, {"hthor.rules": 'CODE_PART = "poems"\n'})
+
+
+def test_a_root_that_is_not_there_is_refused(sources: Sources) -> None:
+    with pytest.raises(ValueError, match=r"no module hthor\.ruels"):
+        sources.sha256(["hthor.ruels"])
+
+
+def test_a_circle_of_modules_has_a_hash(tmp_path: Path) -> None:
+    root = tmp_path / "round"
+    root.mkdir()
+    (root / "__init__.py").touch()
+    (root / "a.py").write_text("from round import b\nX = 1\ndef f(): return b.g()\n")
+    (root / "b.py").write_text("def g():\n    from round import a\n    return a.X\n")
+    first = Sources(root).sha256(["round.a"])
+    (root / "b.py").write_text("def g():\n    from round import a\n    return a.X + 1\n")
+    assert Sources(root).sha256(["round.a"]) != first
+
+
+@pytest.mark.parametrize(
+    ("suite", "agent", "robot", "model"),
+    [
+        ("smoke", "frontier", "scout", "proxy"),
+        ("navigation", "oracle", "scout", "greedy"),
+        ("tidy", "oracle", "tender", "proxy"),
+        ("carry", "oracle", "tender", "random"),
+    ],
+)
+def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent: str, robot: str, model: str) -> None:
+    """A trial is played under a profiler: no function outside of the counted modules is called."""
+    chosen = tasks.suite(suite)
+    stage = cast.Stage()
+    trial = session.sessions(chosen, agent=agent, robot=robot, human=model)[0].trials[0]
+    with stage.enter(session.sessions(chosen, agent=agent, robot=robot, human=model)[0]) as company:
+        world = stage.world(trial)
+        called = _called(lambda: stage.play(company, trial, world))
+    roots = [cast.__name__, metrics.__name__, record.__name__]
+    own = (("human model", model), ("agent", agent), ("robot", robot), ("task kind", trial.task.kind))
+    counted = set(sources.closure([*roots, *(plugins.module(sort, name) for sort, name in own)]))
+    assert called > {"hthor.episode", "hthor.world.world"}
+    assert called <= counted
+
+
+def _called(act: Any) -> set[str]:
+    """Names of our modules of which a function is called; a module's own first run does not count."""
+    files: set[str] = set()
+
+    def note(frame: FrameType, event: str, _: object) -> None:
+        if event == "call" and frame.f_code.co_name != "<module>":
+            files.add(frame.f_code.co_filename)
+
+    sys.setprofile(note)
+    try:
+        act()
+    finally:
+        sys.setprofile(None)
+    paths = [Path(file) for file in files if Path(file).is_relative_to(code_identity.PACKAGE)]
+    parts = [path.relative_to(code_identity.PACKAGE.parent).with_suffix("").parts for path in paths]
+    return {".".join(one[:-1] if one[-1] == "__init__" else one) for one in parts}
+
+
+def test_what_robots_bring_counts_apart() -> None:
+    """A run with a robot and its control without one have the same code."""
+    assert provenance.agent_sha256("frontier") != provenance.agent_sha256("oracle")
+    kinds = ["mobile_manipulation"]
+    assert provenance.code_sha256("proxy", kinds) != provenance.code_sha256("greedy", kinds)
+    assert provenance.code_sha256("proxy", kinds) != provenance.code_sha256("proxy", [*kinds, "tidying_up"])
+    assert provenance.code_sha256("my_human.py", kinds) == provenance.code_sha256("other", kinds)
+
+
+def test_a_hash_that_is_kept_is_the_one_that_is_worked_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    first = provenance.agent_sha256("oracle")
+    (kept,) = (tmp_path / "hthor" / "code").iterdir()
+    assert kept.read_text() == first == provenance.agent_sha256("oracle")
+    kept.write_text("cut off")
+    assert provenance.agent_sha256("oracle") == first
