@@ -20,7 +20,7 @@ SPELLING = "$ (canonical form)"
 def problems(path: Path) -> Iterator[Problem]:
     """What is wrong with the form of an entry's file."""
     try:
-        entry = files.read(path)
+        entry = files.form(path)
     except BoardError as error:
         field, _, problem = str(error).removeprefix(f"{path}: ").partition(": ")
         yield Problem(file=str(path), field=field, problem=problem)
@@ -41,7 +41,7 @@ def fix(paths: Sequence[Path]) -> list[Path]:
     fixed = []
     for path in paths:
         try:
-            entry = files.read(path)
+            entry = files.form(path)
         except BoardError:
             continue
         if not list(_strictly(path, entry)) and jsonio.pretty(entry) != path.read_bytes():
