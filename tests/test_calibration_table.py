@@ -185,26 +185,11 @@ def test_what_decides_only_t_star_is_no_part_of_a_trials_identity():
     assert known.differences(identity.of(msgspec.structs.replace(SUITE, tasks=elsewhere))) == ["suite paper"]
 
 
-def test_identity_covers_the_person_the_robots_and_the_world_and_leaves_out_what_has_no_part():
+def test_identity_has_the_code_the_rules_and_the_priors():
     parts = identity.of(SUITE).parts
-    for name in ("humans/models/proxy.py", "humans/search.py", "agents/oracle.py", "world/world.py", "episode.py"):
-        assert name in parts
-    assert {"rules", "parameters and their priors", "version of mujoco", "tasks/kinds/mobile_manipulation.py"} <= set(
-        parts
-    )
-    assert not any(name.startswith(("cli/", "looks/", "tasks/suites/", "calibration/report")) for name in parts)
-    assert "humans/people.py" not in parts
-
-
-def test_code_counts_by_what_it_means(tmp_path):
-    def digest(text):
-        (tmp_path / "code.py").write_text(text)
-        return identity.meaning(tmp_path / "code.py")
-
-    plain = digest("def f(x):\n    return x + 1\n")
-    assert digest('"""Words."""\n\n\ndef f(x):\n    """More."""\n    return (x\n        + 1)  # and more\n') == plain
-    assert digest("def f(x):\n    return x + 1\n\n\ndef t_star(x):\n    return 3\n") == plain
-    assert digest("def f(x):\n    return x + 2\n") != plain
+    assert {"code", "rules", "parameters and their priors", "version of mujoco", "suite paper"} <= set(parts)
+    assert "version of hthor" not in parts
+    assert identity.of_statistics() != parts["code"]
 
 
 def _identity(**parts):

@@ -109,7 +109,7 @@ def test_parts_and_departures_are_refused(runs: Path, tmp_path: Path):
         enter.add(tmp_path / "elsewhere" / "helper" / "none", tmp_path / "board")
     plan = msgspec.json.decode((runs / "helper" / "run.json").read_bytes(), type=type(fakes.run_of(COUNT)[0]))
     assert overrides.of(plan, ("scout",)) == {}
-    seat = msgspec.structs.replace(plan.robots[0], detector="ideal", robot_sha256="00")
+    seat = msgspec.structs.replace(plan.robots[0], detector="ideal", robot="mine")
     other = msgspec.structs.replace(plan, participants=1, robots=(seat,))
     assert overrides.of(other, ("tender",)).keys() == {"participants", "detector", "robot", "robots"}
     with mock.patch.object(provenance, "code_sha256", return_value="56" * 32), pytest.raises(RunError, match="code_"):
