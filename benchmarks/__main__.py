@@ -26,12 +26,16 @@ def main() -> None:
     options.add_argument("--part", action="append", choices=PARTS, help="only this part; may be given more than once")
     options.add_argument("--profile", default="fast,nice", help="profiles of pictures, comma-separated (%(default)s)")
     given = options.parse_args()
-    provenance.compiled()
+    provenance.keep_compiled()
     rows: list[table.Row] = []
     for part in given.part or PARTS:
         print(f"measuring {part} ...", file=sys.stderr)
         rows += _measures(given)[part]()
-    table.put(rows, given.json)
+        if not given.json:
+            table.put(rows, as_json=False)
+            rows = []
+    if given.json:
+        table.put(rows, as_json=True)
 
 
 def _measures(given: argparse.Namespace) -> dict[str, Callable[[], Iterator[table.Row]]]:

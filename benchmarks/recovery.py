@@ -25,7 +25,7 @@ def main() -> None:
     options.add_argument("--suite", default="paper", help="the tasks they do (%(default)s)")
     options.add_argument("--seed", type=int, default=0)
     given = options.parse_args()
-    provenance.compiled()
+    provenance.keep_compiled()
     datasets = []
     for dataset in recovery.run(
         given.datasets, people=given.people, seed=given.seed, suite=given.suite, first=given.first

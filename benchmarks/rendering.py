@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import statistics
 from collections.abc import Iterator, Sequence
 
@@ -13,7 +14,7 @@ from hthor.types import HUMAN, Pose
 
 SIZES = (64, 128, 224, 300)
 CHANNELS = ("rgb", "depth", "segmentation")
-_VIEWS = 8
+_VIEWS, _APART_M = 8, 0.6
 BAR = 150.0
 
 
@@ -42,7 +43,7 @@ def rows(scenes: Sequence[Scene], profiles: Sequence[str], sizes: Sequence[int])
 
 
 def _views(scene: Scene) -> list[Pose]:
-    """Poses of the person along their walk."""
+    """Poses of the person along their walk, but for those where a robot stands at its end."""
     world, poses = scene.world, []
     way = iter(walk(scene, 600))
     world.reset(scene.task)
@@ -54,7 +55,8 @@ def _views(scene: Scene) -> list[Pose]:
         world.advance()
         if tick % (600 // _VIEWS) == 0:
             poses.append(world.pose(HUMAN))
-    return poses
+    others = [other for seat, other in world.poses().items() if seat != HUMAN]
+    return [one for one in poses if all(math.hypot(one.x - other.x, one.y - other.y) > _APART_M for other in others)]
 
 
 def _cost(scene: Scene, views: Sequence[Pose], profile: str, channels: Sequence[str], size: int) -> float:

@@ -29,6 +29,15 @@ def sha256(document: Any) -> str:
     return hashlib.sha256(canonical(document)).hexdigest()
 
 
+def is_text(value: str) -> bool:
+    """Whether a text can be written: names of files and escapes in JSON can hold halves of characters, which cannot."""
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
 def write(path: Path, data: bytes) -> None:
     """Replace ``path`` by ``data`` in one step: a reader sees the old file or the new one, never a part."""
     make_folder(path.parent)

@@ -223,3 +223,17 @@ def test_every_command_keeps_compiled_code_in_one_place(words: list[str], monkey
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     CliRunner().invoke(app, words)
     assert os.environ["NUMBA_CACHE_DIR"] == str(provenance.compiled())
+
+
+@pytest.mark.parametrize("within", [False, True])
+def test_names_that_are_no_text_are_refused_at_once(tmp_path: Path, within: bool) -> None:
+    folder = Path(os.fsdecode(os.fsencode(tmp_path) + b"/d\xff"))
+    folder.mkdir()
+    (folder / "mine.py").write_text("")
+    where, what = (folder, "mine.py") if within else (tmp_path, str(folder / "mine.py"))
+    command = [sys.executable, "-m", "hthor", "eval", "--agent", what, "--humans", "proxy", "--json"]
+    done = subprocess.run(command, cwd=where, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "is not UTF-8" in json.loads(done.stdout)["error"]
+    assert r"d\udcff" in done.stderr
+    assert sorted(path.name for path in folder.iterdir()) == ["mine.py"]

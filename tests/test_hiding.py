@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import levels
@@ -75,6 +76,13 @@ def test_what_is_hthors_is_hidden_wherever_it_lies(home: Path) -> None:
         assert not covered(home / name, allowed), name
     for name in OWN:
         assert covered(home / name, allowed), name
+
+
+def test_a_name_that_is_no_text_is_in_no_list(home: Path) -> None:
+    Path(os.fsdecode(os.fsencode(home) + b"/weights\xff.npz")).write_bytes(b"")
+    allowed = paths.readable(str(home / "agent.py"), str(home), [])
+    assert all(jsonio.is_text(path) for path in allowed)
+    assert covered(home / "weights" / "policy.npz", allowed)
 
 
 def test_an_agent_that_lies_in_a_runs_folder_reads_its_own_files_still(home: Path) -> None:

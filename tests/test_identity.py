@@ -189,6 +189,17 @@ def test_a_recorder_names_each_file_once_and_only_the_agents_own(tmp_path: Path)
     assert recorder.take() == ()
 
 
+@pytest.mark.parametrize("name", [b"weights\xff.npz", b"weights\n.npz"])
+def test_a_file_that_no_manifest_can_list_is_not_opened_unseen(tmp_path: Path, name: bytes) -> None:
+    path = os.fsencode(tmp_path) + b"/" + name
+    Path(os.fsdecode(path)).write_bytes(b"")
+    recorder = recording.Recorder(Grounds(root=str(tmp_path), base=str(tmp_path)))
+    for _ in range(2):
+        with pytest.raises(PermissionError, match="printable letters"):
+            recorder._hear("open", (path, "r", os.O_RDONLY))
+    assert recorder.take() == ()
+
+
 @given(st.lists(st.text(st.characters(codec="ascii", exclude_characters="/\0"), min_size=1, max_size=40), max_size=8))
 @settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_scanning_never_leaves_the_agents_folder(tmp_path: Path, words: list[str]) -> None:

@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 from pathlib import Path
+from xml.etree import ElementTree
 
 import msgspec
 import pytest
@@ -76,6 +77,19 @@ def test_every_text_of_a_board_is_escaped(whole: Path):
         *("dd", "div", "table", "thead", "tbody", "tr", "th", "td", "span", "small", "b", "svg", "line", "circle", "g"),
         *("text", "details", "summary", "code", "ol", "ul", "li", "footer", "a"),
     }
+
+
+def test_drawings_are_whole_and_sections_counted(whole: Path):
+    """An element of a drawing that is not closed has the next ones within it, and a browser shows none of them."""
+    everything = boards(whole)
+    for found in (everything, msgspec.structs.replace(everything, refuted=())):
+        text = page.render(found)
+        drawings = [ElementTree.fromstring(one) for one in re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)]
+        marks = [one for one in drawings if one.find("g") is not None]
+        assert len(marks) == len(found.sections[0].rows)
+        assert all(one.find("g/circle") is not None and one.find("line/line") is None for one in marks)
+        numbers = [int(one) for one in re.findall(r"<h2><span>(\d+)</span>", text)]
+        assert numbers == list(range(1, len(numbers) + 1))
 
 
 def test_labels_that_are_not_the_same_in_all_entries_do_not_stop_the_page(whole: Path):

@@ -165,5 +165,6 @@ def lost(before: dict[str, bytes], after: dict[str, bytes], said: Said) -> list[
     """What was there and is not any more, but for what the command is there to write."""
     if "--fix" in said.words or "rescore" in said.words:  # these write the board's entries
         return [f"{name} is gone" for name in before if name not in after]
-    kept = [name for name in before if not any(part in _WRITTEN for part in name.split("/"))]
+    told = said.words if "--force" in said.words else ()  # what a user names and forces is the user's to lose
+    kept = [name for name in before if name not in told and not any(part in _WRITTEN for part in name.split("/"))]
     return [f"{name} is not as it was" for name in kept if after.get(name) != before[name]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from typing import Annotated
@@ -79,9 +80,23 @@ def root(
     ] = False,
 ) -> None:
     """Evaluate robots that help people in a shared house."""
+    _refuse_what_is_no_text()
     from hthor.eval import provenance
 
     provenance.keep_compiled()  # here, so that no command can miss it
+
+
+def _refuse_what_is_no_text() -> None:
+    """Names of files may be any bytes, and what hthor writes is UTF-8: it could not say where a run lies."""
+    from hthor.errors import HthorError
+    from hthor.jsonio import is_text
+
+    for given in sys.argv[1:]:
+        if not is_text(given):
+            raise HthorError(f"{given!a} is not UTF-8. Rename the file or folder, or type the name again.")
+    with contextlib.suppress(OSError):
+        if not is_text(os.getcwd()):
+            raise HthorError(f"the name of this folder, {os.getcwd()!a}, is not UTF-8. Rename it, or go elsewhere.")
 
 
 def _open_streams() -> None:

@@ -6,6 +6,7 @@ itself, adds those that the sources name, and of a submission all that was hande
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Callable
@@ -15,6 +16,10 @@ from hthor.guest.grounds import Grounds
 
 MOST = 16 << 10
 """Bytes of names in one message; the rest goes with later ones."""
+
+
+class UnprintableName(PermissionError):
+    """A file of the agent's own that no manifest can list, and that it may not open for that."""
 
 
 class Recorder:
@@ -61,6 +66,8 @@ class Recorder:
         if read is not None:
             try:
                 read(args)
+            except UnprintableName:
+                raise
             except Exception:  # an agent's own odd arguments are for the call itself to refuse
                 return
 
@@ -81,8 +88,12 @@ class Recorder:
             return
         self._seen.add(text)
         name = self._grounds.name(text)
-        if name is not None and name.isprintable() and os.path.isfile(text):
-            self._fresh.append(name)
+        if name is None or not os.path.isfile(text):
+            return
+        if not name.isprintable():
+            self._seen.discard(text)  # refused every time
+            raise UnprintableName(errno.EPERM, "an agent's own file needs a name of printable letters", text)
+        self._fresh.append(name)
 
 
 def _database(name: Any) -> Any:

@@ -15,6 +15,7 @@ from typing import Any
 import msgspec
 from msgspec import Struct, field
 
+from hthor import jsonio
 from hthor.errors import HouseError
 
 VERSION = "1.0.0"
@@ -154,9 +155,12 @@ def read(path: Path, file: str) -> tuple[Any, HouseFile]:
 def convert(document: Any, file: str) -> HouseFile:
     """A house's JSON document as records; errors as those of `read`, naming ``file``."""
     try:
-        for where, number in _numbers(document, ""):
-            if not abs(number) < _LIMIT:
-                raise HouseError(file, where, f"must be a finite number, got {number!r:.24}")
+        for where, value in _values(document, ""):
+            if isinstance(value, str):
+                if not jsonio.is_text(value):
+                    raise HouseError(file, where, f"half a character, without the other half: {value!a:.60}")
+            elif not abs(value) < _LIMIT:
+                raise HouseError(file, where, f"must be a finite number, got {value!r:.24}")
         _check_version(document, file)
         return msgspec.convert(document, HouseFile)
     except msgspec.ValidationError as error:
@@ -182,14 +186,16 @@ def _document(path: Path, file: str) -> Any:
         raise HouseError(file, "$", f"not a house file: {error}") from None
 
 
-def _numbers(value: Any, where: str) -> Iterator[tuple[str, float]]:
+def _values(value: Any, where: str) -> Iterator[tuple[str, str | float]]:
+    """All texts, keys included, and numbers, with where they stand."""
     if isinstance(value, dict):
         for key, item in value.items():
-            yield from _numbers(item, f"{where}.{key}" if where else str(key))
+            yield where or "$", key
+            yield from _values(item, f"{where}.{key}" if where else str(key))
     elif isinstance(value, list):
         for index, item in enumerate(value):
-            yield from _numbers(item, f"{where}[{index}]")
-    elif isinstance(value, int | float):
+            yield from _values(item, f"{where}[{index}]")
+    elif isinstance(value, str | int | float):
         yield where or "$", value
 
 

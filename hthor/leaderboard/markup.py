@@ -13,7 +13,7 @@ from html import escape
 
 from msgspec import Struct
 
-_VOID = ("meta", "link", "line", "circle")
+_VOID = ("meta", "link")  # of HTML: in a drawing every element is closed, or the next lies within it and is not seen
 
 
 class Markup(Struct, frozen=True):

@@ -104,15 +104,17 @@ def render(found: Board) -> str:
         "Made by hthor leaderboard build from the entries and the keeper's verifications alone; every number is in "
         f"leaderboard.json beside this page, schema {found.schema}."
     )
+    if found.refuted:
+        body.append(_refuted(len(body) + 1, found.refuted))
+    steps = tag("ol", *(tag("li", one) for one in _TO_RANK))
+    body.append(_titled(len(body) + 1, "rank", "How to get a ranked entry", steps))
+    body.append(_titled(len(body) + 1, "how", "How to read this", *(tag("p", one) for one in _HOW)))
     main = tag(
         "main",
         tag("h1", title),
         tag("p", _LEAD, class_="lead"),
         m.NOTHING if ranked else tag("p", _NONE, class_="note"),
         *body,
-        *([_refuted(len(body) + 1, found.refuted)] if found.refuted else []),
-        _titled(len(body) + 2, "rank", "How to get a ranked entry", tag("ol", *(tag("li", one) for one in _TO_RANK))),
-        _titled(len(body) + 3, "how", "How to read this", *(tag("p", one) for one in _HOW)),
         tag("footer", made),
     )
     return m.document(head, (main, m.script(tables.SORT)))

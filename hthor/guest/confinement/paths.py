@@ -11,6 +11,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from hthor import jsonio
 from hthor.guest.confinement import hiding
 
 PACKAGE = Path(__file__).resolve().parents[2]
@@ -64,6 +65,8 @@ def _open(root: Path, secret: Sequence[Path]) -> list[str]:
     """The folder, or as much of it as can be named without naming what is secret."""
     real = root.resolve()
     if any(real.is_relative_to(hidden) for hidden in secret):
+        return []
+    if not jsonio.is_text(str(root)):  # a list is a message, and no message can name it
         return []
     below = [hidden for hidden in secret if hidden.is_relative_to(real)]
     if not below or not real.is_dir():
