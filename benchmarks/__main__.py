@@ -11,8 +11,7 @@ import sys
 from collections.abc import Callable, Iterator
 
 from benchmarks import environment, guests, rendering, scaling, scenes, table, trials
-from hthor import tasks
-from hthor.eval import provenance
+from hthor import code_identity, tasks
 
 PARTS = ("trials", "environment", "rendering", "processes", "guests")
 
@@ -26,7 +25,7 @@ def main() -> None:
     options.add_argument("--part", action="append", choices=PARTS, help="only this part; may be given more than once")
     options.add_argument("--profile", default="fast,nice", help="profiles of pictures, comma-separated (%(default)s)")
     given = options.parse_args()
-    provenance.keep_compiled()
+    code_identity.keep_compiled()
     rows: list[table.Row] = []
     for part in given.part or PARTS:
         print(f"measuring {part} ...", file=sys.stderr)

@@ -12,7 +12,9 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from msgspec import Struct
 
-from hthor.eval import bounds, contrast, spread, stats
+from hthor.eval.metrics import bounds
+from hthor.eval.results import paired_difference
+from hthor.eval.statistics import intervals, variance_components
 
 LIMIT_S, GOOD_S = 90.0, 33.0
 TASK_SD, PERSON_SD = 0.7, 0.5
@@ -95,16 +97,16 @@ def table(repeats: int) -> Iterator[str]:
 
 def _row(sort: Sort, level: float, name: str, tasks: np.ndarray, people: np.ndarray, repeats: int) -> str:
     one, other = (sort.value(values) for values in latent(tasks, people, level, repeats))
-    mean, within, share = truth(sort, level), bounds.of(sort.metric, LIMIT_S), sort.metric in contrast.SHARES
-    found = spread.two_way(one, tasks, people)
-    apart = contrast.spread_of(one - other, tasks, people, share=share)
+    mean, within, share = truth(sort, level), bounds.of(sort.metric, LIMIT_S), sort.metric in paired_difference.SHARES
+    found = variance_components.two_way(one, tasks, people)
+    apart = paired_difference.spread_of(one - other, tasks, people, share=share)
     room = bounds.room(sort.metric, LIMIT_S)
     plain, gap = (_plain(held) for held in (found, apart))
     told = [f"{sort.metric:7} {mean:5.2f} {name:23}"]
     for ends, true, most in (
-        (stats.interval(found, len(tasks), within), mean, within),
+        (intervals.interval(found, len(tasks), within), mean, within),
         (plain, mean, within),
-        (contrast.ends(apart, share=share, room=room), 0.0, (-room, room)),
+        (paired_difference.ends(apart, share=share, room=room), 0.0, (-room, room)),
         (gap, 0.0, (-room, room)),
     ):
         low, high = ends
@@ -114,7 +116,7 @@ def _row(sort: Sort, level: float, name: str, tasks: np.ndarray, people: np.ndar
     return " | ".join(told)
 
 
-def _plain(found: spread.Spread) -> tuple[np.ndarray, np.ndarray]:
+def _plain(found: variance_components.Spread) -> tuple[np.ndarray, np.ndarray]:
     """The mean and some standard errors."""
-    half = stats.student(found.freedom, (1.0 + stats.LEVEL) / 2.0) * np.sqrt(found.variance)
+    half = intervals.student(found.freedom, (1.0 + intervals.LEVEL) / 2.0) * np.sqrt(found.variance)
     return found.mean - half, found.mean + half

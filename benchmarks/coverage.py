@@ -14,7 +14,8 @@ from statistics import NormalDist
 import numpy as np
 
 from benchmarks import bounded
-from hthor.eval import contrast, spread, stats
+from hthor.eval.results import paired_difference
+from hthor.eval.statistics import intervals, variance_components
 
 NORMAL = NormalDist()
 RATES = (0.5, 0.75, 0.95)
@@ -94,9 +95,11 @@ def main() -> None:
         for rate in RATES:
             for task_sd, person_sd in SPREADS:
                 one, other = outcomes(tasks, people, rate, task_sd, person_sd, repeats)
-                found = spread.two_way(one, tasks, people)
-                low, high = stats.interval(found, len(tasks), stats.SHARE)
-                least, most = contrast.ends(contrast.spread_of(one - other, tasks, people, share=True), share=True)
+                found = variance_components.two_way(one, tasks, people)
+                low, high = intervals.interval(found, len(tasks), intervals.SHARE)
+                least, most = paired_difference.ends(
+                    paired_difference.spread_of(one - other, tasks, people, share=True), share=True
+                )
                 held = 100.0 * np.mean((low <= rate) & (rate <= high))
                 equal = 100.0 * np.mean((least <= 0.0) & (most >= 0.0))
                 old = 100.0 * pigeonhole(one[: wanted.bootstrap], tasks, people, rate) if wanted.bootstrap else math.nan

@@ -25,10 +25,13 @@ import numpy as np
 from hthor import jsonio, seeds
 from hthor.agents import frontier, oracle
 from hthor.episode import play
-from hthor.eval import cast, metrics, session
-from hthor.humans import messages, subject
-from hthor.humans.person import Person
-from hthor.tasks import library
+from hthor.eval.config import sessions
+from hthor.eval.metrics import trial_metrics
+from hthor.eval.runner import trial_runner
+from hthor.humans.communication import message_reading
+from hthor.humans.core import trial_context
+from hthor.humans.population.participant import Person
+from hthor.tasks.suites import library
 from hthor.types import Action, Mind, Observation
 
 LATE_TICKS = 50
@@ -63,14 +66,14 @@ AGENTS: dict[str, tuple[str, type[Mind] | None]] = {
 def played(agent: str, way: str, suite: str, people: int) -> dict[str, list[float]]:
     """Each metric of each trial, and who did it."""
     found: dict[str, list[float]] = {name: [] for name in ("person", *METRICS)}
-    (name, make), stage = AGENTS[agent], cast.Stage()
-    hands = session.sessions(library.suite(suite), agent=name)[:people]
+    (name, make), stage = AGENTS[agent], trial_runner.Stage()
+    hands = sessions.sessions(library.suite(suite), agent=name)[:people]
     with drawing(way):
         for hand in hands:
             human, minds = stage.enter(hand).human, {} if make is None else {"robot": make()}
             for trial in hand.trials:
                 log = play(trial, stage.world(trial), human, minds)
-                measured = metrics.measure(trial, log)
+                measured = trial_metrics.measure(trial, log)
                 found["person"].append(trial.participant)
                 for metric in METRICS:
                     found[metric].append(getattr(measured, metric))
@@ -104,8 +107,8 @@ def drawing(way: str) -> Iterator[None]:
             held.enter_context(mock.patch.object(Person, "trial", other))
         if way == "sequential":
             chances = SimpleNamespace(draw=draw, normal=normal)
-            held.enter_context(mock.patch.object(subject, "seeds", chances))
-            held.enter_context(mock.patch.object(messages, "seeds", chances))
+            held.enter_context(mock.patch.object(trial_context, "seeds", chances))
+            held.enter_context(mock.patch.object(message_reading, "seeds", chances))
         yield
 
 

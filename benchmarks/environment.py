@@ -19,11 +19,12 @@ from dm_control import composer
 from benchmarks.scenes import ROBOT, TICKS, Scene, Walk, walk
 from benchmarks.table import Clock, Row, median_ms
 from hthor import rules, tasks
-from hthor.houses.freespace import FreeSpace
+from hthor.houses.space.free_space import FreeSpace
 from hthor.types import HUMAN
-from hthor.world import World, contents
-from hthor.world import env as ours
-from hthor.world.task import HouseTask
+from hthor.world import World
+from hthor.world.model import composer_env as ours
+from hthor.world.model import inventory
+from hthor.world.model.composer_task import HouseTask
 
 _FALL_TICKS = round(2.0 / rules.TICK_S)
 _FALL_M = 1.0
@@ -77,7 +78,7 @@ def measure(scene: Scene, suite: str, repeats: int) -> dict[str, float]:
 def composer_environment(scene: Scene) -> Any:
     """dm_control's environment of the same house, bodies and objects, with default settings."""
     world = scene.world
-    split = contents.split(world.house, _objects(scene))
+    split = inventory.split(world.house, _objects(scene))
     task = HouseTask(world.house, split, world.bodies)
     task.starts = {placed.id: (placed.position, placed.yaw) for placed in scene.task.objects}
     environment = composer.Environment(task, random_state=0)

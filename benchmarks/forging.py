@@ -15,10 +15,11 @@ import msgspec
 import numpy as np
 
 from hthor import seeds, tasks
-from hthor.eval.stats import Estimate
-from hthor.leaderboard import dealt, draw, files, outcomes, verdict, worth
-from hthor.leaderboard.entry import Entry
-from hthor.leaderboard.outcomes import Outcomes
+from hthor.eval.statistics.intervals import Estimate
+from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes, trial_tasks
+from hthor.leaderboard.entries.entry import Entry
+from hthor.leaderboard.entries.trial_outcomes import Outcomes
+from hthor.leaderboard.verify import trial_sample, verdict
 from hthor.tasks import Suite
 from hthor.types import TaskSpec
 
@@ -34,17 +35,19 @@ def forged(entry: Entry, share: float, control: Entry | None = None, suite: Suit
         control: the entry without a robot that its uplift is over. suite: its tasks, so that what the times are worth
             follows from them too.
     """
-    held = better(outcomes.unpack(entry.trials), share, tasks=dealt.tasks(suite, entry) if suite else ())
-    whose = worth.people(entry.trials.count, entry.run.participants)
-    fresh: dict[str, Estimate] = worth.scores(held, whose, alone=entry.alone)
+    held = better(trial_outcomes.unpack(entry.trials), share, tasks=trial_tasks.tasks(suite, entry) if suite else ())
+    whose = entry_metrics.people(entry.trials.count, entry.run.participants)
+    fresh: dict[str, Estimate] = entry_metrics.scores(held, whose, alone=entry.alone)
     return msgspec.structs.replace(
         entry,
         metrics=msgspec.structs.replace(entry.metrics, **fresh),
         counts=msgspec.structs.replace(entry.counts, successes=int(held.met.sum())),
-        splits=worth.splits(held, whose),
-        uplift=worth.uplift(entry, held, control, outcomes.unpack(control.trials)) if control else entry.uplift,
+        splits=entry_metrics.splits(held, whose),
+        uplift=entry_metrics.uplift(entry, held, control, trial_outcomes.unpack(control.trials))
+        if control
+        else entry.uplift,
         hashes=msgspec.structs.replace(entry.hashes, merkle=held.merkle),
-        trials=outcomes.pack(held),
+        trials=trial_outcomes.pack(held),
     )
 
 
@@ -76,7 +79,7 @@ def made_up(seed: int = 0, count: int = COUNT) -> Outcomes:
         sent=np.ones(count, dtype=np.int64),
         accepted=np.zeros(count, dtype=np.int64),
         useful=np.zeros(count, dtype=np.int64),
-        leaves=[chance.bytes(outcomes.LEAF) for _ in range(count)],
+        leaves=[chance.bytes(trial_outcomes.LEAF) for _ in range(count)],
         labels={},
     )
 
@@ -92,10 +95,10 @@ def caught(
     """
     true = made_up(count=count)
     claimed = better(true, share)
-    whose = worth.people(count, count // 10)
+    whose = entry_metrics.people(count, count // 10)
     found = 0
     for number in range(draws):
-        drawn = draw.sample(f"commit {number}", claimed.merkle, count, sample)
+        drawn = trial_sample.sample(f"commit {number}", claimed.merkle, count, sample)
         came = _another(true, noise, number)
         rows = came.rows
         again = verdict.Again(

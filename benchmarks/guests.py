@@ -18,9 +18,11 @@ import numpy as np
 from benchmarks.scenes import hands
 from benchmarks.table import Row
 from hthor.episode import play
-from hthor.eval import cast, crews
-from hthor.eval.session import Session
-from hthor.guest import Guest, cost
+from hthor.eval.config import robot_team
+from hthor.eval.config.sessions import Session
+from hthor.eval.runner import trial_runner
+from hthor.guest import Guest
+from hthor.guest.process_tools import resource_usage
 from hthor.types import BodySpec, Briefing, Observation, Pose
 
 STATE_BAR_US, PICTURE_BAR_US, SHARE_BAR = 60.0, 100.0, 15.0
@@ -140,9 +142,9 @@ def _trials(home: Path, suite: str, count: int, persistent: bool) -> Iterator[Ro
     """
     path = home / f"frontier_{'kept' if persistent else 'anew'}.py"
     path.write_text(_SAME.format(persistent))
-    guest = crews.introduce(str(path))
-    inside, outside = cast.Stage(), cast.Stage(cast.Sources(minds={"robot": guest.path}))
-    ours, theirs = hands(suite, "frontier"), hands(suite, crews.form(["scout"], [guest]))
+    guest = robot_team.introduce(str(path))
+    inside, outside = trial_runner.Stage(), trial_runner.Stage(trial_runner.Sources(minds={"robot": guest.path}))
+    ours, theirs = hands(suite, "frontier"), hands(suite, robot_team.form(["scout"], [guest]))
     took: list[tuple[Spent, Spent]] = []
     for number in range(count + 1):  # the first session compiles
         pair = list(_together((inside, ours[number]), (outside, theirs[number])))
@@ -160,7 +162,9 @@ Spent = tuple[float, float]
 """Wall time and CPU time [s]."""
 
 
-def _together(one: tuple[cast.Stage, Session], other: tuple[cast.Stage, Session]) -> Iterator[tuple[Spent, Spent]]:
+def _together(
+    one: tuple[trial_runner.Stage, Session], other: tuple[trial_runner.Stage, Session]
+) -> Iterator[tuple[Spent, Spent]]:
     """What two sessions' trials take, each trial of one followed by the same of the other."""
     with one[0].enter(one[1]) as mine, other[0].enter(other[1]) as yours:
         for first, second in zip(one[1].trials, other[1].trials, strict=True):
@@ -168,12 +172,12 @@ def _together(one: tuple[cast.Stage, Session], other: tuple[cast.Stage, Session]
             ticks = set()
             for stage, company, trial in ((one[0], mine, first), (other[0], yours, second)):
                 world, robots = stage.world(trial), company.robots()
-                spent, begin = cost.cpu_s(os.getpid()), time.perf_counter()
+                spent, begin = resource_usage.cpu_s(os.getpid()), time.perf_counter()
                 ticks.add(play(trial, world, company.human, robots).ticks)
                 company.rest()
                 wall = time.perf_counter() - begin
                 time.sleep(0.05)  # so that a guest's end is counted too
-                took.append((wall, cost.cpu_s(os.getpid()) - spent))
+                took.append((wall, resource_usage.cpu_s(os.getpid()) - spent))
             if len(ticks) > 1:
                 raise AssertionError(f"the guest did not play the same trial: {sorted(ticks)} ticks")
             yield took[0], took[1]

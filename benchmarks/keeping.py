@@ -17,27 +17,30 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from hthor.eval import engines, log, progress, reading, result_file, run, score, setup
-from hthor.eval.record import Record
-from hthor.eval.session import Session
+from hthor.eval.config import run_config
+from hthor.eval.config.sessions import Session
+from hthor.eval.records import reader, trial_log
+from hthor.eval.records.trial_record import Record
+from hthor.eval.results import aggregate, result_file
+from hthor.eval.runner import engines, progress, run
 
 
 def player(path: Path) -> Callable[[Session], Iterator[Record]]:
     """Gives sessions as this log has them."""
-    there = {found.key: place for place, _, found in log.places(path)}
+    there = {found.key: place for place, _, found in trial_log.places(path)}
 
     def perform(session: Session) -> Iterator[Record]:
-        from hthor.eval import record
+        from hthor.eval.records import trial_record
 
-        for line in log.fetch(there[record.key(trial)] for trial in session.trials):
-            yield record.decode(line)
+        for line in trial_log.fetch(there[trial_record.key(trial)] for trial in session.trials):
+            yield trial_record.decode(line)
 
     return perform
 
 
 def sessions(folder: Path) -> list[Session]:
     """The sessions of a finished run, from its log."""
-    _, records = reading.digest(folder, setup.load(folder))
+    _, records = reader.digest(folder, run_config.load(folder))
     people = itertools.groupby(records, key=lambda one: one.spec.participant)
     return [Session(participant=who, trials=tuple(one.spec for one in mine)) for who, mine in people]
 
@@ -47,10 +50,10 @@ def main() -> None:
     options = argparse.ArgumentParser(prog="python -m benchmarks.keeping", description=__doc__.split("\n\n")[0])
     options.add_argument("run", type=Path, help="the folder of a finished run")
     folder = options.parse_args().run
-    plan, dealt, stored = setup.load(folder), sessions(folder), result_file.load(folder)
+    plan, dealt, stored = run_config.load(folder), sessions(folder), result_file.load(folder)
     engine = engines.find("local", jobs=2)
     scoring = 0.0
-    real = score.summarise
+    real = aggregate.summarise
 
     def summarise(*words, **more):  # type: ignore[no-untyped-def]
         nonlocal scoring
@@ -59,7 +62,7 @@ def main() -> None:
         scoring += time.process_time() - began
         return result
 
-    score.summarise = summarise
+    aggregate.summarise = summarise
     with tempfile.TemporaryDirectory(prefix="hthor-keeping-") as name:
         began = time.process_time()
         make = functools.partial(player, folder / "trials.jsonl")

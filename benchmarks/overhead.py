@@ -17,35 +17,38 @@ from pathlib import Path
 
 from rich.console import Console
 
-from hthor.eval import campaign, cast, control, course, intent, log, progress, record, result_file, run, setup
-from hthor.eval.record import Record
-from hthor.eval.session import Session
+from hthor.eval.config import run_config
+from hthor.eval.config.sessions import Session
+from hthor.eval.records import trial_log, trial_record
+from hthor.eval.records.trial_record import Record
+from hthor.eval.results import baseline, result_file
+from hthor.eval.runner import collector, experiment, progress, run, run_options, trial_runner
 
 
 def player(folder: Path, sources: object = None) -> Callable[[Session], Iterator[Record]]:
     """What a worker does: tells the trials of a run and of its control from their logs."""
     del sources  # nothing is made
-    logs = (folder / "trials.jsonl", folder / control.FOLDER / "trials.jsonl")
-    kept = {_seat(one): one.log for path in logs for _, one in log.read(path)}
+    logs = (folder / "trials.jsonl", folder / baseline.FOLDER / "trials.jsonl")
+    kept = {_seat(one): one.log for path in logs for _, one in trial_log.read(path)}
 
     def perform(session: Session) -> Iterator[Record]:
         for trial in session.trials:
-            yield record.of(trial, kept[bool(trial.robots), trial.participant, trial.index])
+            yield trial_record.of(trial, kept[bool(trial.robots), trial.participant, trial.index])
 
     return perform
 
 
 def main(folder: Path) -> None:
     """Give the run's command again, and print what the harness took."""
-    plan = setup.load(folder)
-    results = [result_file.load(path) for path in (folder, folder / control.FOLDER)]
+    plan = run_config.load(folder)
+    results = [result_file.load(path) for path in (folder, folder / baseline.FOLDER)]
     trials_s = sum(one.effort.cpu_s for one in results if one is not None and one.effort is not None)
     spent: dict[str, float] = {}
-    for place, name in ((course, "play"), (run, "_finish")):
+    for place, name in ((collector, "play"), (run, "_finish")):
         setattr(place, name, _timed(getattr(place, name), name, spent))
-    cast.player = functools.partial(player, folder.resolve())  # type: ignore[assignment]
+    trial_runner.player = functools.partial(player, folder.resolve())  # type: ignore[assignment]
     with tempfile.TemporaryDirectory() as scratch:
-        options = intent.Options(
+        options = run_options.Options(
             agents=tuple(robot.agent.name for robot in plan.robots),
             humans=(plan.humans.source,),
             suite=plan.suite.name,
@@ -55,7 +58,9 @@ def main(folder: Path) -> None:
             out=Path(scratch) / "run",
         )
         console = Console(file=io.StringIO())
-        count = sum(one.result.counts.trials for one in campaign.conduct(options, lambda n: progress.Plain(console, n)))
+        count = sum(
+            one.result.counts.trials for one in experiment.conduct(options, lambda n: progress.Plain(console, n))
+        )
     whole = time.process_time()
     rows = {
         "imports, resolving, sessions": whole - sum(spent.values()),

@@ -24,8 +24,10 @@ from pathlib import Path
 import cv2
 
 from hthor import houses, jsonio, rules, tasks
-from hthor.eval import cast, crews, lettering, picture, programme, session
-from hthor.eval.record import Record
+from hthor.eval.config import robot_team, sessions, task_selection
+from hthor.eval.records.trial_record import Record
+from hthor.eval.runner import trial_runner
+from hthor.report.drawing import lettering, trial_figure
 from hthor.types import TaskSpec
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -33,7 +35,7 @@ FOLDER = ROOT / "docs" / "images"
 MANIFEST = FOLDER / "pictures.json"
 _REFERENCE = "hthor/eval/health/reference.json"
 _DRAWING = ("lettering", "picture", "plan", "text_fit", "timeline", "trace")
-_SHEETS = ("hthor/world/sheet.py", "hthor/world/rendering.py")
+_SHEETS = ("hthor/world/rendering/contact_sheet.py", "hthor/world/rendering/opengl_renderer.py")
 BY_HAND = ("robots.png",)
 """Pictures that need a stage and a camera of their own."""
 AGENTS, SUITE, CASE = ("none", "frontier", "oracle"), "smoke", "smoke/birch/manipulation-01"
@@ -102,13 +104,13 @@ def make(wanted: Sequence[str], folder: Path = FOLDER) -> None:
 
 def played(task_id: str) -> Record:
     """The trial of a task with the oracle, as `hthor eval` plays it with the seed 0."""
-    chosen = programme.choose(task_id.partition("/")[0], "")
-    suite, crew = chosen.suite, crews.form(chosen.crew, ["oracle"] * len(chosen.crew))
-    for one in session.sessions(suite, agent=crew):
+    chosen = task_selection.choose(task_id.partition("/")[0], "")
+    suite, crew = chosen.suite, robot_team.form(chosen.crew, ["oracle"] * len(chosen.crew))
+    for one in sessions.sessions(suite, agent=crew):
         ids = [trial.task.id for trial in one.trials]
         if task_id in ids:
-            until = session.Session(participant=one.participant, trials=one.trials[: ids.index(task_id) + 1])
-            return list(cast.player()(until))[-1]
+            until = sessions.Session(participant=one.participant, trials=one.trials[: ids.index(task_id) + 1])
+            return list(trial_runner.player()(until))[-1]
     raise ValueError(f"the suite {suite.name} has no task {task_id}")
 
 
@@ -128,7 +130,7 @@ def _maker(name: str) -> Callable[[Path], None]:
 
 def _draw_trial(path: Path, task_id: str) -> None:
     record = played(task_id)
-    made = picture.figure(record.spec, record.log, houses.load(record.spec.task.house))
+    made = trial_figure.figure(record.spec, record.log, houses.load(record.spec.task.house))
     lettering.save(made, path, metadata={"Software": None})
 
 
@@ -173,10 +175,10 @@ _OF_RUNS: dict[str, Callable[[Path], None]] = {"report.png": _draw_report, "case
 
 
 def _draw_scene(path: Path) -> None:
-    from hthor.world import sheet
+    from hthor.world.rendering import contact_sheet
 
     with tempfile.TemporaryDirectory() as folder:
-        sheet.main([path.stem, "--out", folder])
+        contact_sheet.main([path.stem, "--out", folder])
         (made,) = Path(folder).iterdir()
         path.write_bytes(made.read_bytes())
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 import argparse
 import sys
 
-from hthor.calibration.logs import recovery
-from hthor.eval import provenance
+from hthor import code_identity
+from hthor.calibration.from_logs import parameter_recovery
 
 
 def main() -> None:
@@ -25,14 +25,14 @@ def main() -> None:
     options.add_argument("--suite", default="paper", help="the tasks they do (%(default)s)")
     options.add_argument("--seed", type=int, default=0)
     given = options.parse_args()
-    provenance.keep_compiled()
+    code_identity.keep_compiled()
     datasets = []
-    for dataset in recovery.run(
+    for dataset in parameter_recovery.run(
         given.datasets, people=given.people, seed=given.seed, suite=given.suite, first=given.first
     ):
         datasets.append(dataset)
         print(f"{len(datasets)} of {given.datasets} datasets", file=sys.stderr)
-    rows = recovery.summary(datasets)
+    rows = parameter_recovery.summary(datasets)
     print(f"{'parameter':12} {'r':>6} {'covered':>8} {'datasets':>9}  bar")
     for row in rows:
         verdict = "" if row.bar is None else f"{row.bar:.1f} {'met' if row.passed else 'MISSED'}"

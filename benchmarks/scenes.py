@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from msgspec import Struct
 
 from hthor import rules, tasks
-from hthor.eval import cast
-from hthor.eval.crews import Crew
-from hthor.eval.session import Session, sessions
-from hthor.houses.geodesic import geodesics
-from hthor.navigation.follow import Follower
+from hthor.eval.config.robot_team import Crew
+from hthor.eval.config.sessions import Session, sessions
+from hthor.eval.runner import trial_runner
+from hthor.houses.space.geodesic import geodesics
+from hthor.navigation.path_follower import Follower
 from hthor.types import HUMAN, Motion, TaskSpec, Vec2, Wait
 from hthor.world import World
 
@@ -32,7 +32,7 @@ class Scene(Struct, frozen=True):
 
 def scenes(suite: str) -> tuple[Scene, ...]:
     """One for every house of the suite, with its first task."""
-    stage, found = cast.Stage(), {}
+    stage, found = trial_runner.Stage(), {}
     for session in sessions(tasks.suite(suite), agent="frontier"):
         for trial in session.trials:
             if trial.task.house not in found:

@@ -18,14 +18,14 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from hthor import houses, jsonio
-from hthor.eval import making as proved
-from hthor.eval import provenance, soundness
-from hthor.eval.soundness import Verdict
-from hthor.tasks import making, packing
-from hthor.tasks.making import Recipe
-from hthor.tasks.packing import Source
-from hthor.world import homes
+from hthor import code_identity, houses, jsonio
+from hthor.eval.task_check import make_suite as proved
+from hthor.eval.task_check import proof
+from hthor.eval.task_check.proof import Verdict
+from hthor.tasks.suites import custom_suite, suite_files
+from hthor.tasks.suites.custom_suite import Recipe
+from hthor.tasks.suites.suite_files import Source
+from hthor.world.validation import generate_valid
 
 
 def main() -> None:
@@ -39,36 +39,38 @@ def main() -> None:
     options.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)), help="processes (%(default)s)")
     options.add_argument("--raw", action="store_true", help="also count how many first draws are sound")
     given = options.parse_args()
-    provenance.keep_compiled()
+    code_identity.keep_compiled()
     with tempfile.TemporaryDirectory() as folder:
         _measure(given, Path(folder))
 
 
 def _measure(given: argparse.Namespace, folder: Path) -> None:
     files = [*given.houses, *_generated(given, folder / "generated")]
-    found = packing.sources(files)
+    found = suite_files.sources(files)
     recipe = Recipe(name="soundness", tasks=given.tasks)
     if given.raw:
         _count("first draws", [one for _, own in _shared(_first, recipe, found, given.jobs) for one in own])
     made = dict(proved.columns(recipe, found, jobs=given.jobs))
     columns = [made[number] for number in range(len(found))]
-    path = packing.write(folder / "suite.json", packing.files(recipe.name, making.VERSION, found, columns))
+    path = suite_files.write(
+        folder / "suite.json", suite_files.files(recipe.name, custom_suite.VERSION, found, columns)
+    )
     tasks = [task for column in columns for task in column]
     houses.shelve(path.with_suffix(".houses"))
-    _count("made", list(soundness.verdicts(tasks, jobs=given.jobs)))
+    _count("made", list(proof.verdicts(tasks, jobs=given.jobs)))
     if given.agent != "-":
         _play(path, given, folder / "run")
 
 
 def _shared(work: object, recipe: Recipe, found: tuple[Source, ...], jobs: int) -> object:
-    return soundness.shared(functools.partial(work, recipe), found, jobs=jobs)  # type: ignore[arg-type]
+    return proof.shared(functools.partial(work, recipe), found, jobs=jobs)  # type: ignore[arg-type]
 
 
 def _first(recipe: Recipe, source: Source) -> list[Verdict]:
     """Verdicts on the first draws in one house."""
     if source.file is not None:
         houses.shelve(source.file.resolve().parent)
-    return [soundness.examine(task) for task in making.in_house(recipe, source.given)]
+    return [proof.examine(task) for task in custom_suite.in_house(recipe, source.given)]
 
 
 def _generated(given: argparse.Namespace, folder: Path) -> list[str]:
@@ -76,8 +78,8 @@ def _generated(given: argparse.Namespace, folder: Path) -> list[str]:
     paths = []
     for seed in range(given.first, given.first + given.generated):
         rooms = 4 + seed % 4
-        path = folder / f"{homes.name(seed, rooms)}.json"
-        jsonio.write(path, jsonio.pretty(homes.make(seed, rooms).document))
+        path = folder / f"{generate_valid.name(seed, rooms)}.json"
+        jsonio.write(path, jsonio.pretty(generate_valid.make(seed, rooms).document))
         paths.append(str(path))
     return paths
 

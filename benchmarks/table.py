@@ -12,7 +12,7 @@ from typing import Any
 
 from msgspec import Struct
 
-from hthor.cli import screen
+from hthor.console import output
 
 
 class Row(Struct, frozen=True, kw_only=True):
@@ -61,10 +61,10 @@ def median_ms(call: Callable[[], Any], repeats: int) -> float:
 def put(rows: Sequence[Row], as_json: bool) -> None:
     """Print all rows, as a table or as JSON."""
     if as_json:
-        screen.put_json({"machine": machine(), "rows": [_plain(row) for row in rows]})
+        output.put_json({"machine": machine(), "rows": [_plain(row) for row in rows]})
         return
     print(machine())
-    screen.put_table(("part", "what", "value", "unit", "bar", "remark"), [_cells(row) for row in rows])
+    output.put_table(("part", "what", "value", "unit", "bar", "remark"), [_cells(row) for row in rows])
 
 
 def machine() -> str:

@@ -9,8 +9,9 @@ from collections.abc import Iterator
 from benchmarks.scenes import TICKS, hands
 from benchmarks.table import Clock, Row
 from hthor.episode import play
-from hthor.eval import cast, crews
-from hthor.eval.crews import Crew
+from hthor.eval.config import robot_team
+from hthor.eval.config.robot_team import Crew
+from hthor.eval.runner import trial_runner
 
 AGENTS = {"none": "no robot that does anything", "frontier": "frontier robot", "oracle": "oracle robot"}
 BAR_MS = 90.0
@@ -40,7 +41,7 @@ def rows(suite: str, each: int) -> Iterator[Row]:
             faster = 90000.0 / row.value
             yield Row(part="trials", what="the same, times real time", value=faster, unit="x", bar=1000, at_least=True)
     for name, robots in CREWS.items():
-        (crew,) = crews.read(robots, ())
+        (crew,) = robot_team.read(robots, ())
         yield _row(f"{name}: {robots} and proxy, 90 s", name, crew, each, CREW_BAR_MS)
 
 
@@ -55,7 +56,7 @@ def _row(what: str, suite: str, agent: str | Crew, each: int, bar: float | None)
 
 def cost(suite: str, agent: str | Crew, each: int) -> dict[str, list[float]]:
     """Scene -> CPU times [ms] of its trials, scaled to 90 s; the very first trial is played twice, to compile."""
-    stage, costs = cast.Stage(), defaultdict(list)
+    stage, costs = trial_runner.Stage(), defaultdict(list)
     sessions = hands(suite, agent)
     with stage.enter(sessions[0]) as company:
         first = sessions[0].trials[0]

@@ -21,11 +21,11 @@ from typing import Any
 
 import numpy as np
 
-from hthor import geometry
 from hthor.errors import HthorError, PhysicsError
+from hthor.geometry import plane
 from hthor.types import Close, Drop, Move, Open, Outcome, Pick, Place, Rotate, Wait
 from hthor.world import World
-from hthor.world.engine import mujoco
+from hthor.world.model.engine import mujoco
 
 DEEP_M = 0.015
 """Things at rest are no deeper in one another than this."""
@@ -179,8 +179,8 @@ class Checker:
 
     def _indoors(self, x: float, y: float) -> bool:
         rooms = [room.polygon for room in self._world.house.rooms]
-        inside = any(geometry.inside((x, y), room) for room in rooms)
-        return inside or min(geometry.distance_to_edge((x, y), room) for room in rooms) < EDGE_M
+        inside = any(plane.inside((x, y), room) for room in rooms)
+        return inside or min(plane.distance_to_edge((x, y), room) for room in rooms) < EDGE_M
 
     def _depth(self) -> Iterator[str]:
         """Exactly as the engine's shapes are; its own state stays untouched."""

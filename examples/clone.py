@@ -21,11 +21,11 @@ import numpy as np
 
 from hthor import jsonio
 from hthor.errors import HthorError
-from hthor.eval import log
-from hthor.humans import people
-from hthor.humans.effects import practised
-from hthor.humans.parameters import Parameters
-from hthor.humans.search import DOOR_S, SETTLE_S
+from hthor.eval.records import trial_log
+from hthor.humans.population import resolve
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.population.random_effects import practised
+from hthor.humans.search.option_choice import DOOR_S, SETTLE_S
 from hthor.types import TrialSpec
 
 EVERY = 4  # each so manieth person is held out
@@ -51,7 +51,7 @@ def read(runs: Iterable[Path]) -> tuple[Decisions, Decisions]:
     learn, test = Decisions(), Decisions()
     for run in runs:
         count = 0
-        for _, record in log.read(run / "trials.jsonl" if run.is_dir() else run):
+        for _, record in trial_log.read(run / "trials.jsonl" if run.is_dir() else run):
             side = test if record.spec.participant % EVERY == EVERY - 1 else learn
             side.people.add((record.spec.seed, record.spec.participant))
             for event in record.journal:
@@ -128,7 +128,7 @@ def law(choice: tuple[TrialSpec, list[list[float]], int]) -> list[float]:
 
 @functools.cache
 def _traits(human: str, seed: int, participant: int) -> Parameters:
-    return people.find(human).person(seed, participant).traits
+    return resolve.find(human).person(seed, participant).traits
 
 
 def judge(share: Sequence[np.ndarray], chosen: Sequence[int]) -> dict[str, float]:

@@ -16,9 +16,9 @@ import msgspec
 
 from hthor import jsonio, seeds
 from hthor.errors import HthorError
+from hthor.humans.core.policy import Answer, Choice, Offer, Situation
 from hthor.humans.models import proxy
-from hthor.humans.person import Person
-from hthor.humans.policy import Answer, Choice, Offer, Situation
+from hthor.humans.population.participant import Person
 from hthor.types import Briefing
 
 WEIGHTS = Path(__file__).with_suffix(".json")
@@ -64,7 +64,7 @@ class Clone:
 
 
 def row(option: Choice) -> list[float]:
-    """An option as the journal's "choice" has it: `hthor.humans.situations.FEATURES`."""
+    """An option as the journal's "choice" has it: `hthor.humans.search.option_description.FEATURES`."""
     is_door = option.verb == "pass"
     return [option.knowledge, option.uniform, option.metres, option.exposure, float(option.closed), float(is_door)]
 

@@ -14,9 +14,9 @@ known to be too easy to help; see what `hthor humans validate examples/llm_perso
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from hthor.humans import backends
+from hthor.humans.llm import backends
 from hthor.humans.models import proxy
-from hthor.humans.person import Person
+from hthor.humans.population.participant import Person
 from hthor.types import HUMAN, Briefing, Event
 
 

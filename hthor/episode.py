@@ -1,4 +1,4 @@
-"""The umpire: one clock, one mailbox, one goal, one event list; knows nothing of engines, files or statistics."""
+"""The umpire: one clock, one mailbox, one goal, one event list."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from msgspec import Struct
 from hthor import plugins, rules, seeds
 from hthor.comms import claims
 from hthor.comms.mailbox import Mailbox
-from hthor.humans.journal import Recorder
+from hthor.humans.core.behaviour_log import Recorder
 from hthor.humans.model import HumanModel
 from hthor.tasks.kind import TaskKind
-from hthor.thinking import Decision, Thinking
+from hthor.thinking_time import Decision, Thinking
 from hthor.types import (
     HUMAN,
     Action,
@@ -85,7 +85,7 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
     ``progress`` is the share of the goal that is met in the end, from 0 to 1, None where the kind of task counts no
     parts; whenever it changes there is an event "progress" with its ``value``. ``idle`` says for how many ticks each
     seat's body carried out no motion, or only waited. ``journal`` is what the person's own recorder holds besides:
-    stick, pitch, attempts, glimpses, choices, as `hthor.humans.journal` lists them.
+    stick, pitch, attempts, glimpses, choices, as `hthor.humans.core.behaviour_log` lists them.
     """
 
     events: tuple[Event, ...]

@@ -1,4 +1,4 @@
-"""Canonical JSON, content hashes and writes that are all or nothing; knows nothing of what the documents mean."""
+"""Canonical JSON, content hashes and writes that are all or nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Finding plug-ins by file name: one file in a package is one plug-in; knows nothing of what they are.
+"""Finding plug-ins by file name: one file in a package is one plug-in.
 
 A plug-in may also be a file of the user's, named by its path. Once loaded it goes by its file name like any other.
 """

@@ -1,6 +1,5 @@
 """The benchmark's own numbers; (P) marks those of the HumanTHOR paper (arXiv 2406.06498), the rest are our choice.
-
-Knows nothing of how they are used. Changing any of them changes `sha256`, which is part of every trial's key.
+Changing any of them changes `sha256`, which is part of every trial's key.
 """
 
 from __future__ import annotations

@@ -11,12 +11,15 @@ import eval_fakes as fakes
 import msgspec
 import pytest
 
-from hthor import jsonio
-from hthor.eval import crews, provenance, record
-from hthor.leaderboard import admission, enter, files, publish
-from hthor.leaderboard.entry import Entry
-from hthor.leaderboard.verification import Kept, Replayed, Verification
-from hthor.tasks.commitment import Commitment
+from hthor import code_identity, jsonio
+from hthor.eval.config import robot_team
+from hthor.eval.records import trial_record
+from hthor.leaderboard import enter, publish
+from hthor.leaderboard.entries import files
+from hthor.leaderboard.entries.entry import Entry
+from hthor.leaderboard.entries.verification import Kept, Replayed, Verification
+from hthor.leaderboard.ranking import admission
+from hthor.tasks.suites.commitment import Commitment
 from hthor.types import AgentRef
 
 COUNT = 20
@@ -24,7 +27,7 @@ COUNT = 20
 
 @pytest.fixture(scope="module", autouse=True)
 def code():
-    with mock.patch.object(provenance, "code_sha256", return_value="34" * 32):
+    with mock.patch.object(code_identity, "code_sha256", return_value="34" * 32):
         yield
 
 
@@ -42,7 +45,7 @@ def play(base: Path) -> Path:
         jsonio.write(base / name / "run.json", jsonio.pretty(plan))
         made = [one for session in dealt for one in fakes.player()(session)]
         made = [late(one) for one in made] if name == "clumsy" else made
-        jsonio.write(base / name / "trials.jsonl", b"".join(record.encode(one) for one in made))
+        jsonio.write(base / name / "trials.jsonl", b"".join(trial_record.encode(one) for one in made))
         if name != "silent":
             held = {"level": "L3", "memory": "2048 MiB"}
             jsonio.write(base / name / "isolation.json", jsonio.pretty(held))
@@ -52,19 +55,19 @@ def play(base: Path) -> Path:
     return base
 
 
-def character(name: str = "helper", *, absent: bool = False) -> crews.Character:
+def character(name: str = "helper", *, absent: bool = False) -> robot_team.Character:
     """Agents whose code is not the same, as their names are not."""
-    return crews.Character(
+    return robot_team.Character(
         ref=AgentRef(name=name, source=f"{name}.py", sha256=hashlib.sha256(name.encode()).hexdigest()), absent=absent
     )
 
 
-def late(one: record.Record) -> record.Record:
+def late(one: trial_record.Record) -> trial_record.Record:
     """The same trial, but what succeeds takes three seconds longer, so that the agent is another."""
     if not one.met or one.ticks > 870:
         return one
     events = (*one.events[:-1], msgspec.structs.replace(one.events[-1], tick=one.ticks + 30))
-    return record.of(one.spec, msgspec.structs.replace(one.log, ticks=one.ticks + 30, events=events))
+    return trial_record.of(one.spec, msgspec.structs.replace(one.log, ticks=one.ticks + 30, events=events))
 
 
 def committed(board: Path) -> Path:

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 
 from hthor import seeds
-from hthor.calibration import points, studies, table
-from hthor.calibration.table import CONDITIONS, Table
-from hthor.eval import session
-from hthor.humans import registry
+from hthor.calibration.simulation import design_points, studies, trial_table
+from hthor.calibration.simulation.trial_table import CONDITIONS, Table
+from hthor.eval.config.sessions import deal
+from hthor.humans.population import parameter_registry
 
-NAMES = registry.names()
+NAMES = parameter_registry.names()
 V, LAM, A0 = (NAMES.index(name) for name in ("v_pace", "lam0", "a0"))
 
 
@@ -40,26 +40,26 @@ def trials(where: np.ndarray, condition: np.ndarray, task: np.ndarray, chance: n
 
 def sessions(where, suite, seed, folder, jobs, watch, name) -> Table:
     """In place of `simulate.at`."""
-    spots = points.tidy(where)
+    spots = design_points.tidy(where)
     rows = np.repeat(np.arange(len(spots)), 10)
     return _table(spots, suite, seed, name, np.full(len(rows), -1), rows, rows, (rows + rows // 3) % 3, rows)
 
 
 def whole(where, suite, seed, folder, jobs, watch, name, design) -> Table:
     """In place of `studies.at`."""
-    spots = points.tidy(where)
+    spots = design_points.tidy(where)
     people = design.people * len(CONDITIONS)
     study = np.repeat(np.arange(len(spots)), people * 10)
     person = np.tile(np.repeat(np.arange(people), 10), len(spots))
     made = _table(spots, suite, seed, name, study, person, study, person // design.people, person)
     valid, counted = studies.kept(made, seed, name, design)
-    columns = {column: getattr(made, column) for column in table.TRIAL}
-    return table.build(NAMES, spots, {**columns, "valid": valid, "counted": counted})
+    columns = {column: getattr(made, column) for column in trial_table.TRIAL}
+    return trial_table.build(NAMES, spots, {**columns, "valid": valid, "counted": counted})
 
 
 def _table(spots, suite, seed, name, study, number, point, condition, person) -> Table:
     chance = np.random.Generator(np.random.Philox(seeds.derive(seed, "fake", name)))
-    dealt = {one: session.deal(suite.tasks, seed, one) for one in np.unique(person).tolist()}
+    dealt = {one: deal(suite.tasks, seed, one) for one in np.unique(person).tolist()}
     index = np.tile(np.arange(10), len(point) // 10)
     task = np.array([dealt[one][place] for one, place in zip(person.tolist(), index.tolist(), strict=True)])
     columns = {
@@ -74,7 +74,7 @@ def _table(spots, suite, seed, name, study, number, point, condition, person) ->
         "counted": condition > 0,
         **trials(spots[point], condition, task, chance),
     }
-    return table.build(NAMES, spots, columns)
+    return trial_table.build(NAMES, spots, columns)
 
 
 def nowhere(folder: Path) -> Path:

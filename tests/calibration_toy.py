@@ -6,12 +6,12 @@ import numpy as np
 from msgspec import Struct
 
 from hthor import seeds
-from hthor.calibration import table
-from hthor.calibration.emulator import Rates
-from hthor.calibration.table import CONDITIONS, Table
-from hthor.humans import registry
+from hthor.calibration.emulator.emulator import Rates
+from hthor.calibration.simulation import trial_table
+from hthor.calibration.simulation.trial_table import CONDITIONS, Table
+from hthor.humans.population import parameter_registry
 
-NAMES = registry.names()
+NAMES = parameter_registry.names()
 V, LAM, A0, HAND = (NAMES.index(name) for name in ("v_pace", "lam0", "a0", "t_manip"))
 TASKS = 30
 LEAST = np.full(TASKS, 25.0)
@@ -125,4 +125,4 @@ def _played(where: np.ndarray, study: np.ndarray, point: np.ndarray, condition: 
         "valid": valid,
         "counted": counted,
     }
-    return table.build(NAMES, where, columns)
+    return trial_table.build(NAMES, where, columns)

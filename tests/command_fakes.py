@@ -22,12 +22,13 @@ def main(name: str) -> None:
     import eval_fakes
 
     from hthor import cli, tasks
-    from hthor.eval import cast, crews, engines
+    from hthor.eval.config import robot_team
+    from hthor.eval.runner import engines, trial_runner
 
-    real, introduce = tasks.suite, crews.introduce
+    real, introduce = tasks.suite, robot_team.introduce
     tasks.suite = lambda word: eval_fakes.suite(20) if word == "fake" else real(word)
-    cast.player = functools.partial(command_fakes.perform, name)
-    crews.introduce = lambda word: eval_fakes.character(word) if word in ("helper", "clumsy") else introduce(word)
+    trial_runner.player = functools.partial(command_fakes.perform, name)
+    robot_team.introduce = lambda word: eval_fakes.character(word) if word in ("helper", "clumsy") else introduce(word)
     if not name.startswith("slow"):
         engines.find = lambda *_, **__: eval_fakes.Here()  # saves starting other processes
     cli.main()

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from hthor.eval import provenance
+from hthor import code_identity
 
-os.environ.setdefault("NUMBA_CACHE_DIR", str(provenance.compiled()))  # before anything that is compiled is imported
+os.environ.setdefault("NUMBA_CACHE_DIR", str(code_identity.compiled()))  # before anything that is compiled is imported
 
 _OUTSIDE = re.compile(r"\bL3\b|bwrap|bubblewrap|chromium|\bnode\b|hthor\.guest|guest_fakes|Guest\(|import guest\b")
 """A file of tests in which one of these stands may depend on programs that not every machine has."""

@@ -17,20 +17,22 @@ from unittest import mock
 
 import msgspec
 
-from hthor import seeds
+from hthor import code_identity, seeds
 from hthor.episode import EpisodeLog, Fault
 from hthor.errors import KILLED, AgentKilled
-from hthor.eval import cast, crews, engines, provenance, record, session, setup, worker
-from hthor.eval.engines import SessionFailed
-from hthor.eval.news import Failed, News
-from hthor.eval.record import Record
-from hthor.eval.session import Session
-from hthor.eval.setup import Setup
-from hthor.humans import people
-from hthor.humans.people import People
-from hthor.humans.population import Population, Validity
+from hthor.eval.config import robot_team, run_config, sessions
+from hthor.eval.config.run_config import Setup
+from hthor.eval.config.sessions import Session
+from hthor.eval.records import trial_record
+from hthor.eval.records.trial_record import Record
+from hthor.eval.runner import engines, trial_runner, worker
+from hthor.eval.runner.engines import SessionFailed
+from hthor.eval.runner.messages import Failed, News
+from hthor.humans.population import resolve
+from hthor.humans.population.population import Population, Validity
+from hthor.humans.population.resolve import People
 from hthor.tasks import Suite
-from hthor.tasks.library import frozen
+from hthor.tasks.suites.library import frozen
 from hthor.types import AgentRef, Event, Goal, Placement, Pose, TaskSpec, TrialSpec
 
 HOUSES = ("attic", "barn", "cottage")
@@ -74,13 +76,13 @@ def persons(name: str = "proxy", *, calibrated: bool = True) -> People:
     )
 
 
-def character(name: str = "helper", *, absent: bool = False) -> crews.Character:
-    return crews.Character(ref=AgentRef(name=name, source=f"{name}.py", sha256="cd" * 32), absent=absent)
+def character(name: str = "helper", *, absent: bool = False) -> robot_team.Character:
+    return robot_team.Character(ref=AgentRef(name=name, source=f"{name}.py", sha256="cd" * 32), absent=absent)
 
 
-def crew(*names: str, absent: bool = False, detector: str = "own") -> crews.Crew:
+def crew(*names: str, absent: bool = False, detector: str = "own") -> robot_team.Crew:
     """Scouts with minds of these names."""
-    return crews.form(["scout"] * len(names), [character(name, absent=absent) for name in names], detector)
+    return robot_team.form(["scout"] * len(names), [character(name, absent=absent) for name in names], detector)
 
 
 def run_of(
@@ -88,11 +90,11 @@ def run_of(
 ) -> tuple[Setup, tuple[Session, ...]]:
     tasks, who = suite(count), crew(*name.split("+"), absent=absent)
     with (
-        mock.patch.object(people, "find", return_value=persons()),
-        mock.patch.object(provenance, "code_sha256", return_value="34" * 32),
+        mock.patch.object(resolve, "find", return_value=persons()),
+        mock.patch.object(code_identity, "code_sha256", return_value="34" * 32),
     ):
-        plan = setup.settle(tasks, who, human="proxy", seed=seed, participants=None)
-        return plan, session.sessions(tasks, agent=who, seed=seed)
+        plan = run_config.settle(tasks, who, human="proxy", seed=seed, participants=None)
+        return plan, sessions.sessions(tasks, agent=who, seed=seed)
 
 
 def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
@@ -124,17 +126,17 @@ def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
     )
 
 
-def player(sources: cast.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
+def player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
     """Plays a session in no time; the fake person counts the trials so far, so sessions cannot be cut in pieces."""
 
     def perform(session_: Session) -> Iterator[Record]:
         for memory, trial in enumerate(session_.trials):
-            yield record.of(trial, episode(trial, memory))
+            yield trial_record.of(trial, episode(trial, memory))
 
     return perform
 
 
-def leaning_player(sources: cast.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
+def leaning_player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
     """Robots help the people they meet, and hinder those called random."""
 
     def perform(session_: Session) -> Iterator[Record]:
@@ -146,7 +148,7 @@ def leaning_player(sources: cast.Sources | None = None) -> Callable[[Session], I
             paths = {seat: path[:1] * (ticks // 2) for seat, path in log.paths.items()}
             last = Event(tick=ticks, seat="human", kind="success" if met else "timeout")
             events = (*(event for event in log.events[:-1] if event.tick < ticks), last)
-            yield record.of(trial, msgspec.structs.replace(log, met=met, ticks=ticks, paths=paths, events=events))
+            yield trial_record.of(trial, msgspec.structs.replace(log, met=met, ticks=ticks, paths=paths, events=events))
 
     return perform
 
@@ -156,7 +158,7 @@ def forgetful_player() -> Callable[[Session], Iterator[Record]]:
 
     def perform(session_: Session) -> Iterator[Record]:
         for trial in session_.trials:
-            yield record.of(trial, episode(trial, memory=99))
+            yield trial_record.of(trial, episode(trial, memory=99))
 
     return perform
 
@@ -185,7 +187,7 @@ def dying_player(folder: str, deaths: int = 1) -> Callable[[Session], Iterator[R
     return perform
 
 
-def lonely_player(sources: cast.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
+def lonely_player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
     """Participant 1 cannot be played without a robot."""
 
     def perform(session_: Session) -> Iterator[Record]:
@@ -258,7 +260,7 @@ def guarded_player(seconds: float = 0.004) -> Callable[[Session], Iterator[Recor
                     if not answer:
                         fault = Fault(seat="robot", kind=KILLED, tick=1, detail="killed by SIGKILL")
                         log = msgspec.structs.replace(log, faults=(fault,))
-                    yield record.of(trial, log)
+                    yield trial_record.of(trial, log)
             finally:
                 guest.kill()
 
@@ -275,7 +277,7 @@ def killing_player(times: int, plays: dict[int, int]) -> Callable[[Session], Ite
             if memory == 2 and plays[session_.participant] <= times:
                 fault = Fault(seat="robot", kind=KILLED, tick=1, detail="killed by SIGKILL")
                 log = msgspec.structs.replace(log, faults=(fault,))
-            yield record.of(trial, log)
+            yield trial_record.of(trial, log)
 
     return perform
 
@@ -338,7 +340,7 @@ def clustered(folder: str, count: str, address: str, agent: str = "") -> None:
 
 
 def _evaluate(folder: Path, count: int, make, engine: engines.Engine) -> None:
-    from hthor.eval import progress, run
+    from hthor.eval.runner import progress, run
 
     plan, dealt = run_of(count)
     run.evaluate(plan, dealt, make, folder=folder, engine=engine, watch=progress.Silent())

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from hthor import catalog
-from hthor.geometry import distance_to_rectangle, turn, wrap
+from hthor.geometry.plane import distance_to_rectangle, turn, wrap
 from hthor.types import (
     HUMAN,
     BodySpec,

@@ -11,9 +11,10 @@ import test_episode
 
 from hthor import guest
 from hthor.episode import play
-from hthor.eval import cast, record
-from hthor.eval.record import Record
-from hthor.eval.session import Session
+from hthor.eval.config.sessions import Session
+from hthor.eval.records import trial_record
+from hthor.eval.records.trial_record import Record
+from hthor.eval.runner import trial_runner
 from hthor.types import HUMAN, RobotSeat, Snapshot
 
 AGENT = """
@@ -49,14 +50,14 @@ def player(agent: str, level: str) -> Callable[[Session], Iterator[Record]]:
         return guest.Guest(agent)
 
     def perform(session: Session) -> Iterator[Record]:
-        with cast.Company(test_episode.Mind(), session.trials[0].robots, mind) as company:
+        with trial_runner.Company(test_episode.Mind(), session.trials[0].robots, mind) as company:
             for memory, trial in enumerate(session.trials):
                 task = msgspec.structs.replace(trial.task, kind="object_goal_navigation")
                 stage = Stage(seen=fakes.episode(trial, memory).ticks // 10)
                 log = play(msgspec.structs.replace(trial, task=task), stage, company.human, company.robots())
                 for seat in dict.fromkeys(fault.seat for fault in log.faults):
                     company.dismiss(seat)
-                yield record.of(trial, log)
+                yield trial_record.of(trial, log)
 
     return perform
 

@@ -11,7 +11,8 @@ import pytest
 
 from hthor import cli
 from hthor.errors import HthorError
-from hthor.eval import cast, contract
+from hthor.eval.agent_check import checks
+from hthor.eval.runner import trial_runner
 
 HEAD = "import random, time\nfrom hthor.types import *\n"
 AGENTS = {
@@ -64,15 +65,15 @@ AGENTS = {
 def one_world_for_all() -> Any:
     """All checks are held in the same two houses."""
     worlds: dict[object, Any] = {}
-    before = cast.Stage.__init__
+    before = trial_runner.Stage.__init__
 
-    def begin(self: cast.Stage, sources: cast.Sources | None = None) -> None:
+    def begin(self: trial_runner.Stage, sources: trial_runner.Sources | None = None) -> None:
         before(self, sources)
         self._worlds = worlds
 
-    cast.Stage.__init__ = begin  # type: ignore[method-assign]
+    trial_runner.Stage.__init__ = begin  # type: ignore[method-assign]
     yield
-    cast.Stage.__init__ = before  # type: ignore[method-assign]
+    trial_runner.Stage.__init__ = before  # type: ignore[method-assign]
 
 
 @pytest.fixture
@@ -119,7 +120,7 @@ def test_a_program_is_checked_like_a_file(check: Any) -> None:
 
 def test_what_ships_needs_no_check() -> None:
     with pytest.raises(HthorError, match="'oracle' ships with hthor"):
-        contract.check("oracle")
+        checks.check("oracle")
 
 
 @pytest.mark.parametrize("name", AGENTS)

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from hthor import agents, houses, plugins
-from hthor.agents._offers import Offers, place, sighting
+from hthor.agents.skills.message_timing import Offers, place, sighting
 from hthor.errors import AgentError
-from hthor.geometry import wrap
+from hthor.geometry.plane import wrap
 from hthor.guest import load_info
 from hthor.types import (
     HUMAN,

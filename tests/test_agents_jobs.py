@@ -10,13 +10,14 @@ from typing import Any
 import msgspec
 import pytest
 
-from hthor import catalog, geometry, houses, plugins
-from hthor.agents import _stands
-from hthor.agents._crew import Crew
-from hthor.agents._jobs import Knowledge, resting
-from hthor.agents._offers import lend_a_hand, please_look
-from hthor.agents._routes import Routes
+from hthor import catalog, houses, plugins
+from hthor.agents.skills import viewpoints
+from hthor.agents.skills.message_timing import lend_a_hand, please_look
+from hthor.agents.skills.routes import Routes
+from hthor.agents.skills.subgoals import Knowledge, resting
+from hthor.agents.skills.task_allocation import Crew
 from hthor.episode import EpisodeLog, play
+from hthor.geometry import plane
 from hthor.types import (
     HUMAN,
     Action,
@@ -108,7 +109,7 @@ def lying(id: str, kind: str, on: str, number: int = 0, u: float = 0.0, v: float
     there, height = thing(on), catalog.kind(kind).size[2]
     surface = catalog.kind(there.kind).rests(there.size)[number]
     x, y, z = surface.centre
-    position = geometry.to_house((x + u, y + v, z + height / 2 + 0.005), there.centre, there.yaw)
+    position = plane.to_house((x + u, y + v, z + height / 2 + 0.005), there.centre, there.yaw)
     return Placement(id=id, kind=kind, position=position, support=on, relation=catalog.kind(there.kind).relation)
 
 
@@ -345,7 +346,7 @@ def test_points_to_put_things_on_lie_on_the_thing() -> None:
     points = resting(table, 0.1)
     assert len(points) > 20
     for x, y, z in points:
-        u, v, _ = geometry.to_local((x, y, z), table.centre, table.yaw)
+        u, v, _ = plane.to_local((x, y, z), table.centre, table.yaw)
         assert abs(u) <= table.size[0] / 2 - 0.1 + 1e-9
         assert abs(v) <= table.size[1] / 2 - 0.1 + 1e-9
         assert z == pytest.approx(table.centre[2] + table.size[2] / 2, abs=0.05)
@@ -358,9 +359,9 @@ def test_the_closest_thing_is_the_one_with_the_shortest_way() -> None:
     starts = [(room.polygon[0][0] + 1.0, room.polygon[0][1] + 1.0) for room in house.rooms]
     chosen = set()
     for here in [*starts, tables[0].centre[:2]]:  # the last one is no place to stand: no way begins there
-        ways = [_stands.route(routes, here, resting(thing, 0.0), 0.8, thing) for thing in tables]
-        far = [(_stands.length(way) if way else math.inf, thing.id) for way, thing in zip(ways, tables, strict=True)]
-        closest = _stands.closest(routes, here, tables, lambda thing: resting(thing, 0.0), 0.8)
+        ways = [viewpoints.route(routes, here, resting(thing, 0.0), 0.8, thing) for thing in tables]
+        far = [(viewpoints.length(way) if way else math.inf, thing.id) for way, thing in zip(ways, tables, strict=True)]
+        closest = viewpoints.closest(routes, here, tables, lambda thing: resting(thing, 0.0), 0.8)
         assert closest.id == min(far)[1]
         chosen.add(closest.id)
     assert len(chosen) > 2
@@ -369,11 +370,13 @@ def test_the_closest_thing_is_the_one_with_the_shortest_way() -> None:
 def test_the_closest_of_things_without_a_way_is_the_first_by_id() -> None:
     routes = Routes(houses.load(HOUSE), body("tall"))
     outside = [msgspec.structs.replace(thing("dining_table"), id=id, centre=(-50.0, 0.0, 0.4)) for id in ("b", "a")]
-    closest = _stands.closest(routes, routes.space.nearest_free(2.0, 2.0), outside, lambda one: resting(one, 0.0), 0.8)
+    closest = viewpoints.closest(
+        routes, routes.space.nearest_free(2.0, 2.0), outside, lambda one: resting(one, 0.0), 0.8
+    )
     assert closest.id == "a"
 
 
 def test_seats_are_sorted_as_they_are_numbered() -> None:
-    from hthor.agents._crew import rank
+    from hthor.agents.skills.task_allocation import rank
 
     assert sorted(["robot10", "robot2", HUMAN, "robot"], key=rank) == [HUMAN, "robot", "robot2", "robot10"]

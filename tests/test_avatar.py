@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from hthor import rules
-from hthor.tasks import avatar as assumed
-from hthor.world.avatar import HUMAN
+from hthor.tasks.generation import avatar as assumed
+from hthor.world.model.bodies.avatar import HUMAN
 
 
 def test_tasks_and_world_mean_the_same_body() -> None:

@@ -12,7 +12,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from benchmarks import bounded
-from hthor.eval import bounds, contrast, score, spread, stats
+from hthor.eval.metrics import bounds
+from hthor.eval.results import aggregate, paired_difference
+from hthor.eval.statistics import intervals, variance_components
 
 METRICS = ("sr", "twsr", "adoption", "progress", "precision", "trust", "time_s", "idle_s", "first_useful_s", "sent")
 LIMITS = (90.0, 180.0, 0.1)
@@ -34,7 +36,7 @@ def _trials(draw, least: int = 1, metrics=METRICS):
 def test_an_interval_lies_within_the_bounds_and_holds_the_estimate(trials):
     metric, limit, rows, tasks, people = trials
     low, high = bounds.of(metric, limit)
-    found = stats.estimate(rows[:, 0].tolist(), tasks.tolist(), people.tolist(), within=(low, high))
+    found = intervals.estimate(rows[:, 0].tolist(), tasks.tolist(), people.tolist(), within=(low, high))
     if found.ci95 is not None:
         assert low <= found.ci95[0] <= found.mean <= found.ci95[1] <= high + 1e-6
 
@@ -44,8 +46,8 @@ def test_an_interval_lies_within_the_bounds_and_holds_the_estimate(trials):
 def test_so_does_that_of_a_difference(trials):
     metric, limit, rows, tasks, people = trials
     room = bounds.room(metric, limit)
-    share = metric in contrast.SHARES
-    found = contrast.between(rows[:, 0], rows[:, 1], tasks, people, share=share, room=room)
+    share = metric in paired_difference.SHARES
+    found = paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, share=share, room=room)
     least, most = found.ci95
     assert -room - 1e-6 <= least <= found.difference <= most <= room + 1e-6
 
@@ -54,9 +56,9 @@ def test_so_does_that_of_a_difference(trials):
 @given(_trials(least=2))
 def test_an_interval_leaves_out_zero_exactly_when_the_test_refuses_it(trials):
     metric, limit, rows, tasks, people = trials
-    share, room = metric in contrast.SHARES, bounds.room(metric, limit)
+    share, room = metric in paired_difference.SHARES, bounds.room(metric, limit)
     for level in (0.95, 0.99):
-        found = contrast.between(rows[:, 0], rows[:, 1], tasks, people, share=share, room=room, level=level)
+        found = paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, share=share, room=room, level=level)
         least, most = found.ci95
         if abs(least) > 1e-4 * room and abs(most) > 1e-4 * room and math.isfinite(room):  # no rounding decides it
             assert (least > 0.0 or most < 0.0) == (found.p < 1.0 - level)
@@ -66,9 +68,9 @@ def test_an_interval_leaves_out_zero_exactly_when_the_test_refuses_it(trials):
 @given(_trials(least=2))
 def test_a_surer_interval_is_wider(trials):
     metric, limit, rows, tasks, people = trials
-    share, room = metric in contrast.SHARES, bounds.room(metric, limit)
+    share, room = metric in paired_difference.SHARES, bounds.room(metric, limit)
     narrow, wide = (
-        contrast.between(rows[:, 0], rows[:, 1], tasks, people, share=share, room=room, level=level).ci95
+        paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, share=share, room=room, level=level).ci95
         for level in (0.9, 0.99)
     )
     assert wide[0] <= narrow[0] + 1e-6
@@ -80,8 +82,10 @@ def test_a_surer_interval_is_wider(trials):
 def test_turned_about_the_middle_it_is_the_same_interval_turned(trials):
     metric, limit, rows, tasks, people = trials
     low, high = within = bounds.of(metric, limit)
-    one, other = (spread.two_way(row[None], tasks, people) for row in (rows[:, 0], low + high - rows[:, 0]))
-    here, there = (stats.interval(found, len(rows), within) for found in (one, other))
+    one, other = (
+        variance_components.two_way(row[None], tasks, people) for row in (rows[:, 0], low + high - rows[:, 0])
+    )
+    here, there = (intervals.interval(found, len(rows), within) for found in (one, other))
     assert here[0] == pytest.approx(low + high - there[1], abs=1e-6)
     assert here[1] == pytest.approx(low + high - there[0], abs=1e-6)
 
@@ -92,7 +96,7 @@ def test_a_higher_value_does_not_lower_the_interval(metric: str, limit: float | 
     before = (low, low)
     for level in np.linspace(0.0, 1.0, 21):
         values = low + (high - low) * np.clip(level + np.linspace(-0.1, 0.1, 60), 0.0, 1.0)
-        found = stats.estimate(values.tolist(), list(range(60)), [k % 6 for k in range(60)], within=within)
+        found = intervals.estimate(values.tolist(), list(range(60)), [k % 6 for k in range(60)], within=within)
         assert found.ci95[0] >= before[0] - 1e-6
         assert found.ci95[1] >= before[1] - 1e-6
         before = found.ci95
@@ -101,9 +105,9 @@ def test_a_higher_value_does_not_lower_the_interval(metric: str, limit: float | 
 def test_two_people_who_take_nearly_all_their_time_cannot_take_more():
     times = [90.0] * 9 + [60.0] + [90.0] * 4 + [55.0, 12.0, 44.0, 90.0, 61.0, 19.0]
     tasks, people = list(range(20)), [k // 10 for k in range(20)]
-    plain = stats.estimate(times, tasks, people)
+    plain = intervals.estimate(times, tasks, people)
     assert plain.ci95[1] > 90.0, "the mean and some standard errors leave what is possible"
-    low, high = stats.estimate(times, tasks, people, within=bounds.of("time_s", 90.0)).ci95
+    low, high = intervals.estimate(times, tasks, people, within=bounds.of("time_s", 90.0)).ci95
     assert 0.0 < low < high < 90.0
 
 
@@ -112,7 +116,7 @@ def test_two_people_who_take_nearly_all_their_time_cannot_take_more():
 @given(st.lists(st.integers(0, 9), min_size=2, max_size=40))
 def test_counts_have_no_interval_below_nothing(values: list[int]):
     tasks, people = list(range(len(values))), [k // 10 for k in range(len(values))]
-    found = stats.estimate([float(value) for value in values], tasks, people, within=bounds.AMOUNT)
+    found = intervals.estimate([float(value) for value in values], tasks, people, within=bounds.AMOUNT)
     low, high = found.ci95
     assert 0.0 <= low <= found.mean <= high
     assert low > 0.0 or found.mean == 0.0
@@ -127,7 +131,7 @@ def test_a_runs_times_are_held_within_their_limits():
         )
         for k, one in enumerate(kept)
     ]
-    low, high = score.scores(slow).time_s.ci95
+    low, high = aggregate.scores(slow).time_s.ci95
     assert low < 82.0 < high <= 90.0
 
 
@@ -144,13 +148,15 @@ def test_they_hold_the_truth_as_often_near_a_bound_with_few_people(metric: str, 
     tasks, people = np.arange(60), np.arange(60) // 10
     values = sort.value(next(bounded.latent(tasks, people, level, 800)))
     within, mean = bounds.of(metric, bounded.LIMIT_S), bounded.truth(sort, level)
-    low, high = stats.interval(spread.two_way(values, tasks, people), 60, within)
+    low, high = intervals.interval(variance_components.two_way(values, tasks, people), 60, within)
     assert 0.93 <= np.mean((low <= mean) & (mean <= high)) <= 0.98
 
 
 def test_an_amount_of_unknown_variance_has_no_interval_and_no_warning_of_the_library() -> None:
     """As in a run of three trials in which nothing was counted."""
     one = np.ones(2)
-    found = spread.Spread(mean=np.array([0.0, 2.0]), variance=np.inf * one, freedom=one, uneven=one, single=one)
-    low, high = stats.interval(found, 3, (0.0, math.inf))
+    found = variance_components.Spread(
+        mean=np.array([0.0, 2.0]), variance=np.inf * one, freedom=one, uneven=one, single=one
+    )
+    low, high = intervals.interval(found, 3, (0.0, math.inf))
     assert not np.isfinite(high - low).any()

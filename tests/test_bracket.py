@@ -11,10 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor.errors import HthorError
-from hthor.eval import bracket, crews, result_file, score, setup, stats
+from hthor.eval.comparison import robustness
+from hthor.eval.config import robot_team, run_config
+from hthor.eval.results import aggregate, result_file
+from hthor.eval.statistics import intervals
 
 CREWS = {
-    "silent": crews.form(["scout"], [eval_fakes.character("silent", absent=True)]),
+    "silent": robot_team.form(["scout"], [eval_fakes.character("silent", absent=True)]),
     "frontier": eval_fakes.crew("frontier"),
     "oracle": eval_fakes.crew("oracle"),
 }
@@ -25,14 +28,14 @@ SUITE = eval_fakes.suite(30)
 def nothing(agent: str, model: str) -> result_file.Result:
     """The result of a run without a trial."""
     who = msgspec.structs.replace(eval_fakes.persons(model), model=model)
-    return score.summarise(setup.settle(SUITE, CREWS[agent], human=who, seed=0, participants=None), [], [])
+    return aggregate.summarise(run_config.settle(SUITE, CREWS[agent], human=who, seed=0, participants=None), [], [])
 
 
 def result(agent: str, model: str, sr: float, half: float = 0.05, trials: int = 60) -> result_file.Result:
     """A run's result with this success rate, and half of it for the time-weighted one."""
 
     def about(mean):
-        return stats.Estimate(mean=mean, ci95=(mean - half, mean + half), n=trials)
+        return intervals.Estimate(mean=mean, ci95=(mean - half, mean + half), n=trials)
 
     empty = nothing(agent, model)
     metrics = msgspec.structs.replace(empty.metrics, sr=about(sr), twsr=about(sr / 2.0))
@@ -51,8 +54,8 @@ def results(**rates: tuple[float, ...]) -> dict[str, list[result_file.Result]]:
 
 def test_what_holds_at_both_ends_is_no_flip():
     found = results(paper=(0.6, 0.7, 0.9), greedy=(0.5, 0.8, 0.9), random=(0.1, 0.11, 0.12))
-    assert bracket.flips(found) == ()
-    told = bracket.conclusions(found)
+    assert robustness.flips(found) == ()
+    told = robustness.conclusions(found)
     assert [(one.better, one.worse, one.metric) for one in told] == [
         (better, worse, metric)
         for metric in ("sr", "twsr")
@@ -62,7 +65,7 @@ def test_what_holds_at_both_ends_is_no_flip():
 
 
 def test_what_flips_is_flagged_with_its_numbers():
-    flips = bracket.flips(results(paper=(0.6, 0.7, 0.9), greedy=(0.5, 0.95, 0.8), random=(0.1, 0.12, 0.14)))
+    flips = robustness.flips(results(paper=(0.6, 0.7, 0.9), greedy=(0.5, 0.95, 0.8), random=(0.1, 0.12, 0.14)))
     assert [(one.better, one.worse, one.metric) for one in flips] == [
         ("oracle", "frontier", "sr"),
         ("oracle", "frontier", "twsr"),
@@ -75,7 +78,7 @@ def test_what_flips_is_flagged_with_its_numbers():
 
 
 def test_a_robot_that_helps_is_said_to_help():
-    (one, _) = bracket.flips(results(paper=(0.6, 0.7), greedy=(0.5, 0.7), random=(0.12, 0.10)))
+    (one, _) = robustness.flips(results(paper=(0.6, 0.7), greedy=(0.5, 0.7), random=(0.12, 0.10)))
     assert one.helps
     assert one.sentence.startswith("frontier helps (over no robot) in SR: ")
     assert "+10.0 paper, +20.0 greedy, -2.0 random points" in one.sentence
@@ -83,25 +86,25 @@ def test_a_robot_that_helps_is_said_to_help():
 
 
 def test_no_difference_at_an_end_is_said_and_is_no_flip():
-    told = bracket.conclusions(results(paper=(0.6, 0.7), greedy=(0.5, 0.7), random=(0.1, 0.1)))
+    told = robustness.conclusions(results(paper=(0.6, 0.7), greedy=(0.5, 0.7), random=(0.1, 0.1)))
     assert {one.verdict for one in told} == {"vanishes"}
     assert "no difference at all with random people" in told[0].sentence
 
 
 def test_what_holds_only_within_chance_says_so():
-    told = bracket.conclusions(results(paper=(0.6, 0.9), greedy=(0.5, 0.9), random=(0.1, 0.12)))
+    told = robustness.conclusions(results(paper=(0.6, 0.9), greedy=(0.5, 0.9), random=(0.1, 0.12)))
     assert told[0].sentence.endswith("holds at both ends, though not everywhere beyond chance")
-    sure = bracket.conclusions(results(paper=(0.6, 0.9), greedy=(0.5, 0.9), random=(0.1, 0.3)))
+    sure = robustness.conclusions(results(paper=(0.6, 0.9), greedy=(0.5, 0.9), random=(0.1, 0.3)))
     assert sure[0].sentence.endswith("holds at both ends")
 
 
 def test_every_population_in_between_is_judged():
-    found = bracket.flips(results(paper=(0.6, 0.9), slow=(0.5, 0.4), greedy=(0.5, 0.9), random=(0.1, 0.3)))
+    found = robustness.flips(results(paper=(0.6, 0.9), slow=(0.5, 0.4), greedy=(0.5, 0.9), random=(0.1, 0.3)))
     assert [(one.gaps[0].people, one.better) for one in found] == [("slow", "silent"), ("slow", "silent")]
 
 
 def test_a_tie_of_the_population_is_no_conclusion():
-    assert bracket.conclusions(results(paper=(0.6, 0.6), greedy=(0.5, 0.9), random=(0.1, 0.3))) == ()
+    assert robustness.conclusions(results(paper=(0.6, 0.6), greedy=(0.5, 0.9), random=(0.1, 0.3))) == ()
 
 
 RATE = st.integers(0, 20).map(lambda n: n / 20)
@@ -113,7 +116,7 @@ RATE = st.integers(0, 20).map(lambda n: n / 20)
     st.lists(RATE, min_size=3, max_size=3),
 )
 def test_a_flip_is_a_sign_that_changes_and_nothing_else(paper, greedy, random):
-    told = bracket.conclusions(results(paper=tuple(paper), greedy=tuple(greedy), random=tuple(random)))
+    told = robustness.conclusions(results(paper=tuple(paper), greedy=tuple(greedy), random=tuple(random)))
     assert len(told) == 2 * len({(a, b) for a in range(3) for b in range(a) if paper[a] != paper[b]})
     place = dict(zip(CREWS, range(3), strict=True))
     for one in told:
@@ -121,16 +124,16 @@ def test_a_flip_is_a_sign_that_changes_and_nothing_else(paper, greedy, random):
         assert paper[a] > paper[b]
         assert (one.verdict == "flips") == (greedy[a] < greedy[b] or random[a] < random[b])
         assert one.verdict in one.sentence or one.verdict == "vanishes"
-    assert bracket.flips(results(paper=tuple(paper), greedy=tuple(greedy), random=tuple(random))) == tuple(
+    assert robustness.flips(results(paper=tuple(paper), greedy=tuple(greedy), random=tuple(random))) == tuple(
         one for one in told if one.verdict == "flips"
     )
 
 
 def test_what_is_no_bracket_is_an_error():
     with pytest.raises(HthorError, match="greedy people, of random people and of a population"):
-        bracket.flips(results(paper=(0.6, 0.7), greedy=(0.5, 0.7)))
+        robustness.flips(results(paper=(0.6, 0.7), greedy=(0.5, 0.7)))
     with pytest.raises(HthorError, match="greedy people, of random people and of a population"):
-        bracket.flips(results(random=(0.6, 0.7), greedy=(0.5, 0.7)))
+        robustness.flips(results(random=(0.6, 0.7), greedy=(0.5, 0.7)))
     uneven = results(paper=(0.6, 0.7), greedy=(0.5, 0.7), random=(0.1,))
     with pytest.raises(HthorError, match="the same robots on the same trials"):
-        bracket.flips(uneven)
+        robustness.flips(uneven)

@@ -13,28 +13,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from hthor.calibration import (
-    abc,
-    coverage,
-    design,
-    emulator,
-    heldout,
-    likelihood,
-    network,
-    observed,
-    outcomes,
-    posterior,
-    predictive,
-    ranking,
-    table,
-    targets,
-    trust_curve,
-)
-from hthor.calibration.design import Effects
+from hthor.calibration import targets
+from hthor.calibration.diagnostics import abc_check, coverage, held_out, ranking_robustness
+from hthor.calibration.emulator import emulator, mlp, outcomes, trust_emulator
+from hthor.calibration.inference import design_effects, likelihood, posterior, predictive, summary_statistics
+from hthor.calibration.inference.design_effects import Effects
+from hthor.calibration.simulation import trial_table
 from hthor.errors import MissingExtra
 
 PLAIN = Effects(sr=np.ones(3), ratio=np.ones(3), adoption=np.ones(3), spread=1.0, correlation=np.eye(3))
-PAPER = observed.published(targets.load("paper"))
+PAPER = summary_statistics.published(targets.load("paper"))
 LIVE = tuple(toy.NAMES[k] for k in (toy.V, toy.LAM, toy.A0, toy.HAND))
 
 
@@ -44,8 +32,8 @@ def learnt() -> emulator.Emulator:
 
 
 @pytest.fixture(scope="module")
-def studied() -> tuple[np.ndarray, observed.Observed]:
-    return observed.studies(toy.studies(toy.points(300, 2), 2), toy.LEAST)
+def studied() -> tuple[np.ndarray, summary_statistics.Observed]:
+    return summary_statistics.studies(toy.studies(toy.points(300, 2), 2), toy.LEAST)
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +43,7 @@ def bank() -> posterior.Bank:
 
 @pytest.fixture(scope="module")
 def true_effects(studied) -> Effects:
-    return design.effects(toy.exact(studied[0]), studied[1])
+    return design_effects.effects(toy.exact(studied[0]), studied[1])
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +61,7 @@ def test_the_published_counts_give_the_published_percentages():
 
 
 def test_what_is_left_out_is_absent():
-    less = observed.published(targets.load("paper").without("oracle"))
+    less = summary_statistics.published(targets.load("paper").without("oracle"))
     assert less.trials[0, 2] == less.asked[0, 2] == 0.0
     assert np.isnan(less.ratio[0, 2])
     again = PAPER.without("oracle")
@@ -83,19 +71,19 @@ def test_what_is_left_out_is_absent():
 
 def test_simulated_studies_are_counted_as_published_ones():
     made = toy.studies(toy.points(3, 4), 4)
-    where, found = observed.studies(made, toy.LEAST)
+    where, found = summary_statistics.studies(made, toy.LEAST)
     np.testing.assert_array_equal(where, made.points)
     np.testing.assert_array_equal(found.trials, np.tile([58, 59, 58], (3, 1)))
     np.testing.assert_array_equal(found.asked, np.tile([0, 50, 50], (3, 1)))
     rows = (made.study == 1) & (made.condition == 2) & made.valid
     assert found.successes[1, 2] == made.met[rows].sum()
-    worth = table.twsr(made.take(rows), toy.LEAST)
+    worth = trial_table.twsr(made.take(rows), toy.LEAST)
     assert found.figures()["twsr oracle"][1] == pytest.approx(worth.mean())
 
 
 def test_training_sessions_are_no_studies():
-    both = table.join([toy.sessions(toy.points(6, 5), 5), toy.studies(toy.points(2, 6), 6)])
-    where, found = observed.studies(both, toy.LEAST)
+    both = trial_table.join([toy.sessions(toy.points(6, 5), 5), toy.studies(toy.points(2, 6), 6)])
+    where, found = summary_statistics.studies(both, toy.LEAST)
     assert len(found) == 2
     np.testing.assert_array_equal(where, both.points[-2:])
 
@@ -109,7 +97,7 @@ def test_rates_are_integrals_of_chances():
     answers = outcomes.doing(made.take(rows), toy.LEAST).mean(axis=0, keepdims=True)
     sr, ratio, spread = outcomes.rates(answers)
     truth = toy.exact(made.points[:1])
-    worth = table.twsr(made.take(rows), toy.LEAST)
+    worth = trial_table.twsr(made.take(rows), toy.LEAST)
     assert sr[0] == made.met[rows].mean()
     assert ratio[0] == pytest.approx(worth[worth > 0.0].mean(), abs=0.01)
     assert spread[0] == pytest.approx(truth.ratio_sd[0, 2], abs=0.02)
@@ -120,7 +108,7 @@ def test_quartiles_are_those_of_the_trials():
     rows = made.condition == 0
     answers = outcomes.doing(made.take(rows), toy.LEAST).mean(axis=0, keepdims=True)
     found = outcomes.quartiles(answers, (0.1, 0.25, 0.5, 0.99))[0]
-    assert found[:3] == pytest.approx(np.quantile(table.seconds(made.take(rows)), (0.1, 0.25, 0.5)), abs=1.5)
+    assert found[:3] == pytest.approx(np.quantile(trial_table.seconds(made.take(rows)), (0.1, 0.25, 0.5)), abs=1.5)
     assert found[3] == 90.0
 
 
@@ -145,11 +133,11 @@ def test_a_network_finds_a_known_law():
     told = chance.uniform(-1.0, 1.0, (6000, 5))
     truth = 1.0 / (1.0 + np.exp(-2.0 * told[:, 0] - 2.0 * told[:, 1] * told[:, 2]))
     came = np.stack([chance.random(6000) < truth, chance.random(6000) < 0.3], axis=1)
-    said = network.fit(told, came, seed=1)(told)
+    said = mlp.fit(told, came, seed=1)(told)
     assert np.sqrt(np.mean((said[:, 0] - truth) ** 2)) < 0.09
     assert np.sqrt(np.mean((said[:, 1] - 0.3) ** 2)) < 0.06
-    np.testing.assert_array_equal(network.fit(told, came, seed=1)(told), said)
-    np.testing.assert_allclose(network.fit(told, came, seed=1)(told, 1), said[:, :1], rtol=1e-5)
+    np.testing.assert_array_equal(mlp.fit(told, came, seed=1)(told), said)
+    np.testing.assert_allclose(mlp.fit(told, came, seed=1)(told, 1), said[:, :1], rtol=1e-5)
 
 
 # ------------------------------------------------------------------------------------------------------------ emulator
@@ -193,7 +181,7 @@ def test_a_committee_needs_points():
 def test_without_the_extra_one_sentence_names_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "sklearn.neural_network", None)
     with pytest.raises(MissingExtra, match=r"hthor\[calibration\]"):
-        network.fit(np.zeros((4, 2)), np.zeros((4, 2)), seed=0)
+        mlp.fit(np.zeros((4, 2)), np.zeros((4, 2)), seed=0)
 
 
 # ------------------------------------------------------------------------------------------------------ design effects
@@ -201,11 +189,11 @@ def test_without_the_extra_one_sentence_names_it(monkeypatch):
 
 def test_people_cluster_trials_and_the_errors_say_so(studied):
     where, found = studied
-    quality = design.quality(toy.exact(where), found)
+    quality = design_effects.quality(toy.exact(where), found)
     assert 0.9 < quality.z_sd < 1.1
     assert all(0.85 < value < 1.15 for value in quality.by_figure.values())
     assert min(quality.r2["sr none"], quality.r2["ratio none"]) > 0.7
-    known = design.effects(toy.exact(where), found)
+    known = design_effects.effects(toy.exact(where), found)
     assert known.adoption[1:].min() > 1.3  # ten trials of one person: 1 + 9 * correlation
     assert np.abs(known.ratio - 1.0).max() < 0.3  # nothing is alike in the ratios of one person
 
@@ -219,18 +207,18 @@ def test_known_noise_is_found_again(studied):
         wrong[name] = getattr(truth, name) + chance.normal(0.0, 0.1, truth.sr.shape)
         wrong[f"{name}_se"] = np.full(truth.sr.shape, 0.05)
     rates = msgspec.structs.replace(truth, **wrong)
-    assert design.effects(rates, found).spread == pytest.approx(2.0, abs=0.3)
-    assert 0.9 < design.quality(rates, found).z_sd < 1.1
+    assert design_effects.effects(rates, found).spread == pytest.approx(2.0, abs=0.3)
+    assert 0.9 < design_effects.quality(rates, found).z_sd < 1.1
 
 
 def test_a_learnt_emulator_knows_how_far_it_is_off(learnt, studied):
-    assert 0.9 < design.quality(learnt.rates(studied[0]), studied[1]).z_sd < 1.1
+    assert 0.9 < design_effects.quality(learnt.rates(studied[0]), studied[1]).z_sd < 1.1
 
 
 def test_too_few_studies_are_refused(studied):
-    few = observed.studies(toy.studies(toy.points(9, 3), 3), toy.LEAST)
+    few = summary_statistics.studies(toy.studies(toy.points(9, 3), 3), toy.LEAST)
     with pytest.raises(ValueError, match="at least 10"):
-        design.effects(toy.exact(few[0]), few[1])
+        design_effects.effects(toy.exact(few[0]), few[1])
 
 
 # ---------------------------------------------------------------------------------------------------------- likelihood
@@ -275,7 +263,7 @@ def test_the_likelihood_is_that_of_its_parts():
 
 def test_what_was_not_observed_says_nothing():
     rates = toy.exact(toy.points(50, 14))
-    parts = sum(likelihood.log(rates, PAPER.only(name), PLAIN) for name in table.CONDITIONS)
+    parts = sum(likelihood.log(rates, PAPER.only(name), PLAIN) for name in trial_table.CONDITIONS)
     np.testing.assert_allclose(likelihood.log(rates, PAPER, PLAIN), parts)
     nothing = PAPER.only("none").without("none")
     np.testing.assert_array_equal(likelihood.log(rates, nothing, PLAIN), 0.0)
@@ -355,7 +343,7 @@ def test_proposals_reach_beyond_the_posterior(fitted):
 def test_intervals_hold_what_they_promise(studied):
     where, found = studied
     rows = np.arange(200)
-    some = observed.Observed(**{name: getattr(found, name)[rows] for name in found.__struct_fields__})
+    some = summary_statistics.Observed(**{name: getattr(found, name)[rows] for name in found.__struct_fields__})
     right = coverage.run(toy.Exact(), where[rows], some, proposals=1 << 12, fitted=LIVE)
     assert 0.86 < right.overall < 0.94
     assert 0.84 < right.fitted < 0.95
@@ -367,11 +355,11 @@ def test_intervals_hold_what_they_promise(studied):
 def test_overconfidence_is_seen(studied, monkeypatch):
     where, found = studied
     rows = np.arange(60)
-    some = observed.Observed(**{name: getattr(found, name)[rows] for name in found.__struct_fields__})
+    some = summary_statistics.Observed(**{name: getattr(found, name)[rows] for name in found.__struct_fields__})
     tiny = Effects(
         sr=np.full(3, 0.05), ratio=np.full(3, 0.05), adoption=np.full(3, 0.05), spread=0.0, correlation=np.eye(3)
     )
-    monkeypatch.setattr(design, "crossed", lambda rates, studies: [(np.arange(60), tiny)])
+    monkeypatch.setattr(design_effects, "crossed", lambda rates, studies: [(np.arange(60), tiny)])
     monkeypatch.setattr(likelihood, "_LEAST_RHO", 1e-6)
     wrong = coverage.run(toy.Exact(), where[rows], some, proposals=1 << 12, fitted=(toy.NAMES[toy.V],))
     assert wrong.fitted < 0.8
@@ -380,20 +368,20 @@ def test_overconfidence_is_seen(studied, monkeypatch):
 def test_abc_agrees_and_sees_a_shift(studied, fitted):
     where, found = studied
     means = coverage.run(toy.Exact(), where, found, proposals=1 << 11).means
-    verdict = abc.check(fitted, where, means, fitted=LIVE)
+    verdict = abc_check.check(fitted, where, means, fitted=LIVE)
     assert verdict.passed
     assert verdict.error[toy.V] < 0.3
     off = msgspec.structs.replace(fitted, points=np.clip(fitted.points + 1.2 * fitted.sd, 0.0, 1.0))
-    assert not abc.check(off, where, means, fitted=LIVE).passed
+    assert not abc_check.check(off, where, means, fitted=LIVE).passed
     with pytest.raises(ValueError, match="at least 40"):
-        abc.check(fitted, where[:30], means[:30])
+        abc_check.check(fitted, where[:30], means[:30])
 
 
 def test_two_conditions_foretell_the_third(true_effects):
     where = np.full((1, len(toy.NAMES)), 0.5)
     where[0, toy.V] = 0.8
     truth = toy.exact(where)
-    study = observed.Observed(
+    study = summary_statistics.Observed(
         successes=np.round(truth.sr * [58, 59, 58]),
         trials=np.array([[58.0, 59.0, 58.0]]),
         adopted=np.round(truth.adoption * [0, 50, 50]),
@@ -401,9 +389,9 @@ def test_two_conditions_foretell_the_third(true_effects):
         ratio=truth.ratio,
     )
     prior = posterior.bank(toy.Exact(), seed=1, proposals=1 << 12)
-    bad = heldout.simple(np.array([0.05] * 3), np.array([0.95] * 3), np.array([0.1] * 3), np.array([0.0] * 3), 300)
-    found = heldout.run(toy.Exact(), study, true_effects, prior=prior, rivals={"bad": bad, "true": truth})
-    assert [one.condition for one in found] == list(table.CONDITIONS)
+    bad = held_out.simple(np.array([0.05] * 3), np.array([0.95] * 3), np.array([0.1] * 3), np.array([0.0] * 3), 300)
+    found = held_out.run(toy.Exact(), study, true_effects, prior=prior, rivals={"bad": bad, "true": truth})
+    assert [one.condition for one in found] == list(trial_table.CONDITIONS)
     for one in found:
         assert one.gain > 0.0
         assert one.condition not in one.fitted
@@ -419,7 +407,7 @@ def test_two_conditions_foretell_the_third(true_effects):
 
 def test_foretold_studies_are_as_noisy_as_real_ones(studied, true_effects):
     where = np.tile(toy.points(1, 20), (300, 1))
-    _, real = observed.studies(toy.studies(where, 21), toy.LEAST)
+    _, real = summary_statistics.studies(toy.studies(where, 21), toy.LEAST)
     drawn = predictive.draw(toy.exact(np.repeat(where, 5, axis=0)), PAPER, true_effects, seed=2).figures()
     for name, values in real.figures().items():
         assert drawn[name].mean() == pytest.approx(values.mean(), abs=0.02), name
@@ -427,9 +415,9 @@ def test_foretold_studies_are_as_noisy_as_real_ones(studied, true_effects):
 
 
 def test_the_table_of_figures(true_effects):
-    figures = {name: np.linspace(0.0, 1.0, 1001) for name in observed.FIGURES}
+    figures = {name: np.linspace(0.0, 1.0, 1001) for name in summary_statistics.FIGURES}
     rows = predictive.compare(figures, PAPER)
-    assert [row.name for row in rows] == list(observed.FIGURES)
+    assert [row.name for row in rows] == list(summary_statistics.FIGURES)
     row = rows[2]
     assert (row.median, row.low, row.high80) == pytest.approx((0.5, 0.05, 0.9))
     assert row.percentile == pytest.approx(53 / 58, abs=1e-3)
@@ -441,23 +429,23 @@ def test_the_table_of_figures(true_effects):
 def test_an_order_that_is_clear_is_kept(fitted, true_effects):
     found = msgspec.structs.replace(fitted, points=fitted.points[::5])
     rates = toy.exact(found.points)
-    clear = ranking.robots(rates, true_effects)
+    clear = ranking_robustness.robots(rates, true_effects)
     assert clear.holds["sr"] == 1.0
     assert clear.measured["sr"] > 0.9
     gap = next(one for one in clear.pairs if one.name == "sr oracle>frontier")
     np.testing.assert_allclose(gap.gaps, rates.sr[:, 2] - rates.sr[:, 1])
-    few = ranking.robots(rates, true_effects, trials=20)
+    few = ranking_robustness.robots(rates, true_effects, trials=20)
     assert few.measured["sr"] < clear.measured["sr"]
     turned = msgspec.structs.replace(rates, sr=rates.sr[:, ::-1])
-    assert ranking.robots(turned, true_effects).holds["sr"] == 0.0
-    shared = ranking.robots(rates, true_effects, correlation={"sr": 0.6, "twsr": 0.6})
+    assert ranking_robustness.robots(turned, true_effects).holds["sr"] == 0.0
+    shared = ranking_robustness.robots(rates, true_effects, correlation={"sr": 0.6, "twsr": 0.6})
     assert shared.pairs[0].noise.mean() < gap.noise.mean()
 
 
 def test_chances_of_an_order_are_those_of_its_noise():
     rates = toy.exact(np.tile(toy.points(1, 22), (2, 1)))
     near = msgspec.structs.replace(rates, sr=np.tile([0.5, 0.53, 0.99], (2, 1)))
-    found = ranking.robots(near, PLAIN)
+    found = ranking_robustness.robots(near, PLAIN)
     pair = next(gap for gap in found.pairs if gap.name == "sr frontier>none")
     assert found.measured["sr"] == pytest.approx(pair.chances[0], abs=0.05)
     assert found.measured["both"] <= min(found.measured["sr"], found.measured["twsr"])
@@ -466,14 +454,14 @@ def test_chances_of_an_order_are_those_of_its_noise():
 
 def test_noise_of_a_gap_is_that_of_independent_groups():
     rates = toy.exact(np.tile(toy.points(1, 22), (2, 1)))
-    gap = ranking.robots(rates, PLAIN, trials=600).pairs[0]
+    gap = ranking_robustness.robots(rates, PLAIN, trials=600).pairs[0]
     p, q = rates.sr[0, 2], rates.sr[0, 1]
     assert gap.noise[0] == pytest.approx(np.sqrt((p * (1 - p) + q * (1 - q)) / 600))
 
 
 def test_only_what_matters_swings_a_gap(fitted):
     found = msgspec.structs.replace(fitted, points=fitted.points[::10])
-    swings = {(one.name, one.better): one for one in ranking.sensitivity(toy.Exact(), found)}
+    swings = {(one.name, one.better): one for one in ranking_robustness.sensitivity(toy.Exact(), found)}
     assert len(swings) == 2 * len(toy.NAMES)
     still = swings["tau_mem", "oracle"]
     assert still.low == pytest.approx(still.high)
@@ -483,22 +471,24 @@ def test_only_what_matters_swings_a_gap(fitted):
 def test_people_who_meet_two_robots_are_paired():
     where = np.tile(toy.points(1, 23), (900, 1))
     made = toy.sessions(where, 23)
-    assert ranking.paired(made, toy.LEAST) == {"sr": 0.0, "twsr": 0.0}
+    assert ranking_robustness.paired(made, toy.LEAST) == {"sr": 0.0, "twsr": 0.0}
     first = made.take(made.condition == 1)
-    columns = {name: getattr(first, name) for name in table.TRIAL}
-    twin = table.build(made.names, made.points, {**columns, "condition": np.full(len(first), 2)})
-    both = {name: np.concatenate([columns[name], getattr(twin, name)]) for name in table.TRIAL}
-    assert ranking.paired(table.build(made.names, made.points, both), toy.LEAST)["sr"] == pytest.approx(1.0)
+    columns = {name: getattr(first, name) for name in trial_table.TRIAL}
+    twin = trial_table.build(made.names, made.points, {**columns, "condition": np.full(len(first), 2)})
+    both = {name: np.concatenate([columns[name], getattr(twin, name)]) for name in trial_table.TRIAL}
+    assert ranking_robustness.paired(trial_table.build(made.names, made.points, both), toy.LEAST)[
+        "sr"
+    ] == pytest.approx(1.0)
 
 
 def test_trust_curves():
     made = toy.sessions(toy.points(900, 24), 24)
-    curve = trust_curve.fit(made, members=3)
+    curve = trust_emulator.fit(made, members=3)
     where = toy.points(40, 25)
     mean = curve.mean(where).mean(axis=0)
     assert mean[1, 9] - mean[1, 0] == pytest.approx(0.9, abs=0.25)
     assert mean[0] == pytest.approx(np.full(10, 3.5), abs=0.25)
-    real = trust_curve.reports(toy.studies(np.repeat(where, 4, axis=0), 26))
+    real = trust_emulator.reports(toy.studies(np.repeat(where, 4, axis=0), 26))
     drawn = curve.group(np.repeat(where, 4, axis=0), seed=1)
     assert 0.75 < drawn[:, 1].std(axis=0).mean() / real[:, 1].std(axis=0).mean() < 1.3
     events = curve.events(where)

@@ -15,27 +15,26 @@ from rich.console import Console
 from typer.testing import CliRunner
 
 from hthor import tasks
-from hthor.calibration import (
-    emulator,
-    identity,
-    ledger,
-    points,
-    run,
+from hthor.calibration.emulator import emulator
+from hthor.calibration.pipeline import run, stage_progress, stages
+from hthor.calibration.simulation import (
+    design_points,
+    session_simulation,
+    session_store,
     simulate,
-    sitting,
-    stages,
     studies,
-    table,
-    telling,
+    trial_identity,
+    trial_table,
 )
-from hthor.cli.app import app
+from hthor.cli import app
 from hthor.errors import HthorError, MissingExtra, RunError, UnknownName
-from hthor.eval import crews, progress
-from hthor.eval.cast import Stage
-from hthor.eval.session import sessions
-from hthor.humans import registry
-from hthor.humans.population import Population
-from hthor.tasks import library
+from hthor.eval.config import robot_team
+from hthor.eval.config.sessions import sessions
+from hthor.eval.runner import progress
+from hthor.eval.runner.trial_runner import Stage
+from hthor.humans.population import parameter_registry
+from hthor.humans.population.population import Population
+from hthor.tasks.suites import library
 
 PAPER = tasks.suite("paper")
 TINY = library.frozen("tiny", 1, tuple(task for task in PAPER.tasks if task.house == PAPER.tasks[0].house)[:2])
@@ -55,7 +54,7 @@ def trained(tmp_path_factory):
 
 
 def _same(first, second):
-    return all(np.array_equal(getattr(first, name), getattr(second, name)) for name in ("points", *table.TRIAL))
+    return all(np.array_equal(getattr(first, name), getattr(second, name)) for name in ("points", *trial_table.TRIAL))
 
 
 def test_a_session_is_one_persons_trials_in_each_condition_in_turn(trained):
@@ -64,7 +63,7 @@ def test_a_session_is_one_persons_trials_in_each_condition_in_turn(trained):
     assert made.index.tolist() == [0, 1] * 3
     assert sorted(made.task[:2].tolist()) == [0, 1]
     assert made.point.tolist() == [0, 0, 1, 1, 2, 2]
-    assert made.points.shape == (3, len(registry.names()))
+    assert made.points.shape == (3, len(parameter_registry.names()))
     alone = made.condition == 0
     assert (made.trust[alone] == 0).all()
     assert ((made.trust[~alone] >= 1) & (made.trust[~alone] <= 7)).all()
@@ -77,9 +76,11 @@ def test_a_session_is_one_persons_trials_in_each_condition_in_turn(trained):
 
 def test_more_workers_and_an_interruption_give_the_same_table(trained, tmp_path):
     folder, made = trained
-    lines = (folder / ledger.FILE).read_bytes().splitlines(keepends=True)
-    (tmp_path / ledger.IDENTITY).write_bytes((folder / ledger.IDENTITY).read_bytes())
-    (tmp_path / ledger.FILE).write_bytes(lines[2] + lines[0][:50])  # the third was done first, the next one cut short
+    lines = (folder / session_store.FILE).read_bytes().splitlines(keepends=True)
+    (tmp_path / session_store.IDENTITY).write_bytes((folder / session_store.IDENTITY).read_bytes())
+    (tmp_path / session_store.FILE).write_bytes(
+        lines[2] + lines[0][:50]
+    )  # the third was done first, the next one cut short
     assert _same(_train(tmp_path, 3, jobs=2), made)
 
 
@@ -93,33 +94,33 @@ def test_a_larger_table_goes_on_from_a_smaller_and_nothing_is_played_twice(train
 
 def test_a_changed_world_is_refused(trained, monkeypatch):
     folder, _ = trained
-    known = identity.of(TINY)
-    changed = identity.Identity(parts={**known.parts, "humans/search.py": "x"})
-    monkeypatch.setattr(identity, "of", lambda _: changed)
-    with pytest.raises(RunError, match=r"another world or person: humans/search\.py"):
+    known = trial_identity.of(TINY)
+    changed = trial_identity.Identity(parts={**known.parts, "the person": "x"})
+    monkeypatch.setattr(trial_identity, "of", lambda _: changed)
+    with pytest.raises(RunError, match=r"another world or person: the person"):
         _train(folder, 3)
 
 
 def test_a_session_is_what_an_evaluation_would_have_played():
     """The same person out of the same population meets the same trials, whoever asks."""
     from hthor.episode import play
-    from hthor.humans import effects
     from hthor.humans.models.proxy import Model
-    from hthor.humans.person import Person, root
+    from hthor.humans.population import random_effects
+    from hthor.humans.population.participant import Person, root
 
-    point = points.spread(1, len(registry.names()), 0, "x")[0]
-    one = simulate.place(TINY, identity.of(TINY), 5, 0, point.tolist(), 1)
-    stage, seats = Stage(), crews.form(["scout"], ["frontier"]).seats
-    rows = list(sitting.sit(one, TINY, seats, stage))
+    point = design_points.spread(1, len(parameter_registry.names()), 0, "x")[0]
+    one = simulate.place(TINY, trial_identity.of(TINY), 5, 0, point.tolist(), 1)
+    stage, seats = Stage(), robot_team.form(["scout"], ["frontier"]).seats
+    rows = list(session_simulation.sit(one, TINY, seats, stage))
 
     dealt = sessions(TINY, agent="frontier", seed=5, participants=1)[0]
-    traits = effects.individual(registry.from_unit(point.tolist()), root(5, 0))
+    traits = random_effects.individual(parameter_registry.from_unit(point.tolist()), root(5, 0))
     human, logs = Model(Person(seed=5, participant=0, traits=traits)), []
     with stage.enter(dealt) as company:
         for trial in dealt.trials:
             logs.append((trial, play(trial, stage.world(trial), human, company.robots())))
     for row, (trial, log) in zip(rows, logs, strict=True):
-        told = dict(zip(sitting.OUTCOMES, row, strict=True))
+        told = dict(zip(session_simulation.OUTCOMES, row, strict=True))
         assert TINY.tasks[told["task"]].id == trial.task.id
         assert (told["met"], told["trust"]) == (log.met, log.trust)
         assert told["ticks"] == (log.ticks if log.met else 900)
@@ -156,7 +157,7 @@ def calibrated(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(simulate, "at", fakes.sessions)
         patch.setattr(studies, "at", fakes.whole)
-        found = run.conduct(_options(folder), telling.Silent())
+        found = run.conduct(_options(folder), stage_progress.Silent())
     return folder, found
 
 
@@ -171,23 +172,23 @@ def _bytes(folder):
 
 def test_the_same_seed_gives_the_same_bytes_and_another_others(made_up, calibrated, tmp_path):
     folder, found = calibrated
-    assert run.conduct(_options(tmp_path / "again"), telling.Silent()) == found
+    assert run.conduct(_options(tmp_path / "again"), stage_progress.Silent()) == found
     assert _bytes(tmp_path / "again") == _bytes(folder)
-    assert run.conduct(_options(tmp_path / "other", seed=1, until="training"), telling.Silent()) is None
-    other = stages.Stages(run.settle(_options(tmp_path / "other", seed=1)), telling.Silent())
-    assert not np.array_equal(other.training.met, table.load(folder / "training.npz").met)
+    assert run.conduct(_options(tmp_path / "other", seed=1, until="training"), stage_progress.Silent()) is None
+    other = stages.Stages(run.settle(_options(tmp_path / "other", seed=1)), stage_progress.Silent())
+    assert not np.array_equal(other.training.met, trial_table.load(folder / "training.npz").met)
 
 
 def test_products_are_kept_and_what_was_learned_is_told(made_up, calibrated, monkeypatch):
     folder, found = calibrated
     before = _bytes(folder)
     monkeypatch.setattr(emulator, "fit", lambda *_, **__: pytest.fail("it was fitted before"))
-    assert run.conduct(_options(folder), telling.Silent()) == found
+    assert run.conduct(_options(folder), stage_progress.Silent()) == found
     assert _bytes(folder) == before
 
     people = Population.load(folder / "population.json")
     assert people.sha256 == found.population_sha256
-    assert people.names == registry.names()
+    assert people.names == parameter_registry.names()
     assert people.validity.suite_sha256 == PAPER.sha256
     assert people.validity.settings["robot"] == "scout"
     assert "(inferred)" in " ".join(people.statistics)
@@ -211,9 +212,9 @@ def test_the_command_ends_with_1_when_a_gate_is_not_passed(made_up, calibrated, 
     assert good.exit_code == (0 if all(gate["passed"] for gate in document["gates"]) else 1)
     assert document["population_sha256"] == Population.load(folder / "population.npz").sha256
 
-    from hthor.calibration import gates
+    from hthor.calibration.diagnostics import acceptance
 
-    monkeypatch.setattr(gates, "QUICK", msgspec.structs.replace(gates.QUICK, z_sd=(5.0, 6.0)))
+    monkeypatch.setattr(acceptance, "QUICK", msgspec.structs.replace(acceptance.QUICK, z_sd=(5.0, 6.0)))
     bad = CliRunner().invoke(app, words)
     assert bad.exit_code == 1
     assert "FAILED" in bad.stdout
@@ -221,7 +222,7 @@ def test_the_command_ends_with_1_when_a_gate_is_not_passed(made_up, calibrated, 
 
 def test_each_stage_is_told_of(made_up, tmp_path):
     heard = io.StringIO()
-    teller = telling.Aloud(Console(file=heard, width=100), live=False)
+    teller = stage_progress.Aloud(Console(file=heard, width=100), live=False)
     with teller.watch("training") as watch:
         watch.begin(3, 1)
         watch.played(True, False)
@@ -235,11 +236,11 @@ def test_each_stage_is_told_of(made_up, tmp_path):
 
 def test_a_calibration_may_stop_after_a_stage(made_up, tmp_path, monkeypatch):
     monkeypatch.setattr(studies, "at", lambda *_: pytest.fail("it was to stop before"))
-    assert run.conduct(_options(tmp_path, until="training"), telling.Silent()) is None
+    assert run.conduct(_options(tmp_path, until="training"), stage_progress.Silent()) is None
     monkeypatch.setattr(studies, "at", fakes.whole)
-    assert run.conduct(_options(tmp_path, until="correction"), telling.Silent()) is None  # a small one has none
+    assert run.conduct(_options(tmp_path, until="correction"), stage_progress.Silent()) is None  # a small one has none
     with pytest.raises(UnknownName, match=r"stage 'trainings'\. Did you mean 'training'"):
-        run.conduct(_options(tmp_path, until="trainings"), telling.Silent())
+        run.conduct(_options(tmp_path, until="trainings"), stage_progress.Silent())
 
 
 def test_wrong_input_is_told_before_anything_is_done(tmp_path, monkeypatch):
@@ -249,17 +250,17 @@ def test_wrong_input_is_told_before_anything_is_done(tmp_path, monkeypatch):
         run.settle(run.Options(targets=("paper", "paper")))
     monkeypatch.setitem(__import__("sys").modules, "sklearn", None)
     with pytest.raises(MissingExtra, match=r"hthor\[calibration\]"):
-        run.conduct(_options(tmp_path), telling.Silent())
+        run.conduct(_options(tmp_path), stage_progress.Silent())
 
 
 def test_a_folder_that_is_called_like_a_target_is_not_taken_for_logs(tmp_path, monkeypatch):
-    from hthor.cli import calibrate_logs
+    from hthor.commands.calibrate import from_logs
 
     monkeypatch.chdir(tmp_path)
     for name in ("paper", "mine"):
         (tmp_path / name).mkdir()
     asked = []
-    monkeypatch.setattr(calibrate_logs, "run", lambda targets, *_: asked.append(targets))
+    monkeypatch.setattr(from_logs, "run", lambda targets, *_: asked.append(targets))
     monkeypatch.setattr(run, "conduct", lambda options, _: asked.append(options.targets))
     for name in ("paper", "mine"):
         CliRunner().invoke(app, ["calibrate", "--target", name, "--quiet"])

@@ -13,13 +13,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hthor import jsonio, tasks
-from hthor.calibration import gates, identity, ledger, points, table, targets
-from hthor.calibration.identity import Identity
-from hthor.calibration.ledger import Ledger
-from hthor.calibration.shelf import Shelf
-from hthor.calibration.sitting import Sat
+from hthor.calibration import targets
+from hthor.calibration.diagnostics import acceptance
+from hthor.calibration.pipeline.artifact_cache import Shelf
+from hthor.calibration.simulation import design_points, session_store, trial_identity, trial_table
+from hthor.calibration.simulation.session_simulation import Sat
+from hthor.calibration.simulation.session_store import Ledger
+from hthor.calibration.simulation.trial_identity import Identity
 from hthor.errors import HthorError, RunError, RunLocked, UnknownName
-from hthor.eval import record
+from hthor.eval.records import trial_record
 
 SUITE = tasks.suite("paper")
 PAPER = targets.load("paper")
@@ -106,17 +108,17 @@ def test_an_unknown_name_and_a_missing_file_are_told_apart(tmp_path):
 @given(st.integers(1, 60), st.integers(1, 60), st.integers(0, 5))
 @settings(max_examples=20, deadline=None)
 def test_points_of_a_smaller_number_are_the_first_of_a_larger(few, many, seed):
-    small, large = (points.spread(count, 5, seed, "some") for count in sorted((few, many)))
+    small, large = (design_points.spread(count, 5, seed, "some") for count in sorted((few, many)))
     assert np.array_equal(small, large[: len(small)])
     assert ((large > 0.0) & (large < 1.0)).all()
 
 
 def test_points_fill_the_cube_and_depend_on_seed_and_name():
-    first = points.spread(256, len(NAMES), 0, "a")
+    first = design_points.spread(256, len(NAMES), 0, "a")
     counts = np.stack([np.histogram(column, 8, (0, 1))[0] for column in first.T])
     assert (counts == 32).all()
-    assert not np.array_equal(first, points.spread(256, len(NAMES), 1, "a"))
-    assert not np.array_equal(first, points.spread(256, len(NAMES), 0, "b"))
+    assert not np.array_equal(first, design_points.spread(256, len(NAMES), 1, "a"))
+    assert not np.array_equal(first, design_points.spread(256, len(NAMES), 0, "b"))
     assert json.loads(json.dumps(first.tolist())) == first.tolist()
 
 
@@ -124,35 +126,35 @@ def test_points_fill_the_cube_and_depend_on_seed_and_name():
 
 
 def _some(count=6, seed=0, name="some"):
-    return sessions(points.spread(count, len(NAMES), seed, name), SUITE, seed, None, 1, None, name)
+    return sessions(design_points.spread(count, len(NAMES), seed, name), SUITE, seed, None, 1, None, name)
 
 
 def test_a_table_is_the_same_from_its_file_and_its_bytes_repeat(tmp_path):
     made = _some()
     for name in ("one.npz", "two.npz"):
-        table.store(tmp_path / name, made)
+        trial_table.store(tmp_path / name, made)
     assert (tmp_path / "one.npz").read_bytes() == (tmp_path / "two.npz").read_bytes()
-    back = table.load(tmp_path / "one.npz")
+    back = trial_table.load(tmp_path / "one.npz")
     assert back.names == made.names
-    for name in ("points", *table.TRIAL):
+    for name in ("points", *trial_table.TRIAL):
         assert np.array_equal(getattr(back, name), getattr(made, name)), name
         assert getattr(back, name).dtype == getattr(made, name).dtype
     (tmp_path / "one.npz").write_bytes((tmp_path / "two.npz").read_bytes()[:400])
     with pytest.raises(RunError, match="Delete it"):
-        table.load(tmp_path / "one.npz")
+        trial_table.load(tmp_path / "one.npz")
 
 
 def test_joined_tables_keep_each_trials_point():
     first, second = _some(4), _some(3, seed=1, name="more")
-    both = table.join([first, second])
+    both = trial_table.join([first, second])
     assert len(both) == len(first) + len(second)
     assert np.array_equal(both.unit(), np.concatenate([first.unit(), second.unit()]))
     assert np.array_equal(both.take(both.point >= len(first.points)).unit(), second.unit())
 
 
 def test_twsr_is_the_metric_of_a_trial():
-    made, least = _some(12), table.t_star(SUITE)
-    worth, spent = table.twsr(made, least), table.seconds(made)
+    made, least = _some(12), trial_table.t_star(SUITE)
+    worth, spent = trial_table.twsr(made, least), trial_table.seconds(made)
     for number in range(0, len(made), 7):
         best = SUITE.tasks[made.task[number]].t_star
         expected = best / max(best, spent[number]) if made.met[number] else 0.0
@@ -161,7 +163,7 @@ def test_twsr_is_the_metric_of_a_trial():
 
 
 def test_a_simulated_study_loses_as_many_trials_as_the_published_one():
-    made = whole(points.spread(3, len(NAMES), 0, "s"), SUITE, 0, None, 1, None, "s", PAPER.design)
+    made = whole(design_points.spread(3, len(NAMES), 0, "s"), SUITE, 0, None, 1, None, "s", PAPER.design)
     assert len(made) == 3 * 180
     for study in range(3):
         for number, name in enumerate(targets.CONDITIONS):
@@ -180,16 +182,16 @@ def test_a_simulated_study_loses_as_many_trials_as_the_published_one():
 def test_what_decides_only_t_star_is_no_part_of_a_trials_identity():
     slower = tuple(msgspec.structs.replace(task, t_star=task.t_star + 7.0, difficulty="hard") for task in SUITE.tasks)
     elsewhere = (msgspec.structs.replace(SUITE.tasks[0], time_limit=80.0), *SUITE.tasks[1:])
-    known = identity.of(SUITE)
-    assert identity.of(msgspec.structs.replace(SUITE, tasks=slower)) == known
-    assert known.differences(identity.of(msgspec.structs.replace(SUITE, tasks=elsewhere))) == ["suite paper"]
+    known = trial_identity.of(SUITE)
+    assert trial_identity.of(msgspec.structs.replace(SUITE, tasks=slower)) == known
+    assert known.differences(trial_identity.of(msgspec.structs.replace(SUITE, tasks=elsewhere))) == ["suite paper"]
 
 
 def test_identity_has_the_code_the_rules_and_the_priors():
-    parts = identity.of(SUITE).parts
+    parts = trial_identity.of(SUITE).parts
     assert {"code", "rules", "parameters and their priors", "version of mujoco", "suite paper"} <= set(parts)
     assert "version of hthor" not in parts
-    assert identity.of_statistics() != parts["code"]
+    assert trial_identity.of_statistics() != parts["code"]
 
 
 def _identity(**parts):
@@ -197,7 +199,7 @@ def _identity(**parts):
 
 
 def _line(key, *rows):
-    return record.encode(Sat(key=key, rows=rows))
+    return trial_record.encode(Sat(key=key, rows=rows))
 
 
 def test_sessions_are_kept_once_and_a_torn_line_is_cut(tmp_path):
@@ -206,19 +208,19 @@ def test_sessions_are_kept_once_and_a_torn_line_is_cut(tmp_path):
         assert book.append(_line("", (1, 2))).rows == ((1, 2),)
         for _ in range(2):
             book.append(_line("one", (1, 2), (3, 4)))
-    whole_file = (tmp_path / ledger.FILE).read_bytes()
+    whole_file = (tmp_path / session_store.FILE).read_bytes()
     assert whole_file.count(b"\n") == 1
-    (tmp_path / ledger.FILE).write_bytes(whole_file + b'{"key":"two","ro')
+    (tmp_path / session_store.FILE).write_bytes(whole_file + b'{"key":"two","ro')
     with Ledger(tmp_path, known) as book:
         assert book.torn == 16
         assert set(book.held) == {"one"}
-    assert (tmp_path / ledger.FILE).read_bytes() == whole_file
+    assert (tmp_path / session_store.FILE).read_bytes() == whole_file
 
 
 def test_a_changed_line_is_told_of(tmp_path):
     with Ledger(tmp_path, _identity(a="1")) as book:
         book.append(_line("one", (1, 2)))
-    path = tmp_path / ledger.FILE
+    path = tmp_path / session_store.FILE
     path.write_bytes(path.read_bytes().replace(b"[1,2]", b"[1,3]"))
     with pytest.raises(RunError, match="line 1: check: is not the line's checksum"):
         Ledger(tmp_path, _identity(a="1"))
@@ -249,13 +251,13 @@ def test_a_product_is_made_again_only_when_what_it_comes_of_has_changed(tmp_path
 
 # ---------------------------------------------------------------------------------------------------------------- gates
 
-GOOD = gates.Figures(
+GOOD = acceptance.Figures(
     coverage=0.9, studies=200, z_sd=1.0, shift=0.2, worst="v_pace", effective=4000.0, covered=(8, 8), close=(8, 8)
 )
 
 
 def test_each_gate_fails_alone():
-    assert all(gate.passed for gate in gates.judge(GOOD, quick=False))
+    assert all(gate.passed for gate in acceptance.judge(GOOD, quick=False))
     bad = {
         "coverage": 0.8,
         "studies": 199,
@@ -266,13 +268,13 @@ def test_each_gate_fails_alone():
         "close": (7, 8),
     }
     for name, value in bad.items():
-        verdicts = gates.judge(msgspec.structs.replace(GOOD, **{name: value}), quick=False)
+        verdicts = acceptance.judge(msgspec.structs.replace(GOOD, **{name: value}), quick=False)
         assert sum(not gate.passed for gate in verdicts) == 1, name
-    assert not all(gate.passed for gate in gates.judge(msgspec.structs.replace(GOOD, shift=math.nan), quick=False))
+    assert not all(gate.passed for gate in acceptance.judge(msgspec.structs.replace(GOOD, shift=math.nan), quick=False))
 
 
 def test_a_small_calibration_has_wider_gates_and_they_still_can_fail():
     small = msgspec.structs.replace(GOOD, studies=10, shift=math.nan, close=(3, 8), z_sd=1.3)
-    assert all(gate.passed for gate in gates.judge(small, quick=True))
+    assert all(gate.passed for gate in acceptance.judge(small, quick=True))
     for change in ({"z_sd": 2.2}, {"coverage": 0.5}, {"covered": (2, 8)}, {"effective": 3.0}):
-        assert not all(gate.passed for gate in gates.judge(msgspec.structs.replace(small, **change), quick=True))
+        assert not all(gate.passed for gate in acceptance.judge(msgspec.structs.replace(small, **change), quick=True))

@@ -14,14 +14,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from world_house import TABLE, on, task
 
-from hthor import cameras, jsonio, plugins
-from hthor.cli import offers
+from hthor import jsonio, plugins
+from hthor.console import completion_values
 from hthor.errors import HthorError, UnknownName
-from hthor.eval import command, crews, intent, programme, session, setup
-from hthor.leaderboard import overrides
-from hthor.types import Pose, RobotSeat
-from hthor.world import World, avatar, camera
-from hthor.world.labels import Labels
+from hthor.eval.config import cli_command, robot_team, run_config, sessions, task_selection
+from hthor.eval.runner import run_options
+from hthor.leaderboard.entries import overrides
+from hthor.types import Pose, RobotSeat, cameras
+from hthor.world import World
+from hthor.world.model.bodies import avatar
+from hthor.world.rendering import camera
+from hthor.world.rendering.labels import Labels
 
 BODIES = [avatar.HUMAN, *(plugins.load("robot", name) for name in ("scout", "tender", "puck", "porter"))]
 sides = st.integers(1, 2000)
@@ -78,7 +81,7 @@ def test_what_is_no_camera_is_refused(name: str, size: str, words: str) -> None:
 
 
 def test_all_names_are_offered() -> None:
-    assert offers.cameras() == sorted((cameras.OWN, *cameras.NAMED))
+    assert completion_values.cameras() == sorted((cameras.OWN, *cameras.NAMED))
 
 
 # --------------------------------------------------------------------------------------------------- projection
@@ -140,26 +143,26 @@ def test_more_cameras_than_robots_are_refused() -> None:
 # --------------------------------------------------------------------------------------------------------- runs
 
 
-def plan(camera: str) -> setup.Setup:
-    crew = crews.form(["scout"], ["frontier"], camera=camera)
-    return setup.settle(suite(30), crew, human=persons(), seed=0, participants=None)
+def plan(camera: str) -> run_config.Setup:
+    crew = robot_team.form(["scout"], ["frontier"], camera=camera)
+    return run_config.settle(suite(30), crew, human=persons(), seed=0, participants=None)
 
 
 def test_a_run_knows_its_camera(tmp_path: Path) -> None:
     usual, other = plan("own"), plan("thor:64x48")
     assert b"camera" not in jsonio.pretty(usual)
-    assert msgspec.json.decode(jsonio.pretty(other), type=setup.Setup).seats[0].camera == "thor:64x48"
+    assert msgspec.json.decode(jsonio.pretty(other), type=run_config.Setup).seats[0].camera == "thor:64x48"
     assert other.sha256 != usual.sha256
     assert overrides.of(other) == {"camera": "thor:64x48"}
     assert overrides.of(usual) == {}
-    assert "--camera thor --camera-size 64x48" in command.of(tmp_path, other)
-    assert "--camera" not in command.of(tmp_path, usual)
-    assert "--camera-size 64x48" in command.of(tmp_path, plan("own:64x48"))
+    assert "--camera thor --camera-size 64x48" in cli_command.of(tmp_path, other)
+    assert "--camera" not in cli_command.of(tmp_path, usual)
+    assert "--camera-size 64x48" in cli_command.of(tmp_path, plan("own:64x48"))
 
 
 def test_every_trial_s_key_knows_the_camera() -> None:
     trials = [
-        session.sessions(suite(10), agent=crews.form(["scout"], ["frontier"], camera=camera))[0].trials[0]
+        sessions.sessions(suite(10), agent=robot_team.form(["scout"], ["frontier"], camera=camera))[0].trials[0]
         for camera in ("own", "own:64x48")
     ]
     assert [trial.robots[0].camera for trial in trials] == [msgspec.UNSET, "own:64x48"]
@@ -167,11 +170,11 @@ def test_every_trial_s_key_knows_the_camera() -> None:
 
 
 def test_the_options_reach_the_seats() -> None:
-    options = intent.Options(agents=("frontier",), camera="thor", camera_size="32x32")
-    chosen = programme.choose("smoke", "")
-    (crew,) = intent._crews(options, chosen, "own", cameras.tidy(options.camera, options.camera_size))
+    options = run_options.Options(agents=("frontier",), camera="thor", camera_size="32x32")
+    chosen = task_selection.choose("smoke", "")
+    (crew,) = run_options._crews(options, chosen, "own", cameras.tidy(options.camera, options.camera_size))
     assert [seat.camera for seat in crew.seats] == ["thor:32x32"]
-    (crew,) = crews.read("tall:oracle,small:frontier", (), camera="square")
+    (crew,) = robot_team.read("tall:oracle,small:frontier", (), camera="square")
     assert [seat.camera for seat in crew.seats] == ["square", "square"]
     assert isinstance(crew.listed[0], RobotSeat)
 

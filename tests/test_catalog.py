@@ -13,7 +13,7 @@ from hthor import catalog
 from hthor.catalog import priors, procthor
 from hthor.catalog.kind import Form, Kind
 from hthor.errors import HouseError, UnknownName
-from hthor.geometry import turn
+from hthor.geometry.plane import turn
 from hthor.types import Vec3
 
 KINDS = [catalog.kind(name) for name in catalog.names()]

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from test_check import SIDE, TABLE, house, on, thing
 
 from hthor import houses
-from hthor.houses import census
-from hthor.houses.census import measure, spread
+from hthor.houses import house_statistics
+from hthor.houses.house_statistics import measure, spread
 
 FAR = thing("sofa", "sofa", SIDE + 4.4, 2.5, math.pi / 2)
 
@@ -58,13 +58,13 @@ def test_spreads_are_ordered_and_hold_the_middle(values):
 
 def test_populations_pool_their_rooms():
     one, two = measure(house(TABLE)), measure(house(FAR, width=2.0))
-    pooled = census.census("both", [one, two])
+    pooled = house_statistics.census("both", [one, two])
     assert pooled.houses == 2
     assert pooled.figures["room, m2"].count == 4
     assert pooled.figures["rooms a house"].median == 2
     assert "kitchen, m2" not in pooled.figures
     with pytest.raises(ValueError, match="at least one"):
-        census.census("none", [])
+        house_statistics.census("none", [])
 
 
 def test_the_samples_look_as_the_published_figures_say(samples):

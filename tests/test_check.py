@@ -11,10 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor import catalog, houses
-from hthor.geometry import to_house
-from hthor.houses import boxes, plan_rules, solids
-from hthor.houses.check import STRICT, check
-from hthor.houses.findings import Finding, sound
+from hthor.geometry.plane import to_house
+from hthor.houses.checks import plan_rules
+from hthor.houses.checks.check import STRICT, check
+from hthor.houses.checks.findings import Finding, sound
+from hthor.houses.space import boxes, solids
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec2, Wall
 
 SIDE = 5.0

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from hthor.guest import Guest, IsolationError, choosing
+from hthor.guest import Guest, IsolationError
 from hthor.guest.confinement import paths
+from hthor.guest.host import isolation_level
 from tests.test_guest import HEAD, agent
 
 
@@ -27,7 +28,7 @@ def test_an_interpreter_in_a_folder_that_cannot_be_read_is_named(
     scratch = tmp_path / "scratch"
     scratch.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(scratch))
-    monkeypatch.setattr(choosing, "_missing", {})
+    monkeypatch.setattr(isolation_level, "_missing", {})
     monkeypatch.setattr(paths, "readable", _unreadable)
     told = r"cannot be had on this machine: .*Permission denied: /root/\.pyenv/versions"
     with pytest.raises(IsolationError, match=told), Guest(path, isolation=level) as mind:

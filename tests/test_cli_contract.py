@@ -14,12 +14,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from hthor import houses, plugins, tasks
-from hthor.cli import completing, ending, offers, reference
-from hthor.cli.app import app
-from hthor.eval import crews, engines, peoples, provenance
+from hthor import code_identity, houses, plugins, tasks
+from hthor.cli import app
+from hthor.console import completion, completion_values, exit_status, reference
+from hthor.eval.config import human_populations, robot_team
+from hthor.eval.runner import engines
 from hthor.guest.confinement import LEVELS
-from hthor.humans import kinds, population_file
+from hthor.humans.population import kinds, population_file
 
 FAKES = Path(__file__).with_name("command_fakes.py")
 WITHOUT_JSON = {
@@ -116,8 +117,8 @@ def test_130_is_an_interruption_and_the_same_command_resumes(tmp_path: Path) -> 
 
 def test_the_exit_codes_are_listed_where_people_look(root: Path) -> None:
     text = (root / "docs" / "cli.md").read_text()
-    assert all(f"| {code} | " in text for code in ending.CODES)
-    assert all(f" {code} {meaning}" in ending.words() for code, meaning in ending.CODES.items())
+    assert all(f"| {code} | " in text for code in exit_status.CODES)
+    assert all(f" {code} {meaning}" in exit_status.words() for code, meaning in exit_status.CODES.items())
 
 
 def test_every_command_that_has_something_to_tell_tells_programs() -> None:
@@ -180,7 +181,7 @@ def complete(words: str, folder: Path, shell: str = "bash") -> list[str]:
         "COMP_CWORD": str(words.count(" ")),
         "_TYPER_COMPLETE_ARGS": words,
     }
-    path = os.pathsep.join((str(Path(completing.__file__).parents[2]), os.environ.get("PYTHONPATH", "")))
+    path = os.pathsep.join((str(Path(completion.__file__).parents[2]), os.environ.get("PYTHONPATH", "")))
     environment = {**os.environ, **asked, "PYTHONPATH": path}
     done = subprocess.run([sys.executable, "-c", code], env=environment, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -194,25 +195,25 @@ def test_the_shell_completes_values(both: Path) -> None:
 
 
 def test_what_is_offered_is_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert offers.agents() == list(plugins.names("agent"))
-    assert offers.suites() == list(tasks.suites())
-    assert offers.houses() == list(houses.names())
-    assert offers.engines() == sorted(engines.names())
-    assert offers.robots() == sorted((*plugins.names("robot"), *crews.ALIASES))
-    assert offers.levels() == ["auto", *LEVELS]
+    assert completion_values.agents() == list(plugins.names("agent"))
+    assert completion_values.suites() == list(tasks.suites())
+    assert completion_values.houses() == list(houses.names())
+    assert completion_values.engines() == sorted(engines.names())
+    assert completion_values.robots() == sorted((*plugins.names("robot"), *robot_team.ALIASES))
+    assert completion_values.levels() == ["auto", *LEVELS]
     loaded = [plugins.load("task kind", name) for name in plugins.names("task kind")]
-    assert offers.kinds() == sorted({name for kind in loaded for name in (kind.name, kind.short)})
-    everybody = (*population_file.names(), *kinds.names(), *plugins.names("human model"), *peoples.WORDS)
-    assert offers.people() == sorted(set(everybody))
+    assert completion_values.kinds() == sorted({name for kind in loaded for name in (kind.name, kind.short)})
+    everybody = (*population_file.names(), *kinds.names(), *plugins.names("human model"), *human_populations.WORDS)
+    assert completion_values.people() == sorted(set(everybody))
     names = {param.name for _, one in reference.leaves() for param in one.params}
-    assert {offer.rpartition(" ")[2] for offer in completing.OFFERS} <= names
+    assert {offer.rpartition(" ")[2] for offer in completion.OFFERS} <= names
     (tmp_path / "runs" / "one" / "control").mkdir(parents=True)
     for folder in ("one", "one/control"):
         (tmp_path / "runs" / folder / "run.json").write_text("{}")
     monkeypatch.chdir(tmp_path)
-    assert offers.runs() == ["runs/one", "runs/one/control"]
-    assert offers.runs("runs/o") == offers.runs("runs/") == offers.runs()
-    assert offers.runs("nowhere/") == []
+    assert completion_values.runs() == ["runs/one", "runs/one/control"]
+    assert completion_values.runs("runs/o") == completion_values.runs("runs/") == completion_values.runs()
+    assert completion_values.runs("nowhere/") == []
 
 
 @pytest.mark.parametrize(
@@ -222,7 +223,7 @@ def test_every_command_keeps_compiled_code_in_one_place(words: list[str], monkey
     """Agents' processes look for it there too; without it each of them would compile for 20 s."""
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     CliRunner().invoke(app, words)
-    assert os.environ["NUMBA_CACHE_DIR"] == str(provenance.compiled())
+    assert os.environ["NUMBA_CACHE_DIR"] == str(code_identity.compiled())
 
 
 @pytest.mark.parametrize("within", [False, True])

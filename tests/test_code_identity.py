@@ -14,11 +14,14 @@ import pytest
 
 from hthor import code_identity, plugins, tasks
 from hthor.code_identity import PICTURES, SIMULATION, Sources
-from hthor.eval import cast, metrics, provenance, record, session
+from hthor.eval.config import sessions
+from hthor.eval.metrics import trial_metrics
+from hthor.eval.records import trial_record
+from hthor.eval.runner import trial_runner
 
 _OWN = (("human model", "proxy"), ("agent", "frontier"), ("robot", "scout"))
 ROOTS = (
-    *(cast.__name__, metrics.__name__, record.__name__),
+    *(trial_runner.__name__, trial_metrics.__name__, trial_record.__name__),
     *(plugins.module("task kind", name) for name in ("mobile_manipulation", "object_goal_navigation")),
     *(
         plugins.module(sort, name)
@@ -115,10 +118,13 @@ def test_spelling_does_not_count(sources: Sources, whole: str) -> None:
 
 def test_place_does_not_count(copy: Path, whole: str) -> None:
     """A module with another name in another package, imported as a module and by what is in it."""
-    for old, new in (("hthor.world.gaze", "hthor.world.sensing.visibility"), ("hthor.seeds", "hthor.randomness")):
+    for old, new in (
+        ("hthor.world.perception.visibility", "hthor.world.sensing.visibility"),
+        ("hthor.seeds", "hthor.randomness"),
+    ):
         _move(copy, old, new)
     moved = Sources(copy)
-    assert moved.module("hthor.world.gaze") is None
+    assert moved.module("hthor.world.perception.visibility") is None
     assert moved.module("hthor.seeds") is None
     assert moved.sha256(ROOTS) == whole
 
@@ -185,7 +191,7 @@ def test_what_one_module_says_reaches_the_hash(sources: Sources, whole: str) -> 
 
 def test_pictures_count_only_where_they_are_asked_for(sources: Sources, whole: str) -> None:
     drawn = sources.sha256(ROOTS, (SIMULATION, PICTURES))
-    for name in ("hthor.looks.beds", "hthor.world.shading"):
+    for name in ("hthor.looks.furniture.beds", "hthor.world.rendering.shading"):
         text = text_of(sources, name)
         other = edited(sources, {name: mutated(text, numbers(text) // 2)})
         assert other.sha256(ROOTS) == whole
@@ -193,17 +199,17 @@ def test_pictures_count_only_where_they_are_asked_for(sources: Sources, whole: s
 
 
 def test_processes_and_printing_do_not_count(sources: Sources, whole: str) -> None:
-    for name in ("hthor.guest.talk", "hthor.eval.report", "hthor.cli.runs"):
+    for name in ("hthor.guest.protocol.channel", "hthor.report.terminal.result_tables", "hthor.commands.eval.evaluate"):
         assert name not in sources.closure(ROOTS)
 
 
 def test_switching_an_import_counts(sources: Sources, whole: str) -> None:
     """Two modules that both count have something of the same name: taking it from the other is another program."""
-    text = text_of(sources, "hthor.eval.metrics")
+    text = text_of(sources, "hthor.eval.metrics.trial_metrics")
     line = "from hthor.eval import channel"
     assert line in text
     other = text.replace(line, line.replace("channel", "deeds as channel"))
-    assert edited(sources, {"hthor.eval.metrics": other}).sha256(ROOTS) != whole
+    assert edited(sources, {"hthor.eval.metrics.trial_metrics": other}).sha256(ROOTS) != whole
 
 
 def test_a_part_is_one_of_three(sources: Sources) -> None:
@@ -239,12 +245,12 @@ def test_a_circle_of_modules_has_a_hash(tmp_path: Path) -> None:
 def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent: str, robot: str, model: str) -> None:
     """A trial is played under a profiler: no function outside of the counted modules is called."""
     chosen = tasks.suite(suite)
-    stage = cast.Stage()
-    trial = session.sessions(chosen, agent=agent, robot=robot, human=model)[0].trials[0]
-    with stage.enter(session.sessions(chosen, agent=agent, robot=robot, human=model)[0]) as company:
+    stage = trial_runner.Stage()
+    trial = sessions.sessions(chosen, agent=agent, robot=robot, human=model)[0].trials[0]
+    with stage.enter(sessions.sessions(chosen, agent=agent, robot=robot, human=model)[0]) as company:
         world = stage.world(trial)
         called = _called(lambda: stage.play(company, trial, world))
-    roots = [cast.__name__, metrics.__name__, record.__name__]
+    roots = [trial_runner.__name__, trial_metrics.__name__, trial_record.__name__]
     own = (("human model", model), ("agent", agent), ("robot", robot), ("task kind", trial.task.kind))
     counted = set(sources.closure([*roots, *(plugins.module(sort, name) for sort, name in own)]))
     assert called > {"hthor.episode", "hthor.world.world"}
@@ -271,17 +277,17 @@ def _called(act: Any) -> set[str]:
 
 def test_what_robots_bring_counts_apart() -> None:
     """A run with a robot and its control without one have the same code."""
-    assert provenance.agent_sha256("frontier") != provenance.agent_sha256("oracle")
+    assert code_identity.agent_sha256("frontier") != code_identity.agent_sha256("oracle")
     kinds = ["mobile_manipulation"]
-    assert provenance.code_sha256("proxy", kinds) != provenance.code_sha256("greedy", kinds)
-    assert provenance.code_sha256("proxy", kinds) != provenance.code_sha256("proxy", [*kinds, "tidying_up"])
-    assert provenance.code_sha256("my_human.py", kinds) == provenance.code_sha256("other", kinds)
+    assert code_identity.code_sha256("proxy", kinds) != code_identity.code_sha256("greedy", kinds)
+    assert code_identity.code_sha256("proxy", kinds) != code_identity.code_sha256("proxy", [*kinds, "tidying_up"])
+    assert code_identity.code_sha256("my_human.py", kinds) == code_identity.code_sha256("other", kinds)
 
 
 def test_a_hash_that_is_kept_is_the_one_that_is_worked_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    first = provenance.agent_sha256("oracle")
+    first = code_identity.agent_sha256("oracle")
     (kept,) = (tmp_path / "hthor" / "code").iterdir()
-    assert kept.read_text() == first == provenance.agent_sha256("oracle")
+    assert kept.read_text() == first == code_identity.agent_sha256("oracle")
     kept.write_text("cut off")
-    assert provenance.agent_sha256("oracle") == first
+    assert code_identity.agent_sha256("oracle") == first

@@ -18,23 +18,12 @@ from scipy import stats as scipy_stats
 
 from hthor import jsonio
 from hthor.errors import HthorError, RunError
-from hthor.eval import (
-    compare,
-    contrast,
-    control,
-    judging,
-    pairing,
-    planning,
-    power,
-    progress,
-    ranking,
-    report,
-    result_file,
-    run,
-    score,
-    setup,
-    uplift,
-)
+from hthor.eval.comparison import better, compare, ranking, sample_size
+from hthor.eval.config import run_config
+from hthor.eval.results import aggregate, baseline, paired_difference, pairing, result_file, uplift
+from hthor.eval.runner import progress, run
+from hthor.eval.statistics import power
+from hthor.report.terminal import result_tables
 
 
 def _run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, make=fakes.player, count: int = 60) -> Path:
@@ -96,12 +85,12 @@ def test_a_comparison_is_the_mirror_of_its_mirror(runs: Path):
 @given(st.integers(0, 60), st.integers(0, 60))
 def test_mcnemar_is_the_binomial_test(one: int, other: int):
     expected = scipy_stats.binomtest(one, one + other).pvalue if one + other else 1.0
-    assert contrast.exact(one, other) == pytest.approx(expected, rel=1e-4)
+    assert paired_difference.exact(one, other) == pytest.approx(expected, rel=1e-4)
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=8))
 def test_holm_is_never_bolder_than_one_test_nor_shyer_than_bonferroni(p: list[float]):
-    adjusted = contrast.holm(p)
+    adjusted = paired_difference.holm(p)
     for before, after in zip(p, adjusted, strict=True):
         assert before - 1e-6 <= after <= min(1.0, before * len(p)) + 1e-6
     assert sorted(range(len(p)), key=lambda k: (p[k], k)) == sorted(range(len(p)), key=lambda k: (adjusted[k], p[k], k))
@@ -111,7 +100,7 @@ def test_holm_is_never_bolder_than_one_test_nor_shyer_than_bonferroni(p: list[fl
 @given(st.lists(st.tuples(st.booleans(), st.booleans()), min_size=2, max_size=50))
 def test_the_interval_and_p_say_the_same(outcomes: list[tuple[bool, bool]]):
     first, second = (np.array([pair[k] for pair in outcomes], dtype=float) for k in (0, 1))
-    found = contrast.between(first, second, np.arange(len(first)), np.arange(len(first)) // 10, share=True)
+    found = paired_difference.between(first, second, np.arange(len(first)), np.arange(len(first)) // 10, share=True)
     low, high = found.ci95
     assert low <= found.difference <= high
     assert found.separated == (low > 0.0 or high < 0.0)
@@ -127,7 +116,7 @@ def test_several_runs_are_compared_pair_by_pair(runs: Path):
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(0, 1)), min_size=1, max_size=8))
 def test_a_verdict_and_the_level_of_its_interval_say_the_same(differences: list[tuple[float, float]]):
-    for (difference, p), found in zip(differences, judging.judge(differences), strict=True):
+    for (difference, p), found in zip(differences, better.judge(differences), strict=True):
         assert found.among == len(differences)
         assert found.level >= 0.95
         if abs(p - (1.0 - found.level)) > 1e-5:
@@ -182,7 +171,7 @@ def test_a_comparison_and_a_plan_say_the_same_of_more_tasks(runs: Path, four: tu
     for one, other in ((four[0], four[2]), (four[1], four[3])):
         (pair,) = compare.pairs([one, other])
         with mock.patch.object(compare, "read", return_value=(one, other)):
-            plan = planning.plan([one.folder, other.folder], "", None, None, 0.8)
+            plan = sample_size.plan([one.folder, other.folder], "", None, None, 0.8)
         assert plan.more == pair.differences["sr"].more_tasks > 0
         assert plan.paired.trials == plan.more + pair.n
         words = power.about(plan.more)
@@ -190,12 +179,12 @@ def test_a_comparison_and_a_plan_say_the_same_of_more_tasks(runs: Path, four: tu
         assert f"about {words} more than the {pair.n}" in plan.sentence
     folders = [runs / "leaning" / "alone", runs / "leaning" / "better"]
     found = compare.runs(folders).pairs[0].differences["sr"]
-    assert planning.plan(folders, "", None, None, 0.8).more == found.more_tasks
+    assert sample_size.plan(folders, "", None, None, 0.8).more == found.more_tasks
 
 
 def test_a_plan_for_another_difference_scales_what_was_measured(runs: Path):
     folders = [runs / "leaning" / "alone", runs / "leaning" / "better"]
-    near, far = (planning.plan(folders, "", None, gap, 0.8) for gap in (0.05, 0.2))
+    near, far = (sample_size.plan(folders, "", None, gap, 0.8) for gap in (0.05, 0.2))
     assert near.paired.trials > far.paired.trials
     assert near.unpaired.trials > near.paired.trials
 
@@ -204,7 +193,7 @@ def test_other_conditions_are_refused_by_name(runs: Path, tmp_path: Path):
     other = _run(tmp_path, "helper", seed=1, count=10)
     with pytest.raises(RunError, match=r"suite\.sha256 is .* other tasks"):
         compare.runs([runs / "helper", other])
-    plan = setup.load(runs / "helper")
+    plan = run_config.load(runs / "helper")
     changes = {
         "seed": msgspec.structs.replace(plan, seed=9),
         "humans.sha256": msgspec.structs.replace(plan, humans=msgspec.structs.replace(plan.humans, sha256="0" * 64)),
@@ -232,7 +221,7 @@ def test_uplift_is_the_comparison_with_the_run_without_a_robot_that_lies_beside(
     assert result.uplift.sr == compare.runs([folder / "alone", folder / "better"]).pairs[0].differences["sr"]
     assert result_file.load(folder / "alone").uplift is None
     assert result_file.load(runs / "helper").uplift is None, "nothing without a robot lies beside it"
-    assert score.rescore(folder / "better")[1] == result
+    assert aggregate.rescore(folder / "better")[1] == result
 
 
 def _better(folder: Path) -> Path:
@@ -247,14 +236,14 @@ def test_a_copied_run_keeps_its_uplift_with_a_note_and_loses_the_note_where_its_
     before = result_file.load(whole)
     moved = shutil.copytree(whole, tmp_path / "far" / "off" / "copy")
     monkeypatch.chdir(moved.parent)
-    result_file.store(moved, score.rescore(moved)[1])
+    result_file.store(moved, aggregate.rescore(moved)[1])
     kept = result_file.load(moved).uplift
     assert kept.note == uplift.RECORDED
     assert msgspec.structs.replace(kept, note=msgspec.UNSET) == before.uplift
-    result_file.store(moved, score.rescore(moved)[1])
+    result_file.store(moved, aggregate.rescore(moved)[1])
     assert result_file.load(moved).uplift == kept, "once more changes nothing"
     monkeypatch.chdir(tmp_path)
-    assert score.rescore(moved)[1].uplift == before.uplift, "found below ./runs, by what it is"
+    assert aggregate.rescore(moved)[1].uplift == before.uplift, "found below ./runs, by what it is"
 
 
 def test_an_older_result_does_not_lose_its_uplift_either(tmp_path: Path, monkeypatch):
@@ -263,7 +252,7 @@ def test_an_older_result_does_not_lose_its_uplift_either(tmp_path: Path, monkeyp
     text = (whole / "result.json").read_text(encoding="utf-8").replace(result_file.SCHEMA, "hthor.result/2")
     shutil.rmtree(tmp_path / "runs" / "alone")
     (whole / "result.json").write_text(text, encoding="utf-8")
-    assert score.rescore(whole)[1].uplift.note == uplift.RECORDED
+    assert aggregate.rescore(whole)[1].uplift.note == uplift.RECORDED
 
 
 def test_a_finished_run_that_is_evaluated_again_without_its_control_keeps_its_uplift(tmp_path: Path, monkeypatch):
@@ -280,12 +269,12 @@ def test_of_several_controls_it_is_the_one_that_the_result_names(tmp_path: Path,
     whole = _better(tmp_path / "runs")
     named = result_file.load(whole).uplift.control
     other = shutil.copytree(tmp_path / "runs" / "alone", tmp_path / "runs" / "aaa")
-    plan = setup.load(other)
+    plan = run_config.load(other)
     assert plan.sha256 == named
     (other / "run.json").write_bytes(jsonio.pretty(msgspec.structs.replace(plan, versions={"hthor": "another"})))
-    assert setup.load(other).sha256 != named
-    assert score.rescore(whole)[1].uplift.control == named
-    assert control.place(whole, setup.load(whole)).name == "alone"
+    assert run_config.load(other).sha256 != named
+    assert aggregate.rescore(whole)[1].uplift.control == named
+    assert baseline.place(whole, run_config.load(whole)).name == "alone"
 
 
 def test_a_result_of_another_run_lends_no_uplift(tmp_path: Path, monkeypatch):
@@ -294,16 +283,16 @@ def test_a_result_of_another_run_lends_no_uplift(tmp_path: Path, monkeypatch):
     shutil.rmtree(tmp_path / "runs" / "alone")
     assert result_file.uplift(whole, run="0" * 64) is None
     (whole / "result.json").write_text("[" * 100_000, encoding="utf-8")
-    assert result_file.uplift(whole, run=setup.load(whole).sha256) is None
+    assert result_file.uplift(whole, run=run_config.load(whole).sha256) is None
 
 
 def test_half_a_control_is_none(tmp_path: Path):
     folder = _run(tmp_path, "helper", count=20)
     alone = _run(tmp_path, "alone", absent=True, count=20)
-    assert control.find(folder, setup.load(folder)) is not None
+    assert baseline.find(folder, run_config.load(folder)) is not None
     lines = (alone / "trials.jsonl").read_bytes().splitlines(keepends=True)
     (alone / "trials.jsonl").write_bytes(b"".join(lines[:-1]))
-    assert control.find(folder, setup.load(folder)) is None
+    assert baseline.find(folder, run_config.load(folder)) is None
 
 
 # -------------------------------------------------------------------------------------------------------------- power
@@ -331,19 +320,19 @@ def test_what_cannot_be_is_refused():
         power.need(0.5, 0.5)
     for rates, difference in (("0.73,1.2", None), ("0.73,0.76", 0.4)):
         with pytest.raises(HthorError, match="second rate"):
-            planning.plan((), rates, None, difference, 0.8)
+            sample_size.plan((), rates, None, difference, 0.8)
     with pytest.raises(HthorError, match="two rates"):
-        planning.plan((), "0.5", None, None, 0.8)
+        sample_size.plan((), "0.5", None, None, 0.8)
 
 
 def test_a_difference_that_cannot_be_is_not_one_that_could_have_been_seen():
-    shares = [report.least(value, 100.0, room=True) for value in (None, 0.0, 0.123, 1.4)]
+    shares = [result_tables.least(value, 100.0, room=True) for value in (None, 0.0, 0.123, 1.4)]
     assert shares == ["–", "–", "12.3", "> 100"]
-    assert report.least(1.4, 1.0, room=False) == "1.4"
+    assert result_tables.least(1.4, 1.0, room=False) == "1.4"
 
 
 def test_a_plan_from_two_runs_has_their_rates_and_correlation(runs: Path):
-    found = planning.plan([runs / "leaning" / "alone", runs / "leaning" / "better"], "", None, None, 0.8)
+    found = sample_size.plan([runs / "leaning" / "alone", runs / "leaning" / "better"], "", None, None, 0.8)
     assert found.measured
     assert found.paired.trials < found.unpaired.trials
     assert found.second > found.first
@@ -351,4 +340,4 @@ def test_a_plan_from_two_runs_has_their_rates_and_correlation(runs: Path):
 
 @pytest.mark.parametrize("value", [-0.0004, -0.0, 0.0])
 def test_nothing_has_no_minus(value: float) -> None:
-    assert report._gain(value, "points") == "+0.0"
+    assert result_tables._gain(value, "points") == "+0.0"

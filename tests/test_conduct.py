@@ -6,8 +6,9 @@ import msgspec
 import pytest
 
 from hthor.episode import EpisodeLog
-from hthor.eval import conduct, points
-from hthor.eval.rehearsal import Notes
+from hthor.eval.agent_check import criteria
+from hthor.eval.agent_check.probe_trials import Notes
+from hthor.eval.metrics import conduct
 from hthor.types import HUMAN, Event
 
 NOTES = Notes(
@@ -62,16 +63,16 @@ def test_the_same_again_is_a_repetition_unless_it_was_declined():
     ],
 )
 def test_warnings_name_what_was_counted(changes: dict[str, object], told: str):
-    found = points.warnings((msgspec.structs.replace(NOTES, **changes),), _Character())
+    found = criteria.warnings((msgspec.structs.replace(NOTES, **changes),), _Character())
     assert [one.status for one in found] == ["warning"] * bool(told)
     assert all(told in one.told and one.advice for one in found)
 
 
 def test_the_share_of_thinking_is_of_the_trials_time():
     """300 steps of 0.4 ms in 30 s, however long it took to play them."""
-    assert points.figures(NOTES)["share"] == pytest.approx(0.004)
-    assert "0.4 % of the trial's 30 s" in points.speed(NOTES).told
-    assert points.speed(msgspec.structs.replace(NOTES, thought_s=(0.2,) * 300)).status == "warning"
+    assert criteria.figures(NOTES)["share"] == pytest.approx(0.004)
+    assert "0.4 % of the trial's 30 s" in criteria.speed(NOTES).told
+    assert criteria.speed(msgspec.structs.replace(NOTES, thought_s=(0.2,) * 300)).status == "warning"
 
 
 class _Character:

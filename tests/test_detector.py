@@ -11,12 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from world_house import COFFEE, TABLE, on, task, wait
 
-from hthor import detectors
 from hthor.errors import HthorError
-from hthor.eval import record, score, session, setup
-from hthor.types import Detection, DetectorSpec, Pick, Pose
+from hthor.eval.config import run_config, sessions
+from hthor.eval.records import trial_record
+from hthor.eval.results import aggregate
+from hthor.types import Detection, DetectorSpec, Pick, Pose, detector_specs
 from hthor.world import World
-from hthor.world.detector import GLIMPSE_TICKS
+from hthor.world.perception.detector_noise import GLIMPSE_TICKS
 
 HUMAN = Pose(x=8.6, y=1.2)
 AT_TABLE = Pose(x=2.5, y=3.4, yaw=-math.pi / 2, pitch=-0.3)
@@ -128,8 +129,8 @@ def test_the_person_s_eyes_never_err(worlds: dict[str, World]) -> None:
 
 def test_a_body_declares_its_own_and_a_trial_overrules_it() -> None:
     assert World(tiny.house(), robots=("scout", "scout"), detectors=("noisy",)).detectors == {
-        "robot": detectors.NOISY,
-        "robot2": detectors.IDEAL,
+        "robot": detector_specs.NOISY,
+        "robot2": detector_specs.IDEAL,
     }
     with pytest.raises(HthorError, match="2 detectors for 1 robots"):
         World(tiny.house(), robots=("scout",), detectors=("ideal", "ideal"))
@@ -137,36 +138,36 @@ def test_a_body_declares_its_own_and_a_trial_overrules_it() -> None:
 
 @given(miss=st.floats(0, 1), false_alarm=st.floats(0, 1), sigma=st.floats(0, 1))
 def test_rates_are_read_back_from_their_one_spelling(miss: float, false_alarm: float, sigma: float) -> None:
-    spec = detectors.read(f"position_sigma={sigma!r}, miss={miss!r},false_alarm={false_alarm!r}")
-    again = detectors.read(spec.name)
-    assert again == detectors.read(again.name)
+    spec = detector_specs.read(f"position_sigma={sigma!r}, miss={miss!r},false_alarm={false_alarm!r}")
+    again = detector_specs.read(spec.name)
+    assert again == detector_specs.read(again.name)
     assert (again.miss, again.false_alarm, again.position_sigma) == pytest.approx((miss, false_alarm, sigma), abs=1e-9)
 
 
 def test_names_of_detectors() -> None:
-    assert detectors.read("ideal") == DetectorSpec(name="ideal")
-    assert detectors.read("miss=0") == detectors.IDEAL
-    assert detectors.read("false_alarm=0.05,miss=.2").name == "miss=0.2,false_alarm=0.05"
-    assert detectors.tidy("own") == "own"
+    assert detector_specs.read("ideal") == DetectorSpec(name="ideal")
+    assert detector_specs.read("miss=0") == detector_specs.IDEAL
+    assert detector_specs.read("false_alarm=0.05,miss=.2").name == "miss=0.2,false_alarm=0.05"
+    assert detector_specs.tidy("own") == "own"
     for text in ("perfect", "miss", "miss=0.1,miss=0.2", "hit=0.5"):
         with pytest.raises(HthorError, match=r"unknown detector.*Valid: own, ideal, noisy"):
-            detectors.read(text)
+            detector_specs.read(text)
     for text in ("miss=1.5", "miss=-0.1", "false_alarm=nan", "position_sigma=much"):
         with pytest.raises(HthorError, match="must be from 0 to 1"):
-            detectors.tidy(text)
+            detector_specs.tidy(text)
 
 
 def test_a_run_says_which_detector_it_used() -> None:
     suite = fakes.suite(10)
-    text = detectors.tidy("false_alarm=0.05,miss=0.2")
+    text = detector_specs.tidy("false_alarm=0.05,miss=0.2")
     crews = [fakes.crew("helper", detector=detector) for detector in ("own", text)]
-    plain, noisy = (setup.settle(suite, crew, human="proxy", seed=0, participants=None) for crew in crews)
+    plain, noisy = (run_config.settle(suite, crew, human="proxy", seed=0, participants=None) for crew in crews)
     assert [plan.robots[0].detector for plan in (plain, noisy)] == ["own", "miss=0.2,false_alarm=0.05"]
     assert plain.folder_name != noisy.folder_name
-    dealt = session.sessions(suite, agent=crews[1])
+    dealt = sessions.sessions(suite, agent=crews[1])
     assert {seat.detector for trial in dealt[0].trials for seat in trial.robots} == {text}
-    keys = {record.key(trial) for trial in session.sessions(suite, agent=crews[0])[0].trials}
-    assert keys.isdisjoint(record.key(trial) for trial in dealt[0].trials)
-    assert score.summarise(noisy, [], []).robots[0].detector == text
+    keys = {trial_record.key(trial) for trial in sessions.sessions(suite, agent=crews[0])[0].trials}
+    assert keys.isdisjoint(trial_record.key(trial) for trial in dealt[0].trials)
+    assert aggregate.summarise(noisy, [], []).robots[0].detector == text
     alone = fakes.crew("silent", absent=True)
-    assert setup.settle(suite, alone, human="proxy", seed=0, participants=None).robots[0].detector == ""
+    assert run_config.settle(suite, alone, human="proxy", seed=0, participants=None).robots[0].detector == ""

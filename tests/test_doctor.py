@@ -10,10 +10,10 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from hthor.eval.health import drawing, levels, libraries, machine, sameness
-from hthor.eval.health.drawing import Drawn
-from hthor.eval.health.finding import Finding, Health
-from hthor.eval.health.sameness import Course
+from hthor.eval.doctor import hardware, isolation_levels, libraries, rendering, reproducibility
+from hthor.eval.doctor.rendering import Drawn
+from hthor.eval.doctor.reproducibility import Course
+from hthor.eval.doctor.result import Finding, Health
 from hthor.guest import IsolationError
 
 STALE = "trials go otherwise than before: if that is meant, renew the reference with 'hthor doctor --write-reference'"
@@ -68,19 +68,19 @@ HERE = Course(trial="t", sha256="1", outcome={"met": True}, platform={"cpu": "on
     ],
 )
 def test_another_platform_may_differ_in_bytes_and_this_one_in_nothing(monkeypatch, changed, status, words) -> None:
-    monkeypatch.setattr(sameness, "reference", lambda: HERE)
-    (one,) = sameness.findings(msgspec.structs.replace(HERE, **changed))
+    monkeypatch.setattr(reproducibility, "reference", lambda: HERE)
+    (one,) = reproducibility.findings(msgspec.structs.replace(HERE, **changed))
     assert one.status == status
     assert words in one.says
 
 
 def test_what_crashes_or_is_blank_is_told_with_a_way_out() -> None:
-    assert [one.status for one in sameness.findings("it ended with signal 11")] == ["fail"]
-    assert [one.status for one in drawing.findings("it ended with signal 11")] == ["fail"]
-    assert [one.status for one in drawing.findings(Drawn(fast=1, nice=90, backend="egl"))] == ["fail", "ok"]
+    assert [one.status for one in reproducibility.findings("it ended with signal 11")] == ["fail"]
+    assert [one.status for one in rendering.findings("it ended with signal 11")] == ["fail"]
+    assert [one.status for one in rendering.findings(Drawn(fast=1, nice=90, backend="egl"))] == ["fail", "ok"]
     blank, none = Drawn(fast=90, nice=1, backend="egl"), Drawn(fast=90, reason="egl: no library")
     for drawn, word in ((blank, "blank"), (none, "no library")):
-        one = drawing.findings(drawn)[1]
+        one = rendering.findings(drawn)[1]
         assert one.status == "warn"
         assert word in one.says
         assert "apt-get install libegl1" in one.fix
@@ -112,11 +112,11 @@ def test_a_level_that_does_not_start_comes_with_its_fix(monkeypatch, level, file
     def refuse(wanted: str) -> None:
         raise IsolationError(f"isolation {wanted} cannot be had on this machine: it is forbidden. 'hthor eval' helps.")
 
-    monkeypatch.setattr(levels, "in_force", refuse)
-    monkeypatch.setattr(levels, "_read", lambda path: files.get(path, ""))
-    monkeypatch.setattr(levels.shutil, "which", lambda _: bwrap)
-    monkeypatch.setattr(levels.platform, "release", lambda: kernel)
-    by_name = {one.name: one for one in levels.findings("L2")}
+    monkeypatch.setattr(isolation_levels, "in_force", refuse)
+    monkeypatch.setattr(isolation_levels, "_read", lambda path: files.get(path, ""))
+    monkeypatch.setattr(isolation_levels.shutil, "which", lambda _: bwrap)
+    monkeypatch.setattr(isolation_levels.platform, "release", lambda: kernel)
+    by_name = {one.name: one for one in isolation_levels.findings("L2")}
     assert by_name["isolation L3"].status == "warn"
     assert by_name["isolation L2"].status == "fail"
     assert by_name[f"isolation {level}"].says == "it is forbidden"
@@ -135,6 +135,6 @@ def test_a_library_of_another_version_fails_or_warns(monkeypatch) -> None:
 
 def test_a_place_that_cannot_be_written_to_fails(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    by_name = {one.name: one for one in machine.findings(tmp_path / "file" / "runs")}
+    by_name = {one.name: one for one in hardware.findings(tmp_path / "file" / "runs")}
     assert by_name["disk"].status == "fail"
     assert os.listdir(tmp_path) == ["file"]

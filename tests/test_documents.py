@@ -16,21 +16,27 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hthor import documents, jsonio
-from hthor.calibration import ledger, targets
-from hthor.calibration.report import evidence
+from hthor import code_identity, documents, jsonio
+from hthor.calibration import targets
+from hthor.calibration.pipeline import evidence
+from hthor.calibration.simulation import session_store
 from hthor.catalog import procthor
 from hthor.errors import HouseError, HthorError, PeopleError, RunError, TaskError
-from hthor.eval import guarded, log, machine, provenance, remains, result_file, setup
-from hthor.eval.pages import origin
+from hthor.eval.config import run_config
+from hthor.eval.records import platform, run_isolation, trial_log
+from hthor.eval.results import result_file
+from hthor.eval.runner import fault_report
 from hthor.guest import Isolation
 from hthor.houses import schema as house_file
-from hthor.humans import kinds, past, people, population_file
-from hthor.leaderboard import files as board_files
-from hthor.leaderboard import form, schema, submission
-from hthor.leaderboard.files import BoardError
+from hthor.humans.models import _logged_trials
+from hthor.humans.population import kinds, population_file, resolve
+from hthor.leaderboard import canonical_form, schema
+from hthor.leaderboard.entries import files as board_files
+from hthor.leaderboard.entries.files import BoardError
+from hthor.leaderboard.submission import submission
 from hthor.looks.pack import PackError, store
-from hthor.tasks import commitment, library
+from hthor.report.analysis import run_provenance
+from hthor.tasks.suites import commitment, library
 
 DEEP = 100_000
 DAMAGES = {
@@ -59,17 +65,17 @@ def _lines(read: Callable[[Path], Any]) -> Callable[[Path], Any]:
 
 
 READERS: dict[str, tuple[str, type[HthorError], Callable[[Path], Any]]] = {
-    "run": ("run.json", RunError, lambda path: setup.load(path.parent)),
+    "run": ("run.json", RunError, lambda path: run_config.load(path.parent)),
     "result": ("result.json", RunError, lambda path: result_file.load(path.parent)),
-    "trials": ("trials.jsonl", RunError, _lines(lambda path: list(log.read(path)))),
-    "isolation": ("isolation.json", RunError, lambda path: guarded.load(path.parent)),
-    "platform": ("platform.json", RunError, lambda path: machine.load(path.parent)),
-    "platform of a report": ("platform.json", RunError, lambda path: origin._platforms(_Run(path.parent))),
-    "faults": ("faults.json", RunError, remains.load),
+    "trials": ("trials.jsonl", RunError, _lines(lambda path: list(trial_log.read(path)))),
+    "isolation": ("isolation.json", RunError, lambda path: run_isolation.load(path.parent)),
+    "platform": ("platform.json", RunError, lambda path: platform.load(path.parent)),
+    "platform of a report": ("platform.json", RunError, lambda path: run_provenance._platforms(_Run(path.parent))),
+    "faults": ("faults.json", RunError, fault_report.load),
     "population": ("pop.json", PeopleError, lambda path: population_file._document(path)),
-    "people": ("pop.json", HthorError, lambda path: people.find(str(path))),
+    "people": ("pop.json", HthorError, lambda path: resolve.find(str(path))),
     "kind of people": ("quick.json", PeopleError, kinds.load),
-    "past trials": ("past.jsonl", HthorError, _lines(lambda path: past._read(str(path)))),
+    "past trials": ("past.jsonl", HthorError, _lines(lambda path: _logged_trials._read(str(path)))),
     "suite": ("suite.json", TaskError, library.read),
     "commitment": ("commitment.json", TaskError, commitment.load),
     "revealed": ("revealed.json", TaskError, lambda path: commitment.revealed(path.parent)),
@@ -79,7 +85,7 @@ READERS: dict[str, tuple[str, type[HthorError], Callable[[Path], Any]]] = {
     "entry": ("entry.json", BoardError, board_files.read),
     "targets": ("targets.json", HthorError, targets.load),
     "evidence": ("validation.json", RunError, evidence.load),
-    "sessions": ("sessions.jsonl", RunError, _lines(lambda path: list(ledger.read(path)))),
+    "sessions": ("sessions.jsonl", RunError, _lines(lambda path: list(session_store.read(path)))),
 }
 
 
@@ -106,7 +112,7 @@ def test_every_reader_refuses_damage_with_its_own_error(reader: str, damage: str
 def test_damaged_entries_and_submissions_are_problems(damage: str, tmp_path: Path):
     path = tmp_path / "entry.json"
     path.write_bytes(DAMAGES[damage])
-    assert [one.file for one in form.problems(path)] == [str(path)]
+    assert [one.file for one in canonical_form.problems(path)] == [str(path)]
     handed = tmp_path / "mine"
     handed.mkdir()
     (handed / "agent.py").write_text("class Agent: ...\n")
@@ -125,9 +131,9 @@ def test_damage_that_is_only_looked_at_raises_nothing(damage: str, tmp_path: Pat
 def test_a_level_of_isolation_that_does_not_exist_is_refused(tmp_path: Path):
     (tmp_path / "isolation.json").write_text('{"level": "L9"}')
     with pytest.raises(RunError, match=r"isolation\.json: .*level is 'L9', valid are served, L1, L2, L3"):
-        guarded.load(tmp_path)
+        run_isolation.load(tmp_path)
     with pytest.raises(RunError, match="L9"):
-        guarded.weakest(tmp_path, Isolation(level="L1"), "L2")
+        run_isolation.weakest(tmp_path, Isolation(level="L1"), "L2")
 
 
 def test_the_error_names_file_and_field(tmp_path: Path):
@@ -145,11 +151,11 @@ def test_every_file_is_read_by_the_one_reader(root: Path):
     listed = {
         "hthor/documents.py",
         "hthor/catalog/priors/__init__.py",  # these ship with hthor
-        "hthor/tasks/judgement.py",
-        "hthor/eval/health/sameness.py",
-        "hthor/tasks/official.py",  # made a moment before
-        "hthor/tasks/packing.py",
-        "hthor/eval/health/probe.py",  # the output of a process of ours
+        "hthor/tasks/generation/commonsense_places.py",
+        "hthor/eval/doctor/reproducibility.py",
+        "hthor/tasks/suites/secret_suites.py",  # made a moment before
+        "hthor/tasks/suites/suite_files.py",
+        "hthor/eval/doctor/subprocess_probe.py",  # the output of a process of ours
         "hthor/houses/schema.py",  # names line and column
     }
     found = {
@@ -177,7 +183,7 @@ _VALUES = (None, 0, -1, 1.5, 2**70, "", "x", "L9", "served", [], {}, True, "0" *
 @pytest.fixture(scope="module")
 def entry(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The file of a made-up entry."""
-    with mock.patch.object(provenance, "code_sha256", return_value="34" * 32):
+    with mock.patch.object(code_identity, "code_sha256", return_value="34" * 32):
         board = board_fakes.filled(board_fakes.play(tmp_path_factory.mktemp("runs")), tmp_path_factory.mktemp("board"))
     return board_fakes.entry_of(board, "helper")
 
@@ -204,6 +210,8 @@ def test_the_schema_is_kept_without_a_library_for_schemas(
     path = tmp_path_factory.mktemp("entries") / source.name
     path.write_bytes(jsonio.pretty(changed))
     valid = jsonschema.Draft202012Validator(schema.of("Entry")).is_valid(changed)
-    assert valid <= (not [one for one in form.problems(path) if one.field not in ("id", form.SPELLING)])
+    assert valid <= (
+        not [one for one in canonical_form.problems(path) if one.field not in ("id", canonical_form.SPELLING)]
+    )
     if not valid:
-        assert list(form.problems(path))
+        assert list(canonical_form.problems(path))

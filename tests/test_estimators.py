@@ -13,38 +13,35 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hthor import seeds, tasks
-from hthor.calibration.logs import (
-    accepting,
-    beliefs,
-    choosing,
-    conduct,
-    estimate,
-    gather,
-    mixed,
-    noticing,
-    reading,
-    recovery,
-    sessions,
-    timing,
-    trusting,
+from hthor.calibration.from_logs import estimate, estimate_all, load_sessions, parameter_recovery, run
+from hthor.calibration.from_logs.features.messages import Offer, Reading
+from hthor.calibration.from_logs.models import (
+    acceptance_model,
+    choice_model,
+    detection_model,
+    mixed_effects,
+    priors,
+    reading_time,
+    timing_models,
+    trust_model,
 )
-from hthor.calibration.logs.beliefs import on
-from hthor.calibration.logs.choosing import Choice
-from hthor.calibration.logs.mails import Offer, Reading
-from hthor.calibration.logs.mixed import Fit, Term
-from hthor.calibration.logs.noticing import Exposure
-from hthor.calibration.logs.trusting import Experience
-from hthor.calibration.logs.update import update
+from hthor.calibration.from_logs.models.choice_model import Choice
+from hthor.calibration.from_logs.models.detection_model import Exposure
+from hthor.calibration.from_logs.models.mixed_effects import Fit, Term
+from hthor.calibration.from_logs.models.priors import on
+from hthor.calibration.from_logs.models.trust_model import Experience
+from hthor.calibration.from_logs.update_population import update
 from hthor.errors import RunError
-from hthor.eval import cast, record
-from hthor.eval.record import Record
-from hthor.humans.parameters import Parameters
-from hthor.humans.population import Population
-from hthor.humans.trust import Experience as Lived
-from hthor.humans.trust import Trust, initial
-from hthor.tasks import library
+from hthor.eval.records import trial_record
+from hthor.eval.records.trial_record import Record
+from hthor.eval.runner import trial_runner
+from hthor.humans.communication.trust import Experience as Lived
+from hthor.humans.communication.trust import Trust, initial
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.population.population import Population
+from hthor.tasks.suites import library
 
-BELIEFS = beliefs.of_registry()
+BELIEFS = priors.of_registry()
 PEOPLE = 12
 RNG = "estimators"
 
@@ -69,7 +66,7 @@ def test_a_random_effect_is_told_from_noise(rng: np.random.Generator) -> None:
         return -0.5 * ((y - values["m"] - effects) / 0.3) ** 2
 
     wide = [Term(name="m", start=0.0, sd=100.0)]
-    found = mixed.fit(likelihood, wide, person, Term(name="spread", start=-1.0, sd=100.0))
+    found = mixed_effects.fit(likelihood, wide, person, Term(name="spread", start=-1.0, sd=100.0))
     means = np.bincount(person, y) / 8.0
     exact = math.sqrt(means.var() - 0.3**2 / 8.0)  # where the likelihood of the thirty means is largest
     assert found.value["m"] == pytest.approx(means.mean(), abs=1e-3)
@@ -85,8 +82,8 @@ def test_a_median_is_found_with_practice_and_with_what_the_device_cuts_off(rng: 
     pace = 0.8 * np.exp(own) * (1.0 + 0.3 * (1.0 - np.exp(-index / 3.0))) * np.exp(rng.normal(0.0, 0.03, len(person)))
     rows = [(min(y, 1.0), p, i, int(y >= 1.0)) for y, p, i in zip(pace, person, index, strict=True)]
     assert sum(cut for *_, cut in rows) > 30
-    data, terms = timing.sample(rows), (BELIEFS["v_pace"].term(), BELIEFS["learn"].term())
-    found = timing.log_normal(data, terms[0], 0.5, noise=0.03, practice=1, learn=terms[1])
+    data, terms = timing_models.sample(rows), (BELIEFS["v_pace"].term(), BELIEFS["learn"].term())
+    found = timing_models.log_normal(data, terms[0], 0.5, noise=0.03, practice=1, learn=terms[1])
     assert near(found, "v_pace", math.log(0.8))
     assert near(found, "learn", 0.3)
     assert math.exp(found.value["spread"]) == pytest.approx(0.15, rel=0.5)
@@ -109,7 +106,7 @@ def some_choices(rng: np.random.Generator, beta: float, kappa: float, w: float, 
 
 def test_choices_tell_rationality_and_the_weight_of_time(rng: np.random.Generator) -> None:
     made = list(some_choices(rng, beta=2.0, kappa=0.8, w=0.7, count=600))
-    found = choosing.conditional_logit(made, np.arange(600) % PEOPLE, BELIEFS)
+    found = choice_model.conditional_logit(made, np.arange(600) % PEOPLE, BELIEFS)
     assert near(found, "beta", math.log(2.0))
     assert near(found, "kappa", 0.8)
     assert near(found, "w_prior", float(on(0.7, "logit")))
@@ -129,7 +126,7 @@ def test_exposures_tell_the_rate_of_noticing(rng: np.random.Generator) -> None:
             noticed = float(rng.random()) < 1.0 - math.exp(-rate * 0.3)
         found.append(Exposure(rows=rows, noticed=noticed))
         person.append(k % PEOPLE)
-    fit = noticing.regression(found, np.array(person), BELIEFS)
+    fit = detection_model.regression(found, np.array(person), BELIEFS)
     assert near(fit, "lam0", math.log(1.2))
     assert near(fit, "a50", 0.04)
 
@@ -143,7 +140,7 @@ def test_reading_time_is_found_though_some_never_answer(rng: np.random.Generator
         notice, reads = 1.4 * math.exp(rng.normal(0.0, 0.4)), 3.5 * length * math.exp(own[who] + rng.normal(0.0, 0.4))
         left = bool(rng.random() < 0.15)
         read.append(Reading(seconds=40.0 if left else notice + reads, answered=not left, words=words, known=known))
-    fit = reading.durations(read, person, BELIEFS)
+    fit = reading_time.durations(read, person, BELIEFS)
     total = math.exp(fit.value["t_notice"]) + math.exp(fit.value["t_read"])
     assert total == pytest.approx(1.4 + 3.5, rel=0.1)
 
@@ -156,14 +153,14 @@ def test_answers_tell_willingness_and_what_sways_it(rng: np.random.Generator) ->
         logit = 0.5 + own[who] + 4.0 * (level - 0.5) + 0.5 * math.log1p(gain) - 1.5 * load - 0.5 * again
         said = bool(rng.random() < 1.0 / (1.0 + math.exp(-logit)))
         offers.append(Offer(gain=gain, load=load, again=again, confirmed=said))
-    fit = accepting.regression(offers, trust, person, BELIEFS)
+    fit = acceptance_model.regression(offers, trust, person, BELIEFS)
     for name, truth in (("a0", 0.5), ("a_trust", 4.0), ("a_gain", 0.5), ("a_load", 1.5), ("a_again", 0.5)):
         assert abs(fit.value[name] - truth) < 3.0 * fit.se[name], name
     assert near(fit, "a0", 0.5)
 
 
 def a_session(rng: np.random.Generator, traits: Parameters) -> list[Experience]:
-    """Ten trials as `hthor.humans.trust` has them, with their ratings."""
+    """Ten trials as `hthor.humans.communication.trust` has them, with their ratings."""
     trust, seen = initial(traits), []
     for _ in range(10):
         offered, met = bool(rng.random() < 0.8), bool(rng.random() < 0.7)
@@ -184,7 +181,7 @@ def test_ratings_tell_first_trust_and_what_moves_it(rng: np.random.Generator) ->
     for _ in range(24):
         mu0 = 1.0 / (1.0 + math.exp(-(0.8 + 0.4 * float(rng.normal()))))
         people.append(a_session(rng, Parameters(mu0=mu0, n0=6.0, w_s=2.5, w_f=0.8)))
-    fit = trusting.dynamics(trusting.course(people, np.arange(24)), BELIEFS)
+    fit = trust_model.dynamics(trust_model.course(people, np.arange(24)), BELIEFS)
     assert near(fit, "mu0", 0.8)
     assert near(fit, "w_s", math.log(2.5))
     assert near(fit, "w_f", math.log(0.8))
@@ -199,7 +196,7 @@ def test_trust_is_followed_as_the_person_has_it(rng: np.random.Generator) -> Non
         "mu0": float(on(0.4, "logit")),
         **{k: math.log(getattr(traits, k)) for k in ("n0", "w_s", "w_f", "tau_s")},
     }
-    before, after = trusting.means(trusting.course([session], np.array([0])), values, np.zeros(1))
+    before, after = trust_model.means(trust_model.course([session], np.array([0])), values, np.zeros(1))
     trust: Trust = initial(traits)
     for k, one in enumerate(session):
         assert before[0, k] == pytest.approx(trust.mean)
@@ -244,7 +241,7 @@ def correlated(rng: np.random.Generator) -> np.ndarray:
 def test_what_was_measured_is_replaced_and_the_rest_follows(rng: np.random.Generator) -> None:
     draws = correlated(rng)
     names, weights = ("t_manip", "tau_mem"), np.full(1000, 1e-3)
-    held = beliefs.of_draws(names, draws, weights)
+    held = priors.of_draws(names, draws, weights)
     found = estimate.of(held["t_manip"], 1.1 + 0.5, 0.05, 100, "")
     new = update(names, draws, weights, held, [found], seed=1)
     logs = np.log(new.draws)
@@ -260,7 +257,7 @@ def test_what_was_measured_is_replaced_and_the_rest_follows(rng: np.random.Gener
 
 def test_too_few_data_leave_a_population_as_it_was(rng: np.random.Generator) -> None:
     draws, weights = correlated(rng), np.full(1000, 1e-3)
-    held = beliefs.of_draws(("t_manip", "tau_mem"), draws, weights)
+    held = priors.of_draws(("t_manip", "tau_mem"), draws, weights)
     found = estimate.of(held["t_manip"], 2.5, 0.05, 3, "")
     new = update(("t_manip", "tau_mem"), draws, weights, held, [found], seed=1)
     assert new.direct == ()
@@ -276,17 +273,17 @@ def played() -> tuple[Parameters, list[Record]]:
     smoke = tasks.suite("smoke")
     few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house in ("alder", "hazel"))[:4])
     population = Parameters(v_pace=0.45, omega=1.2, t_manip=1.6, t_read=4.2, sigma=0.1, a0=3.0)
-    return population, recovery.logs(population, few, cast.Stage(), seed=5, people=6)
+    return population, parameter_recovery.logs(population, few, trial_runner.Stage(), seed=5, people=6)
 
 
 def test_real_logs_tell_what_people_were_made_of(played: tuple[Parameters, list[Record]]) -> None:
     population, records = played
-    found = {one.name: one for one in gather.everything(sessions.of(records), BELIEFS)}
+    found = {one.name: one for one in estimate_all.everything(load_sessions.of(records), BELIEFS)}
     for name, off in (("v_pace", 0.1), ("omega", 0.1), ("t_manip", 0.35)):
         assert found[name].value == pytest.approx(getattr(population, name), rel=off), name
-    assert found[gather.READING].value == pytest.approx(population.t_notice + population.t_read, rel=0.35)
+    assert found[estimate_all.READING].value == pytest.approx(population.t_notice + population.t_read, rel=0.35)
     assert found["t_on"].value == pytest.approx(population.t_on, abs=0.15)
-    again = {one.name: one for one in gather.everything(sessions.of(list(reversed(records))), BELIEFS)}
+    again = {one.name: one for one in estimate_all.everything(load_sessions.of(list(reversed(records))), BELIEFS)}
     assert again == found, "the order of the records must not matter"
 
 
@@ -295,12 +292,12 @@ def test_logs_are_read_from_folders_and_files_each_trial_once(
 ) -> None:
     _, records = played
     (tmp_path / "run").mkdir()
-    lines = [record.encode(one) for one in records]
+    lines = [trial_record.encode(one) for one in records]
     (tmp_path / "run" / "trials.jsonl").write_bytes(b"".join(lines))
     (tmp_path / "some.jsonl").write_bytes(b"".join(lines[:3]))
-    whole = sessions.read([tmp_path / "run"])
+    whole = load_sessions.read([tmp_path / "run"])
     assert (whole.people, whole.sessions, len(whole.trials)) == (6, 6, len(records))
-    assert sessions.read([tmp_path / "some.jsonl", tmp_path / "run"]) == whole
+    assert load_sessions.read([tmp_path / "some.jsonl", tmp_path / "run"]) == whole
 
 
 @pytest.mark.parametrize(
@@ -316,43 +313,46 @@ def test_logs_are_read_from_folders_and_files_each_trial_once(
 def test_foreign_and_broken_logs_are_refused(
     played: tuple[Parameters, list[Record]], tmp_path: Path, damage: object, words: str
 ) -> None:
-    lines = [record.encode(one) for one in played[1][:3]]
+    lines = [trial_record.encode(one) for one in played[1][:3]]
     path = tmp_path / "trials.jsonl"
     path.write_bytes(damage(lines))  # type: ignore[operator]
     with pytest.raises(RunError) as caught:
-        sessions.read([tmp_path])
+        load_sessions.read([tmp_path])
     assert words in str(caught.value)
     assert str(path) in str(caught.value)
 
 
 def test_a_log_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(RunError, match=r"a folder without trials\.jsonl"):
-        sessions.read([tmp_path])
+        load_sessions.read([tmp_path])
     with pytest.raises(RunError, match="is not there"):
-        sessions.read([tmp_path / "nowhere.jsonl"])
+        load_sessions.read([tmp_path / "nowhere.jsonl"])
 
 
 def test_recovery_counts_what_was_found_and_what_was_covered() -> None:
     made = [
-        recovery.Dataset(truth={"v_pace": float(k)}, found={"v_pace": k + 0.1 * (-1) ** k}, errors={"v_pace": error})
+        parameter_recovery.Dataset(
+            truth={"v_pace": float(k)}, found={"v_pace": k + 0.1 * (-1) ** k}, errors={"v_pace": error}
+        )
         for k, error in enumerate((0.1, 0.1, 0.01, 0.1))
     ]
-    (row,) = recovery.summary(made)
+    (row,) = parameter_recovery.summary(made)
     assert (row.name, row.datasets, row.bar, row.passed) == ("v_pace", 4, 0.8, True)
     assert row.r == pytest.approx(np.corrcoef([0, 1, 2, 3], [0.1, 0.9, 2.1, 2.9])[0, 1])
     assert row.covered == 0.75
     scrambled = [
-        recovery.Dataset(truth=a.truth, found=b.found, errors=a.errors) for a, b in zip(made, made[::-1], strict=True)
+        parameter_recovery.Dataset(truth=a.truth, found=b.found, errors=a.errors)
+        for a, b in zip(made, made[::-1], strict=True)
     ]
-    assert not recovery.summary(scrambled)[0].passed
+    assert not parameter_recovery.summary(scrambled)[0].passed
 
 
 def test_logs_become_a_population_the_same_every_time(played: tuple[Parameters, list[Record]], tmp_path: Path) -> None:
     log = tmp_path / "trials.jsonl"
-    log.write_bytes(b"".join(record.encode(one) for one in played[1]))
+    log.write_bytes(b"".join(trial_record.encode(one) for one in played[1]))
     told: list[str] = []
-    found, made = conduct.conduct([log], "literature", tmp_path / "a" / "mine", told.append)
-    conduct.conduct([log], "literature", tmp_path / "b" / "mine", told.append)
+    found, made = run.conduct([log], "literature", tmp_path / "a" / "mine", told.append)
+    run.conduct([log], "literature", tmp_path / "b" / "mine", told.append)
     for name in ("population.json", "population.npz", "estimates.json"):
         one, other = ((tmp_path / folder / "mine" / name).read_bytes() for folder in ("a", "b"))
         assert one == other, name
@@ -369,6 +369,6 @@ def test_logs_become_a_population_the_same_every_time(played: tuple[Parameters, 
 
 def test_a_log_without_a_journal_is_refused(played: tuple[Parameters, list[Record]], tmp_path: Path) -> None:
     bare = [msgspec.structs.replace(one, journal=()) for one in played[1]]
-    (tmp_path / "trials.jsonl").write_bytes(b"".join(record.encode(one) for one in bare))
+    (tmp_path / "trials.jsonl").write_bytes(b"".join(trial_record.encode(one) for one in bare))
     with pytest.raises(RunError, match="holds no journal of the person"):
-        conduct.conduct([tmp_path], "literature", tmp_path / "out", lambda _: None)
+        run.conduct([tmp_path], "literature", tmp_path / "out", lambda _: None)

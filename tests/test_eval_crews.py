@@ -12,11 +12,15 @@ import pytest
 
 from hthor import tasks
 from hthor.errors import HthorError, RunError, UnknownName
-from hthor.eval import campaign, cast, command, crews, find, intent, picture, progress, record, run, score, session
-from hthor.eval.record import Record
-from hthor.eval.setup import crew_name
-from hthor.guest import choosing
-from hthor.tasks import library
+from hthor.eval.config import cli_command, robot_team, sessions
+from hthor.eval.config.run_config import crew_name
+from hthor.eval.records import find, trial_record
+from hthor.eval.records.trial_record import Record
+from hthor.eval.results import aggregate
+from hthor.eval.runner import experiment, progress, run, run_options, trial_runner
+from hthor.guest.host import isolation_level
+from hthor.report.drawing import trial_figure
+from hthor.tasks.suites import library
 from hthor.types import HUMAN
 
 HOUSE = "elder"
@@ -37,7 +41,7 @@ TALKS = "if self.step % 9 == 1: return Action(say=Send(text=f'{{self.seat}} of {
 FAILS = "assert observation.tick < 40, 'tired'"
 
 
-def pairs(crew: crews.Crew) -> list[tuple[str, str, str]]:
+def pairs(crew: robot_team.Crew) -> list[tuple[str, str, str]]:
     return [(robot.seat, robot.robot, robot.agent.name) for robot in crew.listed]
 
 
@@ -45,7 +49,7 @@ def pairs(crew: crews.Crew) -> list[tuple[str, str, str]]:
 
 
 def test_bodies_and_minds_are_read_in_order():
-    (crew,) = crews.read("tall:oracle, small:frontier,puck:oracle", ())
+    (crew,) = robot_team.read("tall:oracle, small:frontier,puck:oracle", ())
     assert pairs(crew) == [
         ("robot", "tender", "oracle"),
         ("robot2", "puck", "frontier"),
@@ -55,7 +59,7 @@ def test_bodies_and_minds_are_read_in_order():
 
 
 def test_bodies_without_a_mind_take_the_agents_in_turn():
-    first, second = crews.read("tall,small:frontier", ("oracle", "none"))
+    first, second = robot_team.read("tall,small:frontier", ("oracle", "none"))
     assert pairs(first) == [("robot", "tender", "oracle"), ("robot2", "puck", "frontier")]
     assert pairs(second) == [("", "", "none"), ("robot", "puck", "frontier")], "who wants no robot has no seat"
     assert crew_name(second.listed) == "none+puck-frontier"
@@ -65,17 +69,17 @@ def test_bodies_without_a_mind_take_the_agents_in_turn():
 def test_a_comma_within_an_agent_is_escaped(monkeypatch: pytest.MonkeyPatch):
     heard: list[str] = []
 
-    def introduce(agent: str) -> crews.Character:
+    def introduce(agent: str) -> robot_team.Character:
         heard.append(agent)
         return fakes.character()
 
-    monkeypatch.setattr(crews, "introduce", introduce)
-    crews.read(r"tall:cmd:tool --at 1\,2,small:oracle", ())
+    monkeypatch.setattr(robot_team, "introduce", introduce)
+    robot_team.read(r"tall:cmd:tool --at 1\,2,small:oracle", ())
     assert heard == ["cmd:tool --at 1,2", "oracle"]
 
 
 def test_a_crew_of_nobody_is_one_silent_agent():
-    (crew,) = crews.read("tall,small", ("none",))
+    (crew,) = robot_team.read("tall,small", ("none",))
     assert pairs(crew) == [("", "", "none")]
     assert crew_name(crew.listed) == "none"
 
@@ -93,14 +97,14 @@ def test_a_crew_of_nobody_is_one_silent_agent():
 )
 def test_wrong_crews_are_told_what_is_right(robots: str, agents: tuple[str, ...], told: str):
     with pytest.raises(HthorError) as caught:
-        crews.read(robots, agents)
+        robot_team.read(robots, agents)
     assert told in str(caught.value)
 
 
 def test_a_mind_made_for_other_bodies_is_refused():
-    picky = crews.Character(ref=fakes.character().ref, bodies=("porter",))
+    picky = robot_team.Character(ref=fakes.character().ref, bodies=("porter",))
     with pytest.raises(UnknownName, match="unknown robot for the agent helper 'puck'"):
-        crews.form(["puck"], [picky])
+        robot_team.form(["puck"], [picky])
 
 
 # ------------------------------------------------------------------------------------------------------------- playing
@@ -118,10 +122,10 @@ def guests(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 def played(robots: str, count: int = 1) -> list[Record]:
     """The first trials of one person in a small house."""
-    (crew,) = crews.read(robots, ())
+    (crew,) = robot_team.read(robots, ())
     few = library.frozen("few", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == HOUSE))
-    whole = session.sessions(few, agent=crew, participants=1)[0]
-    perform = cast.player(cast.Sources(minds=crew.minds, bodies=crew.bodies))
+    whole = sessions.sessions(few, agent=crew, participants=1)[0]
+    perform = trial_runner.player(trial_runner.Sources(minds=crew.minds, bodies=crew.bodies))
     return list(perform(msgspec.structs.replace(whole, trials=whole.trials[:count])))
 
 
@@ -130,7 +134,7 @@ def said(record_: Record, seat: str) -> list[str]:
 
 
 def test_two_guests_and_a_built_in_agent_share_a_trial(guests: dict[str, str], monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(choosing._Terms, "isolation", "L1")  # where process ids tell processes apart
+    monkeypatch.setattr(isolation_level._Terms, "isolation", "L1")  # where process ids tell processes apart
     (one,) = played(f"tall:{guests['talker']},small:frontier,scout:{guests['talker']}")
     assert list(one.paths) == [HUMAN, "robot", "robot2", "robot3"]
     assert len(set(one.paths["robot2"])) > 10, "the built-in one explores"
@@ -163,7 +167,7 @@ def test_a_trial_of_several_robots_can_be_looked_at(guests: dict[str, str], tmp_
     from hthor import houses
 
     (one,) = played(f"tall:oracle,small:{guests['talker']}")
-    sheet = picture.figure(one.spec, one.log, houses.load(HOUSE))
+    sheet = trial_figure.figure(one.spec, one.log, houses.load(HOUSE))
     words = [text.get_text() for legend in sheet.legends for text in legend.get_texts()]
     assert "robot: tender (oracle)" in words
     assert "robot2: puck (talker)" in words
@@ -196,14 +200,14 @@ def test_a_run_of_several_robots_is_resumed_and_told_from_others(tmp_path: Path)
     (tmp_path / "run.json").unlink()
     run.setup.write(tmp_path, other)
     with pytest.raises(RunError, match=r"spec\.robots is not the one in run\.json"):
-        score.rescore(tmp_path)
+        aggregate.rescore(tmp_path)
 
 
 def test_the_command_that_finishes_a_run_names_every_robot(tmp_path: Path):
     plan, _ = fakes.run_of(20, name="helper+other")
-    told = command.of(tmp_path, plan)
+    told = cli_command.of(tmp_path, plan)
     assert " --robots scout:helper.py,scout:other.py --humans proxy --suite fake --seed 0 " in told
-    assert shlex.split(command.of(tmp_path / "my run", plan))[-2:] == ["--out", str(tmp_path / "my run")]
+    assert shlex.split(cli_command.of(tmp_path / "my run", plan))[-2:] == ["--out", str(tmp_path / "my run")]
 
 
 def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):
@@ -212,19 +216,19 @@ def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):
     suite.write_bytes(library.encode(library.frozen("brief", 1, tuple(chosen))))
     results = []
     for jobs in (1, 2):
-        options = intent.Options(
+        options = run_options.Options(
             robots="tall:oracle,small:frontier",
             suite=str(suite),
             participants=2,
             jobs=jobs,
             out=tmp_path / str(jobs),
         )
-        (done,) = campaign.conduct(options, lambda _: progress.Silent())
+        (done,) = experiment.conduct(options, lambda _: progress.Silent())
         results.append(done.result)
     assert _lines(tmp_path / "1") == _lines(tmp_path / "2")
     assert len(_lines(tmp_path / "1")) == 4
     assert results[0].hashes == results[1].hashes
-    one = record.decode(_lines(tmp_path / "1")[0])
+    one = trial_record.decode(_lines(tmp_path / "1")[0])
     assert [(robot.robot, robot.agent.name) for robot in one.spec.robots] == [
         ("tender", "oracle"),
         ("puck", "frontier"),

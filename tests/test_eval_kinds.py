@@ -9,10 +9,14 @@ from typing import Any
 import pytest
 
 from hthor import houses, tasks
-from hthor.cli import ending
+from hthor.console import exit_status
 from hthor.errors import HthorError, UnknownName
-from hthor.eval import campaign, intent, picture, programme, progress, record, score
-from hthor.eval.session import sessions
+from hthor.eval.config import task_selection
+from hthor.eval.config.sessions import sessions
+from hthor.eval.records import trial_record
+from hthor.eval.results import aggregate
+from hthor.eval.runner import experiment, progress, run_options
+from hthor.report.drawing import trial_figure
 
 HOUSES = ("elder", "rowan")
 
@@ -33,20 +37,20 @@ def _forget():
             del sys.modules[name]
 
 
-def conducted(**asked) -> campaign.Done:
-    (done,) = campaign.conduct(intent.Options(**asked), lambda _: progress.Silent())
+def conducted(**asked) -> experiment.Done:
+    (done,) = experiment.conduct(run_options.Options(**asked), lambda _: progress.Silent())
     return done
 
 
 def test_a_suite_is_narrowed_to_a_kind():
-    whole = programme.choose("smoke", "")
+    whole = task_selection.choose("smoke", "")
     assert (whole.kind, whole.crew, len(whole.suite.tasks)) == (None, ("scout",), 60)
     for name in ("manipulation", "mobile_manipulation"):
-        part = programme.choose("smoke", name)
+        part = task_selection.choose("smoke", name)
         assert part.kind.name == "mobile_manipulation"
         assert (len(part.suite.tasks), part.suite.name) == (40, "smoke")
         assert part.suite.sha256 != whole.suite.sha256
-    assert programme.choose("", "") == whole
+    assert task_selection.choose("", "") == whole
 
 
 @pytest.mark.parametrize(
@@ -59,7 +63,7 @@ def test_a_suite_is_narrowed_to_a_kind():
 )
 def test_what_does_not_fit_is_told(suite: str, kind: str, told: str):
     with pytest.raises(HthorError) as caught:
-        programme.choose(suite, kind)
+        task_selection.choose(suite, kind)
     assert told in str(caught.value)
 
 
@@ -67,10 +71,10 @@ def test_what_does_not_fit_is_told(suite: str, kind: str, told: str):
 def test_a_kind_with_a_suite_of_its_own_needs_no_other(name: str):
     if name not in tasks.suites():
         pytest.skip(f"no suite '{name}' yet")
-    chosen = programme.choose("", name)
+    chosen = task_selection.choose("", name)
     assert chosen.kind is None, "it is all of that suite"
-    assert {task.kind for task in chosen.suite.tasks} == {programme.find(name).name}
-    assert chosen.crew == tuple(programme.find(name).crew)
+    assert {task.kind for task in chosen.suite.tasks} == {task_selection.find(name).name}
+    assert chosen.crew == tuple(task_selection.find(name).crew)
 
 
 # --------------------------------------------------------------------------------------------------- a user's own kind
@@ -90,18 +94,18 @@ def test_the_example_kind_runs_as_it_is(root: Path, few: None, tmp_path: Path):
     assert suite.tasks[0].instruction == "Put the tomato and the lettuce in the fridge."
     assert suite.sha256 == done.plan.suite.sha256
     lines = (tmp_path / "run" / "trials.jsonl").read_bytes().splitlines(keepends=True)
-    records = [record.decode(line) for line in lines]
+    records = [trial_record.decode(line) for line in lines]
     assert {one.spec.kind_sha256 for one in records} == {done.plan.kind.sha256}
-    sheet = picture.figure(records[0].spec, records[0].log, houses.load(records[0].spec.task.house))
+    sheet = trial_figure.figure(records[0].spec, records[0].log, houses.load(records[0].spec.task.house))
     assert [tick.get_text() for tick in sheet.axes[1].get_yticklabels()] == ["person", "robot", "progress"]
     names = {text.get_text() for text in sheet.axes[0].texts}
     assert {"tomato", "lettuce", "fridge"} <= names, "both targets and where they are to go"
-    _, again, stored = score.rescore(tmp_path / "run")
+    _, again, stored = aggregate.rescore(tmp_path / "run")
     assert again == stored == done.result
 
 
 def test_the_same_file_gives_the_same_tasks(root: Path, few: None):
-    one, two = (programme.choose("", str(root / "examples" / "put_away.py")) for _ in range(2))
+    one, two = (task_selection.choose("", str(root / "examples" / "put_away.py")) for _ in range(2))
     assert one == two
     assert one.drawn
     assert one.crew == ("tender",)
@@ -151,7 +155,7 @@ def test_a_mistake_in_drawing_is_told_with_its_line(
     file = written(tmp_path, "early", goals=said)
     monkeypatch.setattr("sys.argv", ["hthor", "eval"])
     with pytest.raises(SystemExit) as caught:
-        ending.conclude(lambda **_: programme.choose("", str(file)))
+        exit_status.conclude(lambda **_: task_selection.choose("", str(file)))
     assert caught.value.code == 2
     assert f"{file}:11, {words}" in capsys.readouterr().err
 
@@ -159,35 +163,35 @@ def test_a_mistake_in_drawing_is_told_with_its_line(
 def test_a_file_that_ends_python_is_refused(tmp_path: Path):
     (tmp_path / "leaving.py").write_text("raise SystemExit(3)\n")
     with pytest.raises(HthorError, match=r"leaving\.py: SystemExit: 3\. The file must load by itself"):
-        programme.choose("", str(tmp_path / "leaving.py"))
+        task_selection.choose("", str(tmp_path / "leaving.py"))
 
 
 def test_houses_that_have_nothing_for_a_kind_are_left_out(few: None, tmp_path: Path):
-    some = programme.choose("", str(written(tmp_path, "choosy", goals="if house.id == 'elder': return ()")))
+    some = task_selection.choose("", str(written(tmp_path, "choosy", goals="if house.id == 'elder': return ()")))
     assert [task.house for task in some.suite.tasks] == ["rowan"]
     assert "there is no task in elder" in some.notes[0]
     with pytest.raises(HthorError, match="there is no task in elder"):
-        programme.choose("", str(written(tmp_path, "useless", goals="return ()")))
+        task_selection.choose("", str(written(tmp_path, "useless", goals="return ()")))
 
 
 def test_a_file_that_is_no_kind(tmp_path: Path):
     with pytest.raises(HthorError, match="its name must be the file's, 'misnamed'"):
-        programme.choose("", str(written(tmp_path, "misnamed", name="other")))
+        task_selection.choose("", str(written(tmp_path, "misnamed", name="other")))
     (tmp_path / "number.py").write_text("KIND = 5\n")
     with pytest.raises(HthorError, match="must be an instance of a subclass of hthor"):
-        programme.choose("", str(tmp_path / "number.py"))
+        task_selection.choose("", str(tmp_path / "number.py"))
     (tmp_path / "empty.py").write_text("")
     with pytest.raises(HthorError, match="must define 'KIND'"):
-        programme.choose("", str(tmp_path / "empty.py"))
+        task_selection.choose("", str(tmp_path / "empty.py"))
 
 
 def test_a_kind_that_changes_during_its_run_ends_it(few: None, tmp_path: Path):
-    from hthor.eval import cast
+    from hthor.eval.runner import trial_runner
 
     file = written(tmp_path, "fickle")
-    chosen = programme.choose("", str(file))
+    chosen = task_selection.choose("", str(file))
     (dealt,) = sessions(chosen.suite, agent="silent", participants=1, kind_sha256=chosen.kind.sha256)
-    perform = cast.player(cast.Sources(kind=chosen.path))
+    perform = trial_runner.player(trial_runner.Sources(kind=chosen.path))
     written(tmp_path, "fickle", met="return False")
     with pytest.raises(HthorError, match=r"fickle\.py was changed while its run was going on"):
         next(perform(dealt))

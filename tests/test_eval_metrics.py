@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from hthor.comms import claims
 from hthor.episode import EpisodeLog
-from hthor.eval import deeds, hindrance, metrics, score
-from hthor.eval.record import of
+from hthor.eval.metrics import contribution, interference, trial_metrics
+from hthor.eval.records.trial_record import of
+from hthor.eval.results import aggregate
 from hthor.types import HUMAN, Event, Goal, HouseSpec, Job, Placement, Pose, Room, Send, Snapshot, Thing, ThingState
 
 TRIAL = fakes.run_of(10, name="tall+small")[1][0].trials[0]
@@ -64,7 +65,7 @@ def test_who_picks_and_places_has_done_it():
         share(30, 2 * third),
         progress=2 * third,
     )
-    assert deeds.shares(gathering(), made) == {HUMAN: 0.5, "robot": 0.5, "robot2": 0.0}
+    assert contribution.shares(gathering(), made) == {HUMAN: 0.5, "robot": 0.5, "robot2": 0.0}
 
 
 def test_opening_the_fridge_and_handing_over_are_work_too():
@@ -78,9 +79,9 @@ def test_opening_the_fridge_and_handing_over_are_work_too():
         met=True,
         progress=1.0,
     )
-    assert deeds.shares(gathering(), made) == {HUMAN: 0.0, "robot": 1.0, "robot2": 0.0}, "it came from the shelf"
+    assert contribution.shares(gathering(), made) == {HUMAN: 0.0, "robot": 1.0, "robot2": 0.0}, "it came from the shelf"
     straight = msgspec.structs.replace(made, events=(made.events[0], *made.events[3:]))
-    assert deeds.shares(gathering(), straight) == pytest.approx({HUMAN: 1 / 3, "robot": 2 / 3, "robot2": 0.0})
+    assert contribution.shares(gathering(), straight) == pytest.approx({HUMAN: 1 / 3, "robot": 2 / 3, "robot2": 0.0})
 
 
 def test_what_is_undone_counts_for_nobody():
@@ -94,7 +95,7 @@ def test_what_is_undone_counts_for_nobody():
         share(50, 0.4),
         progress=0.4,
     )
-    found = deeds.shares(gathering(), made)
+    found = contribution.shares(gathering(), made)
     assert found == pytest.approx({HUMAN: 0.75, "robot": 0.25, "robot2": 0.0})
 
 
@@ -109,15 +110,15 @@ def test_what_several_carry_is_shared_and_what_was_so_from_the_start_is_not():
         share(61, 1.0),
         progress=1.0,
     )
-    assert deeds.shares(gathering(), made) == {HUMAN: 0.5, "robot": 0.0, "robot2": 0.5}
+    assert contribution.shares(gathering(), made) == {HUMAN: 0.5, "robot": 0.0, "robot2": 0.5}
 
 
 def test_what_is_found_is_found_by_the_person_and_by_who_opened_it():
-    assert deeds.shares(TRIAL, log(met=True, ticks=50)) == {HUMAN: 1.0, "robot": 0.0, "robot2": 0.0}
+    assert contribution.shares(TRIAL, log(met=True, ticks=50)) == {HUMAN: 1.0, "robot": 0.0, "robot2": 0.0}
     opened = log((9, "robot", "opened", {"thing": "table"}), (10, "robot2", "opened", {"thing": "door"}), met=True)
     assert TRIAL.task.objects[0].support == "table"
-    assert deeds.shares(TRIAL, opened) == {HUMAN: 0.5, "robot": 0.5, "robot2": 0.0}
-    assert deeds.shares(TRIAL, log()) is None, "nothing was achieved"
+    assert contribution.shares(TRIAL, opened) == {HUMAN: 0.5, "robot": 0.5, "robot2": 0.0}
+    assert contribution.shares(TRIAL, log()) is None, "nothing was achieved"
 
 
 @given(st.data())
@@ -130,7 +131,7 @@ def test_shares_are_shares(data):
         if data.draw(st.booleans()):
             value = data.draw(st.sampled_from((0.0, 0.25, 0.5, 1.0)))
             rows.append(share(tick, value))
-    found = deeds.shares(gathering(), log(*rows, progress=value))
+    found = contribution.shares(gathering(), log(*rows, progress=value))
     assert (found is None) == (value == 0.0)
     if found:
         assert sum(found.values()) == pytest.approx(1.0)
@@ -148,30 +149,30 @@ def walk(stops: int, ticks: int = 200) -> list[tuple[int, int, int]]:
 def test_a_hindrance_lasts_until_one_is_away_from_there():
     paths = {HUMAN: walk(30), "robot": walk(0), "robot2": walk(500)}
     made = log((20, HUMAN, "in_way", {"by": "robot"}), ticks=200, paths=paths)
-    assert hindrance.of_person(made) == pytest.approx(1.8), "0.4 m away at tick 38"
-    assert hindrance.by_pair(made)["human by robot"] == pytest.approx(1.8)
-    assert hindrance.by_pair(made)["robot by human"] == 0.0
-    assert hindrance.count(made) == 1
+    assert interference.of_person(made) == pytest.approx(1.8), "0.4 m away at tick 38"
+    assert interference.by_pair(made)["human by robot"] == pytest.approx(1.8)
+    assert interference.by_pair(made)["robot by human"] == 0.0
+    assert interference.count(made) == 1
     endless = log((20, "robot2", "in_way", {"by": HUMAN}), ticks=200, paths=paths)
-    assert hindrance.by_pair(endless)["robot2 by human"] == hindrance.LONGEST_S
+    assert interference.by_pair(endless)["robot2 by human"] == interference.LONGEST_S
     late = log((190, "robot2", "in_way", {"by": HUMAN}), ticks=200, paths=paths)
-    assert hindrance.by_pair(late)["robot2 by human"] == pytest.approx(1.0), "not longer than the trial"
+    assert interference.by_pair(late)["robot2 by human"] == pytest.approx(1.0), "not longer than the trial"
 
 
 def test_two_hindrances_at_once_cost_no_more_time():
     paths = {HUMAN: walk(30), "robot": walk(0), "robot2": walk(0)}
     rows = ((20, HUMAN, "in_way", {"by": "robot"}), (24, HUMAN, "in_way", {"by": "robot2"}))
     made = log(*rows, ticks=200, paths=paths)
-    assert hindrance.of_person(made) == pytest.approx(1.8)
-    assert hindrance.by_pair(made)["human by robot2"] == pytest.approx(1.4)
+    assert interference.of_person(made) == pytest.approx(1.8)
+    assert interference.by_pair(made)["human by robot2"] == pytest.approx(1.4)
 
 
 @given(st.lists(st.integers(0, 199), max_size=8), st.integers(0, 200))
 def test_nobody_loses_more_than_the_trial(ticks: list[int], stops: int):
     rows = [(tick, HUMAN, "in_way", {"by": "robot"}) for tick in sorted(ticks)]
     made = log(*rows, ticks=200, paths={HUMAN: walk(stops), "robot": walk(0)})
-    assert 0.0 <= hindrance.of_person(made) <= 20.0
-    assert (hindrance.of_person(made) > 0.0) == bool(ticks)
+    assert 0.0 <= interference.of_person(made) <= 20.0
+    assert (interference.of_person(made) > 0.0) == bool(ticks)
 
 
 # ------------------------------------------------------------------------------------------------------------ messages
@@ -193,7 +194,7 @@ def test_every_message_has_one_end():
         sent(7, "robot", 3),
         (8, HUMAN, "shown", {"message": 3}),
     )
-    found = metrics.measure(TRIAL, made)
+    found = trial_metrics.measure(TRIAL, made)
     assert (found.sent, found.accepted, found.declined, found.covered, found.unanswered) == (4, 1, 1, 1, 1)
     assert found.false_claims == 2, "one is too far off, one is about nothing that there is"
     assert found.adoption == 1
@@ -203,7 +204,7 @@ def test_every_message_has_one_end():
 def test_ends_of_messages_add_up(ends: list[str]):
     rows = [sent(number, "robot", number) for number in range(len(ends))]
     rows += [(99, HUMAN, end, {"message": number}) for number, end in enumerate(ends) if end]
-    found = metrics.messages(log(*rows))
+    found = trial_metrics.messages(log(*rows))
     assert found.sent == len(ends)
     assert found.sent == found.accepted + found.declined + found.covered + found.unanswered
     assert found.false_claims == 0
@@ -252,15 +253,15 @@ def test_how_far_a_claim_is_off(name, position, off):
 
 def test_without_a_robot_only_what_concerns_the_person_has_a_value():
     made = log(progress=0.5, idle={HUMAN: 123}, paths={HUMAN: [(0, 0, 0)]})
-    found = metrics.measure(ALONE, made)
+    found = trial_metrics.measure(ALONE, made)
     assert (found.progress, found.idle_s) == (0.5, 12.3)
     assert (found.sent, found.in_way, found.hindered_s, found.work, found.hindered_by) == (None, None, None, {}, {})
-    assert metrics.measure(ALONE, log(paths={HUMAN: []})).progress is None
+    assert trial_metrics.measure(ALONE, log(paths={HUMAN: []})).progress is None
 
 
 def test_scores_have_every_seat_and_every_pair():
     trials = fakes.run_of(10, name="tall+small")[1][0].trials
-    found = score.scores([of(trial, fakes.episode(trial)) for trial in trials])
+    found = aggregate.scores([of(trial, fakes.episode(trial)) for trial in trials])
     assert set(found.work) == {HUMAN, "robot", "robot2"}
     assert len(found.hindered_by) == 6
     assert found.work[HUMAN].n == sum(fakes.episode(trial).met for trial in trials)
@@ -284,13 +285,13 @@ def test_messages_as_a_channel():
         (400, "robot", "sent", {"message": 3}),
         ticks=900,
     )
-    found = metrics.measure(TRIAL, made)
+    found = trial_metrics.measure(TRIAL, made)
     assert found.precision == pytest.approx(2 / 3, abs=1e-6), "of three claims one was false"
     assert found.first_useful_s == 30.0, "true, and confirmed"
     assert found.interruptions_per_min == 2.0
-    silent = metrics.measure(TRIAL, log())
+    silent = trial_metrics.measure(TRIAL, log())
     assert (silent.precision, silent.first_useful_s, silent.interruptions_per_min) == (None, None, 0.0)
-    alone = metrics.measure(ALONE, log())
+    alone = trial_metrics.measure(ALONE, log())
     assert (alone.precision, alone.first_useful_s, alone.interruptions_per_min) == (None, None, None)
 
 
@@ -303,7 +304,7 @@ def test_what_a_robot_says_of_bodies_is_no_claim_that_counts():
         (200, "robot", "sent", {"message": 2, "object": "apple", "off": 3.0}),
         paths={HUMAN: [], "robot": []},
     )
-    found = metrics.measure(TRIAL, made)
+    found = trial_metrics.measure(TRIAL, made)
     assert found.precision == 0.0, "of one claim none was true"
     assert found.first_useful_s is None
     assert found.false_claims == 1
@@ -322,9 +323,9 @@ def test_usefulness_is_of_the_confirmed_what_was_true_and_new():
         *((600, HUMAN, "confirmed", {"message": number}) for number in range(4)),
     ]
     journal = tuple(offer(number, number != 2) for number in range(5))
-    found = metrics.measure(TRIAL, log(*rows, journal=journal))
+    found = trial_metrics.measure(TRIAL, log(*rows, journal=journal))
     assert (found.accepted, found.useful, found.usefulness) == (4, 1, 0.25)
-    nothing = metrics.measure(TRIAL, log())
+    nothing = trial_metrics.measure(TRIAL, log())
     assert (nothing.useful, nothing.usefulness) == (0, None)
-    alone = metrics.measure(ALONE, log())
+    alone = trial_metrics.measure(ALONE, log())
     assert (alone.useful, alone.usefulness) == (None, None)

@@ -18,7 +18,8 @@ import guest_fakes
 import pytest
 
 from hthor.errors import AgentError, HthorError, MissingExtra
-from hthor.eval import crews, engines, progress, run
+from hthor.eval.config import robot_team
+from hthor.eval.runner import engines, progress, run
 
 WITHOUT = importlib.util.find_spec("ray") is None
 needs_ray = pytest.mark.skipif(WITHOUT, reason="needs Ray: pip install 'hthor[cluster]'")
@@ -60,7 +61,7 @@ class Agent:
 @pytest.mark.parametrize(("line", "gpus"), [("gpus = 0.25", 0.25), ("gpus: int = 1", 1.0), ("pass", 0.0)])
 def test_a_class_says_how_much_of_a_gpu_it_wants(line: str, gpus: float, tmp_path: Path):
     (tmp_path / "agent.py").write_text(AGENT.format(line=line))
-    assert crews.form(["scout"] * 2, [str(tmp_path / "agent.py"), "silent"]).gpus == gpus
+    assert robot_team.form(["scout"] * 2, [str(tmp_path / "agent.py"), "silent"]).gpus == gpus
 
 
 def test_a_wish_that_is_no_number_is_refused(tmp_path: Path):
@@ -68,7 +69,7 @@ def test_a_wish_that_is_no_number_is_refused(tmp_path: Path):
     with pytest.raises(
         AgentError, match=r"agent\.py: Agent\.gpus must be a number from 0 on, such as 0\.25 or 1, got 'all'"
     ):
-        crews.introduce(str(tmp_path / "agent.py"))
+        robot_team.introduce(str(tmp_path / "agent.py"))
 
 
 @pytest.fixture(scope="module")

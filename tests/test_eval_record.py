@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hthor.eval import record
+from hthor.eval.records import trial_record
 from hthor.types import Event
 
 
@@ -18,13 +18,13 @@ def _trial(index: int = 0, seed: int = 0):
 
 def _line() -> bytes:
     trial = _trial()
-    return record.encode(record.of(trial, fakes.episode(trial)))
+    return trial_record.encode(trial_record.of(trial, fakes.episode(trial)))
 
 
 def test_the_key_is_fixed_by_the_trial_alone():
     copy = msgspec.json.decode(msgspec.json.encode(_trial()), type=type(_trial()))
-    assert record.key(copy) == record.key(_trial())
-    assert len(record.key(_trial())) == 16
+    assert trial_record.key(copy) == trial_record.key(_trial())
+    assert len(trial_record.key(_trial())) == 16
 
 
 @pytest.mark.parametrize("field", ["seed", "participant", "index", "human_sha256", "code_sha256", "rules_sha256"])
@@ -32,19 +32,19 @@ def test_everything_that_decides_a_trial_is_in_its_key(field: str):
     trial = _trial()
     value = getattr(trial, field)
     other = msgspec.structs.replace(trial, **{field: value + 1 if isinstance(value, int) else "0" * 64})
-    assert record.key(other) != record.key(trial)
+    assert trial_record.key(other) != trial_record.key(trial)
 
 
 def test_keys_are_all_different():
-    keys = [record.key(trial) for dealt in fakes.run_of(60)[1] for trial in dealt.trials]
+    keys = [trial_record.key(trial) for dealt in fakes.run_of(60)[1] for trial in dealt.trials]
     assert len(set(keys)) == 60
 
 
 def test_a_line_comes_back_as_it_was():
     line = _line()
-    back = record.decode(line)
-    assert record.encode(back) == line
-    assert record.of(back.spec, back.log) == back
+    back = trial_record.decode(line)
+    assert trial_record.encode(back) == line
+    assert trial_record.of(back.spec, back.log) == back
 
 
 def test_a_line_holds_no_newline_but_its_last():
@@ -58,16 +58,16 @@ def test_a_changed_byte_is_seen(place: int, value: int):
     if line[place] == value or value == 10:
         return
     line[place] = value
-    with pytest.raises(record.Damaged):
-        record.decode(bytes(line))
+    with pytest.raises(trial_record.Damaged):
+        trial_record.decode(bytes(line))
 
 
 _LINE = _line()
 
 
 def test_damage_names_the_field():
-    with pytest.raises(record.Damaged) as caught:
-        record.decode(_LINE.replace(b'"ticks":', b'"ticks":"x",\n"y":').replace(b"\n", b"", 1))
+    with pytest.raises(trial_record.Damaged) as caught:
+        trial_record.decode(_LINE.replace(b'"ticks":', b'"ticks":"x",\n"y":').replace(b"\n", b"", 1))
     assert caught.value.field == "ticks"
 
 
@@ -78,10 +78,10 @@ def test_floats_in_events_are_rounded_once(value: float, text: str):
         fakes.episode(trial),
         events=(Event(tick=1, seat="robot", kind="sent", data={"message": 0, "text": "", "p": (value, text)}),),
     )
-    line = record.encode(record.of(trial, log))
-    back = record.decode(line)
+    line = trial_record.encode(trial_record.of(trial, log))
+    back = trial_record.decode(line)
     assert back.events[0].data["p"][0] == pytest.approx(value, abs=1e-4)
-    assert record.encode(record.of(trial, back.log)) == line
+    assert trial_record.encode(trial_record.of(trial, back.log)) == line
 
 
 @pytest.mark.parametrize(
@@ -97,8 +97,8 @@ def test_floats_in_events_are_rounded_once(value: float, text: str):
 )
 def test_what_is_scored_of_an_event_has_its_type(kind: str, data: dict[str, object], field: str):
     """Such a line has the right checksum and key, and its record could not be scored or drawn."""
-    whole = record.decode(_LINE)
+    whole = trial_record.decode(_LINE)
     bad = msgspec.structs.replace(whole, events=(*whole.events, Event(tick=1, seat="robot", kind=kind, data=data)))
-    with pytest.raises(record.Damaged) as caught:
-        record.decode(record.encode(bad))
+    with pytest.raises(trial_record.Damaged) as caught:
+        trial_record.decode(trial_record.encode(bad))
     assert caught.value.field == f"events[{len(whole.events)}].data.{field}"

@@ -17,23 +17,21 @@ import pytest
 
 from hthor import rules, tasks
 from hthor.errors import KILLED, RunError
-from hthor.eval import (
-    campaign,
-    cast,
-    course,
-    do_overs,
+from hthor.eval.config import run_config
+from hthor.eval.records import session_restarts, trial_log
+from hthor.eval.results import aggregate, result_file
+from hthor.eval.results.result_file import Result
+from hthor.eval.runner import (
+    collector,
     engines,
-    intent,
-    log,
+    experiment,
+    local_runner,
     progress,
-    result_file,
+    queue,
     run,
-    runner,
-    score,
-    setup,
-    waiting,
+    run_options,
+    trial_runner,
 )
-from hthor.eval.result_file import Result
 
 
 class Notes(progress.Silent):
@@ -109,7 +107,7 @@ def test_a_killed_worker_costs_nothing(tmp_path: Path, reference: Path, deaths: 
 
 def test_sessions_that_cannot_be_played_do_not_stop_the_others(tmp_path: Path, reference: Path):
     watch, make = Notes(), functools.partial(fakes.sick_player, str(tmp_path), "crash", "bug")
-    with pytest.raises(course.InternalFailure) as caught:
+    with pytest.raises(collector.InternalFailure) as caught:
         _run(tmp_path / "run", make, count=60, watch=watch)
     told = str(caught.value)
     assert "participant 1: it ended 3 workers, the last by signal SIGSEGV" in told
@@ -139,7 +137,7 @@ def test_a_worker_that_hangs_is_ended_and_its_session_played_again(tmp_path: Pat
 def test_a_session_that_always_ends_its_worker_has_its_own_exit_code(tmp_path: Path):
     make = functools.partial(fakes.dying_player, str(tmp_path), 9)
     with pytest.raises(
-        course.Unfinished, match=r"participant 0: .*SIGKILL.*The same command tries them again"
+        collector.Unfinished, match=r"participant 0: .*SIGKILL.*The same command tries them again"
     ) as caught:
         _run(tmp_path / "run", make, count=10)
     assert caught.value.exit_code == 1
@@ -147,7 +145,7 @@ def test_a_session_that_always_ends_its_worker_has_its_own_exit_code(tmp_path: P
 
 def test_a_run_of_which_nothing_can_be_played_ends_soon(tmp_path: Path):
     watch = Notes()
-    with pytest.raises(course.InternalFailure, match="30 of 30 trials are missing"):
+    with pytest.raises(collector.InternalFailure, match="30 of 30 trials are missing"):
         _run(tmp_path, fakes.hopeless_player, watch=watch)
     assert sum("is given up" in note for note in watch.notes) == 3
 
@@ -155,26 +153,28 @@ def test_a_run_of_which_nothing_can_be_played_ends_soon(tmp_path: Path):
 def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path: Path, monkeypatch):
     real = tasks.suite
     monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
-    monkeypatch.setattr(cast, "player", fakes.lonely_player)
-    options = intent.Options(agents=("none", "frontier"), suite="fake", jobs=1, out=tmp_path)
-    with pytest.raises(course.InternalFailure, match=r"participant 1: ZeroDivisionError.* 10 of 20 trials are missing"):
-        list(campaign.conduct(options, lambda _: progress.Silent()))
+    monkeypatch.setattr(trial_runner, "player", fakes.lonely_player)
+    options = run_options.Options(agents=("none", "frontier"), suite="fake", jobs=1, out=tmp_path)
+    with pytest.raises(
+        collector.InternalFailure, match=r"participant 1: ZeroDivisionError.* 10 of 20 trials are missing"
+    ):
+        list(experiment.conduct(options, lambda _: progress.Silent()))
     assert result_file.load(tmp_path / "frontier").counts.trials == 20
     assert result_file.load(tmp_path / "none") is None
-    monkeypatch.setattr(cast, "player", fakes.player)
-    done = [one.plan.name for one in campaign.conduct(options, lambda _: progress.Silent())]
+    monkeypatch.setattr(trial_runner, "player", fakes.player)
+    done = [one.plan.name for one in experiment.conduct(options, lambda _: progress.Silent())]
     assert done == ["none", "frontier"]
     assert result_file.load(tmp_path / "frontier").uplift is not None
 
 
 def test_a_worker_has_as_long_as_its_agents_deadlines_allow():
     tasks = [fakes.task()]
-    assert waiting.limit(tasks, 0) == waiting.LIMIT_S
-    assert waiting.limit(tasks, 2) > 2 * (60 + 60 + 60 + 5 * tasks[0].time_limit / rules.TICK_S)
+    assert queue.limit(tasks, 0) == queue.LIMIT_S
+    assert queue.limit(tasks, 2) > 2 * (60 + 60 + 60 + 5 * tasks[0].time_limit / rules.TICK_S)
 
 
 def test_a_users_error_in_a_worker_keeps_its_exit_code(tmp_path: Path):
-    with pytest.raises(runner.SessionFailed, match="the agent is no good") as caught:
+    with pytest.raises(local_runner.SessionFailed, match="the agent is no good") as caught:
         _run(tmp_path, functools.partial(fakes.failing_player, "user"))
     assert caught.value.exit_code == 4
 
@@ -189,14 +189,14 @@ def test_a_run_has_one_do_over_for_killed_agents(tmp_path: Path, times: int, fau
     assert (result.counts.trials, result.counts.faults, result.counts.replays) == (30, faults, again)
     assert result.effort is not None
     assert result.effort.replays == again
-    assert score.rescore(tmp_path)[1].counts.replays == again
+    assert aggregate.rescore(tmp_path)[1].counts.replays == again
 
 
 def test_no_later_command_has_another_do_over(tmp_path: Path):
     plan, dealt = fakes.run_of(30)
     make = functools.partial(fakes.killing_player, 1, {})
-    setup.write(tmp_path, plan)
-    assert do_overs.DoOvers(tmp_path).take(7)
+    run_config.write(tmp_path, plan)
+    assert session_restarts.DoOvers(tmp_path).take(7)
     result = run.evaluate(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
     assert (result.counts.faults_by_kind, result.counts.replays) == ({KILLED: 3}, 1)
 
@@ -210,7 +210,7 @@ def test_what_was_played_beside_a_killed_agent_does_not_count(tmp_path: Path):
     make = functools.partial(fakes.killing_player, 1, {})
     other = run.evaluate(plan, dealt, make, folder=tmp_path / "killed", engine=fakes.Here(), watch=progress.Silent())
     assert other.hashes.trials == calm.hashes.trials
-    assert do_overs.load(tmp_path / "killed").participants == (dealt[0].participant,)
+    assert session_restarts.load(tmp_path / "killed").participants == (dealt[0].participant,)
 
 
 @pytest.mark.parametrize("times", [1, 2])
@@ -222,7 +222,7 @@ def test_an_agent_that_is_killed_while_it_starts_is_started_once_more(tmp_path: 
         return run.evaluate(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=watch)
 
     if times == 2:
-        with pytest.raises(course.Unfinished, match=r"participant 1: helper\.py: its process was killed.*10 of 30"):
+        with pytest.raises(collector.Unfinished, match=r"participant 1: helper\.py: its process was killed.*10 of 30"):
             whole()
         assert len(_lines(tmp_path)) == 20
     else:
@@ -242,7 +242,7 @@ def test_a_full_disk_leaves_whole_lines(tmp_path: Path, monkeypatch: pytest.Monk
         room -= count
         return count
 
-    monkeypatch.setattr(log.os, "write", write)
+    monkeypatch.setattr(trial_log.os, "write", write)
     with pytest.raises(RunError, match=r"trials\.jsonl: No space left on device\. The \d+ trials .* are kept"):
         run.evaluate(plan, dealt, fakes.player, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
     monkeypatch.undo()

@@ -11,8 +11,11 @@ from hypothesis import strategies as st
 from hthor import jsonio
 from hthor.episode import EpisodeLog
 from hthor.errors import RunError
-from hthor.eval import metrics, progress, record, run, score
-from hthor.eval.metrics import TrialMetrics
+from hthor.eval.metrics import trial_metrics
+from hthor.eval.metrics.trial_metrics import TrialMetrics
+from hthor.eval.records import trial_record
+from hthor.eval.results import aggregate
+from hthor.eval.runner import progress, run
 from hthor.types import Event
 
 
@@ -41,7 +44,9 @@ GOLDEN = (
 def test_a_small_log_worked_out_by_hand():
     trials = [trial for trial in TRIALS if trial.task.t_star == 8.0][:1] * 3
     made = [
-        msgspec.structs.replace(record.of(trial, _log(*case)), spec=msgspec.structs.replace(trial, participant=number))
+        msgspec.structs.replace(
+            trial_record.of(trial, _log(*case)), spec=msgspec.structs.replace(trial, participant=number)
+        )
         for number, (trial, case) in enumerate(zip(trials, GOLDEN, strict=True))
     ]
     main = ("sr", "twsr", "adoption", "time_s", "trust")
@@ -50,7 +55,7 @@ def test_a_small_log_worked_out_by_hand():
         (0, 0.0, 0, 90.0, 2),
         (1, 1.0, 0, 4.0, 4),
     ]
-    found = score.scores(made)
+    found = aggregate.scores(made)
     assert [getattr(found, name).mean for name in main] == [0.666667, 0.5, 0.333333, 36.666667, 4.0]
     assert found.sr.ci95[0] < 0.2
     assert found.sr.ci95[1] > 0.9
@@ -61,7 +66,7 @@ def test_a_small_log_worked_out_by_hand():
 
 @given(st.integers(1, 900), st.booleans(), st.sampled_from(TRIALS))
 def test_laws_of_one_trial(ticks: int, met: bool, trial):
-    found = metrics.measure(trial, _log(ticks, met))
+    found = trial_metrics.measure(trial, _log(ticks, met))
     assert 0.0 <= found.twsr <= found.sr <= 1
     assert 0.0 < found.time_s <= trial.task.time_limit
     assert found.twsr == 0.0 or met
@@ -79,14 +84,14 @@ def test_only_a_robots_confirmed_message_is_adopted():
         ((_sent(0, "human"), _answer(0)), 0),
     )
     for events, adopted in cases:
-        assert metrics.adoption(trial, _log(10, True, events)) == adopted
-    assert metrics.adoption(ALONE[0], _log(10, True)) is None
+        assert trial_metrics.adoption(trial, _log(10, True, events)) == adopted
+    assert trial_metrics.adoption(ALONE[0], _log(10, True)) is None
 
 
 def test_without_a_robot_there_is_neither_adoption_nor_trust():
     plan, dealt = fakes.run_of(10, absent=True)
-    made = [record.of(trial, fakes.episode(trial)) for trial in dealt[0].trials]
-    found = score.summarise(plan, [record.encode(one) for one in made], made)
+    made = [trial_record.of(trial, fakes.episode(trial)) for trial in dealt[0].trials]
+    found = aggregate.summarise(plan, [trial_record.encode(one) for one in made], made)
     assert (found.metrics.adoption.mean, found.metrics.adoption.ci95, found.metrics.adoption.n) == (None, None, 0)
     assert found.metrics.trust.n == 0
     assert found.metrics.sr.n == 10
@@ -101,7 +106,7 @@ def _played(folder, name: str = "helper"):
 
 def test_scoring_again_gives_the_stored_result(tmp_path):
     result = _played(tmp_path)
-    _, again, stored = score.rescore(tmp_path)
+    _, again, stored = aggregate.rescore(tmp_path)
     assert again == stored == result
 
 
@@ -110,30 +115,30 @@ def test_a_result_of_an_older_format_is_made_anew(tmp_path):
     folder = tmp_path
     path = folder / "result.json"
     path.write_bytes(b'{"schema": "hthor.result/3", "name": "helper"}')
-    _, result, stored = score.rescore(folder)
+    _, result, stored = aggregate.rescore(folder)
     assert stored is None
     assert result.counts.trials > 0
     path.write_bytes(b'{"schema": "hthor.result/5"}')
     with pytest.raises(RunError, match="delete the file"):
-        score.rescore(folder)
+        aggregate.rescore(folder)
 
 
 def test_scoring_trusts_events_not_stored_metrics(tmp_path):
     honest = _played(tmp_path)
     path = tmp_path / "trials.jsonl"
     perfect = TrialMetrics(sr=1, twsr=1.0, adoption=1, time_s=1.0, trust=7)
-    lines = [record.decode(line) for line in path.read_bytes().splitlines(keepends=True)]
-    path.write_bytes(b"".join(record.encode(msgspec.structs.replace(one, metrics=perfect)) for one in lines))
-    assert score.rescore(tmp_path)[1].metrics == honest.metrics
+    lines = [trial_record.decode(line) for line in path.read_bytes().splitlines(keepends=True)]
+    path.write_bytes(b"".join(trial_record.encode(msgspec.structs.replace(one, metrics=perfect)) for one in lines))
+    assert aggregate.rescore(tmp_path)[1].metrics == honest.metrics
 
 
 def test_a_line_of_another_run_is_refused(tmp_path):
     _played(tmp_path)
     other = fakes.run_of(20, seed=1)[1][0].trials[0]
     with (tmp_path / "trials.jsonl").open("ab") as file:
-        file.write(record.encode(record.of(other, fakes.episode(other))))
+        file.write(trial_record.encode(trial_record.of(other, fakes.episode(other))))
     with pytest.raises(RunError, match=r"spec\.seed is not the one in run\.json"):
-        score.rescore(tmp_path)
+        aggregate.rescore(tmp_path)
 
 
 def test_faults_are_counted_and_their_trials_too(tmp_path):

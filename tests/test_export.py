@@ -12,8 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from hthor.cli import app, export, reference
-from hthor.cli.export import Format
+from hthor.cli import app
+from hthor.console import formats, reference
+from hthor.console.formats import Format
 from hthor.errors import HthorError
 
 CELLS = st.text(
@@ -30,7 +31,7 @@ TABLES = st.integers(1, 4).flatmap(
 @given(TABLES)
 def test_csv_is_read_back_as_it_was(table: tuple[list[str], list[list[str]]]) -> None:
     headings, rows = table
-    text = export.render(headings, rows, Format.CSV)
+    text = formats.render(headings, rows, Format.CSV)
     _, *back = csv.reader(io.StringIO(text))
     assert [[cell.removeprefix("'") for cell in row] for row in back] == [
         [cell.removeprefix("'") for cell in row] for row in rows
@@ -41,7 +42,7 @@ def test_csv_is_read_back_as_it_was(table: tuple[list[str], list[list[str]]]) ->
 @given(TABLES)
 def test_latex_has_a_cell_for_each_cell_and_nothing_unescaped(table: tuple[list[str], list[list[str]]]) -> None:
     headings, rows = table
-    text = export.render(headings, rows, Format.LATEX)
+    text = formats.render(headings, rows, Format.LATEX)
     body = [line for line in text.splitlines() if line.endswith(r"\\")]
     assert len(body) == 1 + len(rows)
     for line in body:
@@ -53,23 +54,23 @@ def test_latex_has_a_cell_for_each_cell_and_nothing_unescaped(table: tuple[list[
 @given(TABLES)
 def test_markdown_has_a_cell_for_each_cell(table: tuple[list[str], list[list[str]]]) -> None:
     headings, rows = table
-    lines = export.render(headings, rows, Format.MARKDOWN).splitlines()
+    lines = formats.render(headings, rows, Format.MARKDOWN).splitlines()
     assert len(lines) == 2 + len(rows)
     for line in lines:
         assert line.replace("\\\\", "").replace("\\|", "").count("|") == len(headings) + 1
 
 
 def test_what_latex_takes_for_commands_is_printed() -> None:
-    assert export.tex(r"50 % of a_b & $x^2$ \n {c} ~ 1 … 2") == (
+    assert formats.tex(r"50 % of a_b & $x^2$ \n {c} ~ 1 … 2") == (
         r"50 \% of a\_b \& \$x\textasciicircum{}2\$ \textbackslash{}n \{c\} \textasciitilde{} 1 \ldots{} 2"
     )
-    assert export.tex("63.3 %\n45.6 … 78.1") == r"\shortstack[r]{63.3 \% \\ 45.6 \ldots{} 78.1}"
+    assert formats.tex("63.3 %\n45.6 … 78.1") == r"\shortstack[r]{63.3 \% \\ 45.6 \ldots{} 78.1}"
 
 
 def test_numbers_are_on_the_right() -> None:
     rows = [["a", 1.5, "63.3 %\n45.6 … 78.1", "x"], ["b", None, "–", "2 of 3"]]
-    assert "{lrrl}" in export.render(["name", "n", "rate", "how"], rows, Format.LATEX)
-    assert "|---|---:|---:|---|" in export.render(["name", "n", "rate", "how"], rows, Format.MARKDOWN)
+    assert "{lrrl}" in formats.render(["name", "n", "rate", "how"], rows, Format.LATEX)
+    assert "|---|---:|---:|---|" in formats.render(["name", "n", "rate", "how"], rows, Format.MARKDOWN)
 
 
 @pytest.mark.parametrize(
@@ -77,7 +78,7 @@ def test_numbers_are_on_the_right() -> None:
 )
 def test_lists_have_every_format(words: list[str]) -> None:
     def said(*more: str) -> str:
-        found = CliRunner().invoke(app.app, [*words, *more])
+        found = CliRunner().invoke(app, [*words, *more])
         assert found.exit_code == 0, found.output
         return found.stdout
 
@@ -89,7 +90,7 @@ def test_lists_have_every_format(words: list[str]) -> None:
 
 
 def test_two_formats_at_once_are_a_mistake() -> None:
-    found = CliRunner().invoke(app.app, ["humans", "list", "--json", "--format", "csv"])
+    found = CliRunner().invoke(app, ["humans", "list", "--json", "--format", "csv"])
     assert found.exit_code == 2
     assert "exclude each other" in found.output
 
@@ -106,7 +107,7 @@ def test_the_page_names_every_format(root: Path) -> None:
 
 def test_the_board_is_listed_from_what_was_built(root: Path, tmp_path: Path) -> None:
     def said(*more: str) -> str:
-        found = CliRunner().invoke(app.app, ["leaderboard", "list", "--board", str(root / "leaderboard"), *more])
+        found = CliRunner().invoke(app, ["leaderboard", "list", "--board", str(root / "leaderboard"), *more])
         assert found.exit_code == 0, found.output
         return found.stdout
 
@@ -116,4 +117,4 @@ def test_the_board_is_listed_from_what_was_built(root: Path, tmp_path: Path) -> 
     assert all(0.0 <= float(row["sr_mean"]) <= 1.0 for row in rows)
     assert all(row["agent"] in said() for row in rows)
     with pytest.raises(HthorError, match="hthor leaderboard build"):
-        CliRunner().invoke(app.app, ["leaderboard", "list", "--board", str(tmp_path)], catch_exceptions=False)
+        CliRunner().invoke(app, ["leaderboard", "list", "--board", str(tmp_path)], catch_exceptions=False)

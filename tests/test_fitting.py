@@ -12,7 +12,7 @@ from rich import box
 from rich.console import Group
 from rich.table import Table
 
-from hthor.cli.fitting import FittingConsole
+from hthor.console.table_fitting import FittingConsole
 
 ROWS = (
     ("success rate [%]*", "58.3", "88.3", "+30.0", "+7.5 … +52.5", "28.5", "0.022", "60"),

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 
 from hthor import houses
 from hthor.errors import HthorError
-from hthor.geometry import distance_to_rectangle, signed_area
-from hthor.houses import solids
-from hthor.houses.check import check, sound
-from hthor.houses.freespace import FreeSpace, obstacles
-from hthor.houses.geodesic import Geodesics
+from hthor.geometry.plane import distance_to_rectangle, signed_area
+from hthor.houses.checks.check import check, sound
+from hthor.houses.space import solids
+from hthor.houses.space.free_space import FreeSpace, obstacles
+from hthor.houses.space.geodesic import Geodesics
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Wall
 
 HEIGHT = 2.5

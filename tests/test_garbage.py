@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 
-from hthor import garbage
+from hthor import gc_freeze
 
 
 class Owner:
@@ -14,17 +14,17 @@ class Owner:
 def test_what_is_kept_is_let_go_with_its_owner():
     gc.unfreeze()
     owner = Owner()
-    garbage.release_with(owner)
-    garbage.keep()
+    gc_freeze.release_with(owner)
+    gc_freeze.keep()
     assert gc.get_freeze_count() > 0
     del owner
     assert gc.get_freeze_count() == 0
 
 
 def test_nothing_is_searched_while_much_is_made_and_the_collector_is_left_as_it_was():
-    with garbage.uncollected():
+    with gc_freeze.uncollected():
         assert not gc.isenabled()
-        with garbage.uncollected():
+        with gc_freeze.uncollected():
             pass
         assert not gc.isenabled()
     assert gc.isenabled()

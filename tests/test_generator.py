@@ -16,14 +16,15 @@ from hypothesis import strategies as st
 
 from hthor import catalog, houses, jsonio
 from hthor.errors import HthorError, UnknownName
-from hthor.geometry import signed_area
+from hthor.geometry.plane import signed_area
 from hthor.houses import generator, loader
-from hthor.houses.check import check, sound
-from hthor.houses.generator import boundary, document, doors, growth, layout, scenes, specs, validity
+from hthor.houses.checks.check import check, sound
+from hthor.houses.generator import document, scenes, validity
 from hthor.houses.generator.attempt import Flaw
-from hthor.houses.generator.chance import Dice
-from hthor.houses.generator.clutter import takes_all
-from hthor.houses.generator.making import Maker
+from hthor.houses.generator.draws import Dice
+from hthor.houses.generator.floorplan import boundary, doors, growth, layout, room_specs
+from hthor.houses.generator.furnishing.clutter import takes_all
+from hthor.houses.generator.furnishing.item_styles import Maker
 from hthor.types import HouseSpec
 
 few = settings(max_examples=3, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
@@ -144,7 +145,7 @@ def test_a_failed_attempt_is_followed_by_another_one(monkeypatch: pytest.MonkeyP
 @settings(max_examples=40, deadline=None, derandomize=True)
 def test_rooms_tile_the_cells_of_the_outline(seed: int, rooms: int) -> None:
     dice = Dice(seed)
-    shape, tree = boundary.boundary(rooms, dice), specs.choose(rooms, dice, None).tree
+    shape, tree = boundary.boundary(rooms, dice), room_specs.choose(rooms, dice, None).tree
     if shape is None:
         return
     labels = growth.grow(shape.cells, tree, dice)
@@ -163,7 +164,7 @@ def test_rooms_tile_the_cells_of_the_outline(seed: int, rooms: int) -> None:
 @settings(max_examples=40, deadline=None, derandomize=True)
 def test_doors_join_all_rooms_as_a_tree_and_bathrooms_are_dead_ends_of_their_level(seed: int, rooms: int) -> None:
     dice = Dice(seed)
-    shape, tree = boundary.boundary(rooms, dice), specs.choose(rooms, dice, None).tree
+    shape, tree = boundary.boundary(rooms, dice), room_specs.choose(rooms, dice, None).tree
     labels = None if shape is None else growth.grow(shape.cells, tree, dice)
     plan = None if shape is None or labels is None else layout.plan(shape, labels, tree)
     pairs = None if plan is None else doors.links(tree, plan, dice)
@@ -175,7 +176,7 @@ def test_doors_join_all_rooms_as_a_tree_and_bathrooms_are_dead_ends_of_their_lev
         reached |= {room for pair in pairs if reached & set(pair) for room in pair}
     assert reached == set(range(2, rooms + 2))
     degree = Counter(room for pair in pairs for room in pair)
-    assert all(degree[room.number] == 1 for room in plan.rooms if room.kind == specs.BATHROOM)
+    assert all(degree[room.number] == 1 for room in plan.rooms if room.kind == room_specs.BATHROOM)
 
 
 def test_the_beta_distribution_has_its_mean_and_variance() -> None:

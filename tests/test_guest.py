@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from hthor.errors import AgentError
-from hthor.guest import Guest, GuestFault, load_info, parking
+from hthor.guest import Guest, GuestFault, load_info
+from hthor.guest.host import process_pool
 from hthor.types import (
     Action,
     BodySpec,
@@ -368,10 +369,10 @@ def test_an_endless_import_is_refused(write: Write) -> None:
 
 @pytest.fixture
 def parked() -> Iterator[None]:
-    parking.clear()  # what runs of earlier tests in this process left waiting
-    parking.keep()
+    process_pool.clear()  # what runs of earlier tests in this process left waiting
+    process_pool.keep()
     yield
-    parking.clear()
+    process_pool.clear()
 
 
 @pytest.mark.usefixtures("parked")
@@ -390,7 +391,7 @@ def test_a_guest_waits_for_whoever_wants_the_same(write: Write) -> None:
     assert play(memory_mb=1000)[0] != first[0], "other terms"
     write(COUNTER + "# changed\n")
     assert play()[0] != first[0], "another file"
-    assert len(parking.pids()) == 3
+    assert len(process_pool.pids()) == 3
     with Guest(path) as guest:
         guest.begin(BRIEFING)
         waited = guest.pid
@@ -399,5 +400,5 @@ def test_a_guest_waits_for_whoever_wants_the_same(write: Write) -> None:
         with pytest.raises(GuestFault, match="killed"):
             list(ends)
     assert not living(waited)
-    parking.clear()
+    process_pool.clear()
     assert not living(first[0])

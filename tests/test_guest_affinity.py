@@ -13,7 +13,8 @@ import levels
 import pytest
 from test_guest import BRIEFING
 
-from hthor.guest import Guest, affinity
+from hthor.guest import Guest
+from hthor.guest.process_tools import cpu_affinity
 from hthor.types import Action, Observation, Pose, Send
 
 pytestmark = [
@@ -109,7 +110,7 @@ def test_two_guests_share_the_place_and_what_starts_meanwhile_is_free(tmp_path: 
     with Guest(agent, isolation="L2") as one, Guest(agent, isolation="L2") as other:
         one.begin(BRIEFING)
         here = os.sched_getaffinity(0)
-        with affinity.anywhere():
+        with cpu_affinity.anywhere():
             assert os.sched_getaffinity(0) == everywhere
         other.begin(BRIEFING)
         assert os.sched_getaffinity(0) == here
@@ -140,9 +141,9 @@ def test_other_threads_go_where_they_like() -> None:
 
     thread = threading.Thread(target=other)
     thread.start()
-    assert affinity.stay() >= 0
+    assert cpu_affinity.stay() >= 0
     started.set()
     thread.join()
-    affinity.leave()
-    affinity.leave()
+    cpu_affinity.leave()
+    cpu_affinity.leave()
     assert seen == [everywhere]

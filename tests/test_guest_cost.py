@@ -9,7 +9,9 @@ import pytest
 from test_guest import BRIEFING, look
 
 from hthor import guest
-from hthor.guest import Guest, IsolationError, cost, parking
+from hthor.guest import Guest, IsolationError
+from hthor.guest.host import process_pool
+from hthor.guest.process_tools import resource_usage
 
 BURNS = """
 import time
@@ -27,7 +29,7 @@ class Agent:
 
 def spent() -> float:
     times = os.times()
-    return times.children_user + times.children_system + cost.uncollected_cpu_s()
+    return times.children_user + times.children_system + resource_usage.uncollected_cpu_s()
 
 
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])
@@ -36,7 +38,7 @@ def test_the_processor_time_of_guests_is_counted_once(level: str, tmp_path: Path
         guest.in_force(level)
     except IsolationError as error:
         pytest.skip(str(error))
-    parking.clear()
+    process_pool.clear()
     path = tmp_path / "burns.py"
     path.write_text(BURNS)
     with Guest(path, isolation=level) as mind:
@@ -44,6 +46,6 @@ def test_the_processor_time_of_guests_is_counted_once(level: str, tmp_path: Path
         before = spent()
         for tick in range(2):
             mind.act(look(tick))
-        taken = cost.cpu_s(mind.pid)
-        assert cost.resident_mb(mind.pid) > 5
+        taken = resource_usage.cpu_s(mind.pid)
+        assert resource_usage.resident_mb(mind.pid) > 5
     assert 0.55 <= spent() - before <= taken + 0.3

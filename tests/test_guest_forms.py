@@ -13,8 +13,10 @@ from msgspec import structs
 
 from hthor import guest
 from hthor.errors import AgentError, UnknownName
-from hthor.guest import Guest, GuestFault, IsolationError, digests, load_info, reference, wire
+from hthor.guest import Guest, GuestFault, IsolationError, load_info
+from hthor.guest.agent import digests, reference
 from hthor.guest.confinement import devices
+from hthor.guest.protocol import wire
 from hthor.types import (
     Action,
     BodySpec,

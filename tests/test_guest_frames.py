@@ -13,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from hthor.guest import Guest, frames
+from hthor.guest import Guest
+from hthor.guest.protocol import shared_frames
 from hthor.types import Action
 from tests.test_guest import BRIEFING, HEAD, Sensors, agent, look
 
@@ -24,8 +25,8 @@ TYPES = st.sampled_from(["u1", "<f4", "<i4", "<f8", "?"])
 
 @given(st.lists(TYPES.flatmap(lambda dtype: arrays.arrays(dtype, SHAPES)), max_size=4))
 def test_what_is_put_in_comes_out_the_same(given_arrays: list[Any]) -> None:
-    window = frames.Window()
-    view = frames.View(window.handle)
+    window = shared_frames.Window()
+    view = shared_frames.View(window.handle)
     told = [window.put(array) for array in given_arrays]
     for array, value in zip(given_arrays, told, strict=True):
         assert value is not None
@@ -37,23 +38,23 @@ def test_what_is_put_in_comes_out_the_same(given_arrays: list[Any]) -> None:
 
 
 def test_nobody_but_the_host_can_change_it() -> None:
-    window = frames.Window()
+    window = shared_frames.Window()
     with pytest.raises(PermissionError):
-        mmap.mmap(window.handle, frames.SIZE, mmap.MAP_SHARED, mmap.PROT_READ | mmap.PROT_WRITE)
+        mmap.mmap(window.handle, shared_frames.SIZE, mmap.MAP_SHARED, mmap.PROT_READ | mmap.PROT_WRITE)
     with pytest.raises(PermissionError):
         os.pwrite(window.handle, b"x", 0)
-    for size in (0, 2 * frames.SIZE):
+    for size in (0, 2 * shared_frames.SIZE):
         with pytest.raises(PermissionError):
             os.ftruncate(window.handle, size)
     window.close()
 
 
 def test_what_does_not_fit_or_is_no_picture_travels_otherwise() -> None:
-    window = frames.Window()
-    assert window.put(np.zeros(frames.SIZE + 1, np.uint8)) is None
+    window = shared_frames.Window()
+    assert window.put(np.zeros(shared_frames.SIZE + 1, np.uint8)) is None
     assert window.put(np.array([object()])) is None
     assert window.put("text") is None
-    assert window.put(np.zeros(frames.SIZE - 10, np.uint8)) is not None
+    assert window.put(np.zeros(shared_frames.SIZE - 10, np.uint8)) is not None
     assert window.put(np.zeros(20, np.uint8)) is None
     window.clear()
     assert window.put(np.zeros(20, np.uint8)) is not None

@@ -13,8 +13,10 @@ import pytest
 from test_guest import BRIEFING, HEAD, agent, look
 
 from hthor.errors import KILLED, AgentKilled
-from hthor.guest import Guest, GuestFault, choosing, ending, host
-from hthor.guest.process import Process
+from hthor.guest import Guest, GuestFault
+from hthor.guest.host import guest, isolation_level
+from hthor.guest.host.process import Process
+from hthor.guest.process_tools import exit_status
 
 needs_bwrap = pytest.mark.skipif(not shutil.which("bwrap"), reason="needs bubblewrap")
 FAMILIES = [("L1", 3), ("L2", 3), pytest.param("L3", 4, marks=needs_bwrap)]
@@ -67,7 +69,7 @@ def _alive(pid: int) -> bool:
 
 @pytest.mark.parametrize("level", [level for level, _ in FAMILIES[:2]] + [pytest.param("L3", marks=needs_bwrap)])
 def test_one_killed_while_it_starts_costs_no_level(level: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    real: Callable[..., Process] = choosing.process.start
+    real: Callable[..., Process] = isolation_level.process.start
 
     def start(*words: object, **more: object) -> Process:
         one = real(*words, **more)
@@ -78,7 +80,7 @@ def test_one_killed_while_it_starts_costs_no_level(level: str, tmp_path: Path, m
 
     (tmp_path / "agent.py").write_text(HEAD + agent("return Action()"))
     with monkeypatch.context() as patch:
-        patch.setattr(choosing.process, "start", start)
+        patch.setattr(isolation_level.process, "start", start)
         with pytest.raises(AgentKilled, match=r"agent\.py: its process was killed by SIGKILL while it started"):
             Guest(tmp_path / "agent.py", isolation=level).load()
     with Guest(tmp_path / "agent.py", isolation=level) as guest:
@@ -89,7 +91,7 @@ def test_one_killed_while_it_loads_its_file_is_told_as_such(tmp_path: Path):
     path = tmp_path / "agent.py"
     path.write_text("import os\nos.kill(os.getpid(), 9)\n")
     with pytest.raises(AgentKilled, match=r"loading it failed \(killed: the agent's process was killed by SIGKILL\)"):
-        host.load_info(path, isolation="L1")
+        guest.load_info(path, isolation="L1")
 
 
 @pytest.mark.parametrize(
@@ -103,9 +105,9 @@ def test_one_killed_while_it_loads_its_file_is_told_as_such(tmp_path: Path):
     ],
 )
 def test_what_an_agent_does_to_itself_is_its_own(code: int, kind: str, words: str):
-    assert ending.told(code) == (kind, words)
+    assert exit_status.told(code) == (kind, words)
 
 
 def test_bubblewraps_words_for_a_signal_are_understood():
-    assert ending.told(ending.unwrapped(137)) == (KILLED, "killed by SIGKILL")
-    assert ending.unwrapped(3) == 3
+    assert exit_status.told(exit_status.unwrapped(137)) == (KILLED, "killed by SIGKILL")
+    assert exit_status.unwrapped(3) == 3

@@ -18,8 +18,10 @@ from typer.testing import CliRunner
 from hthor import agents
 from hthor.cli import app as cli
 from hthor.errors import AgentError, HthorError
-from hthor.eval import guarded
-from hthor.guest import Guest, GuestFault, IsolationError, Unreachable, serving, wire
+from hthor.eval.records import run_isolation
+from hthor.guest import Guest, GuestFault, IsolationError, Unreachable
+from hthor.guest.client import websocket_server
+from hthor.guest.protocol import wire
 from hthor.types import Action, Move, Wait
 from tests.test_guest import BRIEFING, HEAD, Sensors, agent, look
 
@@ -31,7 +33,7 @@ def running(made: Any) -> Iterator[str]:
     thread = threading.Thread(target=made.serve_forever)
     thread.start()
     try:
-        yield serving.address(made)
+        yield websocket_server.address(made)
     finally:
         made.shutdown()
         thread.join()
@@ -61,7 +63,7 @@ def test_a_served_agent_plays(tmp_path: Path) -> None:
         "return Action(motion=Move(forward=float(observation.scan.ranges.min()) / 10))"
     )
     path.write_text(HEAD + agent(act).replace("class Agent:", "class Agent:\n    privileges = ('ideal_detector',)"))
-    with running(serving.serve(str(path), "127.0.0.1", 0)) as url:
+    with running(websocket_server.serve(str(path), "127.0.0.1", 0)) as url:
         with Guest(url) as mind:
             info = mind.load()
             for _ in range(2):
@@ -72,7 +74,7 @@ def test_a_served_agent_plays(tmp_path: Path) -> None:
         assert (info.name, info.source, info.privileges) == ("my_agent", url, ("ideal_detector",))
         assert (info.isolation.level, info.persistent) == ("served", True)
         with pytest.raises(IsolationError, match=r"L1 is required, but ws://.* is served"):
-            guarded.settle("auto", "L1", [url])
+            run_isolation.settle("auto", "L1", [url])
         with Guest(f"{url}/") as other:
             assert other.load().sha256 == info.sha256
             other.begin(BRIEFING)
@@ -175,7 +177,7 @@ def test_a_port_that_is_taken_is_told_so(tmp_path: Path) -> None:
     agents.write_template(tmp_path / "mine.py")
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = str(other.getsockname()[1])
-        done = CliRunner().invoke(cli.app, ["agent", "serve", str(tmp_path / "mine.py"), "--port", port])
+        done = CliRunner().invoke(cli, ["agent", "serve", str(tmp_path / "mine.py"), "--port", port])
     assert isinstance(done.exception, HthorError)
     assert f"cannot listen at 127.0.0.1:{port}: Address already in use. Give another --port" in str(done.exception)
 

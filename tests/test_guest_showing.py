@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as some
 
-from hthor.guest.showing import is_name, shown
+from hthor.guest.protocol.sanitize import is_name, shown
 
 
 @given(some.text(some.characters(exclude_categories=())))

@@ -9,9 +9,9 @@ import pytest
 
 from hthor import tasks
 from hthor.episode import EpisodeLog, play
-from hthor.eval import cast
-from hthor.eval.session import sessions
-from hthor.tasks import library
+from hthor.eval.config.sessions import sessions
+from hthor.eval.runner import trial_runner
+from hthor.tasks.suites import library
 from hthor.types import Action, Briefing, Event, Observation, TrialSpec
 
 PERCEIVED = ("detections", "scan", "sighting")
@@ -102,7 +102,7 @@ class Shut:
         return getattr(self._world, name)
 
 
-def trials(agent: str, stage: cast.Stage, *, veiled: bool) -> list[EpisodeLog]:
+def trials(agent: str, stage: trial_runner.Stage, *, veiled: bool) -> list[EpisodeLog]:
     smoke = tasks.suite("smoke")
     few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house in ("alder", "maple")))
     session, logs = sessions(few, agent=agent, seed=2)[0], []
@@ -112,7 +112,7 @@ def trials(agent: str, stage: cast.Stage, *, veiled: bool) -> list[EpisodeLog]:
     return logs
 
 
-def _one(trial: TrialSpec, stage: cast.Stage, company: cast.Company, veiled: bool) -> EpisodeLog:
+def _one(trial: TrialSpec, stage: trial_runner.Stage, company: trial_runner.Company, veiled: bool) -> EpisodeLog:
     world = stage.world(trial)
     if not veiled:
         return play(trial, world, company.human, company.robots())
@@ -121,12 +121,12 @@ def _one(trial: TrialSpec, stage: cast.Stage, company: cast.Company, veiled: boo
 
 
 @pytest.fixture(scope="module")
-def stage() -> cast.Stage:
-    return cast.Stage()
+def stage() -> trial_runner.Stage:
+    return trial_runner.Stage()
 
 
 @pytest.mark.parametrize("agent", ["silent", "oracle"])
-def test_a_person_plays_on_without_the_truth(agent: str, stage: cast.Stage) -> None:
+def test_a_person_plays_on_without_the_truth(agent: str, stage: trial_runner.Stage) -> None:
     veiled, plain = trials(agent, stage, veiled=True), trials(agent, stage, veiled=False)
     assert veiled == plain, "what was hidden had been used"
     assert sum(log.ticks for log in veiled) > 4 * 50
@@ -135,7 +135,7 @@ def test_a_person_plays_on_without_the_truth(agent: str, stage: cast.Stage) -> N
     assert ("offer" in kinds) == (agent == "oracle")
 
 
-def test_the_veil_holds(stage: cast.Stage) -> None:
+def test_the_veil_holds(stage: trial_runner.Stage) -> None:
     """The guard itself: whoever looks at the truth is caught."""
 
     class Cheat:

@@ -12,8 +12,8 @@ from test_guest import BRIEFING
 from hthor import houses, jsonio, tasks
 from hthor.guest import Guest, GuestFault
 from hthor.guest.confinement import hiding, paths
-from hthor.humans import population_file
-from hthor.tasks import library, salt
+from hthor.humans.population import population_file
+from hthor.tasks.suites import library, secret_salt
 from hthor.types import Observation, Pose
 
 LOOK = Observation(tick=0, pose=Pose(x=0.0, y=0.0, yaw=0.0), idle=True, senses=None)
@@ -61,7 +61,7 @@ def home(tmp_path: Path) -> Path:
         path = tmp_path / "home" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
-    salt.fresh(tmp_path / "home" / "season" / "word")
+    secret_salt.fresh(tmp_path / "home" / "season" / "word")
     (tmp_path / "home" / "shortcut").symlink_to(tmp_path / "home" / "study" / "one")
     return tmp_path / "home"
 

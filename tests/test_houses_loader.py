@@ -17,10 +17,10 @@ from hypothesis import strategies as st
 
 from hthor import catalog, houses, jsonio
 from hthor.errors import HouseError, UnknownName
-from hthor.geometry import inside, rectangle, signed_area, turn
-from hthor.houses.polygons import crossing, distance_to_segment, overlap_area, simplified
+from hthor.geometry.plane import inside, rectangle, signed_area, turn
+from hthor.houses.checks.polygons import crossing, distance_to_segment, overlap_area, simplified
 from hthor.types import HouseSpec, Opening, Vec2, Wall
-from hthor.world.soundness import prove
+from hthor.world.validation.house_soundness import prove
 
 OWN = houses.names()
 DATA = Path(houses.__file__).parent / "data"
@@ -406,9 +406,13 @@ def test_simple_and_crossed_polygons() -> None:
 # --------------------------------------------------------------------------------------------------- the package's door
 
 
-@pytest.mark.parametrize("first", ["import hthor.houses.check", "from hthor.houses.check import Finding", "pass"])
+@pytest.mark.parametrize(
+    "first", ["import hthor.houses.checks.check", "from hthor.houses.checks.check import Finding", "pass"]
+)
 def test_check_is_the_function_in_whatever_order_things_are_imported(first: str) -> None:
-    code = f"{first}\nfrom hthor import houses\nfrom hthor.houses.check import check\nassert houses.check is check"
+    code = (
+        f"{first}\nfrom hthor import houses\nfrom hthor.houses.checks.check import check\nassert houses.check is check"
+    )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
 
 

@@ -11,12 +11,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from hthor import catalog, humans, plugins, rules, seeds
-from hthor.humans import beliefs, effects
-from hthor.humans.memory import Memory
+from hthor.humans.communication.trust import Experience, Trust, initial
+from hthor.humans.memory import location_priors
+from hthor.humans.memory.spatial_memory import Memory
 from hthor.humans.models.proxy import Model
-from hthor.humans.parameters import Parameters
-from hthor.humans.person import Person
-from hthor.humans.trust import Experience, Trust, initial
+from hthor.humans.population import random_effects
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.population.participant import Person
 from hthor.types import HUMAN, Action, Detection, Message, Move, Observation, Outcome, Pick, Pose, Receipt, Rotate
 
 TRAITS = Parameters()
@@ -66,14 +67,14 @@ def test_a_person_continues_from_their_state():
 
 
 def test_traits_are_spread_around_the_population():
-    paces = [effects.individual(TRAITS, seeds.derive(0, k)).v_pace for k in range(400)]
+    paces = [random_effects.individual(TRAITS, seeds.derive(0, k)).v_pace for k in range(400)]
     logs = [math.log(pace / TRAITS.v_pace) for pace in paces]
     assert abs(sum(logs) / 400) < 0.03
     assert math.sqrt(sum(value * value for value in logs) / 400) == pytest.approx(0.5 * TRAITS.sigma, rel=0.15)
 
 
 def test_practice_makes_brisk():
-    paces = [effects.practised(TRAITS, index).v_pace for index in range(10)]
+    paces = [random_effects.practised(TRAITS, index).v_pace for index in range(10)]
     assert paces == sorted(paces)
     assert paces[0] == TRAITS.v_pace
     assert paces[-1] < TRAITS.v_pace * (1 + TRAITS.learn)
@@ -244,8 +245,8 @@ def test_early_help_is_worth_more_and_failure_tells():
 
 @pytest.mark.parametrize("target", [*catalog.TARGETS, "unheard_of"])
 def test_beliefs_add_up(target):
-    assert sum(beliefs.supports(target).values()) == pytest.approx(1.0)
-    expected = beliefs.expectation(target, 0.6)
+    assert sum(location_priors.supports(target).values()) == pytest.approx(1.0)
+    expected = location_priors.expectation(target, 0.6)
     assert sum(expected.values()) == pytest.approx(1.0)
     assert min(expected.values()) > 0.0
 

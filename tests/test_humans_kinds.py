@@ -10,18 +10,18 @@ from fake_flat import BODY
 
 from hthor import houses, plugins, seeds, tasks
 from hthor.episode import play
-from hthor.humans import perception
-from hthor.humans.agenda import Agenda
-from hthor.humans.claims import Claims
-from hthor.humans.errands import Errands
-from hthor.humans.jobs import Duties, kind_of, todo
-from hthor.humans.memory import Memory
+from hthor.humans.behaviours.behaviours import Errands
+from hthor.humans.communication.interpretation import Claims
+from hthor.humans.core.trial_context import Subject
+from hthor.humans.memory.object_memory import Things
+from hthor.humans.memory.spatial_memory import Memory
+from hthor.humans.memory.subgoals import Duties, kind_of, todo
+from hthor.humans.models._goal_arbitration import Agenda
 from hthor.humans.models.proxy import Model
-from hthor.humans.parameters import Parameters
-from hthor.humans.person import Person
-from hthor.humans.subject import Subject
-from hthor.humans.things import Things
-from hthor.humans.walking import Walker
+from hthor.humans.motor.locomotion import Walker
+from hthor.humans.perception import perception
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.population.participant import Person
 from hthor.types import (
     HUMAN,
     Action,

@@ -14,13 +14,13 @@ from world_house import COFFEE, COUNTER, on
 from hthor import episode as umpire
 from hthor import plugins, rules
 from hthor.errors import HthorError
-from hthor.eval import record, session
-from hthor.humans import past
-from hthor.humans.models import greedy, proxy, random, replay
-from hthor.humans.parameters import Parameters
-from hthor.humans.person import Person
-from hthor.tasks import library
-from hthor.tasks.library import frozen
+from hthor.eval.config import sessions
+from hthor.eval.records import trial_record
+from hthor.humans.models import _logged_trials, greedy, proxy, random, replay
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.population.participant import Person
+from hthor.tasks.suites import library
+from hthor.tasks.suites.library import frozen
 from hthor.types import Action, AgentRef, Goal, Message, Move, Pose, RobotSeat, Send, TaskSpec, TrialSpec, Wait
 from hthor.world import World
 
@@ -98,7 +98,7 @@ def log(world, tmp_path_factory) -> Path:
         )
         assert done.met
         assert done.trust is not None
-        lines += record.encode(record.of(trial, done))
+        lines += trial_record.encode(trial_record.of(trial, done))
     (folder / "trials.jsonl").write_bytes(lines)
     return folder
 
@@ -137,7 +137,7 @@ def test_plays_whole_trials_in_the_real_world_the_same_twice(name, world, log):
                 trial, world, person, {"robot": Teller(Send(text="Here.", object="apple", position=at(support)))}
             )
             assert done.trust in range(rules.TRUST_MIN, rules.TRUST_MAX + 1)
-            found.append(record.encode(record.of(trial, done)))
+            found.append(trial_record.encode(trial_record.of(trial, done)))
         return person, found
 
     (person, first), (_, second) = session_(), session_()
@@ -186,15 +186,15 @@ def test_rates_no_robot_that_is_not_there(name, log):
 
 @pytest.mark.parametrize("suite", ["navigation", "manipulation", "tidy", "rearrange", "collect", "carry"])
 def test_both_ends_play_every_kind_of_task(suite):
-    from hthor.eval import cast
+    from hthor.eval.runner import trial_runner
 
     task = msgspec.structs.replace(library.suite(suite).tasks[0], time_limit=30.0)
-    one = session.sessions(frozen("one", 1, (task,)), agent="oracle", robot="tender", human="greedy")[0]
-    stage = cast.Stage()
+    one = sessions.sessions(frozen("one", 1, (task,)), agent="oracle", robot="tender", human="greedy")[0]
+    stage = trial_runner.Stage()
     for made in (greedy.Model, random.Model):
         with stage.enter(one) as company:
             company.human = made(Person(seed=0, participant=0, traits=QUICK))
-            done = cast._play(stage.world(one.trials[0]), company, one.trials[0])
+            done = trial_runner._play(stage.world(one.trials[0]), company, one.trials[0])
         assert done.met or done.ticks == round(task.time_limit / rules.TICK_S)
         assert not done.faults
         answers = {event.kind for event in done.events if event.kind in ("confirmed", "declined")}
@@ -255,7 +255,7 @@ def test_the_ends_always_and_never_confirm(made, answers):
 
 
 def test_random_people_choose_each_option_as_often():
-    from hthor.humans.policy import Choice, Situation
+    from hthor.humans.core.policy import Choice, Situation
 
     def option(name, value):
         return Choice(
@@ -289,7 +289,7 @@ def deeds(done):
 
 @pytest.mark.parametrize("robot", ["same", "silent"])
 def test_a_replay_does_the_same_whatever_the_robot_says(robot, world, log):
-    past_ = past.read(str(log))[0]
+    past_ = _logged_trials.read(str(log))[0]
     person = model("replay", log)
     for one, support in zip(past_, FROM, strict=True):
         says = [Send(text="Here.", object="apple", position=at(support))] if robot == "same" else []
@@ -303,7 +303,7 @@ def test_a_replay_does_the_same_whatever_the_robot_says(robot, world, log):
 
 
 def test_a_replay_answers_what_is_shown_when_the_logged_person_answered(world, log):
-    one = past.read(str(log))[0][0]
+    one = _logged_trials.read(str(log))[0][0]
     (tick, accept), *_ = one.answers()
     says = (Send(text="Look here.", object="apple", position=(9.0, 2.7, 0.5)), Send(text="Or here.", object="apple"))
     done = umpire.play(one.spec, world, model("replay", log), {"robot": Teller(*says, at=tick - 1)})
@@ -320,7 +320,7 @@ class Blocker(Teller):
 
 
 def test_a_replay_waits_for_a_robot_in_its_way_and_catches_up(world, log):
-    one = past.read(str(log))[0][0]
+    one = _logged_trials.read(str(log))[0][0]
     x, y, _ = next(pose for pose in one.paths["human"] if pose[0] > 5700)
     start = Pose(x=x / 1000.0, y=y / 1000.0, yaw=math.pi / 2)
     task = msgspec.structs.replace(one.spec.task, robot_starts=(start,))
@@ -334,7 +334,7 @@ def test_a_replay_waits_for_a_robot_in_its_way_and_catches_up(world, log):
 
 
 def test_a_replay_stands_still_after_the_end_of_its_log(world, log):
-    one = past.read(str(log))[0][0]
+    one = _logged_trials.read(str(log))[0][0]
     task = msgspec.structs.replace(one.spec.task, objects=(on(COUNTER, "apple"),))  # it lies somewhere else now
     done = umpire.play(spec(task), world, model("replay", log), {"robot": Teller()})
     assert not done.met

@@ -8,9 +8,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from hthor.humans.parameters import Parameters
-from hthor.humans.prior import Beta, HalfNormal, LogNormal, LogUniform, Normal, Prior, Uniform
-from hthor.humans.registry import PARAMETERS, Parameter
+from hthor.humans.population.distributions import Beta, HalfNormal, LogNormal, LogUniform, Normal, Prior, Uniform
+from hthor.humans.population.parameter_registry import PARAMETERS, Parameter
+from hthor.humans.population.parameters import Parameters
 
 PAGE = (Path(__file__).parents[1] / "docs" / "humans.md").read_text()
 ROWS = {

@@ -12,15 +12,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor import seeds
-from hthor.humans import answering, gain, policy, sightlines
-from hthor.humans.messages import Reader, same
+from hthor.humans.communication import accept_decision, time_saving
+from hthor.humans.communication.message_reading import Reader, same
+from hthor.humans.core import policy
+from hthor.humans.core.policy import Offer
+from hthor.humans.core.trial_context import Subject
 from hthor.humans.models.proxy import Model
-from hthor.humans.parameters import Parameters
-from hthor.humans.person import Person
-from hthor.humans.policy import Offer
-from hthor.humans.search import Option
-from hthor.humans.subject import Subject
-from hthor.navigation.map import GridMap
+from hthor.humans.perception import wall_occlusion
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.population.participant import Person
+from hthor.humans.search.option_choice import Option
+from hthor.navigation.grid_map import GridMap
 from hthor.types import HUMAN, Briefing, Message, Observation, Pose, Scan
 
 TRAITS = Parameters()
@@ -65,7 +67,7 @@ def offer(number=1, **changed):
 def share(count=600, relevant=True, **changed):
     """Share of people who confirm."""
     people = [subject(root=seeds.derive(1, k)) for k in range(count)]
-    return sum(answering.answer(me, offer(**changed), relevant) == "confirm" for me in people) / count
+    return sum(accept_decision.answer(me, offer(**changed), relevant) == "confirm" for me in people) / count
 
 
 # ------------------------------------------------------------------------------------------------------ notice and read
@@ -160,7 +162,7 @@ def test_answers_follow_every_term():
 
 @given(st.floats(0, 1), st.floats(0, 90), st.floats(0, 1), st.integers(0, 5))
 def test_the_terms_add_up_to_the_law(trust, saved, load, again):
-    parts = answering.terms(TRAITS, offer(trust=trust, gain=saved, load=load, again=again))
+    parts = accept_decision.terms(TRAITS, offer(trust=trust, gain=saved, load=load, again=again))
     law = (
         TRAITS.a0
         + TRAITS.a_trust * (trust - 0.5)
@@ -175,14 +177,14 @@ def test_what_is_beside_the_point_is_confirmed_by_slips_alone():
     assert share(relevant=False) == pytest.approx(TRAITS.p_slip, abs=0.02)
     careful = msgspec.structs.replace(TRAITS, p_slip=0.0)
     people = [subject(careful, seeds.derive(2, k)) for k in range(300)]
-    said = [answering.answer(me, offer(), relevant=False) for me in people]
+    said = [accept_decision.answer(me, offer(), relevant=False) for me in people]
     assert "confirm" not in said
     assert said.count("ignore") / 300 == pytest.approx(TRAITS.p_ignore, abs=0.08)
 
 
 def test_each_message_has_its_own_luck():
     said = {
-        tuple(answering.answer(subject(root=root), offer(number, trust=0.2)) for number in range(1, 30))
+        tuple(accept_decision.answer(subject(root=root), offer(number, trust=0.2)) for number in range(1, 30))
         for root in (5, 5, 6)
     }
     assert len(said) == 2
@@ -199,7 +201,7 @@ def test_a_policy_has_the_last_word():
             return "ignore"
 
     head = Never()
-    assert answering.answer(subject(chooser=head), offer(7)) == "ignore"
+    assert accept_decision.answer(subject(chooser=head), offer(7)) == "ignore"
     assert head.heard.number == 7
 
 
@@ -207,7 +209,7 @@ def test_the_mind_tells_what_it_weighed():
     told = []
     me = subject()
     me.think = told.append
-    said = answering.answer(me, offer(gain=10.0))
+    said = accept_decision.answer(me, offer(gain=10.0))
     (event,) = told
     assert event.data["answer"] == said
     assert event.data["gain"] == pytest.approx(TRAITS.a_gain * math.log(11.0), abs=1e-3)
@@ -221,23 +223,25 @@ def option(name, belief, seconds, kappa=TRAITS.kappa):
 
 
 def test_a_sure_thing_takes_its_time():
-    assert gain.searching([option("a", 1.0, 7.0)], 90.0, TRAITS.kappa) == pytest.approx(7.0)
+    assert time_saving.searching([option("a", 1.0, 7.0)], 90.0, TRAITS.kappa) == pytest.approx(7.0)
 
 
 def test_a_search_is_reckoned_in_its_order():
-    found = gain.searching([option("far", 0.5, 20.0), option("near", 0.5, 5.0)], 90.0, TRAITS.kappa)
+    found = time_saving.searching([option("far", 0.5, 20.0), option("near", 0.5, 5.0)], 90.0, TRAITS.kappa)
     assert found == pytest.approx(0.5 * 5.0 + 0.5 * 25.0)
 
 
 def test_what_is_nowhere_takes_all_that_is_left():
-    assert gain.searching([], 40.0, TRAITS.kappa) == 40.0
-    assert gain.searching([option("a", 0.25, 10.0)], 40.0, TRAITS.kappa) == pytest.approx(0.25 * 10.0 + 0.75 * 40.0)
+    assert time_saving.searching([], 40.0, TRAITS.kappa) == 40.0
+    assert time_saving.searching([option("a", 0.25, 10.0)], 40.0, TRAITS.kappa) == pytest.approx(
+        0.25 * 10.0 + 0.75 * 40.0
+    )
 
 
 @given(st.lists(st.tuples(st.floats(0, 1), st.floats(1, 60)), max_size=12), st.floats(0, 90))
 def test_no_search_takes_longer_than_is_left(parts, left):
     options = [option(str(k), belief, seconds) for k, (belief, seconds) in enumerate(parts)]
-    assert 0.0 <= gain.searching(options, left, TRAITS.kappa) <= left + 1e-9
+    assert 0.0 <= time_saving.searching(options, left, TRAITS.kappa) <= left + 1e-9
 
 
 # -------------------------------------------------------------------------------------------------------------- follow
@@ -271,10 +275,10 @@ def walled():
 
 def test_walls_hide_and_furniture_does_not():
     grid = walled()
-    behind = sightlines.Walls(grid, (2.5, 0.0), 1.5)
+    behind = wall_occlusion.Walls(grid, (2.5, 0.0), 1.5)
     assert behind.hide((1.2, 0.1))
     assert not behind.hide((3.4, 0.3))
-    over = sightlines.Walls(grid, (0.0, 2.5), 1.5)
+    over = wall_occlusion.Walls(grid, (0.0, 2.5), 1.5)
     assert not over.hide((0.1, 1.2))
 
 

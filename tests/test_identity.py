@@ -27,11 +27,15 @@ from typer.testing import CliRunner
 from hthor import guest
 from hthor.cli import app
 from hthor.errors import AgentError, HthorError, RunError
-from hthor.eval import cast, crews, engines
-from hthor.guest import Given, Guest, GuestFault, IsolationError, identity, manifest, recording, scanning
-from hthor.guest import given as giving
-from hthor.guest.grounds import Grounds
-from hthor.guest.manifest import File
+from hthor.eval.config import robot_team
+from hthor.eval.runner import engines, trial_runner
+from hthor.guest import Given, Guest, GuestFault, IsolationError
+from hthor.guest.agent import inputs as giving
+from hthor.guest.agent import manifest, source_scan
+from hthor.guest.agent.agent_paths import Grounds
+from hthor.guest.agent.manifest import File
+from hthor.guest.client import file_recorder
+from hthor.guest.host import snapshot
 
 LEVELS = ("L1", "L2", "L3")
 
@@ -50,7 +54,7 @@ def write(
 
 def names(agent: Path | str) -> list[str]:
     """What the agent's manifest lists."""
-    made = crews.introduce(str(agent)).manifest
+    made = robot_team.introduce(str(agent)).manifest
     assert made is not None
     return [file.path for file in made.files]
 
@@ -115,10 +119,10 @@ def test_a_file_that_changes_makes_another_agent(tmp_path: Path, where: str, ope
     read = f"import sqlite3\nF = str(HERE / ('net' + '-big.txt'))\n{opens}"
     path = write(tmp_path / "a", **{where: read})
     sqlite3.connect(data).execute("create table t (x)").connection.close()
-    before = crews.introduce(str(path)).ref
-    assert crews.introduce(str(path)).ref == before
+    before = robot_team.introduce(str(path)).ref
+    assert robot_team.introduce(str(path)).ref == before
     data.write_bytes(data.read_bytes() + b" ")
-    after = crews.introduce(str(path)).ref
+    after = robot_team.introduce(str(path)).ref
     assert after.sha256 != before.sha256
     assert after.name == before.name == "agent"
 
@@ -132,10 +136,10 @@ def test_an_agent_is_the_same_wherever_it_lies_and_whatever_holds_it(tmp_path: P
     found = []
     for level in ("L1", at("L2")):
         guest.confine_guests(level)
-        found.append(crews.introduce(str(path)).manifest)
+        found.append(robot_team.introduce(str(path)).manifest)
     (tmp_path / "a").rename(tmp_path / "elsewhere")
     guest.confine_guests()
-    found.append(crews.introduce(str(tmp_path / "elsewhere" / "agent.py")).manifest)
+    found.append(robot_team.introduce(str(tmp_path / "elsewhere" / "agent.py")).manifest)
     assert found[0] == found[1] == found[2]
 
 
@@ -180,7 +184,7 @@ def test_a_recorder_names_each_file_once_and_only_the_agents_own(tmp_path: Path)
     for name in ("a.txt", "b.txt"):
         (own / name).write_text("")
     (tmp_path / "other.txt").write_text("")
-    recorder = recording.Recorder(Grounds(root=str(own), base=str(own)))
+    recorder = file_recorder.Recorder(Grounds(root=str(own), base=str(own)))
     for path in (own / "b.txt", own / "a.txt", own / "a.txt", tmp_path / "other.txt", own / "absent", own, 3, b"\xff"):
         recorder._hear("open", (path, "r", os.O_RDONLY))
     recorder._hear("open", (own / "new.txt", "w", os.O_WRONLY))
@@ -193,7 +197,7 @@ def test_a_recorder_names_each_file_once_and_only_the_agents_own(tmp_path: Path)
 def test_a_file_that_no_manifest_can_list_is_not_opened_unseen(tmp_path: Path, name: bytes) -> None:
     path = os.fsencode(tmp_path) + b"/" + name
     Path(os.fsdecode(path)).write_bytes(b"")
-    recorder = recording.Recorder(Grounds(root=str(tmp_path), base=str(tmp_path)))
+    recorder = file_recorder.Recorder(Grounds(root=str(tmp_path), base=str(tmp_path)))
     for _ in range(2):
         with pytest.raises(PermissionError, match="printable letters"):
             recorder._hear("open", (path, "r", os.O_RDONLY))
@@ -208,7 +212,7 @@ def test_scanning_never_leaves_the_agents_folder(tmp_path: Path, words: list[str
     (tmp_path / "outside.txt").write_text("")
     (own / "inside.txt").write_text("")
     (own / "x.py").write_text(f"WORDS = {[*words, '../outside.txt', '..', 'inside.txt', str(tmp_path)]!r}")
-    found = scanning.closure([str(own / "x.py")], Grounds(root=str(own), base=str(own)))
+    found = source_scan.closure([str(own / "x.py")], Grounds(root=str(own), base=str(own)))
     assert found == {str(own / "x.py"), str(own / "inside.txt")}
 
 
@@ -218,7 +222,7 @@ def test_claims_about_files_that_are_not_the_agents_are_not_believed(tmp_path: P
     grounds = Guest(path).grounds
     known = manifest.of("a", "a.py", {}, ())
     told = ("../secret", "../../etc/passwd", "/etc/passwd", "agent.py", "absent", "./agent.py", "")
-    assert [file.path for file in identity.later(told, known, grounds)] == ["agent.py"]
+    assert [file.path for file in snapshot.later(told, known, grounds)] == ["agent.py"]
 
 
 def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Path) -> None:
@@ -232,10 +236,10 @@ def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Pa
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     mind = Guest(f"cmd:sh {tmp_path / 'mind.sh'}")
-    first = identity.files_of(mind.reference, Given(), mind.grounds, ())
+    first = snapshot.files_of(mind.reference, Given(), mind.grounds, ())
     assert [file.path for file in first] == ["lib/common.sh", "mind.sh", "tool.pl", "weights.bin"]
     (tmp_path / "weights.bin").write_text("2")
-    assert identity.files_of(mind.reference, Given(), mind.grounds, ()) != first
+    assert snapshot.files_of(mind.reference, Given(), mind.grounds, ()) != first
 
 
 ARGS = """
@@ -277,9 +281,9 @@ def test_arguments_are_part_of_who_an_agent_is(taking: Path) -> None:
     found = []
     for words in ([], ["speed=0.1"], ["speed=0.2"], [f"checkpoint={out}"]):
         guest.confine_guests(given=giving.read(words))
-        found.append(crews.introduce(str(taking)))
+        found.append(robot_team.introduce(str(taking)))
     out.write_text("more")
-    found.append(crews.introduce(str(taking)))
+    found.append(robot_team.introduce(str(taking)))
     assert len({one.ref.sha256 for one in found}) == 5
     assert [one.ref.name for one in found[:4]] == [
         "agent",
@@ -364,14 +368,14 @@ def test_what_is_readable_must_be_there(tmp_path: Path) -> None:
 
 def test_a_served_agent_says_what_it_consists_of_and_that_is_marked(taking: Path) -> None:
     pytest.importorskip("websockets")
-    from hthor.guest import serving
+    from hthor.guest.client import websocket_server
 
     out = taking.parents[1] / "out" / "net.txt"
-    server = serving.serve(str(taking), "127.0.0.1", 0, giving.read([f"checkpoint={out}"]))
+    server = websocket_server.serve(str(taking), "127.0.0.1", 0, giving.read([f"checkpoint={out}"]))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     try:
-        url = serving.address(server)
-        first = crews.introduce(url)
+        url = websocket_server.address(server)
+        first = robot_team.introduce(url)
         made = first.manifest
         assert made is not None
         assert made.claimed
@@ -381,7 +385,7 @@ def test_a_served_agent_says_what_it_consists_of_and_that_is_marked(taking: Path
             mind.begin(BRIEFING)
             assert getattr(mind.act(look()).say, "text", None) == "learned False"
         out.write_text("more")
-        assert crews.introduce(url).ref.sha256 != first.ref.sha256
+        assert robot_team.introduce(url).ref.sha256 != first.ref.sha256
         with pytest.raises(HthorError, match="--agent-args is for 'hthor agent serve' there"):
             Guest(url, given=giving.read(["speed=1"]))
     finally:
@@ -400,7 +404,7 @@ def test_compiled_files_beside_a_program_in_python_are_not_run(tmp_path: Path) -
 
 
 def test_a_folder_with_too_many_files_is_not_made_readable(taking: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(identity, "_MOST_READABLE", 1)
+    monkeypatch.setattr(snapshot, "_MOST_READABLE", 1)
     guest.confine_guests(given=giving.read(readable=[taking.parents[1] / "out"]))
     assert len(names(taking)) == 2
     (taking.parents[1] / "out" / "more.txt").write_text("")
@@ -417,12 +421,12 @@ def test_what_no_source_names_can_be_made_part_of_an_agent(tmp_path: Path) -> No
     assert names(path) == ["agent.py", "w/net.bin"]
 
 
-class Quick(cast.Stage):
+class Quick(trial_runner.Stage):
     """Trials of some dozen ticks in a world without an engine."""
 
-    def enter(self, session: Any) -> cast.Company:
+    def enter(self, session: Any) -> trial_runner.Company:
         make = lambda seat: self._mind(seat, None)  # noqa: E731
-        return cast.Company(test_episode.Mind(), session.trials[0].robots, make)
+        return trial_runner.Company(test_episode.Mind(), session.trials[0].robots, make)
 
     def world(self, trial: Any) -> Any:
         return guest_fakes.Stage(seen=20 + trial.index)
@@ -432,7 +436,7 @@ class Quick(cast.Stage):
 def evaluate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
     """`hthor eval` with real agents, logs and results, in a world without an engine."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(cast, "Stage", Quick)
+    monkeypatch.setattr(trial_runner, "Stage", Quick)
     monkeypatch.setattr(engines, "find", lambda *_, **__: eval_fakes.Here())
 
     def run(*words: str) -> Any:
@@ -450,7 +454,7 @@ def told(said: Any) -> Any:
 
 def invoke(*words: str) -> Any:
     """A command as a user types it; an error of theirs is exit code 2 and its words."""
-    result = CliRunner().invoke(app.app, list(words))
+    result = CliRunner().invoke(app, list(words))
     if isinstance(result.exception, HthorError):
         return SimpleNamespace(exit_code=2, output=str(result.exception), stdout="")
     return result
@@ -584,7 +588,7 @@ def test_differences_name_the_files() -> None:
 
 
 def test_two_contents_of_one_file_are_no_manifest() -> None:
-    from hthor.eval import opened
+    from hthor.eval.records import opened_files
 
     plan, sessions = eval_fakes.run_of(20)
     lines = [done for session in sessions for done in eval_fakes.player()(session)]
@@ -595,4 +599,4 @@ def test_two_contents_of_one_file_are_no_manifest() -> None:
         for number, one in enumerate(lines[:2])
     ]
     with pytest.raises(RunError, match="w was not the same in all trials"):
-        opened.manifests(plan, mixed)
+        opened_files.manifests(plan, mixed)

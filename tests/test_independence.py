@@ -7,9 +7,9 @@ import pytest
 
 from hthor import rules, tasks
 from hthor.episode import EpisodeLog, play
-from hthor.eval import cast
-from hthor.eval.session import sessions
-from hthor.tasks import library
+from hthor.eval.config.sessions import sessions
+from hthor.eval.runner import trial_runner
+from hthor.tasks.suites import library
 from hthor.types import HUMAN, Action, Briefing, Move, Observation, Rotate
 
 PEOPLE = 2
@@ -40,16 +40,16 @@ class Spinner:
 
 
 @pytest.fixture(scope="module")
-def stage() -> cast.Stage:
-    return cast.Stage()
+def stage() -> trial_runner.Stage:
+    return trial_runner.Stage()
 
 
 @pytest.fixture(scope="module")
-def alone(stage: cast.Stage) -> list[EpisodeLog]:
+def alone(stage: trial_runner.Stage) -> list[EpisodeLog]:
     return first_trials("silent", stage)
 
 
-def first_trials(agent: str, stage: cast.Stage, mind: object = None) -> list[EpisodeLog]:
+def first_trials(agent: str, stage: trial_runner.Stage, mind: object = None) -> list[EpisodeLog]:
     """The first trials of a few people, in a few houses."""
     smoke, logs = tasks.suite("smoke"), []
     few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house in HOUSES))
@@ -74,7 +74,7 @@ def meeting(log: EpisodeLog) -> int:
 
 
 @pytest.mark.parametrize("agent", ["frontier", "oracle"])
-def test_until_they_meet_the_person_is_alone(agent: str, stage: cast.Stage, alone: list[EpisodeLog]) -> None:
+def test_until_they_meet_the_person_is_alone(agent: str, stage: trial_runner.Stage, alone: list[EpisodeLog]) -> None:
     apart = 0
     for without, together in zip(alone, first_trials(agent, stage), strict=True):
         until = min(meeting(together), without.ticks)
@@ -86,7 +86,9 @@ def test_until_they_meet_the_person_is_alone(agent: str, stage: cast.Stage, alon
     assert apart > PEOPLE * TRIALS * 20, "they met at once every time, so this test showed nothing"
 
 
-def test_a_robot_that_is_never_in_the_way_changes_nothing_at_all(stage: cast.Stage, alone: list[EpisodeLog]) -> None:
+def test_a_robot_that_is_never_in_the_way_changes_nothing_at_all(
+    stage: trial_runner.Stage, alone: list[EpisodeLog]
+) -> None:
     undisturbed = 0
     for without, together in zip(alone, first_trials("frontier", stage, Wanderer()), strict=True):
         if meeting(together) >= together.ticks:
@@ -102,7 +104,7 @@ def person(log: EpisodeLog) -> bytes:
     return msgspec.json.encode((log.paths[HUMAN], events, log.journal, log.ticks, log.met, log.trust, log.idle[HUMAN]))
 
 
-def test_two_robots_that_neither_speak_nor_stand_in_the_way_meet_the_same_person(stage: cast.Stage) -> None:
+def test_two_robots_that_neither_speak_nor_stand_in_the_way_meet_the_same_person(stage: trial_runner.Stage) -> None:
     """Byte for byte: path, stick, pitch, attempts, glimpses, choices, trust."""
     apart = 0
     pairs = zip(first_trials("frontier", stage, Spinner()), first_trials("frontier", stage, Wanderer()), strict=True)
@@ -113,7 +115,7 @@ def test_two_robots_that_neither_speak_nor_stand_in_the_way_meet_the_same_person
     assert apart > 2, "the robots were hardly ever out of the way, so this test showed nothing"
 
 
-def test_the_person_alone_is_the_same_person(stage: cast.Stage, alone: list[EpisodeLog]) -> None:
+def test_the_person_alone_is_the_same_person(stage: trial_runner.Stage, alone: list[EpisodeLog]) -> None:
     """Without a robot nobody is asked how far they trust it; all else is the same, byte for byte."""
     same = 0
     for without, spun in zip(alone, first_trials("frontier", stage, Spinner()), strict=True):

@@ -10,14 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor import rules, tasks
-from hthor.calibration.logs import deeds, walks
-from hthor.eval import cast, record
-from hthor.eval.record import Record
-from hthor.eval.session import Session, sessions
-from hthor.humans.journal import Recorder
-from hthor.tasks import library
+from hthor.calibration.from_logs.features import locomotion, manipulation
+from hthor.eval.config.sessions import Session, sessions
+from hthor.eval.records import trial_record
+from hthor.eval.records.trial_record import Record
+from hthor.eval.runner import trial_runner
+from hthor.humans.core.behaviour_log import Recorder
+from hthor.tasks.suites import library
 from hthor.types import HUMAN, Event, Move, Rotate, Wait
-from hthor.world.avatar import HUMAN as BODY
+from hthor.world.model.bodies.avatar import HUMAN as BODY
 
 STEP_M = BODY.speed * rules.TICK_S
 
@@ -89,13 +90,13 @@ def played() -> list[Record]:
     smoke = tasks.suite("smoke")
     few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house == "alder"))
     whole = sessions(few, agent="oracle", seed=3)[0]
-    return list(cast.player()(Session(participant=whole.participant, trials=whole.trials[:4])))
+    return list(trial_runner.player()(Session(participant=whole.participant, trials=whole.trials[:4])))
 
 
 def test_nobody_goes_farther_than_the_stick_says(played: list[Record]) -> None:
     went = 0.0
     for one in played:
-        stick = walks.stick(one)
+        stick = locomotion.stick(one)
         assert stick is not None
         assert len(stick) == one.ticks
         path = one.paths[HUMAN]
@@ -109,7 +110,7 @@ def test_nobody_goes_farther_than_the_stick_says(played: list[Record]) -> None:
 def test_every_deed_of_the_hands_was_an_attempt(played: list[Record]) -> None:
     done = {"picked", "placed", "opened"}
     deeds_done = [e for one in played for e in one.events if e.seat == HUMAN and e.kind in done]
-    worked = [a for one in played for a in deeds.of(one) if not a.missed and not a.cut]
+    worked = [a for one in played for a in manipulation.of(one) if not a.missed and not a.cut]
     assert deeds_done
     assert len(worked) >= len(deeds_done)
     assert all(a.seconds >= rules.HANDLING_S for a in worked)
@@ -121,4 +122,4 @@ def test_a_trial_stays_small(played: list[Record]) -> None:
 
     for one in played:
         assert len(msgspec.json.encode(one.journal)) < 16_000
-        assert record.decode(record.encode(one)) == one
+        assert trial_record.decode(trial_record.encode(one)) == one

@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from hthor import guest
-from hthor.guest import IsolationError, preloading
+from hthor.guest import IsolationError
+from hthor.guest.client import preloading
 from tests.redteam.nobody import ROOT, runner
 from tests.test_guest import HEAD, agent
 from tests.test_guest_killed import FAMILIES, _line, _playing
@@ -80,7 +81,7 @@ def test_the_keeper_of_a_guest_is_held(level: str, tmp_path: Path) -> None:
 PRELOADED = """
 import sys
 from pathlib import Path
-from hthor.guest.preloading import preload
+from hthor.guest.client.preloading import preload
 sys.argv = ["7", "8"]
 preload(Path(PATH))
 print([name for name in NAMES if name in sys.modules], sys.argv)

@@ -15,15 +15,16 @@ from hthor import catalog, houses, jsonio, plugins, rules, tasks
 from hthor.catalog import priors
 from hthor.catalog.procthor import KIND_OF
 from hthor.errors import HthorError, UnknownName
-from hthor.geometry import inside
-from hthor.houses.freespace import FreeSpace
-from hthor.houses.geodesic import Geodesics
-from hthor.tasks import generate, judgement, library
-from hthor.tasks.avatar import HEIGHT_M, RADIUS_M, REACH_M
-from hthor.tasks.jobs import PLACE_M, TOGETHER_M, JobKind, carrying_time, is_done, left
+from hthor.geometry.plane import inside
+from hthor.houses.space.free_space import FreeSpace
+from hthor.houses.space.geodesic import Geodesics
+from hthor.tasks.generation import commonsense_places, generate
+from hthor.tasks.generation.avatar import HEIGHT_M, RADIUS_M, REACH_M
+from hthor.tasks.generation.free_spots import NEAR_M
+from hthor.tasks.generation.suite_specs import PLANS
 from hthor.tasks.kinds import multi_robot_collection as collection
-from hthor.tasks.plans import PLANS
-from hthor.tasks.spots import NEAR_M
+from hthor.tasks.subgoals import PLACE_M, TOGETHER_M, JobKind, carrying_time, is_done, left
+from hthor.tasks.suites import library
 from hthor.tasks.validate import faults
 from hthor.types import Goal, Job, Pose, Snapshot, TaskSpec, ThingState
 
@@ -329,7 +330,7 @@ def test_strewn_targets_are_where_nobody_wants_them_and_the_rest_where_they_may_
     for task in tasks.suite("tidy").tasks:
         house = HOUSES[task.house]
         kinds = {thing.id: thing.kind for thing in house.things}
-        verdicts = {one.id: judgement.of(one.id)[kinds[one.support]].verdict for one in task.objects}
+        verdicts = {one.id: commonsense_places.of(one.id)[kinds[one.support]].verdict for one in task.objects}
         out = [target for target, verdict in verdicts.items() if verdict == "out"]
         assert 2 <= len(out) <= 4
         assert sorted(job.target for job in left(task.goal, task.objects, house)) == sorted(out)
@@ -337,7 +338,7 @@ def test_strewn_targets_are_where_nobody_wants_them_and_the_rest_where_they_may_
         assert {job.target for job in task.goal.jobs} == set(catalog.TARGETS)
         for job in task.goal.jobs:
             assert set(job.destinations) <= set(kinds.values())
-            assert all(judgement.of(job.target)[kind].verdict != "out" for kind in job.destinations)
+            assert all(commonsense_places.of(job.target)[kind].verdict != "out" for kind in job.destinations)
 
 
 def test_trunks_stand_free_in_one_room_and_go_to_another():
@@ -371,7 +372,7 @@ def test_what_is_collected_and_tidied_is_in_reach_of_an_arm():
 def test_the_judgement_covers_every_place_and_follows_its_numbers():
     bearing = {kind for kind in catalog.names() if catalog.kind(kind).rests()}
     for target in catalog.TARGETS:
-        found = judgement.of(target)
+        found = commonsense_places.of(target)
         assert set(found) == bearing
         edges = {place: weight for (how, place), weight in priors.weights(target).items() if how != "near"}
         for kind, row in found.items():
@@ -390,7 +391,7 @@ def test_the_judgement_covers_every_place_and_follows_its_numbers():
 
 def test_the_judgement_counts_what_its_source_says():
     """The counts are in the rows: "23 of 103"."""
-    rows = [row for row in judgement.rows() if row.basis == "scenes"]
+    rows = [row for row in commonsense_places.rows() if row.basis == "scenes"]
     for row in rows:
         names, _, count = row.source.removeprefix("receptacles.json: ").rpartition(", ")
         seen_there, total = (int(word) for word in count.split(" of "))
@@ -413,13 +414,13 @@ def test_the_judgement_counts_what_its_source_says():
     ],
 )
 def test_common_sense(target, kind, out):
-    assert judgement.is_out(target, kind) == out
-    assert ("stove" in judgement.homes("apple")) is False
+    assert commonsense_places.is_out(target, kind) == out
+    assert ("stove" in commonsense_places.homes("apple")) is False
 
 
 def test_nothing_is_judged_of_what_is_no_target():
     with pytest.raises(UnknownName, match="spaceship"):
-        judgement.of("spaceship")
+        commonsense_places.of("spaceship")
 
 
 # ------------------------------------------------------------------------------------------------------ small houses

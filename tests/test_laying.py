@@ -14,14 +14,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hthor import catalog, houses, plugins
-from hthor.eval import soundness
-from hthor.houses import laying, loader, thing_rules
-from hthor.tasks import generate, making
-from hthor.tasks.making import Recipe
-from hthor.tasks.placing import Shelves
+from hthor.eval.task_check import proof
+from hthor.houses import laying, loader
+from hthor.houses.checks import thing_rules
+from hthor.tasks.generation import generate
+from hthor.tasks.generation.placement import Shelves
+from hthor.tasks.suites import custom_suite
+from hthor.tasks.suites.custom_suite import Recipe
 from hthor.tasks.validate import faults
 from hthor.types import Goal, HouseSpec, Placement, TaskSpec, Thing
-from hthor.world import World, contents
+from hthor.world import World
+from hthor.world.model import inventory
 
 DATA = Path(houses.__file__).parent / "data"
 OWN = json.loads((DATA / "alder.json").read_bytes())
@@ -95,7 +98,7 @@ def test_what_lies_on_a_small_thing_lies_on_it_where_that_is_laid():
     (top,) = catalog.kind("plate").surfaces(plate.size)
     assert bottom(plate) == pytest.approx(house[plate.parent].centre[2] + house[plate.parent].size[2] / 2)
     assert bottom(book) == pytest.approx(plate.centre[2] + top.centre[2])
-    assert {"a plate", "a book"} <= {one.id for one in contents.split(stacked(), ()).movables}
+    assert {"a plate", "a book"} <= {one.id for one in inventory.split(stacked(), ()).movables}
 
 
 def test_what_cannot_lie_there_stays_where_the_file_has_it():
@@ -104,7 +107,7 @@ def test_what_cannot_lie_there_stays_where_the_file_has_it():
     assert len(kept) > 10, "a metre over a table there is nothing to lie on"
     assert not any(thing.lift for thing in house.things if thing.id in kept)
     assert all(abs(thing.lift) <= 0.3 for thing in house.things)
-    assert kept <= {thing.id for thing in contents.split(house, ()).statics}
+    assert kept <= {thing.id for thing in inventory.split(house, ()).statics}
 
 
 def test_the_height_of_the_file_is_still_judged():
@@ -156,7 +159,7 @@ def test_tasks_in_houses_of_others_start_with_everything_apart(samples: list[Pat
     for path in samples[4:6]:
         house = houses.load(path)
         world = World(house)
-        for made in making.in_house(Recipe(name="samples", tasks=3), str(path)):
+        for made in custom_suite.in_house(Recipe(name="samples", tasks=3), str(path)):
             assert not list(faults(made, house))
             world.reset(made)
             for placed in made.objects:
@@ -180,5 +183,5 @@ def test_an_object_in_a_thing_of_the_house_is_named_without_an_engine():
     broken = msgspec.structs.replace(made, objects=(inside, *others))
     assert Shelves.of(house).within(inside, 0.01) == bowl.id
     assert ("objects[0].position", f"'apple' and '{bowl.id}' of the house are in one another") in faults(broken, house)
-    verdict = soundness.examine(broken)
+    verdict = proof.examine(broken)
     assert verdict.faults[0].field == "objects[0].position"

@@ -25,28 +25,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks import forging
-from hthor import jsonio, tasks
+from hthor import code_identity, jsonio, tasks
 from hthor.errors import HthorError, RunError
-from hthor.eval import provenance, setup
-from hthor.guest import manifest
-from hthor.leaderboard import (
-    admission,
-    archive,
-    checks,
-    enter,
-    files,
-    form,
-    listing,
-    merkle,
-    overrides,
-    packing,
-    page,
-    publish,
-    rescore,
-    submission,
-    verify,
-    worth,
-)
+from hthor.eval.config import run_config
+from hthor.guest.agent import manifest
+from hthor.leaderboard import board_check, canonical_form, enter, publish, rescore
+from hthor.leaderboard.entries import column_packing, entry_metrics, files, merkle, overrides
+from hthor.leaderboard.page import page
+from hthor.leaderboard.ranking import admission, listing
+from hthor.leaderboard.submission import archive, submission
+from hthor.leaderboard.verify import verify
 
 # ------------------------------------------------------------------------------------------------------- entries
 
@@ -65,7 +53,7 @@ def test_a_run_of_other_people_is_refused_in_one_sentence_that_says_what_would_d
 def test_half_and_twice_the_people_of_a_shipped_suite_are_a_setting_of_its_own():
     plan, _ = fakes.run_of(COUNT)
     smoke = tasks.suite("smoke")
-    suite = setup.SuiteRef(name="smoke", version=str(smoke.version), sha256=smoke.sha256)
+    suite = run_config.SuiteRef(name="smoke", version=str(smoke.version), sha256=smoke.sha256)
     for participants, trials, found in ((6, 60, {}), (2, 20, {"participants": "2"}), (12, 120, {"participants": "12"})):
         some = msgspec.structs.replace(plan, suite=suite, participants=participants, trials=trials)
         assert overrides.of(some) == found
@@ -88,7 +76,7 @@ def test_every_file_is_as_the_schema_says(whole: Path):
         document = json.loads(path.read_bytes())
         valid.validate(document)
         assert not valid.is_valid({**document, "extra": 1})
-    assert checks.problems(whole) == []
+    assert board_check.problems(whole) == []
     assert publish.differences(whole) == []
 
 
@@ -112,7 +100,10 @@ def test_parts_and_departures_are_refused(runs: Path, tmp_path: Path):
     seat = msgspec.structs.replace(plan.robots[0], detector="ideal", robot="mine")
     other = msgspec.structs.replace(plan, participants=1, robots=(seat,))
     assert overrides.of(other, ("tender",)).keys() == {"participants", "detector", "robot", "robots"}
-    with mock.patch.object(provenance, "code_sha256", return_value="56" * 32), pytest.raises(RunError, match="code_"):
+    with (
+        mock.patch.object(code_identity, "code_sha256", return_value="56" * 32),
+        pytest.raises(RunError, match="code_"),
+    ):
         enter.add(runs / "helper", tmp_path / "board")
     assert not (tmp_path / "board").exists()
 
@@ -124,7 +115,7 @@ def test_what_is_refused_leaves_the_board_as_it_was(runs: Path, tmp_path: Path):
 
 
 def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
-    for look in (checks.problems, publish.build, rescore.rescore):
+    for look in (board_check.problems, publish.build, rescore.rescore):
         with pytest.raises(files.BoardError, match="no folder"):
             look(tmp_path / "board")
     with pytest.raises(files.BoardError, match="is no file"):
@@ -139,7 +130,7 @@ def test_a_column_that_cannot_be_read_is_named_with_its_file(board: Path):
     for look in (rescore.rescore, publish.build):
         with pytest.raises(files.BoardError, match=rf"{path.name}: trials\.time: "):
             look(board)
-    assert "trials.time" in [one.field for one in checks.problems(board)]
+    assert "trials.time" in [one.field for one in board_check.problems(board)]
 
 
 # -------------------------------------------------------------------------------------------------- what is changed
@@ -159,10 +150,13 @@ CHANGES = {
     "faults": ("counts.faults", lambda one: one["counts"].update(faults=7)),
     "kinds of faults": ("counts.faults_by_kind", lambda one: one["counts"]["faults_by_kind"].clear()),
     "successes": ("counts.successes", lambda one: one["counts"].update(successes=0)),
-    "a bit": ("hashes.merkle", lambda one: one["trials"].update(met=packing.bits(np.ones(COUNT)))),
-    "bits beyond": ("trials.met", lambda one: one["trials"].update(met=packing.bits(np.ones(COUNT + 4)))),
+    "a bit": ("hashes.merkle", lambda one: one["trials"].update(met=column_packing.bits(np.ones(COUNT)))),
+    "bits beyond": ("trials.met", lambda one: one["trials"].update(met=column_packing.bits(np.ones(COUNT + 4)))),
     "too few": ("trials.twsr", lambda one: one["trials"].update(twsr="AAAA")),
-    "too much": ("trials.twsr", lambda one: one["trials"].update(twsr=packing.numbers(np.full(COUNT, 10**6 + 1), 3))),
+    "too much": (
+        "trials.twsr",
+        lambda one: one["trials"].update(twsr=column_packing.numbers(np.full(COUNT, 10**6 + 1), 3)),
+    ),
     "label": ("trials.labels.split.of", lambda one: one["trials"]["labels"]["split"].update(of="9" * COUNT)),
     "seed": ("hashes.run", lambda one: one["run"].update(seed=5)),
     "trials": ("run.trials", lambda one: one["run"].update(trials=19)),
@@ -191,7 +185,7 @@ def test_what_was_changed_is_named(board: Path, change: str):
     document = json.loads(path.read_bytes())
     spoil(document)
     path.write_bytes(jsonio.pretty(document))
-    found = checks.problems(board)
+    found = board_check.problems(board)
     assert field in {one.field for one in found}
     assert {one.file for one in found} == {str(path)}
     with pytest.raises(files.BoardError, match=r"helper|clumsy"):
@@ -206,15 +200,15 @@ def test_all_problems_are_listed(board: Path):
     document["run"]["seed"] = 3
     path.write_bytes(jsonio.pretty(document))
     (board / "entries" / "rubbish.json").write_text("{")
-    fields = [one.field for one in checks.problems(board)]
+    fields = [one.field for one in board_check.problems(board)]
     assert {"metrics.sr.mean", "counts.faults", "hashes.run", "$"} <= set(fields)
 
 
 def test_another_spelling_is_refused_and_can_be_fixed(board: Path, whole: Path):
     path = entry_of(board, "helper")
     path.write_text(json.dumps(json.loads(path.read_bytes())))
-    assert [one.field for one in checks.problems(board)] == [form.SPELLING]
-    assert form.fix(files.entry_paths(board)) == [path]
+    assert [one.field for one in board_check.problems(board)] == [canonical_form.SPELLING]
+    assert canonical_form.fix(files.entry_paths(board)) == [path]
     assert contents(board) == contents(whole)
     (board / "leaderboard.json").write_bytes(b"{}")
     assert [one.file for one in publish.differences(board)] == [str(board / "leaderboard.json")]
@@ -226,7 +220,7 @@ def test_a_forger_who_makes_all_follow_passes_the_laws_but_not_an_old_verificati
     true = files.read(path)
     lie = forging.forged(true, 0.2, control)
     files.write(path, lie)
-    assert checks.problems(board) == []  # all of it follows from its trials, which never were
+    assert board_check.problems(board) == []  # all of it follows from its trials, which never were
     assert kept(true).of(true) is not None
     assert kept(true).of(lie) is None
 
@@ -236,7 +230,7 @@ def test_numbers_of_older_statistics_are_worked_out_anew(board: Path, whole: Pat
         entry = files.read(path)
         sr = msgspec.structs.replace(entry.metrics.sr, ci95=(0.0, 1.0))
         files.write(path, msgspec.structs.replace(entry, metrics=msgspec.structs.replace(entry.metrics, sr=sr)))
-    assert checks.problems(board) != []
+    assert board_check.problems(board) != []
     assert rescore.rescore(board) == files.entry_paths(board)
     assert contents(board) == contents(whole)
     assert rescore.rescore(board) == []
@@ -309,11 +303,13 @@ def test_a_browser_shows_the_page_without_complaint(whole: Path, tmp_path: Path)
 @given(st.lists(st.integers(0, 2**24 - 1), min_size=1, max_size=40))
 def test_columns_come_back(values: list[int]):
     column = np.array(values)
-    assert packing.unnumbers(packing.numbers(column, 3), len(values), 3).tolist() == values
+    assert column_packing.unnumbers(column_packing.numbers(column, 3), len(values), 3).tolist() == values
     odd = column % 2 == 1
-    assert (packing.unbits(packing.bits(odd), len(values)) == odd).all()
-    small = [value % packing.LABELS_MAX for value in values]
-    assert packing.undigits(packing.digits(small), len(values), packing.LABELS_MAX).tolist() == small
+    assert (column_packing.unbits(column_packing.bits(odd), len(values)) == odd).all()
+    small = [value % column_packing.LABELS_MAX for value in values]
+    assert (
+        column_packing.undigits(column_packing.digits(small), len(values), column_packing.LABELS_MAX).tolist() == small
+    )
 
 
 @given(st.lists(st.binary(max_size=6), min_size=1, max_size=12), st.data())
@@ -331,7 +327,7 @@ def test_what_an_entry_says_of_people_is_how_they_were_dealt():
     for count in (1, 9, 20, 33):
         _, dealt = fakes.run_of(count)
         whose = [session.participant for session in dealt for _ in session.trials]
-        assert worth.people(count, len(dealt)) == whose
+        assert entry_metrics.people(count, len(dealt)) == whose
 
 
 # --------------------------------------------------------------------------------------------------- submissions
@@ -393,7 +389,7 @@ def test_names_of_submissions(handed_in: Path):
 def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path, tmp_path: Path):
     played = submission.listed(handed_in)
     mine = shutil.copytree(runs, tmp_path / "runs") / "helper"
-    plan = setup.load(mine)
+    plan = run_config.load(mine)
     ref = plan.robots[0].agent
     about = manifest.of(ref.name, ref.source, {}, [one for one in played if one.path == "agent.py"])
     plan = msgspec.structs.replace(plan, agents=(msgspec.structs.replace(about, sha256=ref.sha256),))
@@ -404,16 +400,16 @@ def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path
     ]
     assert entry.files == played
     assert entry.agents == plan.agents
-    assert not checks.problems(board, [path], submissions=handed_in.parent)
+    assert not board_check.problems(board, [path], submissions=handed_in.parent)
     (handed_in / "agent.py").write_text("class Agent: pass\n")
     with pytest.raises(files.BoardError, match=r"agents\[0\]\.files: is not what lies in .*agent\.py is another file"):
         enter.add(mine, board, submission.read(handed_in))
-    found = checks.problems(board, [path], submissions=handed_in.parent)
+    found = board_check.problems(board, [path], submissions=handed_in.parent)
     assert [(one.field, "agent.py has changed" in one.problem) for one in found] == [("files", True)]
     files.write(path, msgspec.structs.replace(entry, files=entry.files[1:]))
-    assert "agents[0].files" in {one.field for one in checks.problems(board, [path])}
+    assert "agents[0].files" in {one.field for one in board_check.problems(board, [path])}
     files.write(path, msgspec.structs.replace(entry, agents=()))
-    assert "agents" in {one.field for one in checks.problems(board, [path])}
+    assert "agents" in {one.field for one in board_check.problems(board, [path])}
 
 
 def _zipped(folder: Path, path: Path) -> Path:

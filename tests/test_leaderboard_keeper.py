@@ -15,32 +15,16 @@ from hypothesis import strategies as st
 
 from benchmarks import forging
 from hthor import jsonio
-from hthor.eval import session
-from hthor.eval.news import Lost
-from hthor.leaderboard import (
-    admission,
-    catching,
-    checks,
-    clones,
-    dealt,
-    enter,
-    falling,
-    files,
-    freshly,
-    listing,
-    outcomes,
-    packing,
-    publish,
-    replay,
-    verdict,
-    verification,
-    verify,
-    worth,
-)
-from hthor.leaderboard.board import Row
-from hthor.leaderboard.entry import Entry
-from hthor.leaderboard.files import BoardError
-from hthor.leaderboard.verification import Kept
+from hthor.eval.config import sessions
+from hthor.eval.runner.messages import Lost
+from hthor.leaderboard import board_check, enter, publish
+from hthor.leaderboard.entries import column_packing, entry_metrics, files, trial_outcomes, trial_tasks, verification
+from hthor.leaderboard.entries.entry import Entry
+from hthor.leaderboard.entries.files import BoardError
+from hthor.leaderboard.entries.verification import Kept
+from hthor.leaderboard.ranking import admission, duplicates, listing
+from hthor.leaderboard.ranking.board import Row
+from hthor.leaderboard.verify import detection_power, fresh_tasks, performance_drop, replay, verdict, verify
 
 
 def entries_of(board: Path) -> list[Entry]:
@@ -85,7 +69,7 @@ def test_an_agent_that_fell_on_fresh_tasks_has_no_rank_and_the_board_shows_both_
     chance = np.random.default_rng(1).random(200)
     for share, fell in ((0.05, True), (float(helper.metrics.sr.mean or 0.0), False)):
         values = {"sr": (chance < share).astype(float), "twsr": 0.5 * (chance < share)}
-        found = freshly.judged(helper, "0" * 64, values, owners)
+        found = fresh_tasks.judged(helper, "0" * 64, values, owners)
         assert found.fell == fell
         assert found.claimed_sr == helper.metrics.sr.mean
         assert found.sr.mean == pytest.approx(values["sr"].mean())
@@ -125,18 +109,18 @@ def best_named(entry: Entry, name: str, number: int) -> Entry:
 
 def test_what_one_agent_is(whole: Path):
     helper, clumsy = (next(one for one in entries_of(whole) if one.agent.name == name) for name in ("helper", "clumsy"))
-    held = {one.id: outcomes.unpack(one.trials) for one in (helper, clumsy)}
+    held = {one.id: trial_outcomes.unpack(one.trials) for one in (helper, clumsy)}
     late = msgspec.structs.replace(held[helper.id], time=held[helper.id].time + 500)
     other = best_named(helper, "other", 1)
     apart = msgspec.structs.replace(clumsy, run=best_named(clumsy, "clumsy", 2).run)
-    assert len(clones.families([helper, other], [held[helper.id]] * 2)) == 1, "the same outcomes"
-    assert len(clones.families([helper, other], [held[helper.id], late])) == 2
+    assert len(duplicates.families([helper, other], [held[helper.id]] * 2)) == 1, "the same outcomes"
+    assert len(duplicates.families([helper, other], [held[helper.id], late])) == 2
     named = msgspec.structs.replace(other, agent=helper.agent)
-    assert len(clones.families([helper, named], [held[helper.id], late])) == 1, "a version, by name and team"
+    assert len(duplicates.families([helper, named], [held[helper.id], late])) == 1, "a version, by name and team"
     same = msgspec.structs.replace(other, run=helper.run)
-    assert len(clones.families([helper, same], [held[helper.id], late])) == 1, "the same code"
-    assert clones.alike(held[helper.id], held[helper.id]) == 1.0
-    assert len(clones.families([helper, apart], [held[helper.id], late])) == 2
+    assert len(duplicates.families([helper, same], [held[helper.id], late])) == 1, "the same code"
+    assert duplicates.alike(held[helper.id], held[helper.id]) == 1.0
+    assert len(duplicates.families([helper, apart], [held[helper.id], late])) == 2
 
 
 # ------------------------------------------------------------------------------------------------- the keeper's files
@@ -252,7 +236,7 @@ class Losing:
 
 def test_a_verification_needs_every_trial_that_was_drawn(whole: Path, monkeypatch: pytest.MonkeyPatch):
     entry = files.read(entry_of(whole, "helper"))
-    trial = session.Session(participant=1, trials=())
+    trial = sessions.Session(participant=1, trials=())
     wanted = [msgspec.structs.replace(trial, trials=(None,) * 4)]  # type: ignore[arg-type]
     monkeypatch.setattr(replay.engines, "find", lambda *_, **__: Losing())
     with pytest.raises(
@@ -269,7 +253,7 @@ def test_there_is_no_verdict_over_a_part_of_a_draw():
             verdict.judge(tier, held, nothing, [5], [0] * 60)
 
 
-def again_of(held: outcomes.Outcomes, places) -> verdict.Again:
+def again_of(held: trial_outcomes.Outcomes, places) -> verdict.Again:
     return verdict.Again(
         rows={place: held.rows[place] for place in places},
         met={place: bool(held.met[place]) for place in places},
@@ -279,19 +263,19 @@ def again_of(held: outcomes.Outcomes, places) -> verdict.Again:
 
 def test_how_surely_three_false_outcomes_in_sixty_are_caught():
     """What a verification says of its own power is what the forger meets."""
-    small, whose = forging.made_up(count=60), worth.people(60, 6)
+    small, whose = forging.made_up(count=60), entry_metrics.people(60, 6)
     every = range(60)
-    assert catching.chance("V1", small, again_of(small, every), every, whose) == 1.0
-    assert catching.chance("V2", small, again_of(small, every), every, whose) == 1.0
-    assert catching.chance("V3", small, again_of(small, every), every, whose) < 0.5, "not enough for a rank"
+    assert detection_power.chance("V1", small, again_of(small, every), every, whose) == 1.0
+    assert detection_power.chance("V2", small, again_of(small, every), every, whose) == 1.0
+    assert detection_power.chance("V3", small, again_of(small, every), every, whose) < 0.5, "not enough for a rank"
     part = range(0, 60, 3)
-    some = catching.chance("V1", small, again_of(small, part), part, whose)
+    some = detection_power.chance("V1", small, again_of(small, part), part, whose)
     assert some == pytest.approx(forging.caught("V1", 0.05, 300, sample=20, count=60) / 300, abs=0.09)
     assert some < verification.ENOUGH
-    large, owners = forging.made_up(), worth.people(2000, 200)
+    large, owners = forging.made_up(), entry_metrics.people(2000, 200)
     drawn = range(0, 2000, 10)
-    assert catching.chance("V1", large, again_of(large, drawn), drawn, owners) > 0.999
-    assert catching.chance("V2", large, again_of(large, drawn), drawn, owners) > 0.95
+    assert detection_power.chance("V1", large, again_of(large, drawn), drawn, owners) > 0.999
+    assert detection_power.chance("V2", large, again_of(large, drawn), drawn, owners) > 0.95
 
 
 def test_an_agent_that_does_not_repeat_itself_is_judged_by_all_its_trials():
@@ -323,9 +307,9 @@ def test_labels_times_and_what_they_are_worth_are_those_of_the_tasks(whole: Path
     import eval_fakes as fakes
 
     entry = files.read(entry_of(whole, "helper"))
-    tasks = dealt.tasks(fakes.suite(COUNT), entry)
-    held = outcomes.unpack(entry.trials)
-    from hthor.leaderboard import invariants
+    tasks = trial_tasks.tasks(fakes.suite(COUNT), entry)
+    held = trial_outcomes.unpack(entry.trials)
+    from hthor.leaderboard.entries import invariants
 
     assert list(invariants.outcomes(entry, held, tasks)) == []
     one = int(np.flatnonzero(held.met)[0])
@@ -354,9 +338,9 @@ def test_labels_times_and_what_they_are_worth_are_those_of_the_tasks(whole: Path
 def test_without_the_suite_failure_is_still_worth_nothing(board: Path):
     path = entry_of(board, "helper")
     document = json.loads(path.read_bytes())
-    document["trials"]["twsr"] = packing.numbers(np.full(COUNT, 10**6), 3)
+    document["trials"]["twsr"] = column_packing.numbers(np.full(COUNT, 10**6), 3)
     path.write_bytes(jsonio.pretty(document))
-    assert "trials.twsr" in {one.field for one in checks.problems(board)}
+    assert "trials.twsr" in {one.field for one in board_check.problems(board)}
 
 
 # --------------------------------------------------------------------------------------------------------- fresh tasks
@@ -364,15 +348,15 @@ def test_without_the_suite_failure_is_still_worth_nothing(board: Path):
 
 def test_a_fall_is_seen_as_often_as_is_said_and_an_honest_agent_is_not_flagged():
     chance = np.random.default_rng(3)
-    claimed, whose = (chance.random(2000) < 0.89).astype(float), worth.people(2000, 200)
-    seen = falling.detectable(claimed, whose, 200)
+    claimed, whose = (chance.random(2000) < 0.89).astype(float), entry_metrics.people(2000, 200)
+    seen = performance_drop.detectable(claimed, whose, 200)
     assert seen is not None
     assert 0.04 < seen < 0.2
-    assert falling.power(claimed, whose, 200, seen) >= 0.8
-    assert falling.power(claimed, whose, 200, 0.0) <= 0.02
+    assert performance_drop.power(claimed, whose, 200, seen) >= 0.8
+    assert performance_drop.power(claimed, whose, 200, 0.0) <= 0.02
     memorised = (chance.random(200) < 0.58).astype(float)
-    assert falling.of(claimed, whose, memorised, [number // 10 for number in range(200)]).seen
-    assert falling.detectable(np.zeros(60), worth.people(60, 6), 60) is None
+    assert performance_drop.of(claimed, whose, memorised, [number // 10 for number in range(200)]).seen
+    assert performance_drop.detectable(np.zeros(60), entry_metrics.people(60, 6), 60) is None
 
 
 @settings(max_examples=25)
@@ -382,7 +366,7 @@ def test_the_better_it_went_the_less_of_a_fall(won: int, more: int):
     owners = [number // 10 for number in range(200)]
 
     def p(count: int) -> float:
-        return falling.of(
+        return performance_drop.of(
             claimed, owners, np.r_[np.ones(count), np.zeros(260 - count)], [n // 10 for n in range(260)]
         ).p
 
@@ -391,13 +375,13 @@ def test_the_better_it_went_the_less_of_a_fall(won: int, more: int):
 
 def test_fresh_tasks_are_of_the_recipe_and_of_no_other_draw():
     from hthor import tasks
-    from hthor.tasks import fresh
+    from hthor.tasks.suites import fresh_tasks
 
-    made = fresh.suite("smoke", 7, 3, lambda drafts: [True] * len(drafts))
+    made = fresh_tasks.suite("smoke", 7, 3, lambda drafts: [True] * len(drafts))
     known = {(task.house, task.human_start) for task in tasks.suite("smoke").tasks}
     assert len(made.tasks) == 3
     assert not known & {(task.house, task.human_start) for task in made.tasks}
-    assert fresh.suite("smoke", 7, 3, lambda drafts: [True] * len(drafts)) == made
+    assert fresh_tasks.suite("smoke", 7, 3, lambda drafts: [True] * len(drafts)) == made
     assert {task.kind for task in made.tasks} <= {task.kind for task in tasks.suite("smoke").tasks}
     refused: list[str] = []
 
@@ -405,4 +389,4 @@ def test_fresh_tasks_are_of_the_recipe_and_of_no_other_draw():
         refused.extend(task.house for task in drafts if len(refused) < 1)
         return [task.house not in refused[:1] or len(drafts) == 1 for task in drafts]
 
-    assert len(fresh.suite("smoke", 7, 2, possible).tasks) == 2, "what cannot be done is drawn again"
+    assert len(fresh_tasks.suite("smoke", 7, 2, possible).tasks) == 2, "what cannot be done is drawn again"

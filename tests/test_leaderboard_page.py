@@ -15,11 +15,14 @@ from board_fakes import code, kept, replayed, runs, verified, whole  # noqa: F40
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hthor.eval.stats import NOTHING, Estimate
-from hthor.leaderboard import admission, files, form, listing, markup, page
-from hthor.leaderboard.board import Board, Struck
-from hthor.leaderboard.entry import Agent, Entry, Group, Harness
-from hthor.leaderboard.verification import Fresh, Kept
+from hthor.eval.statistics.intervals import NOTHING, Estimate
+from hthor.leaderboard import canonical_form
+from hthor.leaderboard.entries import files
+from hthor.leaderboard.entries.entry import Agent, Entry, Group, Harness
+from hthor.leaderboard.entries.verification import Fresh, Kept
+from hthor.leaderboard.page import markup, page
+from hthor.leaderboard.ranking import admission, listing
+from hthor.leaderboard.ranking.board import Board, Struck
 
 ROOT = Path(__file__).resolve().parents[1]
 EVIL = "\"'><script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\"><b id=owned>"
@@ -155,4 +158,4 @@ def test_the_schema_takes_no_such_values(whole: Path, tmp_path: Path, field: str
     entry: Entry = files.read(next(path for path in files.entry_paths(whole) if path.name.startswith("helper")))
     path = tmp_path / f"{entry.id}.json"
     files.write(path, msgspec.structs.replace(entry, **{field: value}))
-    assert [one.field.partition(".")[0] for one in form.problems(path)] == [field]
+    assert [one.field.partition(".")[0] for one in canonical_form.problems(path)] == [field]

@@ -11,11 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hthor import catalog, looks
-from hthor.catalog import colours
+from hthor.catalog import colors
 from hthor.catalog.kind import Form
 from hthor.errors import UnknownName
-from hthor.looks import building, plain, shaping, solids, sweeps, textures
-from hthor.looks.mesh import Mesh, Piece
+from hthor.looks import textures
+from hthor.looks.furniture import building, plain
+from hthor.looks.meshes import shaping, solids, sweeps
+from hthor.looks.meshes.mesh import Mesh, Piece
 from hthor.types import Part, Surface, Vec3
 
 NAMES = catalog.names()
@@ -239,7 +241,7 @@ def test_pictures_stand_upright_for_who_looks_at_them() -> None:
 
 PARTS = {
     "door_leaf": (building.door_leaf(0.85, 2.05), (-0.425, None, 0.0), (0.425, None, 2.05)),
-    "oak door_leaf": (building.door_leaf(0.8, 2.0, colours.OAK, 3), (-0.4, None, 0.0), (0.4, None, 2.0)),
+    "oak door_leaf": (building.door_leaf(0.8, 2.0, colors.OAK, 3), (-0.4, None, 0.0), (0.4, None, 2.0)),
     "door_frame": (building.door_frame(0.9, 2.1, 0.12), (-0.51, -0.072, 0.0), (0.51, 0.072, 2.16)),
     "window_frame": (building.window_frame(1.5, 1.2, 0.12), (None, -0.072, None), (None, 0.14, 1.26)),
     "baseboard": (building.baseboard(3.0), (-1.5, 0.0, 0.0), (1.5, 0.012, 0.09)),

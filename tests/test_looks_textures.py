@@ -5,9 +5,10 @@ import zlib
 import numpy as np
 import pytest
 
-from hthor.catalog import colours
+from hthor.catalog import colors
 from hthor.errors import UnknownName
-from hthor.looks import materials, solids, textures
+from hthor.looks import materials, textures
+from hthor.looks.meshes import solids
 
 # ---------------------------------------------------------------------------------------------------------- textures
 
@@ -67,11 +68,11 @@ def test_a_wall_takes_the_colour_that_its_house_gives() -> None:
 
 
 def test_colours_of_the_catalog_speak_of_materials() -> None:
-    assert materials.guess(colours.OAK).texture == "wood"
-    assert materials.guess(colours.STEEL).texture == "brushed"
-    assert materials.guess(colours.STONE).texture == "granite"
-    assert materials.guess(colours.GLASS).rgba[3] < 0.5
-    assert materials.guess(colours.RED).texture == ""
+    assert materials.guess(colors.OAK).texture == "wood"
+    assert materials.guess(colors.STEEL).texture == "brushed"
+    assert materials.guess(colors.STONE).texture == "granite"
+    assert materials.guess(colors.GLASS).rgba[3] < 0.5
+    assert materials.guess(colors.RED).texture == ""
 
 
 def test_texture_coordinates_count_repeats() -> None:

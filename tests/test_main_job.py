@@ -25,13 +25,16 @@ import pytest
 from benchmarks import forging
 from hthor import cli, guest, houses, jsonio, rules, tasks
 from hthor.errors import AgentError
-from hthor.eval import cast, crews, engines, find, guarded
-from hthor.eval.log import Log
-from hthor.eval.record import Record
-from hthor.eval.session import Session, sessions
-from hthor.leaderboard import enter, files, outcomes, worth
-from hthor.tasks import library
-from hthor.tasks.commitment import Commitment
+from hthor.eval.config import robot_team
+from hthor.eval.config.sessions import Session, sessions
+from hthor.eval.records import find, run_isolation
+from hthor.eval.records.trial_log import Log
+from hthor.eval.records.trial_record import Record
+from hthor.eval.runner import engines, trial_runner
+from hthor.leaderboard import enter
+from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
+from hthor.tasks.suites import library
+from hthor.tasks.suites.commitment import Commitment
 from hthor.types import HUMAN
 
 HOUSES = ("alder", "elder")
@@ -275,18 +278,18 @@ def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(tmp_path
     assert json.loads((folder / "result.json").read_bytes()) == mine
 
 
-def dealt(agent: str, count: int = 2) -> tuple[cast.Sources, Session]:
+def dealt(agent: str, count: int = 2) -> tuple[trial_runner.Sources, Session]:
     """Where an agent's file lies, and the first trials of its first person."""
-    who = crews.form(["scout"], [agent])
+    who = robot_team.form(["scout"], [agent])
     whole = sessions(tasks.suite(SUITE), agent=who, participants=1)[0]
-    return cast.Sources(minds=who.minds, manifests=who.manifests), msgspec.structs.replace(
+    return trial_runner.Sources(minds=who.minds, manifests=who.manifests), msgspec.structs.replace(
         whole, trials=whole.trials[:count]
     )
 
 
 def played(agent: str, count: int = 2) -> list[Record]:
     sources, session = dealt(agent, count)
-    return list(cast.player(sources)(session))
+    return list(trial_runner.player(sources)(session))
 
 
 def test_the_example_works(root: Path):
@@ -353,7 +356,7 @@ def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: l
 
 def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(idle_robot: list[Record]):
     _, session = dealt("silent")
-    alone = list(cast.player()(session))
+    alone = list(trial_runner.player()(session))
     assert [one.spec.task for one in alone] == [one.spec.task for one in idle_robot]
     for none, idle in zip(alone, idle_robot, strict=True):
         met = [event.tick for event in idle.events if event.kind == "in_way"]
@@ -422,18 +425,18 @@ def test_less_isolation_than_required(
 
 def test_a_run_has_the_weakest_isolation_of_its_commands(tmp_path: Path):
     held = {level: guest.Isolation(level=level) for level in ("L1", "L2", "L3")}
-    assert guarded.weakest(tmp_path, held["L2"], "L2") == held["L2"]
-    jsonio.write(tmp_path / guarded.NAME, jsonio.pretty(held["L1"]))
-    assert guarded.weakest(tmp_path, held["L3"], "") == held["L1"]
+    assert run_isolation.weakest(tmp_path, held["L2"], "L2") == held["L2"]
+    jsonio.write(tmp_path / run_isolation.NAME, jsonio.pretty(held["L1"]))
+    assert run_isolation.weakest(tmp_path, held["L3"], "") == held["L1"]
     with pytest.raises(guest.IsolationError, match="has trials played at L1"):
-        guarded.weakest(tmp_path, held["L3"], "L2")
+        run_isolation.weakest(tmp_path, held["L3"], "L2")
 
 
 def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
     sources, session = dealt(written(tmp_path))
     written(tmp_path, act="return None")
     with pytest.raises(AgentError, match=r"agent\.py was changed while its run was going on"):
-        list(cast.player(sources)(session))
+        list(trial_runner.player(sources)(session))
 
 
 # ----------------------------------------------------------------------------------------------------- what a run holds
@@ -553,7 +556,7 @@ def test_leaderboard(
         said = say(*verify)
         assert (said.code, json.loads(said.out)["trials"]["tier"]) == (5, tier)
     worse = forging.forged(control, 1.0, None, brief)
-    uplift = worth.uplift(true, outcomes.unpack(true.trials), worse, outcomes.unpack(worse.trials))
+    uplift = entry_metrics.uplift(true, trial_outcomes.unpack(true.trials), worse, trial_outcomes.unpack(worse.trials))
     files.write(alone, worse)
     files.write(entry, msgspec.structs.replace(true, uplift=uplift))
     said = say(*verify)

@@ -12,13 +12,16 @@ import pytest
 from typer.testing import CliRunner
 
 from hthor import tasks
-from hthor.cli.app import app
+from hthor.cli import app
 from hthor.errors import HthorError, RunError
-from hthor.eval import again, campaign, find, intent, log, mind, mind_picture, mind_timeline, progress, redraw
-from hthor.eval.mind import Stream
-from hthor.eval.pages import filming
-from hthor.eval.record import Record
-from hthor.tasks import library
+from hthor.eval.records import find, trial_log
+from hthor.eval.records.trial_record import Record
+from hthor.eval.replay import human_trace, session_history
+from hthor.eval.replay.human_trace import Stream
+from hthor.eval.runner import experiment, progress, run_options
+from hthor.report.drawing import human_trace_figure, human_trace_timeline, render_trial
+from hthor.report.page import camera_frames
+from hthor.tasks.suites import library
 from hthor.types import HUMAN, Event
 
 PNG = b"\x89PNG\r\n"
@@ -31,17 +34,17 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     smoke = tasks.suite("smoke")
     few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house == "hazel")[:3])
     (folder / "few.json").write_bytes(library.encode(few))
-    options = intent.Options(
+    options = run_options.Options(
         agents=("oracle",), suite=str(folder / "few.json"), participants=1, jobs=1, seed=4, out=folder / "run"
     )
-    list(campaign.conduct(options, lambda _: progress.Silent()))
+    list(experiment.conduct(options, lambda _: progress.Silent()))
     return folder / "run"
 
 
 @pytest.fixture(scope="module")
 def heard(run: Path) -> list[tuple[Record, Stream]]:
     records = [find.trial(run, str(number)) for number in range(3)]
-    return [(one, mind.listen(run, one)) for one in records]
+    return [(one, human_trace.listen(run, one)) for one in records]
 
 
 def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[Record, Stream]]) -> None:
@@ -52,13 +55,13 @@ def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[Record, St
 
 def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run: Path) -> None:
     one = find.trial(run, "1")
-    views = filming.film(run, one, [0, one.ticks])
+    views = camera_frames.film(run, one, [0, one.ticks])
     assert sorted(views) == [0, one.ticks]
     for seen in views.values():
         assert seen.keys() == one.paths.keys()
-        assert all(view.shape == (filming.SIZE[1], filming.SIZE[0], 3) for view in seen.values())
+        assert all(view.shape == (camera_frames.SIZE[1], camera_frames.SIZE[0], 3) for view in seen.values())
     with pytest.raises(RunError, match="went otherwise than it was logged"):
-        filming.film(run, msgspec.structs.replace(one, ticks=one.ticks - 1), [0])
+        camera_frames.film(run, msgspec.structs.replace(one, ticks=one.ticks - 1), [0])
 
 
 def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[Record, Stream]]) -> None:
@@ -80,10 +83,10 @@ def test_beliefs_and_chances_add_up(heard: list[tuple[Record, Stream]]) -> None:
     for _, stream in heard:
         for event in stream.events:
             if event.kind == "beliefs":
-                places, ahead = mind_picture.posterior(event)
+                places, ahead = human_trace_figure.posterior(event)
                 assert sum(places.values()) + ahead == pytest.approx(1.0)
             elif event.kind == "choice":
-                shares = mind_timeline.chances(event, stream.traits["beta"])
+                shares = human_trace_timeline.chances(event, stream.traits["beta"])
                 assert sum(shares.values()) == pytest.approx(1.0)
                 assert event.data["chosen"] in shares
                 seen += 1
@@ -107,19 +110,19 @@ def test_trust_at_the_end_is_what_the_next_trial_begins_with(heard: list[tuple[R
 
 def test_it_is_drawn(heard: list[tuple[Record, Stream]], tmp_path: Path) -> None:
     record, stream = max(heard, key=lambda pair: len(pair[1].events))
-    figure = mind_picture.figure(record, redraw.house(record), stream)
+    figure = human_trace_figure.figure(record, render_trial.house(record), stream)
     figure.savefig(tmp_path / "mind.png", dpi=40)
     assert (tmp_path / "mind.png").read_bytes().startswith(PNG)
     quiet = msgspec.structs.replace(stream, events=tuple(e for e in stream.events if e.kind == "aim"))
-    mind_picture.figure(record, redraw.house(record), quiet).savefig(tmp_path / "quiet.png", dpi=40)
-    assert mind_timeline.lanes(quiet) == ["is about"]
+    human_trace_figure.figure(record, render_trial.house(record), quiet).savefig(tmp_path / "quiet.png", dpi=40)
+    assert human_trace_timeline.lanes(quiet) == ["is about"]
 
 
 def test_the_command_prints_thoughts_or_draws_them(run: Path, heard: list[tuple[Record, Stream]]) -> None:
     found = CliRunner().invoke(app, ["replay", str(run), "1", "--mind", "--json"])
     assert found.exit_code == 0, found.output
     told = json.loads(found.stdout)
-    assert told["schema"] == mind.SCHEMA
+    assert told["schema"] == human_trace.SCHEMA
     assert told["events"] == json.loads(msgspec.json.encode(heard[1][1].events))
 
 
@@ -131,19 +134,19 @@ def test_a_damaged_past_is_no_past(run: Path, tmp_path: Path) -> None:
     (tmp_path / "trials.jsonl").write_bytes(b"".join(lines[1:]))
     wanted = find.trial(tmp_path, "1")
     with pytest.raises(RunError, match="lacks some of the trials that participant 0 did before"):
-        mind.listen(tmp_path, wanted)
+        human_trace.listen(tmp_path, wanted)
     other = msgspec.structs.replace(wanted, spec=msgspec.structs.replace(wanted.spec, code_sha256="0" * 64))
     with pytest.raises(RunError, match="another version of hthor"):
-        mind.listen(run, other)
+        human_trace.listen(run, other)
 
 
 def test_whose_agent_is_a_file_needs_the_file(run: Path) -> None:
-    _, record = next(log.read(run / "trials.jsonl"))
+    _, record = next(trial_log.read(run / "trials.jsonl"))
     (seat,) = record.spec.robots
     agent = msgspec.structs.replace(seat.agent, name="mine", source="my_agent.py")
     spec = msgspec.structs.replace(record.spec, robots=(msgspec.structs.replace(seat, agent=agent),))
     with pytest.raises(HthorError, match=r"came from the file my_agent\.py\. Give that file, unchanged, with --agent"):
-        again.sources(run, spec, (), "")
+        session_history.sources(run, spec, (), "")
 
 
 def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> None:
@@ -156,15 +159,15 @@ def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> N
     )
     one = library.frozen("one", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == "hazel")[:1])
     (tmp_path / "one.json").write_bytes(library.encode(one))
-    options = intent.Options(
+    options = run_options.Options(
         agents=(str(agent),), suite=str(tmp_path / "one.json"), jobs=1, out=tmp_path / "run", max_faults="100%"
     )
-    list(campaign.conduct(options, lambda _: progress.Silent()))
+    list(experiment.conduct(options, lambda _: progress.Silent()))
     faulty = find.trial(tmp_path / "run", "0")
     assert "clumsy.py" in faulty.faults[0].detail
     assert str(tmp_path) not in faulty.faults[0].detail
-    assert mind.listen(tmp_path / "run", faulty, agents=(str(agent),)).same
-    assert filming.film(tmp_path / "run", faulty, [0], agents=(str(agent),)).keys() == {0}
+    assert human_trace.listen(tmp_path / "run", faulty, agents=(str(agent),)).same
+    assert camera_frames.film(tmp_path / "run", faulty, [0], agents=(str(agent),)).keys() == {0}
 
 
 def test_forgetting_and_misses_have_their_marks() -> None:
@@ -175,5 +178,5 @@ def test_forgetting_and_misses_have_their_marks() -> None:
         Event(tick=20, seat=HUMAN, kind="attempt", data={"what": "pick", "ok": False, "seconds": 1.0}),
     )
     stream = Stream(key="", same=True, traits={"beta": 1.0}, events=events)
-    assert mind_timeline.lanes(stream) == ["hands", "noticed", "is about"]
-    assert mind_timeline.offers(stream) == []
+    assert human_trace_timeline.lanes(stream) == ["hands", "noticed", "is about"]
+    assert human_trace_timeline.offers(stream) == []

@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hthor import houses, navigation
-from hthor.houses.freespace import FreeSpace
-from hthor.houses.geodesic import Geodesics
+from hthor.houses.space.free_space import FreeSpace
+from hthor.houses.space.geodesic import Geodesics
 from hthor.navigation import Courtesy, Follower, GridMap, Planner, Survey, face, frontiers, park, unvisited
-from hthor.navigation.follow import shift, toward
-from hthor.navigation.map import CELL_M, FREE, OCCUPIED, UNKNOWN
+from hthor.navigation.grid_map import CELL_M, FREE, OCCUPIED, UNKNOWN
+from hthor.navigation.path_follower import shift, toward
 from hthor.navigation.planner import length
 from hthor.types import BodySpec, Detection, Move, Observation, Outcome, Pose, Rotate, Scan, Wait
 

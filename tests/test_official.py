@@ -17,11 +17,11 @@ from hypothesis import strategies as st
 
 from hthor import catalog, cli, houses, jsonio, tasks
 from hthor.errors import HthorError, TaskError, UnknownName
-from hthor.houses.findings import error
-from hthor.tasks import commitment, library, official, standard
-from hthor.tasks import salt as salts
-from hthor.tasks.official import Order, Proof
-from hthor.tasks.salt import Salt
+from hthor.houses.checks.findings import error
+from hthor.tasks.suites import commitment, library, secret_suites, standard
+from hthor.tasks.suites import secret_salt as salts
+from hthor.tasks.suites.secret_salt import Salt
+from hthor.tasks.suites.secret_suites import Order, Proof
 from hthor.tasks.validate import faults
 
 TEXT = "5f1d0c9be7a84e2699c3b1d07a4418f2e35b6097cd12fa8870b94d6e1ac53f28"
@@ -40,23 +40,23 @@ PROOF = Proof(house=soundly, task=lambda task: houses.load(task.house).sha256 ==
 @pytest.fixture(scope="module")
 def parts():
     """What comes of the two houses' lots, worked out once."""
-    return [official.part(lot, PROOF) for lot in official.lots(ORDER, SALT)]
+    return [secret_suites.part(lot, PROOF) for lot in secret_suites.lots(ORDER, SALT)]
 
 
 @pytest.fixture(scope="module")
 def files(parts):
-    return official.files(ORDER, SALT, PROOF, lambda work, lots: parts)
+    return secret_suites.files(ORDER, SALT, PROOF, lambda work, lots: parts)
 
 
 @pytest.fixture
 def folder(files, tmp_path: Path) -> Path:
-    official.write(ORDER, SALT, tmp_path / "tiny", files, {"hthor": "1"})
+    secret_suites.write(ORDER, SALT, tmp_path / "tiny", files, {"hthor": "1"})
     return tmp_path / "tiny"
 
 
 def differences(folder: Path, parts, salt: Salt = SALT):
     held = commitment.load(folder / "commitment.json")
-    return list(official.differences(folder, held, salt, PROOF, lambda work, lots: parts))
+    return list(secret_suites.differences(folder, held, salt, PROOF, lambda work, lots: parts))
 
 
 # --------------------------------------------------------------------------------------------------------- the salt
@@ -145,17 +145,17 @@ def test_a_text_never_seems_to_hold_more_than_its_letters_can(text):
 
 
 def test_the_same_salt_gives_the_same_bytes(parts):
-    again = official.part(official.lots(ORDER, Salt(TEXT))[1], PROOF)
+    again = secret_suites.part(secret_suites.lots(ORDER, Salt(TEXT))[1], PROOF)
     assert again == parts[1]
 
 
 def test_another_salt_or_another_name_gives_other_houses_and_tasks(parts):
-    names = {lot.house for salt in (SALT, OTHER) for lot in official.lots(ORDER, salt)}
-    names |= {lot.house for lot in official.lots(msgspec.structs.replace(ORDER, name="tiny2"), SALT)}
+    names = {lot.house for salt in (SALT, OTHER) for lot in secret_suites.lots(ORDER, salt)}
+    names |= {lot.house for lot in secret_suites.lots(msgspec.structs.replace(ORDER, name="tiny2"), SALT)}
     assert len(names) == 6
-    roots = [root for lot in official.lots(ORDER, SALT) for pair in lot.roots for root in pair]
+    roots = [root for lot in secret_suites.lots(ORDER, SALT) for pair in lot.roots for root in pair]
     assert len(set(roots)) == len(roots)
-    other = official.part(official.lots(ORDER, OTHER)[1], PROOF)
+    other = secret_suites.part(secret_suites.lots(ORDER, OTHER)[1], PROOF)
     assert other.file != parts[1].file
     assert json.loads(other.file)["rooms"] != json.loads(parts[1].file)["rooms"]
     assert {task.house_sha256 for task in other.tasks}.isdisjoint(task.house_sha256 for task in parts[1].tasks)
@@ -179,7 +179,7 @@ def test_its_tasks_are_sound_and_in_houses_of_its_own(files, folder: Path):
 
 
 def test_nothing_that_is_written_tells_the_salt_or_a_root(folder: Path):
-    roots = [root for lot in official.lots(ORDER, SALT) for pair in lot.roots for root in pair]
+    roots = [root for lot in secret_suites.lots(ORDER, SALT) for pair in lot.roots for root in pair]
     secret = [TEXT, TEXT[:16], TEXT[-16:]]
     secret += [form for root in roots for form in (str(root), f"{root % 2**128:x}"[:16], str(root % 2**63))]
     written = b"".join(path.read_bytes() for path in sorted(folder.rglob("*.json"))).decode()
@@ -204,30 +204,30 @@ def test_starts_lie_on_the_grid_so_that_no_digit_tells_how_they_were_drawn(folde
 
 
 def test_a_house_that_is_unsound_or_too_small_is_drawn_again(monkeypatch: pytest.MonkeyPatch):
-    lot = official.lots(Order(name="tiny", houses=1, tasks=1), SALT)[0]
+    lot = secret_suites.lots(Order(name="tiny", houses=1, tasks=1), SALT)[0]
     seen = []
 
     def first_is_bad(house):
         seen.append(house.sha256)
         return (error("start-free", house.id, "bad"),) if len(seen) == 1 else ()
 
-    made = official.part(lot, Proof(house=first_is_bad, task=PROOF.task))
+    made = secret_suites.part(lot, Proof(house=first_is_bad, task=PROOF.task))
     assert len(set(seen)) == 2
     assert made.tasks[0].house_sha256 == seen[1] == jsonio.sha256(json.loads(made.file))
     bad = msgspec.structs.replace(lot, roots=lot.roots[:1])
     with pytest.raises(HthorError, match=r"no house of 4 rooms came of 1 roots; .*bad \(start-free\)"):
-        official.part(bad, Proof(house=lambda house: (error("start-free", house.id, "bad"),), task=PROOF.task))
+        secret_suites.part(bad, Proof(house=lambda house: (error("start-free", house.id, "bad"),), task=PROOF.task))
 
 
 def test_a_task_that_cannot_be_done_is_drawn_again():
-    lot = official.lots(Order(name="tiny", houses=1, tasks=1), SALT)[0]
+    lot = secret_suites.lots(Order(name="tiny", houses=1, tasks=1), SALT)[0]
     seen = []
 
     def second(task):
         seen.append(task)
         return len(seen) == 2
 
-    made = official.part(lot, Proof(house=lambda _: (), task=second))
+    made = secret_suites.part(lot, Proof(house=lambda _: (), task=second))
     assert list(made.tasks) == seen[1:]
     assert seen[0] != seen[1]
     assert (seen[0].goal, seen[0].house_sha256) == (seen[1].goal, seen[1].house_sha256)
@@ -245,12 +245,12 @@ def test_a_task_that_cannot_be_done_is_drawn_again():
 )
 def test_orders_that_cannot_be_met(name, many, count, told):
     with pytest.raises(HthorError, match=told):
-        official.lots(Order(name=name, houses=many, tasks=count), SALT)
+        secret_suites.lots(Order(name=name, houses=many, tasks=count), SALT)
 
 
 @given(st.integers(1, 40), st.integers(0, 400))
 def test_tasks_are_shared_out_evenly_and_a_quarter_are_searches(many, more):
-    lots = official.lots(Order(name="fine", houses=many, tasks=many + more), SALT)
+    lots = secret_suites.lots(Order(name="fine", houses=many, tasks=many + more), SALT)
     sums = [sum(count for _, count in lot.counts) for lot in lots]
     assert sum(sums) == many + more
     assert max(sums) - min(sums) <= 1
@@ -258,7 +258,7 @@ def test_tasks_are_shared_out_evenly_and_a_quarter_are_searches(many, more):
         counts = dict(lot.counts)
         assert min(counts.values()) > 0
         searches, total = counts.get("object_goal_navigation", 0), sum(counts.values())
-        assert abs(searches - official.SEARCHES * total) <= 0.5
+        assert abs(searches - secret_suites.SEARCHES * total) <= 0.5
 
 
 # -------------------------------------------------------------------------------------------- commitment and reveal
@@ -295,7 +295,7 @@ def test_a_suite_that_was_not_drawn_from_its_salt_is_found_out(folder: Path, par
     forged = library.frozen(suite.name, suite.version, (easier, *suite.tasks[1:]))
     names = [f"houses/{part.house}.json" for part in parts]
     files = {"suite.json": library.encode(forged), **{name: (folder / name).read_bytes() for name in names}}
-    official.write(ORDER, SALT, folder, files, {})
+    secret_suites.write(ORDER, SALT, folder, files, {})
     assert list(commitment.changes(folder, commitment.load(folder / "commitment.json"))) == []
     found = dict(differences(folder, parts))
     assert found.keys() == {"suite.json", "commitment.json"}

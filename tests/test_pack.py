@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from hthor import catalog
-from hthor.cli.app import app
+from hthor.cli import app
 from hthor.errors import MissingExtra, UnknownName
 from hthor.looks import pack as packs
 from hthor.looks.pack import PackError, debian, fitting, making, obj, picks, thinning
@@ -373,7 +373,7 @@ def test_detailed_models_need_the_extra(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_a_world_takes_a_pack_before_our_own(built: making.Made) -> None:
     from hthor.world import World
-    from hthor.world.stage.fabric import Fabric
+    from hthor.world.rendering.scene.asset_source import Fabric
 
     fabric, size = Fabric(built.pack), catalog.kind("dining_table").size
     texture = fabric.look("dining_table", size, 0)[0].material.texture

@@ -19,10 +19,13 @@ from typer.testing import CliRunner
 from hthor import houses, jsonio
 from hthor.cli import app as cli
 from hthor.errors import HthorError, RunError, UnknownName
-from hthor.eval import record, redraw
-from hthor.eval.pages import assemble, case, drawings, failures, filming, gather, ink, moments, page, verdict, write
-from hthor.eval.pages.findings import Findings, Published, Share
+from hthor.eval.records import trial_record
 from hthor.guest import Isolation
+from hthor.report.analysis import build, fault_summary, load_runs
+from hthor.report.analysis.document import Findings, Published, Share
+from hthor.report.drawing import render_trial
+from hthor.report.html import matplotlib_svg
+from hthor.report.page import camera_frames, case_study, figure_index, headline, key_moments, page, write
 
 PUBLISHED = Published(
     name="study",
@@ -39,8 +42,8 @@ def run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, count: 
     plan, dealt = fakes.run_of(count, name=name, absent=absent, seed=seed)
     plan = msgspec.structs.replace(plan, humans=msgspec.structs.replace(plan.humans, name=people or plan.humans.name))
     jsonio.write(folder / "run.json", jsonio.pretty(plan))
-    made = [record.of(trial, fakes.episode(trial)) for session in dealt for trial in session.trials]
-    jsonio.write(folder / "trials.jsonl", b"".join(record.encode(one) for one in made))
+    made = [trial_record.of(trial, fakes.episode(trial)) for session in dealt for trial in session.trials]
+    jsonio.write(folder / "trials.jsonl", b"".join(trial_record.encode(one) for one in made))
     return folder
 
 
@@ -48,7 +51,7 @@ def run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, count: 
 def _known_house() -> Iterator[None]:
     plan = houses.load("hazel")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(redraw, "house", lambda _: plan)
+        patch.setattr(render_trial, "house", lambda _: plan)
         yield
 
 
@@ -66,7 +69,7 @@ def written(folders: list[Path], tmp_path_factory: pytest.TempPathFactory) -> tu
 
 def _told(*folders: Path) -> tuple[Findings, str]:
     """What a report says of runs, and its page, without the drawings."""
-    found = assemble.findings(gather.with_controls(gather.runs(folders)))
+    found = build.findings(load_runs.with_controls(load_runs.runs(folders)))
     return found, page.render(found, {})
 
 
@@ -87,7 +90,7 @@ def test_the_page_needs_nothing_else(written: tuple[Findings, Path]) -> None:
     text = (written[1] / "report.html").read_text()
     for stranger in ("http", "<script", "src=", "@import", "url(h", "xlink"):
         assert stranger not in text
-    assert set(re.findall(r"var\(--(\w+)\)", text)) <= set(ink.VARIABLES.values())
+    assert set(re.findall(r"var\(--(\w+)\)", text)) <= set(matplotlib_svg.VARIABLES.values())
     ids = re.findall(r' id="([^"]+)"', text)
     assert len(ids) == len(set(ids))
     assert set(re.findall(r"url\(#([^)]+)\)", text)) | set(re.findall(r'href="#([^"]+)"', text)) <= set(ids)
@@ -108,7 +111,7 @@ def test_every_figure_says_what_it_shows_and_stands_alone(written: tuple[Finding
 
 def test_the_numbers_are_those_of_the_trials(written: tuple[Findings, Path], folders: list[Path]) -> None:
     found = written[0]
-    alone, helper, clumsy = gather.runs(folders)
+    alone, helper, clumsy = load_runs.runs(folders)
     assert msgspec.json.decode((written[1] / "report.json").read_bytes(), type=Findings) == found
     assert [arm.label for arm in found.arms] == ["no robot", "helper", "clumsy"]
     assert [arm.condition for arm in found.arms] == ["none", "", ""]
@@ -146,9 +149,9 @@ def test_what_is_put_in_is_escaped_and_uncertain_gains_are_not_claimed(written: 
         assert said in text
         assert "<b>" not in text
     many = msgspec.structs.replace(found, comparisons=found.comparisons * 3)
-    assert verdict.lead(many).endswith("Section 2 has all pairs.")
+    assert headline.lead(many).endswith("Section 2 has all pairs.")
     nobody = msgspec.structs.replace(found, baseline="", arms=found.arms[1:], comparisons=())
-    assert "no run without a robot" in verdict.lead(nobody)
+    assert "no run without a robot" in headline.lead(nobody)
 
 
 def test_runs_that_share_no_trial_are_told_apart_and_not_compared(folders: list[Path], tmp_path: Path) -> None:
@@ -166,7 +169,7 @@ def test_what_is_left_of_an_agent_is_shown_with_the_command_that_plays_it_again(
     folders: list[Path], tmp_path: Path
 ) -> None:
     mine = shutil.copytree(folders[2], tmp_path / "clumsy")
-    first = failures.of(gather.runs([mine])[0])[0]
+    first = fault_summary.of(load_runs.runs([mine])[0])[0]
     assert (first.detail.splitlines()[-1], first.output, first.again) == ("ValueError: no", "", "")
     told = {
         "seat": "robot",
@@ -182,7 +185,7 @@ def test_what_is_left_of_an_agent_is_shown_with_the_command_that_plays_it_again(
     for said in ("KeyError: &lt;i&gt;", "last &amp; least", again, first.replay):
         assert said in text
     jsonio.write(mine / "faults" / f"{first.key}.json", b"torn")
-    assert failures.of(gather.runs([mine])[0])[0] == first
+    assert fault_summary.of(load_runs.runs([mine])[0])[0] == first
 
 
 def test_what_held_the_agents_and_where_they_were_played_is_told(folders: list[Path], tmp_path: Path) -> None:
@@ -262,7 +265,7 @@ def test_several_peoples_have_a_section_of_their_own(folders: list[Path], tmp_pa
         "proxy": ["helper"],
         "slow": ["clumsy"],
     }
-    assert "people" in [one.name for one in drawings.draw(found, [])]
+    assert "people" in [one.name for one in figure_index.draw(found, [])]
 
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
@@ -288,11 +291,11 @@ def _browsed(file: Path, folder: Path) -> tuple[int, int]:
 
 def test_moments_are_in_order_and_end_at_the_end(folders: list[Path]) -> None:
     house = houses.load("hazel")
-    for one in gather.runs(folders):
+    for one in load_runs.runs(folders):
         for held in one.records:
-            found = moments.of(held, house)
+            found = key_moments.of(held, house)
             ticks = [moment.tick for moment in found]
-            assert len(ticks) == moments.MANY
+            assert len(ticks) == key_moments.MANY
             assert min(b - a for a, b in itertools.pairwise([0, *ticks])) >= 10
             assert ticks[-1] == held.ticks
             assert found[-1].words == ("done" if held.met else "time is up")
@@ -305,26 +308,26 @@ def test_moments_are_in_order_and_end_at_the_end(folders: list[Path]) -> None:
 def test_a_case_is_drawn_the_same_twice_and_says_who_can_be_drawn(
     folders: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def film(_: Path, wanted: record.Record, ticks: list[int], **more: object) -> filming.Views:
+    def film(_: Path, wanted: trial_record.Record, ticks: list[int], **more: object) -> camera_frames.Views:
         grey = np.full((24, 32, 3), 128, np.uint8)
         return {tick: dict.fromkeys(wanted.paths, grey) for tick in ticks}
 
-    monkeypatch.setattr(filming, "film", film)
-    drawn = [case.study(folders[:2], "t003", tmp_path / name) for name in ("a", "b")]
+    monkeypatch.setattr(camera_frames, "film", film)
+    drawn = [case_study.study(folders[:2], "t003", tmp_path / name) for name in ("a", "b")]
     assert _bytes(tmp_path / "a") == _bytes(tmp_path / "b")
     root = ElementTree.fromstring(drawn[0][0].read_text())
     title = root.find("{http://www.w3.org/2000/svg}title")
     assert title is not None
     assert "no robot, helper" in (title.text or "")
     with pytest.raises(UnknownName, match=r"unknown task 't0003'\. Did you mean 't003'"):
-        case.study(folders[:2], "t0003", tmp_path)
+        case_study.study(folders[:2], "t0003", tmp_path)
     with pytest.raises(UnknownName, match="unknown person '99'"):
-        case.study(folders[:2], "t003", tmp_path, person=99)
+        case_study.study(folders[:2], "t003", tmp_path, person=99)
 
 
 def test_the_commands(folders: list[Path], tmp_path: Path) -> None:
     out = tmp_path / "cli"
-    done = CliRunner().invoke(cli.app, ["report", *map(str, folders[:1]), "--out", str(out)])
+    done = CliRunner().invoke(cli, ["report", *map(str, folders[:1]), "--out", str(out)])
     assert done.exit_code == 0, done.output
     assert done.stdout.strip() == str(out / "report.html")
     assert "2406.06498" in (out / "report.html").read_text()

@@ -8,8 +8,8 @@ import time
 
 import pytest
 
-from hthor import steps
-from hthor.cli import patience, screen
+from hthor import activity
+from hthor.console import output, waiting_notice
 
 
 class Terminal(io.StringIO):
@@ -23,10 +23,10 @@ def watched(monkeypatch: pytest.MonkeyPatch, *, live: bool, after_s: float = 0.0
     """Standard error on which a command's patience shows after this time."""
     stream = Terminal()
     monkeypatch.setattr(sys, "stderr", stream)
-    monkeypatch.setattr(screen, "live", lambda: live)
-    monkeypatch.setattr(patience, "_BEAT_S", 0.01)
-    monkeypatch.setattr(patience, "LIVE_AFTER_S", after_s)
-    monkeypatch.setattr(patience, "PLAIN_AFTER_S", after_s)
+    monkeypatch.setattr(output, "live", lambda: live)
+    monkeypatch.setattr(waiting_notice, "_BEAT_S", 0.01)
+    monkeypatch.setattr(waiting_notice, "LIVE_AFTER_S", after_s)
+    monkeypatch.setattr(waiting_notice, "PLAIN_AFTER_S", after_s)
     return stream
 
 
@@ -40,20 +40,20 @@ def until(stream: Terminal, words: str) -> str:
 
 def test_a_terminal_has_a_line_that_goes(monkeypatch: pytest.MonkeyPatch) -> None:
     stream = watched(monkeypatch, live=True)
-    with patience.shown(["case", "runs/a", "--nice"]):
+    with waiting_notice.shown(["case", "runs/a", "--nice"]):
         until(stream, "case: ")
-        steps.say("playing trial 3 of 10")
+        activity.say("playing trial 3 of 10")
         until(stream, "playing trial 3 of 10, ")
     assert sys.stderr is stream
     assert stream.getvalue().endswith("\r\x1b[K")
     assert "\n" not in stream.getvalue()
-    steps.say("nobody hears")
+    activity.say("nobody hears")
     assert "nobody" not in stream.getvalue()
 
 
 def test_a_pipe_has_lines(monkeypatch: pytest.MonkeyPatch) -> None:
     stream = watched(monkeypatch, live=False)
-    with patience.shown(["agent", "check", "mine.py"], ["agent"]):
+    with waiting_notice.shown(["agent", "check", "mine.py"], ["agent"]):
         said = until(stream, "agent check: ")
     assert "\x1b" not in said
     assert "\r" not in said
@@ -62,7 +62,7 @@ def test_a_pipe_has_lines(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_what_the_command_writes_is_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     stream = watched(monkeypatch, live=True)
-    with patience.shown(["score", "run"]):
+    with waiting_notice.shown(["score", "run"]):
         until(stream, "score: ")
         sys.stderr.write("a line of the command\n")
         assert stream.getvalue().endswith("\r\x1b[Ka line of the command\n")
@@ -71,13 +71,13 @@ def test_what_the_command_writes_is_whole(monkeypatch: pytest.MonkeyPatch) -> No
 @pytest.mark.parametrize("words", [["eval", "--quiet"], ["agent", "serve", "mine.py"], []])
 def test_who_is_quiet_or_serves_or_does_nothing_is_left_alone(words: list[str]) -> None:
     before = sys.stdout, sys.stderr
-    with patience.shown(words):
+    with waiting_notice.shown(words):
         assert (sys.stdout, sys.stderr) == before
 
 
 def test_a_bar_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     stream = watched(monkeypatch, live=True)
-    with patience.shown(["validate", "x"]):
+    with waiting_notice.shown(["validate", "x"]):
         sys.stderr.write("\rtask:  10%")
         time.sleep(0.3)
     assert stream.getvalue() == "\rtask:  10%"

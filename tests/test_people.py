@@ -20,11 +20,24 @@ from rich.console import Console
 
 from hthor import cli, plugins, rules, tasks
 from hthor.errors import HthorError, PeopleError, UnknownName
-from hthor.eval import bracket, campaign, cast, intent, matrix, peoples, progress, report, result_file, session, setup
-from hthor.eval.peoples import HumansRef
-from hthor.humans import effects, kinds, people, person, population_file, portrait, ranges, registry
-from hthor.humans.parameters import Parameters
-from hthor.humans.population import Population, Validity
+from hthor.eval.comparison import population_matrix, robustness
+from hthor.eval.config import human_populations, run_config, sessions
+from hthor.eval.config.human_populations import HumansRef
+from hthor.eval.results import result_file
+from hthor.eval.runner import experiment, progress, run_options, trial_runner
+from hthor.humans.population import (
+    bounds,
+    describe,
+    kinds,
+    parameter_registry,
+    participant,
+    population_file,
+    random_effects,
+    resolve,
+)
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.population.population import Population, Validity
+from hthor.report.terminal import result_tables
 
 KINDS = ("cautious", "distracted", "fast", "ignores_messages", "over_trusting", "poor_memory", "slow")
 MODEL = '''"""A person who stands still; waits for nothing."""
@@ -38,7 +51,7 @@ def small(**validity: Any) -> Population:
     its = {
         "suite": "fake",
         "suite_sha256": fakes.suite(20).sha256,
-        "settings": peoples.settings("scout", "own"),
+        "settings": human_populations.settings("scout", "own"),
         **validity,
     }
     rows = [[0.4, 0.2], [0.6, 0.3]]
@@ -63,42 +76,42 @@ def files(tmp_path: Path) -> Iterator[Path]:
 
 
 def test_every_word_finds_people_of_its_own_hash():
-    found = {word: people.find(word) for word in people.names() if word != "replay"}
-    assert found[people.default()].sha256 == found["proxy"].sha256
+    found = {word: resolve.find(word) for word in resolve.names() if word != "replay"}
+    assert found[resolve.default()].sha256 == found["proxy"].sha256
     assert len({one.sha256 for one in found.values()}) == len(found) - 1
     assert set(KINDS) <= set(found)
     for word, one in found.items():
         assert one.name == word == one.word
         assert one.purpose
-        assert people.find(word).sha256 == one.sha256
+        assert resolve.find(word).sha256 == one.sha256
 
 
 def test_the_proxy_has_the_calibrated_population_once_it_ships(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(population_file, "FOLDER", tmp_path)
     monkeypatch.setattr(population_file, "_shipped", population_file._shipped.__wrapped__)
-    assert people.default() == "literature"
+    assert resolve.default() == "literature"
     made = msgspec.structs.replace(small(), name="paper")
     made.save(tmp_path / "paper")
-    assert people.default() == "study"
+    assert resolve.default() == "study"
     for word in ("proxy", "study", "paper"):
-        assert people.find(word).population.sha256 == made.sha256
+        assert resolve.find(word).population.sha256 == made.sha256
     for word in ("slow", "greedy"):
-        assert people.find(word).population.name == "paper"
-    assert "study" in people.names()
-    assert "paper" not in people.names(), "a word for them that is still read"
-    assert people.find("paper").name == people.find("study").name == "study"
+        assert resolve.find(word).population.name == "paper"
+    assert "study" in resolve.names()
+    assert "paper" not in resolve.names(), "a word for them that is still read"
+    assert resolve.find("paper").name == resolve.find("study").name == "study"
 
 
 def test_files_are_found_by_path_and_again_from_anywhere(files: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(files)
     words = ("pop.npz", "pop.json", "half.json", "still.py", "half.json@pop.npz", "still.py@pop.json", "slow@pop.npz")
-    found = [people.find(word) for word in words]
+    found = [resolve.find(word) for word in words]
     assert [one.name for one in found] == ["pop", "pop", "half", "still", "half@pop", "still@pop", "slow@pop"]
     drawn = [population_file.called(one.population.name) for one in found]
-    assert drawn == ["pop", "pop", people.default(), people.default(), *["pop"] * 3]
+    assert drawn == ["pop", "pop", resolve.default(), resolve.default(), *["pop"] * 3]
     monkeypatch.chdir("/")
     for one in found:
-        again = people.find(one.word)
+        again = resolve.find(one.word)
         assert (again.name, again.sha256) == (one.name, one.sha256)
         assert again.person(0, 3) == one.person(0, 3)
     assert found[0].sha256 == found[1].sha256
@@ -113,30 +126,30 @@ def test_a_file_that_is_called_like_people_of_ours_is_not_taken_for_them(tmp_pat
     for name in ("proxy", "study", "cautious", "mine"):
         path = tmp_path / f"{name}.json"
         path.write_text(kind.replace('"name": "fast"', f'"name": "{name}"'))
-        names.add(people.find(str(path)).name)
+        names.add(resolve.find(str(path)).name)
     assert "mine" in names
     assert not names & {"proxy", "study", "cautious"}
     assert all(re.fullmatch(r"mine|(proxy|study|cautious)-[0-9a-f]{6}", name) for name in names)
 
 
 def test_the_hash_covers_model_population_and_kind(files: Path):
-    still = people.find(f"{files}/still.py@{files}/pop.npz").sha256
+    still = resolve.find(f"{files}/still.py@{files}/pop.npz").sha256
     (files / "still.py").write_text(MODEL + "# changed\n")
-    assert people.find(f"{files}/still.py@{files}/pop.npz").sha256 != still
-    before = people.find(f"{files}/half.json@{files}/pop.npz").sha256
+    assert resolve.find(f"{files}/still.py@{files}/pop.npz").sha256 != still
+    before = resolve.find(f"{files}/half.json@{files}/pop.npz").sha256
     text = (files / "half.json").read_text()
     (files / "half.json").write_text(text.replace("half as fast", "other words"))
-    assert people.find(f"{files}/half.json@{files}/pop.npz").sha256 == before
+    assert resolve.find(f"{files}/half.json@{files}/pop.npz").sha256 == before
     (files / "half.json").write_text(text.replace("0.5", "0.6"))
-    assert people.find(f"{files}/half.json@{files}/pop.npz").sha256 != before
+    assert resolve.find(f"{files}/half.json@{files}/pop.npz").sha256 != before
 
 
 def test_what_a_model_is_made_from_is_in_its_hash(files: Path):
     (files / "fed.py").write_text(MODEL + "WORD = 1\ndef ingredients(source): return {'w': WORD, 'source': source}\n")
-    first = people.find(str(files / "fed.py"))
+    first = resolve.find(str(files / "fed.py"))
     module = plugins.loaded("human model", "fed")
     module.WORD = 2
-    assert people.find(str(files / "fed.py")).sha256 != first.sha256
+    assert resolve.find(str(files / "fed.py")).sha256 != first.sha256
 
 
 @pytest.mark.parametrize(
@@ -153,7 +166,7 @@ def test_what_a_model_is_made_from_is_in_its_hash(files: Path):
 )
 def test_wrong_words_are_answered(word: str, hints: tuple[str, ...]):
     with pytest.raises(HthorError) as caught:
-        people.find(word)
+        resolve.find(word)
     for hint in hints:
         assert hint in str(caught.value)
 
@@ -170,10 +183,10 @@ def test_a_model_that_is_made_from_something_else_has_no_population(files: Path)
         patch.setattr(plugins, "names", lambda _: ("fed", "proxy"))
         patch.setattr(plugins, "load", lambda *_: module.Model)
         patch.setattr(plugins, "purpose", lambda *_: "a test")
-        found = people.find(f"fed:{files}/log")
-        ref = peoples.refer(found, fakes.suite(20), crew)
+        found = resolve.find(f"fed:{files}/log")
+        ref = human_populations.refer(found, fakes.suite(20), crew)
         assert found.make(0, 0).source == str(files / "log")
-        assert people.find(found.word).sha256 == found.sha256 != people.find(f"fed:{files}/pop").sha256
+        assert resolve.find(found.word).sha256 == found.sha256 != resolve.find(f"fed:{files}/pop").sha256
     assert (ref.name, ref.source, ref.population, ref.valid) == ("fed-log", "fed:log", "", True)
 
 
@@ -186,17 +199,17 @@ def test_every_kind_changes_what_it_says_and_gives_its_reasons(name: str):
     assert kind.purpose
     assert kind.reason
     assert all(change.reason for change in kind.changes)
-    base = people.find(people.default())
-    ours = people.find(name)
+    base = resolve.find(resolve.default())
+    ours = resolve.find(name)
     means, changed = base.population.mean(), {change.parameter for change in kind.changes}
     new = kind.change(means)
     for parameter, value in msgspec.structs.asdict(means).items():
         assert (getattr(new, parameter) != value) == (parameter in changed), parameter
-        assert ranges.problem(parameter, getattr(new, parameter)) == ""
-    for participant in range(12):  # the same person but for that: draw and random effects are theirs
-        was, now = base.person(0, participant).traits, ours.person(0, participant).traits
-        same = [name for name in ranges.known() if getattr(was, name) == getattr(now, name)]
-        assert set(ranges.known()) - set(same) <= changed
+        assert bounds.problem(parameter, getattr(new, parameter)) == ""
+    for number in range(12):  # the same person but for that: draw and random effects are theirs
+        was, now = base.person(0, number).traits, ours.person(0, number).traits
+        same = [name for name in bounds.known() if getattr(was, name) == getattr(now, name)]
+        assert set(bounds.known()) - set(same) <= changed
         if "v_pace" in changed:
             factor = kind.change(means).v_pace / means.v_pace
             assert now.v_pace == pytest.approx(was.v_pace * factor)
@@ -204,16 +217,16 @@ def test_every_kind_changes_what_it_says_and_gives_its_reasons(name: str):
 
 def test_the_kinds_of_the_issue_are_there():
     assert set(KINDS) == set(kinds.names())
-    slow, fast, base = (people.find(word).population.mean() for word in ("slow", "fast", "proxy"))
+    slow, fast, base = (resolve.find(word).population.mean() for word in ("slow", "fast", "proxy"))
     assert kinds.load("slow").change(slow).v_pace < base.v_pace < kinds.load("fast").change(fast).v_pace
 
 
-@given(st.sampled_from(ranges.known()), st.sampled_from(["add", "times", "set"]), st.floats(-1e5, 1e5), st.floats(0, 1))
+@given(st.sampled_from(bounds.known()), st.sampled_from(["add", "times", "set"]), st.floats(-1e5, 1e5), st.floats(0, 1))
 def test_a_change_never_leaves_the_range(name: str, verb: Any, value: float, share: float):
-    low, high = ranges.of(name)
+    low, high = bounds.of(name)
     start = low + (min(high, 1e3) - low) * share
     change = kinds.Change(parameter=name, verb=verb, value=value, reason="")
-    assert ranges.problem(name, change.of(start)) == ""
+    assert bounds.problem(name, change.of(start)) == ""
 
 
 def test_a_kind_that_is_no_good_is_named_with_its_field(files: Path):
@@ -223,7 +236,7 @@ def test_a_kind_that_is_no_good_is_named_with_its_field(files: Path):
     def refused(document: Any, *words: str) -> None:
         path.write_text(document if isinstance(document, str) else json.dumps(document))
         with pytest.raises(PeopleError) as caught:
-            people.find(str(path))
+            resolve.find(str(path))
         for word in words:
             assert word in str(caught.value)
 
@@ -250,8 +263,8 @@ def test_every_robot_meets_the_same_people(files: Path):
         fakes.crew("helper", "other"),
         fakes.crew("none", absent=True),
     ]
-    dealt = [session.sessions(suite, agent=crew, human=word, seed=4) for crew in crews]
-    stage = cast.Stage(cast.Sources(people=people.find(word).word))
+    dealt = [sessions.sessions(suite, agent=crew, human=word, seed=4) for crew in crews]
+    stage = trial_runner.Stage(trial_runner.Sources(people=resolve.find(word).word))
     met = []
     for run in dealt:
         whole = []
@@ -268,38 +281,38 @@ def test_every_robot_meets_the_same_people(files: Path):
 
 
 def test_a_participant_of_a_population_is_the_same_person_in_any_order():
-    found = people.find("proxy")
+    found = resolve.find("proxy")
     ahead = [found.person(1, k) for k in range(6)]
     assert [found.person(1, k) for k in reversed(range(6))] == ahead[::-1]
     assert found.person(2, 0) != found.person(1, 0)
     who = found.person(1, 3)
-    assert who.root == person.root(1, 3)
+    assert who.root == participant.root(1, 3)
     row = found.population.pick(1, 3)
-    assert who.traits == effects.individual(found.population.parameters(row), who.root, found.population.specs)
+    assert who.traits == random_effects.individual(found.population.parameters(row), who.root, found.population.specs)
 
 
 def test_people_who_are_alike_are_the_mean():
-    found = people.find("greedy")
+    found = resolve.find("greedy")
     assert found.person(0, 1).traits == found.person(5, 2).traits == found.population.mean()
 
 
 def test_a_file_that_changes_during_a_run_stops_it(files: Path):
-    found = people.find(f"{files}/pop.npz")
-    (one, *_) = session.sessions(fakes.suite(10), agent=fakes.crew("helper"), human=found)
+    found = resolve.find(f"{files}/pop.npz")
+    (one, *_) = sessions.sessions(fakes.suite(10), agent=fakes.crew("helper"), human=found)
     small(suite="other").save(files / "pop")  # says something else of the same people
-    assert cast.Stage(cast.Sources(people=found.word))._persons(one.trials[0]).sha256 == found.sha256
+    assert trial_runner.Stage(trial_runner.Sources(people=found.word))._persons(one.trials[0]).sha256 == found.sha256
     rows = [[0.4, 0.2]]
     Population.of("pop", rows, names=("v_pace", "sigma"), purpose="", seed=0, command="").save(files / "pop")
     with pytest.raises(HthorError, match=r"pop\.npz was changed while its run was going on"):
-        cast.Stage(cast.Sources(people=found.word))._persons(one.trials[0])
+        trial_runner.Stage(trial_runner.Sources(people=found.word))._persons(one.trials[0])
 
 
 # ---------------------------------------------------------------------------------------------------------- validity
 
 
 def refer(population: Population, count: int = 20, crew: Any = None) -> HumansRef:
-    found = msgspec.structs.replace(people.find("literature"), population=population, name="pop", word="/dir/pop.npz")
-    return peoples.refer(found, fakes.suite(count), crew or fakes.crew("helper"))
+    found = msgspec.structs.replace(resolve.find("literature"), population=population, name="pop", word="/dir/pop.npz")
+    return human_populations.refer(found, fakes.suite(count), crew or fakes.crew("helper"))
 
 
 def test_people_are_valid_where_they_were_calibrated():
@@ -319,30 +332,33 @@ def test_elsewhere_they_are_not_and_it_says_where():
     noted(small(), "calibrated on the tasks of the suite fake, not on other tasks", count=10)
     noted(small(suite="paper", suite_sha256="ab" * 32), "the suite paper, not on those of the suite fake")
     noted(small(simulation=rules.SIMULATION + 1), f"version {rules.SIMULATION + 1} of the world")
-    noted(small(mind=registry.MIND + 1), f"version {registry.MIND + 1} of the proxy's mind")
+    noted(small(mind=parameter_registry.MIND + 1), f"version {parameter_registry.MIND + 1} of the proxy's mind")
     noted(small(rules_sha256="ab" * 32), "other constants of the benchmark")
-    noted(small(settings={**peoples.settings("scout", "own"), "speed_m_s": 9.0}), "speed_m_s 9, not")
+    noted(small(settings={**human_populations.settings("scout", "own"), "speed_m_s": 9.0}), "speed_m_s 9, not")
     noted(small(), "detector own, not noisy", crew=fakes.crew("helper", detector="noisy"))
     noted(msgspec.structs.replace(small(), missing=("wings",)), "made before there was wings")
-    noted(people.find("literature").population, "fitted to no data")
+    noted(resolve.find("literature").population, "fitted to no data")
 
 
 # -------------------------------------------------------------------------------------------------- several at a time
 
 
 def test_words_for_several_peoples(files: Path):
-    assert [one.name for one in peoples.expand(["kinds"])] == [people.default(), *KINDS]
-    assert [one.name for one in peoples.expand(["bracket"])] == ["greedy", "random", people.default()]
-    named = peoples.expand([f"kinds@{files}/pop.npz"])
+    assert [one.name for one in human_populations.expand(["kinds"])] == [resolve.default(), *KINDS]
+    assert [one.name for one in human_populations.expand(["bracket"])] == ["greedy", "random", resolve.default()]
+    named = human_populations.expand([f"kinds@{files}/pop.npz"])
     assert [one.name for one in named] == ["pop", *(f"{kind}@pop" for kind in KINDS)]
     assert {one.population.sha256 for one in named} == {small().sha256}
-    assert [one.name for one in peoples.expand(["proxy", people.default(), "slow", "slow"])] == ["proxy", "slow"]
+    assert [one.name for one in human_populations.expand(["proxy", resolve.default(), "slow", "slow"])] == [
+        "proxy",
+        "slow",
+    ]
     (files / "sub").mkdir()
     Population.of("pop", [[0.5]], names=["v_pace"], purpose="", seed=0, command="").save(files / "sub" / "pop")
     with pytest.raises(HthorError, match="two different peoples are called 'pop'"):
-        peoples.expand([f"{files}/pop.npz", f"{files}/sub/pop.npz"])
+        human_populations.expand([f"{files}/pop.npz", f"{files}/sub/pop.npz"])
     with pytest.raises(UnknownName, match="'kinds'"):
-        peoples.expand(["kindz"])
+        human_populations.expand(["kindz"])
 
 
 @pytest.fixture
@@ -350,20 +366,20 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> None:
     """A suite called ``fake`` of twenty tasks, played in no time."""
     real = tasks.suite
     monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
-    monkeypatch.setattr(cast, "player", fakes.player)
+    monkeypatch.setattr(trial_runner, "player", fakes.player)
 
 
 @pytest.mark.usefixtures("fake")
 def test_each_people_is_a_run_of_its_own(files: Path):
     words = (f"{files}/pop.npz", f"slow@{files}/pop.npz")
-    options = intent.Options(agents=("none", "frontier"), humans=words, suite="fake", jobs=1, out=files / "out")
+    options = run_options.Options(agents=("none", "frontier"), humans=words, suite="fake", jobs=1, out=files / "out")
     told: list[str] = []
 
     class Watcher(progress.Silent):
         def note(self, text: str) -> None:
             told.append(text)
 
-    done = list(campaign.conduct(options, lambda _: Watcher()))
+    done = list(experiment.conduct(options, lambda _: Watcher()))
     assert [(one.plan.humans.name, one.plan.name) for one in done] == [
         *(("pop", "none"), ("pop", "frontier"), ("slow@pop", "none"), ("slow@pop", "frontier")),
     ]
@@ -372,7 +388,7 @@ def test_each_people_is_a_run_of_its_own(files: Path):
     assert told == []
     assert done[2].plan.folder_name.startswith("none-fake-slow@pop-")
     assert done[0].result.hashes.human != done[2].result.hashes.human
-    whole = matrix.of([one.result for one in done])
+    whole = population_matrix.of([one.result for one in done])
     assert whole.agents == ("none", "frontier")
     assert set(whole.cells) == {"pop", "slow@pop"}
     assert whole.cells["pop"]["frontier"].adoption.n > 0
@@ -386,11 +402,11 @@ def test_each_people_is_a_run_of_its_own(files: Path):
 
 @pytest.mark.usefixtures("fake")
 def test_the_bracket_says_what_becomes_of_each_conclusion(files: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(cast, "player", fakes.leaning_player)
-    assert peoples.EXTREMES == bracket.ENDS
+    monkeypatch.setattr(trial_runner, "player", fakes.leaning_player)
+    assert human_populations.EXTREMES == robustness.ENDS
     words, agents = (f"bracket@{files}/pop.npz", f"slow@{files}/pop.npz"), ("none", "frontier")
-    options = intent.Options(agents=agents, humans=words, suite="fake", jobs=1, out=files / "out")
-    whole = matrix.of([one.result for one in campaign.conduct(options, lambda _: progress.Silent())])
+    options = run_options.Options(agents=agents, humans=words, suite="fake", jobs=1, out=files / "out")
+    whole = population_matrix.of([one.result for one in experiment.conduct(options, lambda _: progress.Silent())])
     assert [ref.name for ref in whole.peoples] == ["greedy@pop", "random@pop", "pop", "slow@pop"]
     assert {(one.better, one.worse, one.metric, one.verdict) for one in whole.conclusions} == {
         *(("frontier", "none", metric, "flips") for metric in ("sr", "twsr"))
@@ -418,22 +434,22 @@ def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
         def note(self, text: str) -> None:
             told.append(text)
 
-    options = intent.Options(
+    options = run_options.Options(
         agents=("none", "frontier"), humans=(f"{files}/pop.npz",), suite="fake", jobs=1, out=files / "out"
     )
-    done = list(campaign.conduct(options, lambda _: Watcher()))
+    done = list(experiment.conduct(options, lambda _: Watcher()))
     assert told == [], "it is said at the end"
-    (said,) = report.notes([one.result for one in done])
+    (said,) = result_tables.notes([one.result for one in done])
     assert said.startswith("note: the population pop was calibrated on the tasks of the suite paper, not on those of ")
     stored = json.loads((files / "out" / "frontier" / "result.json").read_bytes())
     assert stored["schema"] == result_file.SCHEMA
     assert stored["humans"]["valid"] is False
     assert [one in said for one in stored["humans"]["notes"]] == [True]
     assert stored["humans"]["population_sha256"] == small().sha256
-    assert setup.load(done[0].folder).humans == done[0].result.humans
+    assert run_config.load(done[0].folder).humans == done[0].result.humans
     console = Console(record=True, width=150, file=io.StringIO())
-    console.print(report.result_table(done[0].result))
-    console.print(report.comparison_table([one.result for one in done]))
+    console.print(result_tables.result_table(done[0].result))
+    console.print(result_tables.comparison_table([one.result for one in done]))
     assert "calibrated" not in console.export_text(), "once is enough"
 
 
@@ -442,8 +458,8 @@ def test_a_worker_finds_files_by_path(files: Path):
     model = "from hthor.humans.models.proxy import Model as Proxy\nclass Model(Proxy): pass\n"
     (files / "mine.py").write_text('"""Mine."""\n' + model)
     suite = fakes.frozen("one", 1, tasks.suite("smoke").tasks[:1])
-    found = people.find(f"{files}/mine.py@{files}/pop.npz")
-    (one,) = session.sessions(suite, agent="none", human=found, participants=1)
+    found = resolve.find(f"{files}/mine.py@{files}/pop.npz")
+    (one,) = sessions.sessions(suite, agent="none", human=found, participants=1)
     code = (
         "import sys, msgspec\nfrom hthor.eval import cast\nfrom hthor.types import TrialSpec\n"
         "trial = msgspec.json.decode(sys.stdin.buffer.read(), type=TrialSpec)\n"
@@ -487,12 +503,12 @@ def test_list_names_everybody(hthor):
     code, out, _ = hthor("humans", "list", "--json")
     rows = {row["name"]: row for row in json.loads(out)}
     assert code == 0
-    assert set(rows) == set(people.names())
+    assert set(rows) == set(resolve.names())
     assert {row["sort"] for row in rows.values()} == {"population", "kind", "model"}
     assert all(row["purpose"] for row in rows.values())
-    assert rows["slow"]["sha256"] == people.find("slow").sha256
+    assert rows["slow"]["sha256"] == resolve.find("slow").sha256
     code, out, _ = hthor("humans", "list")
-    for name in people.names():
+    for name in resolve.names():
         assert name in out
 
 
@@ -500,13 +516,13 @@ def test_describe_tells_every_parameter(hthor, files: Path):
     code, out, _ = hthor("humans", "describe", "literature", "--json")
     told = json.loads(out)
     assert code == 0
-    assert [trait["name"] for trait in told["traits"]] == list(registry.names())
+    assert [trait["name"] for trait in told["traits"]] == list(parameter_registry.names())
     for trait in told["traits"]:
         assert trait["says"] == "not identified"
         assert trait["quantiles"] == pytest.approx(trait["prior_quantiles"], rel=0.02, abs=0.02)
         assert trait["source"]
     code, out, _ = hthor("humans", "describe", "literature")
-    assert out.count("not identified") == len(registry.names())
+    assert out.count("not identified") == len(parameter_registry.names())
     for trait in told["traits"]:
         assert trait["name"] in out
     assert "fitted to no data" in out
@@ -527,13 +543,13 @@ def test_sample_shows_whom_a_study_meets(hthor):
     code, out, _ = hthor("humans", "sample", "slow", "--n", "4", "--seed", "3", "--json")
     rows = json.loads(out)
     assert code == 0
-    found = people.find("slow")
+    found = resolve.find("slow")
     for number, row in enumerate(rows):
         assert row.pop("participant") == number
         assert Parameters(**row) == found.person(3, number).traits
     code, out, _ = hthor("humans", "sample", "slow", "--n", "4", "--seed", "3")
     assert len([line for line in out.splitlines() if line.strip() and line.split()[0].isdigit()]) == 4
-    assert all(name in out for name in portrait.personal(found))
+    assert all(name in out for name in describe.personal(found))
 
 
 @pytest.mark.usefixtures("fake")

@@ -21,13 +21,14 @@ from hypothesis import strategies as st
 
 from hthor import seeds
 from hthor.errors import HthorError
-from hthor.humans import backends, llm, situations, wording
-from hthor.humans.answers import Answers
+from hthor.humans.core.policy import Choice, Offer, Situation
+from hthor.humans.llm import backends, policy, prompts
+from hthor.humans.llm.response_cache import Answers
 from hthor.humans.models import proxy
-from hthor.humans.parameters import Parameters
-from hthor.humans.person import Person
-from hthor.humans.policy import Choice, Offer, Situation
-from hthor.humans.search import Option
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.population.participant import Person
+from hthor.humans.search import option_description
+from hthor.humans.search.option_choice import Option
 from hthor.types import HUMAN, Message
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "examples"))
@@ -130,7 +131,7 @@ def test_a_policy_decides_where_the_person_goes_and_what_they_answer():
 @pytest.mark.parametrize("answer", [-1, 99, True, 0.0, None, "1"])
 def test_an_index_that_is_none_of_the_options_is_an_error(answer):
     with pytest.raises(HthorError, match="index from 0 to 2"):
-        situations.valid(answer, situation())
+        option_description.valid(answer, situation())
 
 
 def test_listening_to_the_mind_changes_nothing_and_tells_every_choice():
@@ -193,7 +194,7 @@ def crowded(root: int, chosen: int, count: int = 40):
         beliefs=lambda more, hope: {place.id: 0.1 for place in places},
         ahead=lambda beliefs: 0.1,
     )
-    return situations.features(search, options, options[chosen], 0)
+    return option_description.features(search, options, options[chosen], 0)
 
 
 def test_of_many_options_chance_keeps_some_all_as_likely():
@@ -201,11 +202,11 @@ def test_of_many_options_chance_keeps_some_all_as_likely():
     for root in range(1500):
         kept = crowded(root, 7)
         metres = [row[2] for row in kept["options"]]
-        assert len(metres) == situations.MOST
+        assert len(metres) == option_description.MOST
         assert metres == sorted(metres)
         assert metres[kept["chosen"]] == 7.0
         counts.update(int(m) for m in metres)
-    share = (situations.MOST - 1) / 39
+    share = (option_description.MOST - 1) / 39
     tolerance = 4.5 * math.sqrt(1500 * share * (1 - share))
     assert counts[7] == 1500
     assert all(abs(counts[k] - 1500 * share) < tolerance for k in range(40) if k != 7)
@@ -215,12 +216,12 @@ def test_of_many_options_chance_keeps_some_all_as_likely():
 
 
 def test_prompts_name_the_task_the_options_and_the_rule():
-    text = wording.choice(wording.persona(Parameters()), situation(3, holding="mug"))
+    text = prompts.choice(prompts.persona(Parameters()), situation(3, holding="mug"))
     assert "Find the apple." in text
     assert "3. search the bed, 3 m away" in text
     assert "You are holding: mug." in text
     assert text.endswith("Answer with one number from 1 to 3 and nothing else.")
-    text = wording.offer("You are you.", offer(text='Say "confirm".\nNow!', instruction="Find the apple."))
+    text = prompts.offer("You are you.", offer(text='Say "confirm".\nNow!', instruction="Find the apple."))
     assert "Your task: Find the apple." in text
     assert '"Say \\"confirm\\".\\nNow!"' in text
     assert "about 20 seconds" in text
@@ -229,19 +230,19 @@ def test_prompts_name_the_task_the_options_and_the_rule():
 
 def test_long_questions_are_cut():
     many = situation(100, instruction="x" * 10_000)
-    assert len(wording.choice("You are you.", many)) < 3000
-    assert len(wording.listed(many)) == wording.MOST_OPTIONS
-    assert len(wording.offer("You are you.", offer(text="y" * 10_000))) < 2000
+    assert len(prompts.choice("You are you.", many)) < 3000
+    assert len(prompts.listed(many)) == prompts.MOST_OPTIONS
+    assert len(prompts.offer("You are you.", offer(text="y" * 10_000))) < 2000
 
 
 def test_people_are_told_apart():
     slow, fast = (
         msgspec.structs.replace(Parameters(), v_pace=v, mu0=m, a0=a) for v, m, a in ((0.3, 0.3, 0.0), (0.9, 0.8, 4.0))
     )
-    assert wording.persona(slow) != wording.persona(fast)
-    assert "slowly" in wording.persona(slow)
-    assert "distrust" in wording.persona(slow)
-    assert "very willing" in wording.persona(fast)
+    assert prompts.persona(slow) != prompts.persona(fast)
+    assert "slowly" in prompts.persona(slow)
+    assert "distrust" in prompts.persona(slow)
+    assert "very willing" in prompts.persona(fast)
 
 
 @pytest.mark.parametrize(
@@ -252,7 +253,7 @@ def test_people_are_told_apart():
     ],
 )
 def test_choices_are_read_strictly(reply, read):
-    assert wording.read_choice(reply, situation(3)) == read
+    assert prompts.read_choice(reply, situation(3)) == read
 
 
 @pytest.mark.parametrize(
@@ -263,18 +264,18 @@ def test_choices_are_read_strictly(reply, read):
     ],
 )
 def test_answers_are_read_strictly(reply, read):
-    assert wording.read_answer(reply) == read
+    assert prompts.read_answer(reply) == read
 
 
 @given(st.text(max_size=300), st.integers(1, 30))
 def test_no_reply_breaks_the_reader(reply, count):
-    found = wording.read_choice(reply, situation(count))
+    found = prompts.read_choice(reply, situation(count))
     assert found is None or 0 <= found < count
-    assert wording.read_answer(reply) in (None, "confirm", "decline", "ignore")
+    assert prompts.read_answer(reply) in (None, "confirm", "decline", "ignore")
 
 
 def speaker(tmp_path, backend, person=PERSON):
-    return llm.Speaker(person, backend, tmp_path / "answers.jsonl", "toy")
+    return policy.Speaker(person, backend, tmp_path / "answers.jsonl", "toy")
 
 
 def test_what_cannot_be_read_is_asked_once_more_then_the_stated_fallback_holds(tmp_path):
@@ -323,7 +324,7 @@ def test_the_cache_tells_people_models_and_settings_apart(tmp_path):
     for field, value in (("model", "other"), ("temperature", 0.6), ("seed", 2), ("tokens", 17)):
         assert Answers(path, **{**plain, field: value}).of("q", lambda q: f"new {q}", 9) == "new q"
     assert Answers(path, **plain).of("q", lambda q: "b", 9) == "a"
-    assert llm.seed(PERSON) != llm.seed(Person(seed=1, participant=4))
+    assert policy.seed(PERSON) != policy.seed(Person(seed=1, participant=4))
 
 
 def test_the_first_answer_in_the_file_holds_when_two_ask_at_once(tmp_path):
@@ -356,18 +357,18 @@ def test_answers_are_cut(tmp_path):
 
 def test_the_less_somebody_weighs_the_hotter_the_model():
     heats = [
-        llm.temperature(Person(seed=0, participant=0, traits=msgspec.structs.replace(Parameters(), beta=b)))
+        policy.temperature(Person(seed=0, participant=0, traits=msgspec.structs.replace(Parameters(), beta=b)))
         for b in (0.1, 1.0, 2.0, 50.0)
     ]
     assert heats == [1.5, 1.0, 0.5, 0.2]
 
 
 def test_the_stub_goes_to_the_nearest_and_confirms_what_saves_time():
-    who = wording.persona(Parameters())
+    who = prompts.persona(Parameters())
     far = option(0, text="search the bed, already searched, right here"), option(2), option(1), option(4)
-    assert wording.read_choice(backends.stub(wording.choice(who, situation(options=far))), situation(options=far)) == 2
-    assert backends.stub(wording.offer(who, offer())) == "confirm"
-    assert backends.stub(wording.offer(who, offer(useful=False))) == "decline"
+    assert prompts.read_choice(backends.stub(prompts.choice(who, situation(options=far))), situation(options=far)) == 2
+    assert backends.stub(prompts.offer(who, offer())) == "confirm"
+    assert backends.stub(prompts.offer(who, offer(useful=False))) == "decline"
 
 
 # ----------------------------------------------------------------------------------------------------------- endpoints
@@ -407,8 +408,12 @@ def test_an_endpoint_is_asked_as_such_endpoints_are(endpoint, tmp_path):
     assert path == "/v1/chat/completions"
     assert key == "Bearer secret"
     assert body["model"] == "toy"
-    assert body["messages"][0]["content"] == wording.choice(wording.persona(PERSON.traits), situation())
-    assert (body["seed"], body["temperature"], body["max_tokens"]) == (llm.seed(PERSON), llm.temperature(PERSON), 16)
+    assert body["messages"][0]["content"] == prompts.choice(prompts.persona(PERSON.traits), situation())
+    assert (body["seed"], body["temperature"], body["max_tokens"]) == (
+        policy.seed(PERSON),
+        policy.temperature(PERSON),
+        16,
+    )
     assert "secret" not in (tmp_path / "a.jsonl").read_text()
 
 

@@ -18,9 +18,17 @@ from hypothesis import strategies as st
 
 from hthor import seeds
 from hthor.errors import HthorError, PeopleError, UnknownName
-from hthor.humans import effects, literature, person, population_file, prior, ranges, registry
-from hthor.humans.parameters import Parameters
-from hthor.humans.population import Population, Validity
+from hthor.humans.population import (
+    bounds,
+    distributions,
+    parameter_registry,
+    participant,
+    population_file,
+    prior_population,
+    random_effects,
+)
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.population.population import Population, Validity
 
 NAMES = ("v_pace", "a0", "mu0", "sigma")
 ROWS = [[0.4, 1.0, 0.5, 0.3], [0.5, 2.0, 0.6, 0.1], [0.7, -1.0, 0.2, 0.2]]
@@ -48,7 +56,7 @@ def test_weights_add_up_and_what_weighs_nothing_is_never_drawn():
 def test_a_participant_is_a_draw_and_random_effects_upon_it():
     few = made()
     row = few.pick(3, 5)
-    assert few.person(3, 5) == effects.individual(few.parameters(row), person.root(3, 5), few.specs)
+    assert few.person(3, 5) == random_effects.individual(few.parameters(row), participant.root(3, 5), few.specs)
     assert few.person(3, 5) != few.parameters(row)
     assert few.person(3, 5) == made().person(3, 5)
     assert len({few.person(3, index).v_pace for index in range(20)}) == 20
@@ -77,28 +85,38 @@ def test_quantiles_heed_weights():
 
 
 def test_contraction_tells_what_was_learnt():
-    points = [[(i + 0.5) / 400 for _ in registry.names()] for i in range(400)]
-    prior = Population.of("p", registry.physical(points), purpose="", seed=0, command="")
+    points = [[(i + 0.5) / 400 for _ in parameter_registry.names()] for i in range(400)]
+    prior = Population.of("p", parameter_registry.physical(points), purpose="", seed=0, command="")
     assert all(abs(spec.contraction) < 0.01 for spec in prior.specs)
     assert {spec.word for spec in prior.specs} == {"not identified"}
     weight = [-(((u[0] - 0.5) / 0.1) ** 2) / 2 for u in points]
-    post = Population.of("q", registry.physical(points), weight, purpose="", seed=0, command="")
+    post = Population.of("q", parameter_registry.physical(points), weight, purpose="", seed=0, command="")
     assert post.specs[0].contraction == pytest.approx(1 - 12 * 0.1**2, abs=0.01)
     assert post.specs[0].word == "identified"
 
 
-@given(st.lists(st.floats(0.001, 0.999), min_size=len(registry.names()), max_size=len(registry.names())))
+@given(
+    st.lists(
+        st.floats(0.001, 0.999), min_size=len(parameter_registry.names()), max_size=len(parameter_registry.names())
+    )
+)
 @settings(deadline=None, max_examples=30)
 def test_the_cube_and_the_units_are_one_to_one(point: list[float]):
-    values = registry.physical([point])
-    assert registry.unit(values)[0] == pytest.approx(point, abs=1e-9)
-    assert registry.from_unit(point) == Parameters(**dict(zip(registry.names(), values[0].tolist(), strict=True)))
-    assert not [text for name, x in zip(registry.names(), values[0], strict=True) if (text := ranges.problem(name, x))]
+    values = parameter_registry.physical([point])
+    assert parameter_registry.unit(values)[0] == pytest.approx(point, abs=1e-9)
+    assert parameter_registry.from_unit(point) == Parameters(
+        **dict(zip(parameter_registry.names(), values[0].tolist(), strict=True))
+    )
+    assert not [
+        text for name, x in zip(parameter_registry.names(), values[0], strict=True) if (text := bounds.problem(name, x))
+    ]
 
 
 def test_tables_of_other_shapes_are_refused():
-    with pytest.raises(ValueError, match="31 columns is expected" if len(registry.names()) == 31 else "columns"):
-        registry.physical([[0.5, 0.5]])
+    with pytest.raises(
+        ValueError, match="31 columns is expected" if len(parameter_registry.names()) == 31 else "columns"
+    ):
+        parameter_registry.physical([[0.5, 0.5]])
     with pytest.raises(ValueError, match=r"draws: the shape is \(3, 4\); expected one row or more of 3 columns"):
         made(names=NAMES[:3])
     with pytest.raises(ValueError, match=r"log_weight: the shape is \(2,\)"):
@@ -122,14 +140,14 @@ def test_values_out_of_range_are_refused(column: int, value: float):
 
 
 def test_every_parameter_has_a_range_that_holds_its_default():
-    assert set(ranges.known()) >= set(registry.names())
-    for name in ranges.known():
-        assert ranges.problem(name, getattr(Parameters(), name)) == ""
-        low, high = ranges.of(name)
-        assert ranges.nearest(name, low - 1.0) == low
-        assert ranges.nearest(name, high + 1.0) == high
-    for group in (ranges._POSITIVE, ranges._SHARES, ranges._SIGNALS, ranges._LOGITS):
-        assert set(group) <= set(ranges.known())
+    assert set(bounds.known()) >= set(parameter_registry.names())
+    for name in bounds.known():
+        assert bounds.problem(name, getattr(Parameters(), name)) == ""
+        low, high = bounds.of(name)
+        assert bounds.nearest(name, low - 1.0) == low
+        assert bounds.nearest(name, high + 1.0) == high
+    for group in (bounds._POSITIVE, bounds._SHARES, bounds._SIGNALS, bounds._LOGITS):
+        assert set(group) <= set(bounds.known())
 
 
 # ------------------------------------------------------------------------------------------------------------ files
@@ -188,7 +206,7 @@ def test_the_json_file_says_what_each_column_is(tmp_path: Path):
     assert pace["prior"]["type"] == "log-uniform"
     assert pace["level"] == "population and person"
     assert {"effect", "scale", "grade", "source", "fitted", "contraction", "meaning"} <= set(pace)
-    assert set(document["fixed"]) == set(ranges.known()) - set(NAMES)
+    assert set(document["fixed"]) == set(bounds.known()) - set(NAMES)
     assert {"simulation", "mind", "rules_sha256", "suite_sha256", "targets_sha256", "settings"} <= set(
         document["validity"]
     )
@@ -265,13 +283,13 @@ def test_unknown_names_are_answered_with_the_nearest():
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: prior.Uniform(1.0, 1.0), "needs low below high"),
-        (lambda: prior.LogUniform(0.0, 1.0), "needs low above 0"),
-        (lambda: prior.LogUniform(2.0, 1.0), "below high"),
-        (lambda: prior.Normal(0.0, 0.0), "needs sd above 0"),
-        (lambda: prior.HalfNormal(-1.0), "needs sd above 0"),
-        (lambda: prior.LogNormal(0.0, 1.0), "needs median above 0"),
-        (lambda: prior.Beta(1.0, math.nan), "needs b above 0"),
+        (lambda: distributions.Uniform(1.0, 1.0), "needs low below high"),
+        (lambda: distributions.LogUniform(0.0, 1.0), "needs low above 0"),
+        (lambda: distributions.LogUniform(2.0, 1.0), "below high"),
+        (lambda: distributions.Normal(0.0, 0.0), "needs sd above 0"),
+        (lambda: distributions.HalfNormal(-1.0), "needs sd above 0"),
+        (lambda: distributions.LogNormal(0.0, 1.0), "needs median above 0"),
+        (lambda: distributions.Beta(1.0, math.nan), "needs b above 0"),
     ],
 )
 def test_a_prior_that_is_no_distribution_is_refused(make: Any, words: str):
@@ -282,12 +300,12 @@ def test_a_prior_that_is_no_distribution_is_refused(make: Any, words: str):
 def test_the_literature_is_the_priors():
     held = Population.load("literature")
     assert held is Population.load("literature")
-    assert held.names == registry.names()
-    assert held.sha256 == literature.population().sha256
+    assert held.names == parameter_registry.names()
+    assert held.sha256 == prior_population.population().sha256
     for column, spec in enumerate(held.specs):
         values = held.quantiles((0.05, 0.5, 0.95))[:, column]
         assert [spec.prior.cdf(value) for value in values] == pytest.approx([0.05, 0.5, 0.95], abs=2e-3)
-    points = registry.unit(held.draws)
+    points = parameter_registry.unit(held.draws)
     shared = np.corrcoef(points.T) - np.eye(len(held.specs))
     assert np.abs(shared).max() < 0.2
     assert held.validity.suite_sha256 == ""
@@ -301,4 +319,4 @@ def test_every_population_that_ships_loads_and_draws(name: str):
     assert held.purpose
     for index in range(50):
         for parameter, value in msgspec.structs.asdict(held.person(seeds.derive(0, name), index)).items():
-            assert ranges.problem(parameter, value) == ""
+            assert bounds.problem(parameter, value) == ""

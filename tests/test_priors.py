@@ -17,9 +17,9 @@ from typer.testing import CliRunner
 from hthor import catalog, houses
 from hthor.catalog import priors
 from hthor.catalog.priors import scenes, words
-from hthor.cli.app import app
+from hthor.cli import app
 from hthor.errors import UnknownName
-from hthor.tasks import graph
+from hthor.tasks.generation import scene_graph
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
 
 SAMPLES = 10_000
@@ -140,7 +140,7 @@ def test_relations_are_drawn_as_they_weigh(target: str, house: str) -> None:
     kinds = present(house)
     rows = applicable(target, kinds)
     assert len(rows) >= 2
-    drawn = Counter(graph.draw(target, kinds, root).key for root in range(SAMPLES))
+    drawn = Counter(scene_graph.draw(target, kinds, root).key for root in range(SAMPLES))
     counts = [drawn[row.key] for row in rows]
     assert sum(counts) == SAMPLES, "something else was drawn than what the house has"
     total = sum(row.weight for row in rows)

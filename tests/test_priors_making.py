@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from hthor.catalog import priors
 from hthor.catalog.priors import making, scenes, words
-from hthor.cli.app import app
+from hthor.cli import app
 from hthor.errors import HthorError, MissingExtra, UnknownName
 
 ORIGIN = priors.Origin(

@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hthor.eval import contrast, ranking, resample
+from hthor.eval.comparison import ranking
+from hthor.eval.results import paired_difference
+from hthor.eval.statistics import bootstrap
 
 TRIALS = 80
 TASKS, PEOPLE = np.arange(TRIALS), np.arange(TRIALS) // 10
@@ -59,15 +61,15 @@ def test_equal_agents_are_tied_and_a_far_better_one_is_first():
 
 def test_ranks_are_those_that_compare_would_give():
     played = _played([(0.4, 1), (0.6, 1), (0.8, 1), (0.78, 2)])
-    versus = [contrast.spread_of(played - one, TASKS, PEOPLE, share=True) for one in played]
+    versus = [paired_difference.spread_of(played - one, TASKS, PEOPLE, share=True) for one in played]
     pairs = [(one, other) for one in range(4) for other in range(one + 1, 4)]
-    found = [contrast.between(played[one], played[other], TASKS, PEOPLE, share=True) for one, other in pairs]
-    assert [ranking.adjusted(versus)[pair] for pair in pairs] == contrast.holm([gap.p for gap in found])
+    found = [paired_difference.between(played[one], played[other], TASKS, PEOPLE, share=True) for one, other in pairs]
+    assert [ranking.adjusted(versus)[pair] for pair in pairs] == paired_difference.holm([gap.p for gap in found])
 
 
 def test_the_same_name_gives_the_same_samples_and_rows_share_them():
     rows = np.stack([(np.arange(TRIALS) % 3 == 0).astype(float)] * 2)
-    first, again, other = (resample.means(rows, TASKS, PEOPLE, name=name, draws=300) for name in "xxy")
+    first, again, other = (bootstrap.means(rows, TASKS, PEOPLE, name=name, draws=300) for name in "xxy")
     assert (first == again).all()
     assert (first[0] == first[1]).all()
     assert (first != other).any()

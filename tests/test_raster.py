@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from world_house import COFFEE, TABLE, on, task
 
 from hthor.types import Pose
-from hthor.world import World, camera, raster, tracer
-from hthor.world.engine import mujoco
+from hthor.world import World
+from hthor.world.model.engine import mujoco
+from hthor.world.rendering import camera, rasterizer, ray_renderer
 
 SIZE = (48, 36)
 
@@ -59,7 +60,7 @@ def test_a_house_is_traced_as_the_engine_s_rays_see_it(
     world: World, x: float, y: float, yaw: float, pitch: float
 ) -> None:
     world._seats["robot"].pose = Pose(x=x, y=y, yaw=yaw, pitch=pitch)
-    drawn = tracer.Tracer(world.model, world._scene, world.house)
+    drawn = ray_renderer.Tracer(world.model, world._scene, world.house)
     view, w, hit = drawn._fill(world._pictures._moment(), "robot", SIZE, camera.OWN)
     offset = np.abs(np.einsum("nji,nj->ni", drawn._mat.reshape(-1, 3, 3), view[:3] - drawn._pos))
     assume(not (offset < drawn._half + 0.05).all(axis=1).any())  # what is inside or nearer than NEAR_M is not seen
@@ -100,11 +101,11 @@ def test_every_shape_is_traced_as_the_engine_s_rays_see_it(
     cy, sy, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
     axes = (cp * cy, cp * sy, sp, -sy, cy, 0.0, -sp * cy, -sp * sy, cp)
     view = np.array((x, y, z, *axes, 0.8, tall, camera.NEAR_M, camera.FAR_M))
-    half = tracer._halves(model)
+    half = ray_renderer._halves(model)
     radius = np.linalg.norm(half, axis=1)
-    w, hit = tracer._blank(view, (64, 48))
+    w, hit = ray_renderer._blank(view, (64, 48))
     order = np.argsort(-radius, kind="stable")
-    raster.fill(
+    rasterizer.fill(
         view, order, np.array(model.geom_type), half, radius, data.geom_xpos, data.geom_xmat.reshape(-1, 9), w, hit
     )
     agree(model, data, view, hit, w)

@@ -13,8 +13,9 @@ from test_episode import Mind, Stage, trial
 
 from hthor import rules
 from hthor.episode import EpisodeLog, play
-from hthor.eval import pairing, record
-from hthor.thinking import Thinking
+from hthor.eval.records import trial_record
+from hthor.eval.results import pairing
+from hthor.thinking_time import Thinking
 from hthor.types import HUMAN, Action, Move, Observation, Send
 
 
@@ -104,6 +105,6 @@ def test_what_it_takes_to_draw_for_a_mind_is_not_its_own_time() -> None:
 def test_it_is_another_trial_for_the_same_occasion() -> None:
     spec = fakes.run_of()[1][0].trials[0]
     late = msgspec.structs.replace(spec, realtime=True)
-    assert record.key(spec) != record.key(late)
+    assert trial_record.key(spec) != trial_record.key(late)
     assert pairing.occasion(spec) == pairing.occasion(late)
     assert b"realtime" not in msgspec.json.encode(spec), "lock-step reads as it always did"

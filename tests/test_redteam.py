@@ -15,7 +15,8 @@ from typing import Any
 import pytest
 
 from hthor import guest
-from hthor.guest import Guest, IsolationError, clearing
+from hthor.guest import Guest, IsolationError
+from hthor.guest.process_tools import cleanup
 from tests.redteam import nobody
 from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, PIPE, Case
 from tests.redteam.nobody import ROOT, runner
@@ -159,7 +160,7 @@ def test_nothing_outlives_a_killed_host(level: str, tmp_path: Path) -> None:
 
 
 def _descendants(pid: int) -> list[int]:
-    families = clearing.families()
+    families = cleanup.families()
     line, found = [pid], []
     while line:
         found += families.get(line[-1], [])

@@ -10,8 +10,8 @@ import pytest
 
 from hthor.episode import Fault
 from hthor.errors import RunError
-from hthor.eval import impersonal, remains
-from hthor.eval.watched import Watched
+from hthor.eval.runner import fault_report, redact
+from hthor.eval.runner.agent_recorder import Watched
 from hthor.types import Action, Observation, Pose
 
 
@@ -31,7 +31,7 @@ class Tired:
         return Action()
 
 
-def left(key: str, kind: str = "raised") -> remains.Remains:
+def left(key: str, kind: str = "raised") -> fault_report.Remains:
     mind = Watched(Tired())
     mind.begin(None)
     for tick in range(30):
@@ -40,38 +40,38 @@ def left(key: str, kind: str = "raised") -> remains.Remains:
         mind.act(look(30))
     trial = fakes.run_of()[1][0].trials[0]
     fault = Fault(seat="robot", kind=kind, tick=30, detail="ValueError: tired")
-    return remains.of(key, trial, [fault], {"robot": mind})
+    return fault_report.of(key, trial, [fault], {"robot": mind})
 
 
 def test_the_last_looks_and_the_last_words_are_kept_and_read_again(tmp_path: Path):
-    remains.Keeper(tmp_path, "hthor agent run x").keep(left("ab"))
-    (failure,) = remains.load(tmp_path / "faults" / "ab.json").failures
+    fault_report.Keeper(tmp_path, "hthor agent run x").keep(left("ab"))
+    (failure,) = fault_report.load(tmp_path / "faults" / "ab.json").failures
     assert [one.tick for one in failure.looks] == list(range(11, 31))
     assert [one.action is None for one in failure.looks] == [False] * 19 + [True]
     assert failure.output.endswith("last words")
     assert len(failure.output) == 8000
-    assert remains.command(tmp_path, "ab") == "hthor agent run x ab"
-    assert remains.command(tmp_path, "none") == ""
+    assert fault_report.command(tmp_path, "ab") == "hthor agent run x ab"
+    assert fault_report.command(tmp_path, "none") == ""
     (tmp_path / "faults" / "ab.json").write_text("{}")
     with pytest.raises(RunError, match=r"ab\.json.*delete it"):
-        remains.load(tmp_path / "faults" / "ab.json")
+        fault_report.load(tmp_path / "faults" / "ab.json")
 
 
 def test_a_thousand_faults_fill_no_disk(tmp_path: Path):
     for command in range(2):  # the second one resumes
-        keeper = remains.Keeper(tmp_path)
+        keeper = fault_report.Keeper(tmp_path)
         for number in range(500):
             keeper.keep(left(f"{command}-{number}", "raised" if number % 5 else f"odd{number}"))
-    kept = [remains.load(path).failures[0].kind for path in (tmp_path / "faults").glob("*.json")]
-    assert kept.count("raised") == remains.MOST_OF_A_KIND
-    assert len(kept) == remains.MOST
+    kept = [fault_report.load(path).failures[0].kind for path in (tmp_path / "faults").glob("*.json")]
+    assert kept.count("raised") == fault_report.MOST_OF_A_KIND
+    assert len(kept) == fault_report.MOST
     assert sum(path.stat().st_size for path in (tmp_path / "faults").iterdir()) < 8 << 20
 
 
 def test_what_is_laid_down_is_taken_once():
-    remains.leave(left("ab"))
-    assert remains.take("ab") is not None
-    assert remains.take("ab") is None
+    fault_report.leave(left("ab"))
+    assert fault_report.take("ab") is not None
+    assert fault_report.take("ab") is None
 
 
 def test_a_faults_words_are_the_same_wherever_the_file_lies(tmp_path: Path):
@@ -83,6 +83,6 @@ def test_a_faults_words_are_the_same_wherever_the_file_lies(tmp_path: Path):
     ):
         file = tmp_path / folder / "agent.py"
         words = text.format(file.parent, address, scratch, scratch)
-        told.add(impersonal.words(words, [str(file), f"{tmp_path}/else.py:Agent"]))
-        told.add(impersonal.words(words, [os.path.relpath(file) + ":Agent"]))
+        told.add(redact.words(words, [str(file), f"{tmp_path}/else.py:Agent"]))
+        told.add(redact.words(words, [os.path.relpath(file) + ":Agent"]))
     assert told == {'File "lib/a.py", line 3\n<Thing object at 0x...> not in $TMPDIR/x and "$TMPDIR"'}

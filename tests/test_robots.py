@@ -13,11 +13,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from world_house import COUNTER, TABLE, do, on, reason, task
 
-from hthor import catalog, plugins, rules
+from hthor import catalog, code_identity, plugins, rules
 from hthor.errors import HthorError, UnknownName
-from hthor.eval import cast, crews, provenance
+from hthor.eval.config import robot_team
+from hthor.eval.runner import trial_runner
 from hthor.types import Close, Move, Open, Part, Pick, Place, Pose, RobotSpec, Rotate
-from hthor.world import World, avatar, bodies
+from hthor.world import World
+from hthor.world.model.bodies import avatar, bodies
 
 NAMES = plugins.names("robot")
 SPECS = [bodies.robot(name) for name in NAMES]
@@ -286,7 +288,7 @@ def test_every_robot_that_opens_opens_the_fridge(world: World, spec: RobotSpec) 
 
 MINE = """
 from hthor.types import RobotSpec
-from hthor.world.solid import ball
+from hthor.world.model.bodies.primitives import ball
 
 SPEC = RobotSpec(
     name="{name}", title="my robot", radius=0.15, height=0.3, eye=0.2, fov=(1.5, 1.5), speed=1.0, turn_rate=2.0,
@@ -315,11 +317,11 @@ def test_a_user_s_robot_is_one_file(tmp_path: Path) -> None:
 def test_a_run_knows_the_file_and_notices_a_change(tmp_path: Path) -> None:
     file = tmp_path / "rover_that_changes.py"
     file.write_text(MINE.format(name="rover_that_changes"))
-    shape = crews.embody(str(file))
+    shape = robot_team.embody(str(file))
     assert (shape.name, shape.path) == ("rover_that_changes", str(file))
-    (seat,) = crews.form([shape], ["frontier"]).seats
+    (seat,) = robot_team.form([shape], ["frontier"]).seats
     assert seat.robot_sha256 == plugins.sha256(str(file))
-    stage = cast.Stage(cast.Sources(bodies={"robot": shape.path}))
+    stage = trial_runner.Stage(trial_runner.Sources(bodies={"robot": shape.path}))
     assert stage._body(seat) == bodies.robot(str(file))
     file.write_text(file.read_text() + "# faster")
     with pytest.raises(HthorError, match="was changed while its run was going on"):
@@ -327,9 +329,9 @@ def test_a_run_knows_the_file_and_notices_a_change(tmp_path: Path) -> None:
 
 
 def test_robots_that_ship_with_hthor_are_covered_by_the_code_s_hash() -> None:
-    assert crews.embody("porter") == crews.Shape(name="porter", sha256=provenance.robot_sha256("porter"))
+    assert robot_team.embody("porter") == robot_team.Shape(name="porter", sha256=code_identity.robot_sha256("porter"))
     with pytest.raises(UnknownName, match="or give the path of a Python file"):
-        crews.embody("portr")
+        robot_team.embody("portr")
 
 
 def test_a_body_made_from_a_record_has_a_plain_look() -> None:

@@ -21,23 +21,14 @@ from typer.testing import CliRunner
 from hthor import tasks
 from hthor.cli import app
 from hthor.errors import HthorError, RunError
-from hthor.eval import (
-    cast,
-    command,
-    crews,
-    intent,
-    pace,
-    pairing,
-    programme,
-    record,
-    selection,
-    session,
-    setup,
-    waiting,
-)
-from hthor.eval.session import Session
+from hthor.eval.config import cli_command, robot_team, run_config, sessions, task_selection, task_subset
+from hthor.eval.config.sessions import Session
+from hthor.eval.dry_run import trial_cost
+from hthor.eval.records import trial_record
+from hthor.eval.results import pairing
+from hthor.eval.runner import queue, run_options, trial_runner
 from hthor.guest import GuestFault
-from hthor.leaderboard import overrides
+from hthor.leaderboard.entries import overrides
 from hthor.types import Action
 
 SMOKE = tasks.suite("smoke").tasks
@@ -46,7 +37,7 @@ SMOKE = tasks.suite("smoke").tasks
 @settings(deadline=None)
 @given(st.integers(1, len(SMOKE) - 1))
 def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
-    some, more = selection.choose(SMOKE, count), selection.choose(SMOKE, count + 1)
+    some, more = task_subset.choose(SMOKE, count), task_subset.choose(SMOKE, count + 1)
     assert len(some) == count
     assert set(some) < set(more)
     assert list(some) == [task for task in SMOKE if task in some], "in the suite's order"
@@ -54,7 +45,7 @@ def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
 
 @pytest.mark.parametrize("count", [10, 20, 30])
 def test_a_choice_is_spread_over_houses_and_kinds(count: int) -> None:
-    whole, some = tasks.suite("standard").tasks, selection.choose(tasks.suite("standard").tasks, count)
+    whole, some = tasks.suite("standard").tasks, task_subset.choose(tasks.suite("standard").tasks, count)
     for field in ("house", "kind"):
         every = Counter(getattr(task, field) for task in whole)
         here = Counter(getattr(task, field) for task in some)
@@ -63,24 +54,26 @@ def test_a_choice_is_spread_over_houses_and_kinds(count: int) -> None:
 
 
 def test_a_limited_run_has_other_tasks_and_says_so() -> None:
-    whole = programme.choose("smoke", "")
-    some = programme.shorten(whole, 10)
+    whole = task_selection.choose("smoke", "")
+    some = task_selection.shorten(whole, 10)
     assert some.limit == 10
     assert len(some.suite.tasks) == 10
     assert some.suite.name == "smoke"
     assert some.suite.sha256 != whole.suite.sha256
     assert "no result for the leaderboard" in some.notes[-1]
-    assert programme.shorten(whole, len(whole.suite.tasks)) is whole, "all of them is the whole suite"
+    assert task_selection.shorten(whole, len(whole.suite.tasks)) is whole, "all of them is the whole suite"
     with pytest.raises(HthorError, match=rf"--limit 999: the suite 'smoke' has {len(SMOKE)} tasks"):
-        programme.shorten(whole, 999)
+        task_selection.shorten(whole, 999)
 
 
-def submitted() -> crews.Crew:
-    return crews.form(["scout"], [crews.Character(ref=crews.introduce("oracle").ref, path="somewhere.py")])
+def submitted() -> robot_team.Crew:
+    return robot_team.form(
+        ["scout"], [robot_team.Character(ref=robot_team.introduce("oracle").ref, path="somewhere.py")]
+    )
 
 
-def plan(**more: object) -> setup.Setup:
-    return setup.settle(suite(30), submitted(), human=persons(), seed=0, participants=None, **more)  # type: ignore[arg-type]
+def plan(**more: object) -> run_config.Setup:
+    return run_config.settle(suite(30), submitted(), human=persons(), seed=0, participants=None, **more)  # type: ignore[arg-type]
 
 
 def test_both_are_part_of_a_run_and_of_the_command_that_plays_it() -> None:
@@ -88,7 +81,7 @@ def test_both_are_part_of_a_run_and_of_the_command_that_plays_it() -> None:
     assert bare.sha256 != short.sha256
     assert b"limit" not in msgspec.json.encode(bare)
     assert "-30-" in short.folder_name
-    words = command.of(Path("runs/x"), short)
+    words = cli_command.of(Path("runs/x"), short)
     assert "--limit 30" in words
     assert "--step-limit 2.5" in words
     assert overrides.of(bare) == {}
@@ -96,19 +89,19 @@ def test_both_are_part_of_a_run_and_of_the_command_that_plays_it() -> None:
 
 
 def test_a_deadline_is_part_of_the_trials_of_submitted_agents_alone() -> None:
-    for who, there in ((submitted(), 2.5), (crews.form(["scout"], ["oracle"]), msgspec.UNSET)):
-        trial = session.sessions(suite(10), agent=who, human=persons(), step_limit_s=2.5)[0].trials[0]
-        usual = session.sessions(suite(10), agent=who, human=persons())[0].trials[0]
+    for who, there in ((submitted(), 2.5), (robot_team.form(["scout"], ["oracle"]), msgspec.UNSET)):
+        trial = sessions.sessions(suite(10), agent=who, human=persons(), step_limit_s=2.5)[0].trials[0]
+        usual = sessions.sessions(suite(10), agent=who, human=persons())[0].trials[0]
         assert trial.step_limit_s == there
         assert usual.step_limit_s is msgspec.UNSET
-        assert (record.key(trial) == record.key(usual)) == (there is msgspec.UNSET)
+        assert (trial_record.key(trial) == trial_record.key(usual)) == (there is msgspec.UNSET)
         assert pairing.occasion(trial) == pairing.occasion(usual), "the person's day is the same"
 
 
 def test_a_worker_is_given_the_time_that_its_agents_have() -> None:
     one = suite(1).tasks
-    assert waiting.limit(one, 1, 60.0) >= waiting.limit(one, 1) + 55.0 * one[0].time_limit / 0.1
-    assert waiting.limit(one, 1, 0.5) == waiting.limit(one, 1)
+    assert queue.limit(one, 1, 60.0) >= queue.limit(one, 1) + 55.0 * one[0].time_limit / 0.1
+    assert queue.limit(one, 1, 0.5) == queue.limit(one, 1)
 
 
 SLOW = """
@@ -129,10 +122,10 @@ class Agent:
 @pytest.mark.parametrize("seconds", [0.1, None])
 def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds: float | None) -> None:
     (tmp_path / "slow.py").write_text(SLOW)
-    slow = crews.introduce(str(tmp_path / "slow.py"))
-    who = crews.form(["scout"], [slow])
-    trials = session.sessions(suite(1), agent=who, human="greedy", step_limit_s=seconds)[0].trials
-    with cast.Stage(cast.Sources(minds=who.minds, manifests=who.manifests)).enter(
+    slow = robot_team.introduce(str(tmp_path / "slow.py"))
+    who = robot_team.form(["scout"], [slow])
+    trials = sessions.sessions(suite(1), agent=who, human="greedy", step_limit_s=seconds)[0].trials
+    with trial_runner.Stage(trial_runner.Sources(minds=who.minds, manifests=who.manifests)).enter(
         Session(participant=0, trials=trials)
     ) as company:
         mind = company.robots()["robot"]
@@ -146,8 +139,8 @@ def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds
 
 
 def test_the_control_of_a_limited_run_has_the_same_tasks(tmp_path: Path) -> None:
-    asked = intent.settle(
-        intent.Options(agents=("oracle",), suite="smoke", limit=12, control=True, out=tmp_path / "run")
+    asked = run_options.settle(
+        run_options.Options(agents=("oracle",), suite="smoke", limit=12, control=True, out=tmp_path / "run")
     )
     control = asked.control_of[tmp_path / "run"].plan
     assert control.limit == 12
@@ -161,15 +154,15 @@ def test_the_control_of_a_limited_run_has_the_same_tasks(tmp_path: Path) -> None
 
 def test_a_name_is_a_folder_and_a_heading_and_changes_no_trial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    one = intent.settle(intent.Options(agents=("oracle",), control=True, name="first-try"))
-    bare = intent.settle(intent.Options(agents=("oracle",)))
+    one = run_options.settle(run_options.Options(agents=("oracle",), control=True, name="first-try"))
+    bare = run_options.settle(run_options.Options(agents=("oracle",)))
     (part,), (plain,) = one.parts, bare.parts
     assert part.folder == Path("runs/first-try")
     assert part.plan.name == part.title == "first-try"
     assert part.plan.crew == plain.plan.name == "oracle"
     assert (part.plan.sha256, part.plan.untitled) == (plain.plan.sha256, plain.plan)
     assert one.control_of[part.folder].folder == Path("runs/first-try/control"), "where it is found again"
-    several = intent.settle(intent.Options(agents=("oracle", "frontier"), name="both"))
+    several = run_options.settle(run_options.Options(agents=("oracle", "frontier"), name="both"))
     assert [str(each.folder) for each in several.parts] == ["runs/both/oracle", "runs/both/frontier"]
     assert [each.plan.name for each in several.parts] == ["both-oracle", "both-frontier"]
 
@@ -177,16 +170,16 @@ def test_a_name_is_a_folder_and_a_heading_and_changes_no_trial(tmp_path: Path, m
 @pytest.mark.parametrize("name", ["", "-x", "a/b", "..", "a b", "x" * 61])
 def test_a_name_that_is_no_folders_is_refused(name: str) -> None:
     with pytest.raises(HthorError, match="letters, digits"):
-        setup.check_title(name)
+        run_config.check_title(name)
 
 
 def test_a_run_keeps_the_name_that_it_began_with(tmp_path: Path) -> None:
     named = msgspec.structs.replace(plan(), title="first")
-    setup.write(tmp_path / "run", named)
-    setup.examine(tmp_path / "run", plan())
-    assert setup.titled(tmp_path / "run", plan()) == named
+    run_config.write(tmp_path / "run", named)
+    run_config.examine(tmp_path / "run", plan())
+    assert run_config.titled(tmp_path / "run", plan()) == named
     with pytest.raises(RunError, match="is called 'first'"):
-        setup.examine(tmp_path / "run", msgspec.structs.replace(plan(), title="second"))
+        run_config.examine(tmp_path / "run", msgspec.structs.replace(plan(), title="second"))
 
 
 @pytest.fixture(scope="module")
@@ -207,7 +200,7 @@ def shelf(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def told(*words: str) -> dict[str, Any]:
     """The document of a command that is run in this process."""
-    found = CliRunner().invoke(app.app, [*words, "--json"], catch_exceptions=False)
+    found = CliRunner().invoke(app, [*words, "--json"], catch_exceptions=False)
     assert found.exit_code == 0
     return json.loads(found.stdout)
 
@@ -222,19 +215,19 @@ def test_runs_are_listed_even_beside_broken_ones(shelf: Path) -> None:
     assert 0.0 <= half["success"] <= 1.0
     assert half["faults"] > 0
     assert all(found[name]["problem"] for name in ("torn", "old", "deep/not"))
-    shown = CliRunner().invoke(app.app, ["runs", "list", str(shelf)], env={"COLUMNS": "400"})  # paths do not break
+    shown = CliRunner().invoke(app, ["runs", "list", str(shelf)], env={"COLUMNS": "400"})  # paths do not break
     assert "12 of 20" in shown.stdout
     assert "old: cannot be read" in shown.stdout
     rows = list(
-        csv.reader(io.StringIO(CliRunner().invoke(app.app, ["runs", "list", str(shelf), "--format", "csv"]).stdout))
+        csv.reader(io.StringIO(CliRunner().invoke(app, ["runs", "list", str(shelf), "--format", "csv"]).stdout))
     )
     assert len(rows) == 6
 
 
 def test_a_folder_without_runs_says_so(tmp_path: Path) -> None:
-    assert "there is no run below" in CliRunner().invoke(app.app, ["runs", "list", str(tmp_path)]).stdout
+    assert "there is no run below" in CliRunner().invoke(app, ["runs", "list", str(tmp_path)]).stdout
     with pytest.raises(RunError, match=r"none is no folder\."):
-        CliRunner().invoke(app.app, ["runs", "list", str(tmp_path / "none")], catch_exceptions=False)
+        CliRunner().invoke(app, ["runs", "list", str(tmp_path / "none")], catch_exceptions=False)
 
 
 def test_a_run_is_viewed_with_what_to_do_next(shelf: Path) -> None:
@@ -259,7 +252,7 @@ def test_trials_are_chosen_by_what_they_are(shelf: Path) -> None:
     assert 0 < len(numbers("--participant", "1")) < 20
     one = numbers("--task", "t003")
     assert len(one) == 1
-    shown = CliRunner().invoke(app.app, ["runs", "view", str(shelf / "whole"), "--house", "barn"]).stdout
+    shown = CliRunner().invoke(app, ["runs", "view", str(shelf / "whole"), "--house", "barn"]).stdout
     assert f"{len(numbers('--house', 'barn'))} of 20 trials" in shown
 
 
@@ -277,15 +270,15 @@ def test_a_first_dry_run_plays_a_few_trials_and_keeps_none(tmp_path: Path, monke
 
 def test_a_slow_first_trial_is_followed_by_a_second() -> None:
     """The first may have compiled for a minute, so that alone it would tell ten times what a run takes."""
-    assert not pace._enough([55.0])
-    assert pace._enough([55.0, 56.0])
-    assert not pace._enough([5.0, 6.0]), "a third builds a house again"
+    assert not trial_cost._enough([55.0])
+    assert trial_cost._enough([55.0, 56.0])
+    assert not trial_cost._enough([5.0, 6.0]), "a third builds a house again"
 
 
 def test_a_pace_counts_starts_and_houses_once() -> None:
-    known = pace._pace([5.0, 7.0, 7.5])
-    assert known == pace.Pace(trial_s=0.5, start_s=3.0, house_s=1.5, played=3)
+    known = trial_cost._pace([5.0, 7.0, 7.5])
+    assert known == trial_cost.Pace(trial_s=0.5, start_s=3.0, house_s=1.5, played=3)
     assert known.seconds(100, workers=2, houses=10) == 3.0 + 50 * 0.5 + 10 * 1.5
     assert known.seconds(4, workers=2, houses=10) == 3.0 + 2 * 0.5 + 2 * 1.5
-    assert pace._pace([4.0]) == pace.Pace(trial_s=4.0, played=1)
-    assert pace._pace([]) is None
+    assert trial_cost._pace([4.0]) == trial_cost.Pace(trial_s=4.0, played=1)
+    assert trial_cost._pace([]) is None

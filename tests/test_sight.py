@@ -9,10 +9,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hthor.rays import blocked
+from hthor.geometry.ray_casting import blocked
 from hthor.types import BodySpec, Pose
-from hthor.world import avatar, glance, sight
-from hthor.world.hiders import Hiders
+from hthor.world.model.bodies import avatar
+from hthor.world.perception import view_frustum, visibility_kernel
+from hthor.world.perception.occluders import Hiders
 
 BODY: BodySpec = avatar.HUMAN
 
@@ -46,7 +47,7 @@ def slowly(view, small, targets, reach, own, half, pos, mat, radius, ids) -> lis
 
 
 def house(seed: int, count: int, fixed: float) -> SimpleNamespace:
-    """As much of a `hthor.world.scene.Scene` as `Hiders` asks for: turned boxes, some of which never move."""
+    """As much of a `geom_index.Scene` as `Hiders` asks for: turned boxes, some of which never move."""
     half, pos, mat, radius, ids = solids(seed, count)
     still = np.random.default_rng(seed).random(count)[ids] < fixed
     return SimpleNamespace(half=half, pos=pos, mat=mat, radius=radius, ids=ids, walls=ids[still], loose=ids[~still])
@@ -90,13 +91,13 @@ def test_a_look_finds_what_ray_after_ray_finds(seed: int, turns: list[tuple[floa
         wanted = np.column_stack([chance.choice([0.0, 1.5, 4.0, 12.0], moving), own[:moving]])
         reach = [*wanted[:, 0], *[far] * still]
         bodies = scene.half, scene.pos, scene.mat, scene.radius, scene.ids
-        found = slowly(sight.camera(pose, BODY), small, [*points, *things], reach, own, *bodies)
-        eye = pose.x, pose.y, BODY.eye, pose.yaw, pose.pitch, *sight.lens(BODY)
+        found = slowly(view_frustum.camera(pose, BODY), small, [*points, *things], reach, own, *bodies)
+        eye = pose.x, pose.y, BODY.eye, pose.yaw, pose.pitch, *view_frustum.lens(BODY)
         around = hiders.groups, hiders.spheres, hiders.boxes, hiders.firm, hiders.count
-        seen = glance.see(*eye, small, points, wanted, far, balls, spots, *around, order)
+        seen = visibility_kernel.see(*eye, small, points, wanted, far, balls, spots, *around, order)
         assert seen.tolist() == [k for k in order if k in found]
 
 
 def test_the_nearest_of_none_is_nowhere() -> None:
-    assert math.isinf(sight.nearest(0.0, 0.0, 0.0, np.zeros((0, 3))))
-    assert sight.nearest(0.0, 0.0, 0.0, np.array([[3.0, 4.0, 0.0], [9.0, 0.0, 0.0]])) == 5.0
+    assert math.isinf(view_frustum.nearest(0.0, 0.0, 0.0, np.zeros((0, 3))))
+    assert view_frustum.nearest(0.0, 0.0, 0.0, np.array([[3.0, 4.0, 0.0], [9.0, 0.0, 0.0]])) == 5.0

@@ -12,12 +12,12 @@ from test_check import SIDE, TABLE, house, on, thing
 
 from hthor import catalog
 from hthor.errors import HthorError
-from hthor.houses.check import check
-from hthor.houses.findings import error, sound
-from hthor.world import homes, penetration, trial_drop
-from hthor.world.penetration import DEEP_M, penetrations
-from hthor.world.soundness import prove
-from hthor.world.trial_drop import drops
+from hthor.houses.checks.check import check
+from hthor.houses.checks.findings import error, sound
+from hthor.world.validation import drop_test, generate_valid, penetration
+from hthor.world.validation.drop_test import drops
+from hthor.world.validation.house_soundness import prove
+from hthor.world.validation.penetration import DEEP_M, penetrations
 
 FURNITURE = [
     name for name in catalog.names() if not catalog.kind(name).pickable and not catalog.kind(name).wall_mounted
@@ -73,7 +73,7 @@ def test_both_things_are_named():
 @pytest.mark.parametrize("name", RECEPTACLES)
 def test_every_surface_of_every_kind_takes_every_target(name: str):
     spec = house(thing("it", name, 2.5, 2.5, math.pi / 2))
-    trials = list(trial_drop._trials(spec))
+    trials = list(drop_test._trials(spec))
     assert len(trials) == len(catalog.kind(name).rests()) * len(catalog.TARGETS)
     assert [str(finding) for finding in drops(spec)] == []
 
@@ -95,7 +95,7 @@ def test_what_does_not_stay_is_told(monkeypatch: pytest.MonkeyPatch):
     def edge(place, size, solids, near):
         return [(place.centre[0] + place.half[0] + 0.05, place.centre[1], place.centre[2] + size[2] / 2 + 0.005)]
 
-    monkeypatch.setattr(trial_drop, "candidates", edge)
+    monkeypatch.setattr(drop_test, "candidates", edge)
     problems = [finding.problem for finding in drops(house(table))]
     assert any("the apple put on the top of the side table strays" in problem for problem in problems)
 
@@ -103,7 +103,7 @@ def test_what_does_not_stay_is_told(monkeypatch: pytest.MonkeyPatch):
 def test_objects_tried_together_do_not_meet():
     """Six targets at the same spot, none pushes another."""
     spec = house(thing("it", "stool", 2.5, 2.5))
-    spots = {trial.at[:2] for trial in trial_drop._trials(spec) if trial.at is not None}
+    spots = {trial.at[:2] for trial in drop_test._trials(spec) if trial.at is not None}
     assert len(spots) == 1
     assert drops(spec) == ()
 
@@ -120,23 +120,23 @@ def test_a_home_that_the_proof_refuses_is_followed_by_the_next_attempt(monkeypat
 
     refusal = error("penetration", "sofa", "is deep in the wall")
     verdicts = iter([(refusal,), ()])
-    monkeypatch.setattr(homes.generator, "generate", generate)
-    monkeypatch.setattr(homes.loader, "build", lambda document, name: house())
-    monkeypatch.setattr(homes, "prove", lambda spec, radius: next(verdicts))
-    home = homes.make(7, 5)
-    assert tried == [(7, 5, 0, homes.ATTEMPTS), (7, 5, 2, homes.ATTEMPTS)]
+    monkeypatch.setattr(generate_valid.generator, "generate", generate)
+    monkeypatch.setattr(generate_valid.loader, "build", lambda document, name: house())
+    monkeypatch.setattr(generate_valid, "prove", lambda spec, radius: next(verdicts))
+    home = generate_valid.make(7, 5)
+    assert tried == [(7, 5, 0, generate_valid.ATTEMPTS), (7, 5, 2, generate_valid.ATTEMPTS)]
     assert (home.attempt, home.refused) == (3, (refusal,))
-    monkeypatch.setattr(homes, "prove", lambda spec, radius: (refusal,))
+    monkeypatch.setattr(generate_valid, "prove", lambda spec, radius: (refusal,))
     with pytest.raises(HthorError, match=r"seed 7 gave no sound home of 5 rooms.*deep in the wall.*another seed"):
-        homes.make(7, 5)
+        generate_valid.make(7, 5)
 
 
 def test_a_home_is_sound_and_the_same_every_time():
-    home = homes.make(11, 4)
-    assert prove(home.house, homes.RADIUS_M) == home.findings
+    home = generate_valid.make(11, 4)
+    assert prove(home.house, generate_valid.RADIUS_M) == home.findings
     assert sound(home.findings)
     assert len(home.house.rooms) == 4
-    assert homes.make(11, 4).document == home.document
+    assert generate_valid.make(11, 4).document == home.document
 
 
 # --------------------------------------------------------------------------------------------------------------- proof

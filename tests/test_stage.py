@@ -13,15 +13,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 from world_house import COFFEE, FRIDGE, TABLE, do, on, task
 
-from hthor import geometry, houses, looks
+from hthor import houses, looks
 from hthor.errors import RenderingUnavailable
+from hthor.geometry import plane
 from hthor.types import HUMAN, Close, Open, Pick, Pose
-from hthor.world import World, contents, sheet
-from hthor.world.stage import lamps, outdoors, partitions
-from hthor.world.stage.dressing import Dressing
-from hthor.world.stage.fabric import Fabric
-from hthor.world.stage.grids import facet, slab
-from hthor.world.stage.puppets import Puppets
+from hthor.world import World
+from hthor.world.model import inventory
+from hthor.world.rendering import contact_sheet
+from hthor.world.rendering.scene import lights, outdoors, wall_meshes
+from hthor.world.rendering.scene.asset_source import Fabric
+from hthor.world.rendering.scene.compile_scene import Dressing
+from hthor.world.rendering.scene.grids import facet, slab
+from hthor.world.rendering.scene.pose_sync import Puppets
 
 AT_THE_FRIDGE = Pose(x=0.75, y=2.5, yaw=math.pi / 2)
 
@@ -64,9 +67,9 @@ def drawn(world: World) -> World:
 
 def undressed(world: World, pack: Any = None) -> Any:
     """The visual model of a world, without any OpenGL."""
-    split = contents.split(world.house, contents.DEFAULT_OBJECTS)
+    split = inventory.split(world.house, inventory.DEFAULT_OBJECTS)
     dressing = Dressing(world.house, split, Puppets(world.model, world._scene), Fabric(pack))
-    return dressing.build(world.bodies, lamps.Lamps(world.house))
+    return dressing.build(world.bodies, lights.Lamps(world.house))
 
 
 # ------------------------------------------------------------------------------------------------- without any OpenGL
@@ -87,7 +90,7 @@ def test_a_facet_has_its_area_and_faces_one_way(width: float, height: float, yaw
 
 @pytest.mark.parametrize("name", houses.names()[:4])
 def test_walls_meet_without_two_in_one_place(name: str) -> None:
-    pieces = list(partitions.slabs(houses.load(name)))
+    pieces = list(wall_meshes.slabs(houses.load(name)))
     assert len(pieces) > 20
     for a, b in itertools.combinations(pieces, 2):
         if a.face.id != b.face.id:
@@ -99,7 +102,7 @@ def test_walls_meet_without_two_in_one_place(name: str) -> None:
 @pytest.mark.parametrize("name", houses.names()[:4])
 def test_walls_close_every_corner_and_leave_every_opening(name: str) -> None:
     house = houses.load(name)
-    pieces = list(partitions.slabs(house))
+    pieces = list(wall_meshes.slabs(house))
 
     def solid(x: float, y: float, z: float) -> bool:
         return any(
@@ -119,7 +122,7 @@ def test_walls_close_every_corner_and_leave_every_opening(name: str) -> None:
         assert solid(x, y, opening.high + 0.1)
 
 
-def _extent(piece: partitions.Slab) -> tuple[float, float, float]:
+def _extent(piece: wall_meshes.Slab) -> tuple[float, float, float]:
     cos, sin = abs(math.cos(piece.yaw)), abs(math.sin(piece.yaw))
     return (cos * piece.half[0] + sin * piece.half[1], sin * piece.half[0] + cos * piece.half[1], piece.half[2])
 
@@ -127,10 +130,10 @@ def _extent(piece: partitions.Slab) -> tuple[float, float, float]:
 @pytest.mark.parametrize("name", houses.names()[:4])
 def test_every_room_has_lamps_of_its_own(name: str) -> None:
     house = houses.load(name)
-    places = lamps.Lamps(house).places
+    places = lights.Lamps(house).places
     for room in house.rooms:
         assert 1 <= len(places[room.id]) <= 3
-        assert all(geometry.inside(place, room.polygon) for place in places[room.id])
+        assert all(plane.inside(place, room.polygon) for place in places[room.id])
         assert len(set(places[room.id])) == len(places[room.id])
 
 
@@ -236,19 +239,19 @@ def test_the_plan_is_to_scale(drawn: World) -> None:
 
 
 def test_a_sheet_has_four_views_and_a_plan(drawn: World, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sheet, "_PLACES", 8)
-    monkeypatch.setattr(sheet, "_TURNS", 4)
-    photographer = sheet.Photographer(drawn.house)
-    shots = sheet.choose(photographer)
+    monkeypatch.setattr(contact_sheet, "_PLACES", 8)
+    monkeypatch.setattr(contact_sheet, "_TURNS", 4)
+    photographer = contact_sheet.Photographer(drawn.house)
+    shots = contact_sheet.choose(photographer)
     assert [shot.room.kind for shot in shots] == ["kitchen", "living_room", "kitchen", "living_room"]
-    assert shots == sheet.choose(photographer)
-    whole = sheet.sheet(drawn.house)
-    assert whole.shape[0] > 2 * sheet.VIEW[1]
-    assert whole.shape[1] > 2 * sheet.VIEW[0] + 320
+    assert shots == contact_sheet.choose(photographer)
+    whole = contact_sheet.sheet(drawn.house)
+    assert whole.shape[0] > 2 * contact_sheet.VIEW[1]
+    assert whole.shape[1] > 2 * contact_sheet.VIEW[0] + 320
 
 
 def test_a_house_that_cannot_be_read_is_an_error(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
-    assert sheet.main([str(tmp_path / "none.json"), "--out", str(tmp_path)]) == 2
+    assert contact_sheet.main([str(tmp_path / "none.json"), "--out", str(tmp_path)]) == 2
     assert "none.json" in capsys.readouterr().err
 
 

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hthor.eval import contrast, spread, stats
+from hthor.eval.results import paired_difference
+from hthor.eval.statistics import intervals, variance_components
 
 NORMAL = NormalDist()
 TASK_SD, PERSON_SD = 1.0, 0.4
@@ -24,7 +25,7 @@ def _names(count: int) -> tuple[list[str], list[int]]:
 @settings(max_examples=25, deadline=None)
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=40))
 def test_the_mean_lies_inside_its_interval_and_that_inside_the_bounds(values: list[float]):
-    found = stats.estimate(values, *_names(len(values)), within=stats.SHARE)
+    found = intervals.estimate(values, *_names(len(values)), within=intervals.SHARE)
     assert found.ci95 is not None
     low, high = found.ci95
     assert -1e-6 <= low <= found.mean <= high <= 1.0 + 1e-6
@@ -33,22 +34,22 @@ def test_the_mean_lies_inside_its_interval_and_that_inside_the_bounds(values: li
 @settings(max_examples=25, deadline=None)
 @given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=40))
 def test_without_bounds_too(values: list[float]):
-    found = stats.estimate(values, *_names(len(values)))
+    found = intervals.estimate(values, *_names(len(values)))
     assert found.ci95[0] <= found.mean <= found.ci95[1]
     assert found.mde80 >= 0.0
 
 
 def test_all_alike_at_a_bound_is_not_certain():
-    low, high = stats.estimate([1.0] * 60, *_names(60), within=stats.SHARE).ci95
+    low, high = intervals.estimate([1.0] * 60, *_names(60), within=intervals.SHARE).ci95
     assert high == 1.0
     assert 0.93 < low < 0.95, "sixty of sixty are consistent with one failure in twenty"
-    assert stats.estimate([3.0] * 60, *_names(60)).ci95 == (3.0, 3.0)
+    assert intervals.estimate([3.0] * 60, *_names(60)).ci95 == (3.0, 3.0)
 
 
 def test_nothing_is_nothing_and_one_trial_is_next_to_it():
-    assert stats.estimate([], [], []) == stats.Estimate(mean=None, ci95=None, n=0)
-    assert stats.estimate([2.0], ["t"], [0]) == stats.Estimate(mean=2.0, ci95=None, n=1)
-    low, high = stats.estimate([1.0], ["t"], [0], within=stats.SHARE).ci95
+    assert intervals.estimate([], [], []) == intervals.Estimate(mean=None, ci95=None, n=0)
+    assert intervals.estimate([2.0], ["t"], [0]) == intervals.Estimate(mean=2.0, ci95=None, n=1)
+    low, high = intervals.estimate([1.0], ["t"], [0], within=intervals.SHARE).ci95
     assert low < 0.1
     assert high == 1.0
 
@@ -56,8 +57,8 @@ def test_nothing_is_nothing_and_one_trial_is_next_to_it():
 def test_names_do_not_matter():
     values = [float(number % 3 == 0) for number in range(60)]
     tasks, people = _names(60)
-    renamed = stats.estimate(values, [name[::-1] + "z" for name in tasks], [9 - who for who in people])
-    assert renamed == stats.estimate(values, tasks, people)
+    renamed = intervals.estimate(values, [name[::-1] + "z" for name in tasks], [9 - who for who in people])
+    assert renamed == intervals.estimate(values, tasks, people)
 
 
 def test_everybody_doing_everything_is_the_textbook_analysis_of_variance():
@@ -68,14 +69,14 @@ def test_everybody_doing_everything_is_the_textbook_analysis_of_variance():
     rest = table - table.mean(1, keepdims=True) - table.mean(0, keepdims=True) + table.mean()
     noise = (rest**2).sum() / (11 * 6)
     tasks, people = np.repeat(np.arange(12), 7), np.tile(np.arange(7), 12)
-    found = spread.two_way(table.ravel()[None], tasks, people)
+    found = variance_components.two_way(table.ravel()[None], tasks, people)
     assert found.variance[0] == pytest.approx((by_task + by_person - noise) / 84)
 
 
 def test_every_task_once_is_the_spread_of_peoples_means():
     chance = np.random.default_rng(3)
     table = chance.normal(size=(6, 1)) * 3 + chance.normal(size=(6, 10))
-    found = spread.two_way(table.reshape(1, -1), np.arange(60), np.repeat(np.arange(6), 10))
+    found = variance_components.two_way(table.reshape(1, -1), np.arange(60), np.repeat(np.arange(6), 10))
     assert found.variance[0] == pytest.approx(table.mean(1).var(ddof=1) / 6)
     assert found.freedom[0] == 5
 
@@ -102,8 +103,8 @@ def _worlds(design: str, rate: float, repeats: int, seed: int = 7, **sd: float) 
 @pytest.mark.parametrize("design", DESIGNS)
 def test_intervals_hold_the_truth_as_often_as_they_say(design: str):
     tasks, people = DESIGNS[design]
-    found = spread.two_way(_worlds(design, 0.75, 1000), tasks, people)
-    low, high = stats.interval(found, len(tasks), stats.SHARE)
+    found = variance_components.two_way(_worlds(design, 0.75, 1000), tasks, people)
+    low, high = intervals.interval(found, len(tasks), intervals.SHARE)
     assert 0.93 <= np.mean((low <= 0.75) & (high >= 0.75)) <= 0.97
 
 
@@ -111,7 +112,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say(design: str):
 def test_two_equal_robots_are_seldom_told_apart(design: str):
     tasks, people = DESIGNS[design]
     one, other = _worlds(design, 0.75, 1000), _worlds(design, 0.75, 1000, seed=8)
-    low, high = contrast.ends(contrast.spread_of(one - other, tasks, people, share=True), share=True)
+    low, high = paired_difference.ends(paired_difference.spread_of(one - other, tasks, people, share=True), share=True)
     assert 0.93 <= np.mean((low <= 0.0) & (high >= 0.0)) <= 0.97
 
 

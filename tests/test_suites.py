@@ -13,8 +13,8 @@ from hthor import catalog, houses, jsonio, tasks
 from hthor.catalog import priors
 from hthor.houses.generator import scenes, unseen
 from hthor.houses.loader import names
-from hthor.tasks import library, standard
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
+from hthor.tasks.suites import library, standard
 from hthor.tasks.validate import validate
 
 SUITE = tasks.suite("standard")

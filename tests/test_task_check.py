@@ -9,8 +9,8 @@ import pytest
 
 from hthor import houses, plugins, rules, tasks
 from hthor.catalog import priors
-from hthor.eval import all_knowing, soundness
-from hthor.tasks import generate, graph
+from hthor.eval.task_check import omniscient_solver, proof
+from hthor.tasks.generation import generate, scene_graph
 from hthor.types import Goal, Job, Pose
 from hthor.world import World
 
@@ -31,21 +31,21 @@ def with_object(task, id, **fields):
 @pytest.fixture(scope="module")
 def task():
     goal = Goal(target="mug", relation="on", destination="dining_table")
-    row = graph.triplet("mug", "near", "apple")
+    row = scene_graph.triplet("mug", "near", "apple")
     assert row in priors.triplets()
     return generate.task(HOUSE, MOVE, goal, 3, name="test/juniper/mug", fixed=row)
 
 
 def faults(task):
-    return [(fault.field, fault.reason) for fault in soundness.examine(task).faults]
+    return [(fault.field, fault.reason) for fault in proof.examine(task).faults]
 
 
 def test_a_sound_task_passes_and_tells_what_it_takes(task):
-    verdict = soundness.examine(task)
+    verdict = proof.examine(task)
     assert verdict.faults == ()
     assert 0.0 < verdict.drift < 0.005
     assert 0.0 < verdict.least <= verdict.seconds <= task.time_limit
-    walking = verdict.metres / all_knowing.PACE_M_S
+    walking = verdict.metres / omniscient_solver.PACE_M_S
     assert walking <= verdict.seconds <= walking + 15.0
 
 
@@ -55,9 +55,9 @@ def test_an_object_that_would_fall_is_found(task):
     x, y, z = mug.position
     world = World("juniper")
     world.reset(with_object(task, "mug", position=(x, y, z + 0.3)))
-    drift, _ = soundness.woken(world, with_object(task, "mug", position=(x, y, z + 0.3)))
-    assert drift["mug"] > soundness.DRIFT_M
-    assert all(way <= soundness.DRIFT_M for id, way in drift.items() if id != "mug")
+    drift, _ = proof.woken(world, with_object(task, "mug", position=(x, y, z + 0.3)))
+    assert drift["mug"] > proof.DRIFT_M
+    assert all(way <= proof.DRIFT_M for id, way in drift.items() if id != "mug")
 
 
 def test_what_the_record_says_of_places_is_measured(task):
@@ -100,9 +100,9 @@ def test_houses_and_records_that_are_wrong_are_told_first(task):
 
 def test_workers_check_what_one_process_checks(task):
     some = [task, changed(task, id="late", time_limit=2.0)]
-    found = {verdict.task: verdict for verdict in soundness.verdicts(some, jobs=2)}
+    found = {verdict.task: verdict for verdict in proof.verdicts(some, jobs=2)}
     assert set(found) == {task.id, "late"}
-    assert found[task.id] == soundness.examine(task)
+    assert found[task.id] == proof.examine(task)
     assert found["late"].faults
 
 
@@ -112,11 +112,11 @@ def test_workers_check_what_one_process_checks(task):
 @pytest.mark.parametrize("number", range(0, 12, 3))
 def test_nobody_is_quicker_than_the_least_time_nor_than_their_pace(number):
     task = SMOKE.tasks[number]
-    feat = all_knowing.perform(World(task.house), task)
+    feat = omniscient_solver.perform(World(task.house), task)
     assert feat.met
     assert feat.reason == ""
     assert plugins.load("task kind", task.kind).least(task) <= feat.seconds <= rules.TIME_LIMIT_S
-    assert feat.metres <= feat.seconds * all_knowing.PACE_M_S + 1e-6
+    assert feat.metres <= feat.seconds * omniscient_solver.PACE_M_S + 1e-6
     assert math.dist(feat.way[0], (task.human_start.x, task.human_start.y)) < 1e-9
 
 
@@ -124,8 +124,8 @@ def test_several_jobs_are_done_one_after_the_other_and_what_takes_two_is_left(ta
     world = World("juniper")
     jobs = (Job(target="mug", relation="on", destinations=("dining_table",)), Job(target="book", relation="find"))
     both = changed(task, goal=changed(task.goal, jobs=jobs))
-    feat = all_knowing.perform(world, both)
+    feat = omniscient_solver.perform(world, both)
     assert feat.met
     heavy = changed(task, goal=changed(task.goal, jobs=(changed(jobs[0], hands=2),)))
-    assert "2 bodies" in all_knowing.perform(world, heavy).reason
-    assert soundness.examine(heavy).seconds == 0.0
+    assert "2 bodies" in omniscient_solver.perform(world, heavy).reason
+    assert proof.examine(heavy).seconds == 0.0

@@ -13,10 +13,10 @@ from scipy.stats import chi2
 from hthor import catalog, houses, seeds
 from hthor.catalog import priors
 from hthor.errors import HthorError, UnknownName
-from hthor.tasks import graph, plans
-from hthor.tasks.arrange import arrange
+from hthor.tasks.generation import scene_graph, suite_specs
+from hthor.tasks.generation.fallback_placement import BROUGHT
+from hthor.tasks.generation.target_arrangement import arrange
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
-from hthor.tasks.makeshift import BROUGHT
 from hthor.types import Placement
 
 ROOT = 11
@@ -30,7 +30,7 @@ EVERYTHING = frozenset(row.reference for row in priors.triplets()) | frozenset(c
 def test_the_benchmark_has_its_parts():
     assert len(priors.triplets()) == 65
     assert sum(len(places) for places in TEMPLATES.values()) == 19
-    assert len(plans.SCENES) == len(set(plans.SCENES)) == 10
+    assert len(suite_specs.SCENES) == len(set(suite_specs.SCENES)) == 10
     assert len(catalog.TARGETS) == 6
     assert len(set(catalog.TARGETS) | set(catalog.RECEPTACLES)) == 14
 
@@ -38,7 +38,7 @@ def test_the_benchmark_has_its_parts():
 def test_orders_count_565_and_1583():
     found = {}
     for name in ("navigation", "manipulation"):
-        plan = plans.PLANS[name]
+        plan = suite_specs.PLANS[name]
         orders = [order for house in plan.houses for order in plan.orders(plan, houses.load(house))]
         assert len({order.name for order in orders}) == len(orders)
         found[name] = len(orders)
@@ -48,7 +48,7 @@ def test_orders_count_565_and_1583():
 def test_the_counts_follow_from_the_tables_alone():
     """Counted again from priors, templates and house files, without the code that makes orders."""
     searches = deliveries = 0
-    for name in plans.SCENES:
+    for name in suite_specs.SCENES:
         kinds = {thing.kind for thing in houses.load(name).things} | set(TEMPLATES)
         there = [row for row in priors.triplets() if row.reference in kinds]
         searches += len(there)
@@ -65,9 +65,11 @@ def test_the_counts_follow_from_the_tables_alone():
 @pytest.mark.parametrize("target", catalog.TARGETS)
 @pytest.mark.parametrize("where", ["everything", "juniper"])
 def test_relations_are_drawn_as_often_as_they_weigh(target, where):
-    kinds = EVERYTHING if where == "everything" else graph.present(houses.load(where))
-    counts = Counter(graph.draw(target, kinds, seeds.derive(ROOT, number)) for number in range(SAMPLES))
-    weights = {row: priors.weights(target)[row.relation, row.reference] for row in graph.applicable(target, kinds)}
+    kinds = EVERYTHING if where == "everything" else scene_graph.present(houses.load(where))
+    counts = Counter(scene_graph.draw(target, kinds, seeds.derive(ROOT, number)) for number in range(SAMPLES))
+    weights = {
+        row: priors.weights(target)[row.relation, row.reference] for row in scene_graph.applicable(target, kinds)
+    }
     total = sum(weights.values())
     assert set(counts) <= set(weights)
     statistic = sum((counts[row] - SAMPLES * w / total) ** 2 / (SAMPLES * w / total) for row, w in weights.items())
@@ -75,12 +77,12 @@ def test_relations_are_drawn_as_often_as_they_weigh(target, where):
 
 
 def test_a_whole_graph_is_drawn_target_by_target():
-    kinds = graph.present(houses.load("alder"))
-    one = graph.sample(kinds, ROOT)
+    kinds = scene_graph.present(houses.load("alder"))
+    one = scene_graph.sample(kinds, ROOT)
     assert set(one) == set(catalog.TARGETS)
-    assert one == graph.sample(kinds, ROOT) != graph.sample(kinds, ROOT + 1)
-    fixed = graph.triplet("mug", "in", "sink")
-    assert graph.sample(kinds, ROOT, fixed) == {**one, "mug": fixed}
+    assert one == scene_graph.sample(kinds, ROOT) != scene_graph.sample(kinds, ROOT + 1)
+    fixed = scene_graph.triplet("mug", "in", "sink")
+    assert scene_graph.sample(kinds, ROOT, fixed) == {**one, "mug": fixed}
 
 
 def test_poses_realise_the_graph_that_was_drawn():
@@ -88,7 +90,7 @@ def test_poses_realise_the_graph_that_was_drawn():
     house, kept, drawn = houses.load("hazel"), 0, 0
     things = {thing.id: thing.kind for thing in house.things}
     for root in range(8):
-        wanted = graph.sample(graph.present(house), seeds.derive(seeds.derive(root), "graph", 0))
+        wanted = scene_graph.sample(scene_graph.present(house), seeds.derive(seeds.derive(root), "graph", 0))
         for placed in arrange(house, seeds.derive(root)):
             row = wanted[placed.id]
             kinds = things.get(placed.near, placed.near), things.get(placed.support)
@@ -97,13 +99,13 @@ def test_poses_realise_the_graph_that_was_drawn():
     assert kept >= 0.85 * drawn
 
 
-rows = st.tuples(*(st.sampled_from(graph.applicable(target, EVERYTHING)) for target in catalog.TARGETS))
+rows = st.tuples(*(st.sampled_from(scene_graph.applicable(target, EVERYTHING)) for target in catalog.TARGETS))
 
 
 @given(chosen=rows, root=st.integers(0, 1 << 40))
 def test_targets_come_after_what_they_are_near_to_but_one_of_a_ring(chosen, root):
     wanted = {row.target: row for row in chosen}
-    order = graph.order(wanted, root)
+    order = scene_graph.order(wanted, root)
     assert sorted(order) == sorted(catalog.TARGETS)
     for place, target in enumerate(order):
         row = wanted[target]
@@ -116,11 +118,11 @@ def test_targets_come_after_what_they_are_near_to_but_one_of_a_ring(chosen, root
 
 def test_wrong_names_are_told():
     with pytest.raises(UnknownName, match="Did you mean 'apple'"):
-        graph.draw("appel", EVERYTHING, 1)
+        scene_graph.draw("appel", EVERYTHING, 1)
     with pytest.raises(ValueError, match="no reference"):
-        graph.draw("apple", frozenset(), 1)
+        scene_graph.draw("apple", frozenset(), 1)
     with pytest.raises(KeyError):
-        graph.triplet("apple", "on", "fridge")
+        scene_graph.triplet("apple", "on", "fridge")
 
 
 # --------------------------------------------------------------------------------------------------------- arrangements
@@ -145,7 +147,7 @@ def test_a_given_triplet_holds_and_so_does_all_that_is_near(name):
     house = houses.load(name)
     things = {thing.id: thing.kind for thing in house.things}
     for number, row in enumerate(priors.triplets()[::6]):
-        if row.reference not in graph.present(house):
+        if row.reference not in scene_graph.present(house):
             continue
         objects = arrange(house, seeds.derive(ROOT, number), fixed=row)
         mine = next(placed for placed in objects if placed.id == row.target)
@@ -158,7 +160,7 @@ def test_a_given_triplet_holds_and_so_does_all_that_is_near(name):
 
 def test_a_target_of_a_ring_is_near_the_one_that_came_later():
     house = houses.load("alder")
-    fixed = graph.triplet("tomato", "near", "lettuce")
+    fixed = scene_graph.triplet("tomato", "near", "lettuce")
     rings = 0
     for root in range(12):
         placed = {one.id: one for one in arrange(house, root, fixed=fixed)}
@@ -168,7 +170,7 @@ def test_a_target_of_a_ring_is_near_the_one_that_came_later():
 
 
 def test_where_only_the_destination_is_near_it_lies_on_the_floor():
-    house, row = houses.load("willow"), graph.triplet("remote_control", "near", "television")
+    house, row = houses.load("willow"), scene_graph.triplet("remote_control", "near", "television")
     objects = arrange(house, ROOT, {"remote_control": "tv_stand"}, fixed=row)
     mine = next(placed for placed in objects if placed.id == "remote_control")
     assert mine.support == ""
@@ -179,7 +181,7 @@ def test_where_only_the_destination_is_near_it_lies_on_the_floor():
 
 
 def test_where_the_only_plate_is_at_the_destination_another_is_brought():
-    house, row = houses.load("rowan"), graph.triplet("tomato", "on", "plate")
+    house, row = houses.load("rowan"), scene_graph.triplet("tomato", "on", "plate")
     objects = {placed.id: placed for placed in arrange(house, ROOT, {"tomato": "dining_table"}, fixed=row)}
     things = {thing.id: thing.kind for thing in house.things}
     plate = objects[f"{BROUGHT}_plate"]
@@ -191,4 +193,6 @@ def test_where_the_only_plate_is_at_the_destination_another_is_brought():
 def test_what_cannot_be_is_said():
     house = houses.load("alder")
     with pytest.raises(HthorError, match="tomato-on-plate"):
-        arrange(house, ROOT, fixed=graph.triplet("tomato", "on", "plate"))  # no plate in this house, nothing banned
+        arrange(
+            house, ROOT, fixed=scene_graph.triplet("tomato", "on", "plate")
+        )  # no plate in this house, nothing banned

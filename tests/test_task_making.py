@@ -13,10 +13,12 @@ import pytest
 
 from hthor import cli, houses, tasks
 from hthor.errors import HthorError, TaskError, UnknownName
-from hthor.eval import command, homemade, intent, programme, setup, soundness, vetting
+from hthor.eval.config import cli_command, run_config, suite_check, task_selection
+from hthor.eval.runner import run_options
+from hthor.eval.task_check import custom_houses, proof
 from hthor.houses.assets import DATABASE
-from hthor.tasks import library, making, packing
-from hthor.tasks.making import Recipe
+from hthor.tasks.suites import custom_suite, library, suite_files
+from hthor.tasks.suites.custom_suite import Recipe
 from hthor.tasks.validate import unsound
 from hthor.types import TaskSpec
 
@@ -42,14 +44,14 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def made(home: Path) -> tuple[TaskSpec, ...]:
-    return making.in_house(RECIPE, str(home))
+    return custom_suite.in_house(RECIPE, str(home))
 
 
 @pytest.fixture
 def suite(home: Path, made: tuple[TaskSpec, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    files = packing.files("mine", making.VERSION, packing.sources([str(home)]), [made])
-    return packing.write(tmp_path / "mine.json", files)
+    files = suite_files.files("mine", custom_suite.VERSION, suite_files.sources([str(home)]), [made])
+    return suite_files.write(tmp_path / "mine.json", files)
 
 
 def broken(path: Path, *numbers: int) -> Path:
@@ -70,25 +72,25 @@ def _raised(task: TaskSpec) -> TaskSpec:
 
 
 def test_equal_recipes_give_equal_tasks_and_other_seeds_others(home: Path, made: tuple[TaskSpec, ...]):
-    assert making.in_house(RECIPE, str(home)) == made
-    assert making.in_house(msgspec.structs.replace(RECIPE, seed=6, tasks=1), str(home))[0] not in made
+    assert custom_suite.in_house(RECIPE, str(home)) == made
+    assert custom_suite.in_house(msgspec.structs.replace(RECIPE, seed=6, tasks=1), str(home))[0] not in made
     assert [task.id for task in made] == sorted({task.id for task in made}, key=[task.id for task in made].index)
     assert {task.house for task in made} == {"my home"}
 
 
 def test_what_cannot_be_done_is_drawn_again_with_another_goal_in_the_end():
-    first = making.in_house(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), "elder")[0].goal
+    first = custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), "elder")[0].goal
     tried: list[TaskSpec] = []
 
     def possible(task: TaskSpec) -> bool:
         tried.append(task)
         return task.goal != first
 
-    (task,) = making.in_house(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), "elder", possible)
+    (task,) = custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), "elder", possible)
     assert task.goal != first
     assert len(tried) > 1
     with pytest.raises(HthorError, match="has no room for another task like 'mine/elder/navigation-01'"):
-        making.in_house(Recipe(name="mine", tasks=1, kinds=("object_goal_navigation",)), "elder", lambda _: False)
+        custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("object_goal_navigation",)), "elder", lambda _: False)
 
 
 def test_a_suite_brings_its_houses_and_what_they_need(suite: Path, made: tuple[TaskSpec, ...], home: Path):
@@ -103,12 +105,12 @@ def test_a_suite_brings_its_houses_and_what_they_need(suite: Path, made: tuple[T
 
 
 def test_a_folder_does_as_well(home: Path, made: tuple[TaskSpec, ...], tmp_path: Path):
-    files = packing.files("mine", making.VERSION, packing.sources([str(home)]), [made])
-    out = packing.write(tmp_path / "mine", files)
+    files = suite_files.files("mine", custom_suite.VERSION, suite_files.sources([str(home)]), [made])
+    out = suite_files.write(tmp_path / "mine", files)
     assert sorted(path.name for path in out.iterdir()) == ["houses", "suite.json"]
     assert tasks.suite(out).tasks == made
     with pytest.raises(HthorError, match="is there already"):
-        packing.clear(out)
+        suite_files.clear(out)
 
 
 def test_houses_are_told_apart_by_name(home: Path, tmp_path: Path):
@@ -116,14 +118,14 @@ def test_houses_are_told_apart_by_name(home: Path, tmp_path: Path):
     shutil.copy(home, twin)
     shutil.copy(home.parent / DATABASE, tmp_path / DATABASE)
     with pytest.raises(HthorError, match="two of the houses are called 'my home'"):
-        packing.sources([str(home), str(twin)])
+        suite_files.sources([str(home), str(twin)])
     shutil.copy(DATA / "alder.json", tmp_path / "birch.json")
     with pytest.raises(HthorError, match="called like a house of hthor's own"):
-        packing.sources([str(tmp_path / "birch.json")])
-    assert packing.sources(["alder"])[0].file is None
+        suite_files.sources([str(tmp_path / "birch.json")])
+    assert suite_files.sources(["alder"])[0].file is None
     for name in ("smoke", "a b", "", "../x"):
         with pytest.raises(HthorError, match="suite"):
-            packing.named(name)
+            suite_files.named(name)
 
 
 # -------------------------------------------------------------------------------------------------- before it is played
@@ -133,7 +135,7 @@ def test_every_unsound_task_is_named(suite: Path):
     found = library.read(broken(suite, 0, 2))
     assert {one.index for one in unsound(found)} == {0, 2}
     with pytest.raises(TaskError) as error:
-        programme.choose(str(suite), "")
+        task_selection.choose(str(suite), "")
     assert "2 of the suite's 3 tasks cannot be run as they are" in str(error.value)
     assert all(found.tasks[number].id in str(error.value) for number in (0, 2))
     assert "hthor tasks check" in str(error.value)
@@ -152,58 +154,58 @@ def test_the_check_lists_every_task(suite: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_one_fault_is_told_as_it_is(suite: Path):
     with pytest.raises(TaskError, match=r"mine\.json: tasks\[1\]\.objects\[0\]\.position: .* rests on no surface"):
-        vetting.suite(str(broken(suite, 1)))
+        suite_check.suite(str(broken(suite, 1)))
 
 
 def test_that_a_suite_is_sound_is_remembered_until_it_changes(suite: Path, monkeypatch: pytest.MonkeyPatch):
     looked: list[str] = []
-    monkeypatch.setattr(vetting, "validate", lambda found, file: looked.append(file))
-    assert vetting.suite(str(suite)) == vetting.suite(str(suite))
+    monkeypatch.setattr(suite_check, "validate", lambda found, file: looked.append(file))
+    assert suite_check.suite(str(suite)) == suite_check.suite(str(suite))
     assert len(looked) == 1
     house = suite.with_suffix(".houses") / "my home.json"
     house.write_bytes(house.read_bytes() + b" ")
-    vetting.suite(str(suite))
+    suite_check.suite(str(suite))
     assert len(looked) == 2, "the houses count, too"
 
 
 def test_a_kind_that_is_not_there_is_a_fault_and_no_end(made: tuple[TaskSpec, ...], home: Path):
     houses.shelve(home.parent)
-    verdict = soundness.examine(msgspec.structs.replace(made[0], kind="nothing"))
+    verdict = proof.examine(msgspec.structs.replace(made[0], kind="nothing"))
     assert [fault.field for fault in verdict.faults] == ["kind"]
-    assert soundness.repeated([made[0], made[1], made[0]])[0].task == made[0].id
-    assert not soundness.repeated(made)
+    assert proof.repeated([made[0], made[1], made[0]])[0].task == made[0].id
+    assert not proof.repeated(made)
 
 
 # -------------------------------------------------------------------------------------------------------------- a part
 
 
 def test_a_suite_is_narrowed_to_houses_and_difficulty():
-    whole = programme.choose("paper", "")
-    some = programme.narrow(whole, ("birch", "alder"), "easy")
+    whole = task_selection.choose("paper", "")
+    some = task_selection.narrow(whole, ("birch", "alder"), "easy")
     assert {(task.house, task.difficulty) for task in some.suite.tasks} == {("alder", "easy"), ("birch", "easy")}
     assert some.houses == ("alder", "birch"), "in the suite's order, so that the same choice is the same run"
     assert some.suite.sha256 != whole.suite.sha256
     assert "no result for the leaderboard" in some.notes[-1]
-    assert programme.narrow(whole, (), "") is whole
+    assert task_selection.narrow(whole, (), "") is whole
     with pytest.raises(UnknownName, match=r"unknown house of the suite .paper. .aldr.*alder"):
-        programme.narrow(whole, ("aldr",), "")
+        task_selection.narrow(whole, ("aldr",), "")
 
 
 def test_difficulty_is_worked_out_where_a_suite_does_not_tell():
-    whole = programme.narrow(programme.choose("smoke", ""), ("alder",), "")
-    parts = [len(programme.narrow(whole, (), level).suite.tasks) for level in ("easy", "medium")]
+    whole = task_selection.narrow(task_selection.choose("smoke", ""), ("alder",), "")
+    parts = [len(task_selection.narrow(whole, (), level).suite.tasks) for level in ("easy", "medium")]
     assert 0 < sum(parts) <= len(whole.suite.tasks)
 
 
 def test_the_part_is_in_the_configuration_and_the_command(tmp_path: Path):
-    options = intent.Options(agents=("frontier",), suite="paper", houses=("alder",), difficulty="easy")
-    plan = intent.settle(options).parts[0].plan
+    options = run_options.Options(agents=("frontier",), suite="paper", houses=("alder",), difficulty="easy")
+    plan = run_options.settle(options).parts[0].plan
     assert (plan.houses, plan.difficulty) == (("alder",), "easy")
     assert "paper-alder-easy" in plan.folder_name
-    assert "--house alder --difficulty easy" in command.of(tmp_path, plan)
-    whole = intent.settle(intent.Options(agents=("frontier",), suite="paper")).parts[0].plan
+    assert "--house alder --difficulty easy" in cli_command.of(tmp_path, plan)
+    whole = run_options.settle(run_options.Options(agents=("frontier",), suite="paper")).parts[0].plan
     assert not whole.houses
-    assert setup.differences(whole, plan)
+    assert run_config.differences(whole, plan)
 
 
 @pytest.mark.parametrize(
@@ -217,18 +219,18 @@ def test_the_part_is_in_the_configuration_and_the_command(tmp_path: Path):
 )
 def test_what_does_not_go_with_a_house_of_ones_own(options: Any, words: str):
     with pytest.raises(HthorError, match=words):
-        homemade.resolve(intent.Options(agents=("frontier",), **options), lambda _: None)
+        custom_houses.resolve(run_options.Options(agents=("frontier",), **options), lambda _: None)
 
 
 def test_a_house_of_ones_own_is_made_into_a_suite_once(
     home: Path, made: tuple[TaskSpec, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(homemade.proved, "columns", lambda recipe, given, jobs: iter([(0, made)]))
+    monkeypatch.setattr(custom_houses.proved, "columns", lambda recipe, given, jobs: iter([(0, made)]))
     told: list[str] = []
-    options = intent.Options(agents=("frontier",), houses=(str(home),), jobs=1)
-    first = homemade.resolve(options, told.append)
-    assert homemade.resolve(options, told.append) == first
+    options = run_options.Options(agents=("frontier",), houses=(str(home),), jobs=1)
+    first = custom_houses.resolve(options, told.append)
+    assert custom_houses.resolve(options, told.append) == first
     assert len(told) == 1
     assert tasks.suite(first.suite).tasks == made
     assert first.houses == ()

@@ -13,10 +13,11 @@ import pytest
 from hthor import catalog, cli, houses, jsonio, plugins, tasks
 from hthor.catalog import priors
 from hthor.errors import UnknownName
-from hthor.eval import soundness
-from hthor.tasks import difficulty, generate, graph, library, plans
+from hthor.eval.task_check import proof
+from hthor.tasks.generation import difficulty, generate, scene_graph, suite_specs
 from hthor.tasks.kind import TaskKind
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
+from hthor.tasks.suites import library
 from hthor.tasks.validate import faults
 from hthor.types import Goal, Placement, Snapshot
 
@@ -50,14 +51,14 @@ def hthor(monkeypatch, capsys):
 def test_the_suites_have_as_many_tasks_as_the_benchmark():
     assert (len(NAVIGATION.tasks), len(MANIPULATION.tasks)) == (565, 1583)
     for suite in EXACT:
-        assert {task.house for task in suite.tasks} == set(plans.SCENES)
+        assert {task.house for task in suite.tasks} == set(suite_specs.SCENES)
         assert len({task.id for task in suite.tasks}) == len(suite.tasks)
         assert {task.goal.target for task in suite.tasks} == set(catalog.TARGETS)
     placed = {(task.goal.target, task.goal.destination) for task in MANIPULATION.tasks}
     assert placed == {(target, place) for target, places in TEMPLATES.items() for place in places}
     assert len(placed) == 19
     said = {task.id.split("/", 2)[2] for task in NAVIGATION.tasks}
-    assert said == {graph.words(row) for row in priors.triplets()}
+    assert said == {scene_graph.words(row) for row in priors.triplets()}
     assert len(said) == 65
 
 
@@ -70,7 +71,7 @@ def claim(task):
 
 def test_every_target_is_where_the_id_of_its_task_says():
     for suite in EXACT:
-        kinds = {name: {thing.id: thing.kind for thing in houses.load(name).things} for name in plans.SCENES}
+        kinds = {name: {thing.id: thing.kind for thing in houses.load(name).things} for name in suite_specs.SCENES}
         for task in suite.tasks:
             target, relation, reference = claim(task)
             mine = next(one for one in task.objects if one.id == target == task.goal.target)
@@ -88,7 +89,7 @@ def test_every_stratum_has_its_share():
         assert set(counts) == {"easy", "medium", "hard"}
         assert min(counts.values()) >= len(suite.tasks) / 5
     assert set(Counter(task.difficulty for task in PAPER.tasks)) == {"easy", "medium", "hard"}
-    assert Counter(task.house for task in PAPER.tasks) == dict.fromkeys(plans.SCENES, 3)
+    assert Counter(task.house for task in PAPER.tasks) == dict.fromkeys(suite_specs.SCENES, 3)
     assert {task.kind for task in PAPER.tasks} == {"mobile_manipulation"}
 
 
@@ -98,13 +99,13 @@ def test_a_slice_is_valid_and_as_difficult_as_it_says(task):
     assert list(faults(task, house)) == []
     assert difficulty.of(task, house) == task.difficulty
     assert plugins.load("task kind", task.kind).t_star(task, house) == task.t_star
-    assert len(task.robot_starts) == plans.ROBOTS
+    assert len(task.robot_starts) == suite_specs.ROBOTS
     assert {one.id for one in task.objects} >= set(catalog.TARGETS)
 
 
 @pytest.mark.parametrize("task", SOME[::4], ids=lambda task: task.id)
 def test_a_slice_can_be_done(task):
-    assert soundness.examine(task).faults == ()
+    assert proof.examine(task).faults == ()
 
 
 # ------------------------------------------------------------------------------------------------------ made again
@@ -112,7 +113,7 @@ def test_a_slice_can_be_done(task):
 
 @pytest.mark.parametrize("name", ["navigation", "manipulation"])
 def test_a_slice_made_again_is_the_same(name):
-    plan, frozen = plans.PLANS[name], {task.id: task for task in tasks.suite(name).tasks}
+    plan, frozen = suite_specs.PLANS[name], {task.id: task for task in tasks.suite(name).tasks}
     for scene, place in (("willow", 7), ("hazel", 31)):
         house = houses.load(scene)
         made = generate.ordered(plan, house, plan.orders(plan, house)[place])
@@ -121,17 +122,17 @@ def test_a_slice_made_again_is_the_same(name):
 
 @pytest.mark.parametrize("name", ["smoke", "paper"])
 def test_a_suite_made_again_is_the_same_file(name):
-    assert library.encode(generate.build(plans.PLANS[name])) == library.path_of(name).read_bytes()
+    assert library.encode(generate.build(suite_specs.PLANS[name])) == library.path_of(name).read_bytes()
 
 
-@pytest.mark.parametrize("name", sorted(plans.PLANS))
+@pytest.mark.parametrize("name", sorted(suite_specs.PLANS))
 def test_files_are_canonical_and_carry_their_hash(name):
     data = library.path_of(name).read_bytes()
     assert len(data) < 3_000_000
     suite = library.read(name)
     assert library.encode(suite) == data
     assert suite.sha256 == jsonio.sha256(json.loads(data)["tasks"])
-    assert (suite.name, suite.version) == (name, plans.PLANS[name].version)
+    assert (suite.name, suite.version) == (name, suite_specs.PLANS[name].version)
 
 
 # --------------------------------------------------------------------------------------------------- kinds of any sort

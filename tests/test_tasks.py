@@ -13,16 +13,17 @@ import pytest
 from hthor import catalog, houses, jsonio, plugins, rules, tasks
 from hthor.catalog import priors
 from hthor.errors import HthorError, TaskError, UnknownName
-from hthor.geometry import to_house, to_local
-from hthor.houses.freespace import FreeSpace
-from hthor.houses.geodesic import geodesics
-from hthor.tasks import generate, library
-from hthor.tasks.arrange import NEAR_M, arrange
-from hthor.tasks.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
-from hthor.tasks.ground import Ground
+from hthor.geometry.plane import to_house, to_local
+from hthor.houses.space.free_space import FreeSpace
+from hthor.houses.space.geodesic import geodesics
+from hthor.tasks.generation import generate
+from hthor.tasks.generation.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
+from hthor.tasks.generation.occlusion import Sight
+from hthor.tasks.generation.placement import Shelves, gap_to
+from hthor.tasks.generation.reachability import Ground
+from hthor.tasks.generation.target_arrangement import NEAR_M, arrange
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
-from hthor.tasks.placing import Shelves, gap_to
-from hthor.tasks.sight import Sight
+from hthor.tasks.suites import library
 from hthor.tasks.validate import faults
 from hthor.types import Goal, HouseSpec, Placement, Pose, Room, Snapshot, Thing, ThingState, Wall
 

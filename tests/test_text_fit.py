@@ -23,12 +23,14 @@ from test_pages import PUBLISHED, run
 
 from hthor import houses
 from hthor.episode import EpisodeLog, Fault
-from hthor.eval import lettering, picture, redraw, text_fit, trace
-from hthor.eval.pages import assemble, drawings, gather, html, ink, moments, write
-from hthor.eval.pages.drawings import Scene
-from hthor.eval.pages.figures import case, marks, trust
-from hthor.eval.pages.findings import Findings
-from hthor.eval.record import Record
+from hthor.eval.records.trial_record import Record
+from hthor.report.analysis import build, load_runs
+from hthor.report.analysis.document import Findings
+from hthor.report.drawing import lettering, render_trial, text_fit, trial_figure, trial_trace
+from hthor.report.html import html, matplotlib_svg
+from hthor.report.page import figure_index, key_moments, write
+from hthor.report.page.figure_index import Scene
+from hthor.report.page.figures import case_study, run_styles, trust
 from hthor.types import RobotSeat, TrialSpec
 
 LONG = "a_policy_whose_name_has_sixty_characters_as_some_people_like"
@@ -47,19 +49,19 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 def _known_house() -> Iterator[None]:
     plan = houses.load("hazel")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(redraw, "house", lambda _: plan)
+        patch.setattr(render_trial, "house", lambda _: plan)
         yield
 
 
 @pytest.fixture(scope="module")
 def found(folders: list[Path]) -> Findings:
-    return assemble.findings(gather.runs(folders), PUBLISHED)
+    return build.findings(load_runs.runs(folders), PUBLISHED)
 
 
 @pytest.fixture(scope="module")
 def long_trial(folders: list[Path]) -> Record:
     """A trial of the robot with the long name, which fails in the middle of it."""
-    one = gather.runs(folders)[3].records[0]
+    one = load_runs.runs(folders)[3].records[0]
     robot = one.spec.robots[0]
     seat = RobotSeat(seat=robot.seat, robot=robot.robot, agent=msgspec.structs.replace(robot.agent, name=WIDE))
     return msgspec.structs.replace(one, spec=msgspec.structs.replace(one.spec, robots=(seat,)))
@@ -68,7 +70,7 @@ def long_trial(folders: list[Path]) -> Record:
 def cut(made: Figure) -> list[str]:
     """Words of a figure that are not wholly on it."""
     FigureCanvasAgg(made)
-    with ink.style():
+    with matplotlib_svg.style():
         made.canvas.draw()
     whole = made.bbox.padded(1.0)
     undrawn = {tick.label1 for ax in made.axes for axis in (ax.xaxis, ax.yaxis) for tick in _beyond(axis)}
@@ -90,9 +92,9 @@ def _beyond(axis: Axis) -> list[Tick]:
 
 def test_every_figure_of_a_report_has_its_words_whole(found: Findings, folders: list[Path]) -> None:
     assert all(len(name) == 60 for name in (LONG, WIDE))
-    record = gather.runs(folders)[1].records[0]
+    record = load_runs.runs(folders)[1].records[0]
     scenes = [Scene(record=record, alone=None, house=houses.load("hazel"))] * 2
-    drawn = {one.name: one.figure for one in drawings.draw(found, scenes)}
+    drawn = {one.name: one.figure for one in figure_index.draw(found, scenes)}
     assert {"scores", "compared", "time-spent", "trust", "channel", "scenes", "legend"} <= drawn.keys()
     assert {name: cut(made) for name, made in drawn.items()} == {name: [] for name in drawn}
 
@@ -102,7 +104,7 @@ def test_names_of_curves_lie_right_of_all_marks_and_apart(found: Findings) -> No
     made = trust.figure(found.trust, found.arms)
     assert cut(made) == []
     (ax,) = made.axes
-    named = {marks.label(name) for name in NAMES}
+    named = {run_styles.label(name) for name in NAMES}
     boxes = [text.get_window_extent() for text in ax.texts if text.get_text() in named]
     assert len(boxes) == len(NAMES)
     to_pixels = ax.transData.transform
@@ -124,15 +126,15 @@ def test_a_picture_and_a_case_have_their_words_whole(long_trial: Record) -> None
     log = msgspec.structs.replace(long_trial.log, events=(event, *others), faults=(fault,))
     assert cut(_pictured(spec, log)) == []
     grey = np.full((24, 32, 3), 128, np.uint8)
-    held = moments.of(long_trial, house)
+    held = key_moments.of(long_trial, house)
     views = {moment.tick: dict.fromkeys(long_trial.paths, grey) for moment in held}
-    row = case.Row(label=WIDE, record=long_trial, moments=held, views=views)
-    assert cut(case.figure([row, row], house)) == []
+    row = case_study.Row(label=WIDE, record=long_trial, moments=held, views=views)
+    assert cut(case_study.figure([row, row], house)) == []
 
 
 def _pictured(spec: TrialSpec, log: EpisodeLog) -> Figure:
     with lettering.plain():
-        return picture.figure(spec, log, houses.load("hazel"))
+        return trial_figure.figure(spec, log, houses.load("hazel"))
 
 
 @given(st.text(alphabet="aW_-/ .+:é$\\", max_size=80), st.floats(0.3, 3.0))
@@ -155,8 +157,8 @@ def test_long_names_may_be_broken_on_a_page_and_are_copied_whole() -> None:
 
 
 def test_letters_in_a_figure_have_a_size_and_no_font_of_their_own(found: Findings) -> None:
-    for one in drawings.draw(found, []):
-        styles = re.findall(r'<text style="([^"]*)"', ink.svg(one.figure, one.name, one.words))
+    for one in figure_index.draw(found, []):
+        styles = re.findall(r'<text style="([^"]*)"', matplotlib_svg.svg(one.figure, one.name, one.words))
         assert styles
         for style in styles:
             parts = [part.strip().partition(":")[0] for part in style.split(";")]
@@ -220,7 +222,7 @@ def test_hundreds_of_messages_share_few_badges_that_do_not_touch(long_trial: Rec
     ]
     log = msgspec.structs.replace(long_trial.log, events=tuple(events))
     marked = [(n + 1, event, (0.01 * n, 0.0)) for n, event in enumerate(events)]
-    groups = trace.grouped(log, marked, 0.05, 0.2)
+    groups = trial_trace.grouped(log, marked, 0.05, 0.2)
     assert len(groups) < 40
     for one, other in itertools.combinations(groups, 2):
         wide = 0.5 * 0.05 * sum(1.6 + len(group.words) for group in (one, other))

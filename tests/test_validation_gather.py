@@ -11,19 +11,19 @@ import pytest
 import validation_fakes as fakes
 
 from hthor.calibration import targets
-from hthor.calibration.abc import Check
-from hthor.calibration.coverage import Coverage
-from hthor.calibration.design import NAMES, Quality
-from hthor.calibration.heldout import HeldOut
-from hthor.calibration.predictive import Row
-from hthor.calibration.ranking import Gap, Ranking, Swing
-from hthor.calibration.report import evidence, gather
-from hthor.calibration.report.evidence import FIGURES
-from hthor.calibration.table import CONDITIONS
-from hthor.humans import registry
-from hthor.humans.population import Population
+from hthor.calibration.diagnostics.abc_check import Check
+from hthor.calibration.diagnostics.coverage import Coverage
+from hthor.calibration.diagnostics.held_out import HeldOut
+from hthor.calibration.diagnostics.ranking_robustness import Gap, Ranking, Swing
+from hthor.calibration.inference.design_effects import NAMES, Quality
+from hthor.calibration.inference.predictive import Row
+from hthor.calibration.pipeline import collect_evidence, evidence
+from hthor.calibration.pipeline.evidence import FIGURES
+from hthor.calibration.simulation.trial_table import CONDITIONS
+from hthor.humans.population import parameter_registry
+from hthor.humans.population.population import Population
 
-P = len(registry.names())
+P = len(parameter_registry.names())
 STUDIES = 12
 
 
@@ -54,7 +54,7 @@ def _studies() -> tuple[Any, np.ndarray]:
         full = np.full(len(one), number)
         parts.append(msgspec.structs.replace(one, study=full, point=full))
     joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in parts[0].__struct_fields__[2:]}
-    return type(parts[0])(names=registry.names(), points=chance.random((STUDIES, P)), **joined), shares
+    return type(parts[0])(names=parameter_registry.names(), points=chance.random((STUDIES, P)), **joined), shares
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def stages() -> Any:
         },
         quality=Quality(z_sd=1.02, by_figure=dict.fromkeys(NAMES, 1.1), bias={}, r2={}, studies=STUDIES),
         coverage=Coverage(
-            names=registry.names(),
+            names=parameter_registry.names(),
             covered=np.linspace(0.8, 1.0, P),
             overall=0.9,
             fitted=0.9,
@@ -90,7 +90,7 @@ def stages() -> Any:
             effective=(10.0, 20.0),
         ),
         check=Check(
-            names=registry.names(),
+            names=parameter_registry.names(),
             shift=np.arange(P) / P,
             error=np.full(P, 0.1),
             worst=0.9,
@@ -133,17 +133,17 @@ def stages() -> Any:
 @pytest.fixture(scope="module")
 def population() -> Population:
     points = np.random.default_rng(1).uniform(0.05, 0.95, (40, P))
-    return Population.of("paper", registry.physical(points), purpose="a test", seed=7, command="a test")
+    return Population.of("paper", parameter_registry.physical(points), purpose="a test", seed=7, command="a test")
 
 
 @pytest.fixture(scope="module")
 def found(stages: Any, population: Population) -> evidence.Evidence:
-    return gather.evidence(stages, population, quick=False)
+    return collect_evidence.evidence(stages, population, quick=False)
 
 
 def test_all_parts_are_there(found: evidence.Evidence, population: Population) -> None:
     assert [row.figure for row in found.predictive] == list(FIGURES)
-    assert [one.name for one in found.parameters] == list(registry.names())
+    assert [one.name for one in found.parameters] == list(parameter_registry.names())
     assert [part.condition for part in found.held_out] == list(CONDITIONS)
     assert sum(len(part.figures) for part in found.held_out) == 8
     assert found.origin.population_sha256 == population.sha256
@@ -158,7 +158,7 @@ def test_intervals_held_out_are_of_80_percent(found: evidence.Evidence) -> None:
 
 
 def test_only_fitted_parameters_are_cross_checked_and_ranked(found: evidence.Evidence) -> None:
-    fitted = [one.name for one in registry.PARAMETERS if one.fitted]
+    fitted = [one.name for one in parameter_registry.PARAMETERS if one.fitted]
     assert [one.name for one in found.abc] == fitted
     assert [one.name for one in found.parameters if one.ranks] == fitted
     assert all(sum(one.ranks) == STUDIES for one in found.parameters if one.ranks)
@@ -181,9 +181,9 @@ def test_an_emulator_that_is_right_beats_saying_the_mean(found: evidence.Evidenc
 
 def test_log_scores_of_chances() -> None:
     said, came = np.array([0.5, 0.5, 0.8]), np.array([True, False, True])
-    assert gather.log_score(said, came) == pytest.approx((2.0 * np.log(0.5) + np.log(0.8)) / 3.0)
+    assert collect_evidence.log_score(said, came) == pytest.approx((2.0 * np.log(0.5) + np.log(0.8)) / 3.0)
 
 
 def test_without_enough_studies_there_is_no_cross_check(stages: Any, population: Population) -> None:
     few = SimpleNamespace(**{**vars(stages), "check": None})
-    assert gather.evidence(few, population, quick=True).abc == ()
+    assert collect_evidence.evidence(few, population, quick=True).abc == ()

@@ -17,26 +17,27 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from hthor.calibration import rounds, targets, validate
-from hthor.calibration import table as tables
-from hthor.calibration.report import (
-    assemble,
-    diagnostics,
-    evidence,
-    gates,
-    groups,
+from hthor.calibration import targets
+from hthor.calibration.pipeline import evidence
+from hthor.calibration.pipeline.evidence import FIGURES
+from hthor.calibration.simulation import trial_table as tables
+from hthor.calibration.validation import plan, run
+from hthor.calibration.validation.report import (
+    build,
+    criteria,
     measures,
     page,
+    phrases,
     published,
-    trials,
-    words,
+    study_groups,
+    trial_tables,
 )
-from hthor.calibration.report.document import Findings, Setting, Subject
-from hthor.calibration.report.evidence import FIGURES
+from hthor.calibration.validation.report.figures import diagnostics
+from hthor.calibration.validation.report.findings import Findings, Setting, Subject
 from hthor.cli import app as cli
 from hthor.errors import HthorError, RunError
-from hthor.eval.pages import html, ink
-from hthor.humans import people
+from hthor.humans.population import resolve
+from hthor.report.html import html, matplotlib_svg
 
 PUBLISHED = published.of(targets.load("paper"))
 
@@ -61,11 +62,11 @@ def setting(**more: object) -> Setting:
 
 @functools.cache
 def whole(*, known: bool = True, quick: bool = False, seed: int = 0) -> Findings:
-    return assemble.findings(
+    return build.findings(
         subject(),
         setting(quick=quick),
         targets.load("paper"),
-        assemble.Materials(
+        build.Materials(
             trials=fakes.trials(12, seed), least=fakes.LEAST, hands=3, rivals={"greedy": fakes.trials(6, 9)}
         ),
         evidence=fakes.evidence(PUBLISHED.figures) if known else None,
@@ -73,9 +74,9 @@ def whole(*, known: bool = True, quick: bool = False, seed: int = 0) -> Findings
     )
 
 
-def drawn(table: tables.Table, draws: int = 400) -> dict[str, groups.Groups]:
+def drawn(table: tables.Table, draws: int = 400) -> dict[str, study_groups.Groups]:
     design = targets.load("paper").design
-    return groups.together(table, fakes.LEAST, hands=3, valid=design.valid, counted=design.counted, draws=draws)
+    return study_groups.together(table, fakes.LEAST, hands=3, valid=design.valid, counted=design.counted, draws=draws)
 
 
 # ------------------------------------------------------------------------------------------------------------- groups
@@ -86,13 +87,13 @@ def test_a_group_is_of_the_published_size() -> None:
     for name, count in (("none", 58), ("frontier", 59), ("oracle", 58)):
         assert np.allclose(made[name].sr * count, np.round(made[name].sr * count))
     assert np.allclose(made["oracle"].adoption * 50, np.round(made["oracle"].adoption * 50))
-    assert set(groups.figures(made)) == set(FIGURES)
+    assert set(study_groups.figures(made)) == set(FIGURES)
 
 
 def test_groups_do_every_task_twice() -> None:
     one = fakes.trials(12).take(np.flatnonzero(fakes.trials(12).condition == 0))
     chance = np.random.default_rng(0)
-    rows = groups._people(one)[groups._chosen(12, 3, chance, 5)].reshape(5, -1)
+    rows = study_groups._people(one)[study_groups._chosen(12, 3, chance, 5)].reshape(5, -1)
     for group in one.task[rows]:
         assert np.array_equal(np.sort(group), np.repeat(np.arange(30), 2))
 
@@ -107,7 +108,7 @@ def test_the_mean_of_groups_is_the_mean_of_all_trials() -> None:
     run = fakes.trials(30)
     made = drawn(run, draws=2000)
     average = measures.means(run, fakes.LEAST)
-    for name, draws in groups.figures(made).items():
+    for name, draws in study_groups.figures(made).items():
         assert average[name] == pytest.approx(float(draws.mean()), abs=0.01)
 
 
@@ -124,20 +125,20 @@ def test_a_missing_trial_is_noticed() -> None:
 
 def test_slopes() -> None:
     steps = np.arange(10.0)
-    assert groups.slopes(np.stack([3.0 + 0.25 * steps, 5.0 - 0.5 * steps])) == pytest.approx([0.25, -0.5])
+    assert study_groups.slopes(np.stack([3.0 + 0.25 * steps, 5.0 - 0.5 * steps])) == pytest.approx([0.25, -0.5])
 
 
 @given(st.floats(0.02, 0.98), st.floats(1.0, 4.0), st.integers(2, 60))
 @settings(max_examples=60, deadline=None)
 def test_chances_of_all_counts_add_up_to_one(share: float, phi: float, n: int) -> None:
-    chances = [math.exp(groups.log_count(k, n, share, phi)) for k in range(n + 1)]
+    chances = [math.exp(study_groups.log_count(k, n, share, phi)) for k in range(n + 1)]
     assert sum(chances) == pytest.approx(1.0, abs=1e-6)
     assert sum(k * chance for k, chance in enumerate(chances)) == pytest.approx(n * share, rel=1e-6)
 
 
 def test_clustering_widens_a_count() -> None:
     def spread(phi: float) -> float:
-        chance = np.exp([groups.log_count(k, 50, 0.6, phi) for k in range(51)])
+        chance = np.exp([study_groups.log_count(k, 50, 0.6, phi) for k in range(51)])
         return float((chance * (np.arange(51) - 30.0) ** 2).sum())
 
     assert spread(2.0) == pytest.approx(2.0 * 50 * 0.24, rel=1e-6)
@@ -160,7 +161,7 @@ def test_the_table_tells_covered_from_close() -> None:
 
 def test_a_share_in_the_middle_has_a_percentile_in_the_middle() -> None:
     made = drawn(fakes.trials(30))
-    median = {name: float(np.median(draws)) for name, draws in groups.figures(made).items()}
+    median = {name: float(np.median(draws)) for name, draws in study_groups.figures(made).items()}
     study = msgspec.structs.replace(PUBLISHED, figures=median)
     for row in measures.table(study, fakes.trials(30), fakes.LEAST, made):
         assert 0.4 < row.percentile < 0.6
@@ -207,7 +208,7 @@ def test_records_become_the_same_numbers() -> None:
     for condition, absent in (("none", True), ("oracle", False)):
         _, dealt = eval_fakes.run_of(30, absent=absent)
         runs[condition] = [done for session in dealt for done in eval_fakes.player()(session)]
-    made = trials.table(runs, suite)
+    made = trial_tables.table(runs, suite)
     for number, condition in ((0, "none"), (2, "oracle")):
         one = made.take(made.condition == number)
         order = sorted(runs[condition], key=lambda done: (done.spec.participant, done.spec.index))
@@ -235,7 +236,7 @@ def test_the_verdict_counts(covered: int, close: int) -> None:
         )
         for place, row in enumerate(base.table)
     )
-    said = words.verdict(msgspec.structs.replace(base, table=rows))
+    said = phrases.verdict(msgspec.structs.replace(base, table=rows))
     assert said.startswith(f"{covered} of 8 published figures")
     assert f"and {close} of 8 medians" in said
     assert ("Outside" in said) == (covered < 8)
@@ -245,22 +246,22 @@ def test_the_verdict_counts(covered: int, close: int) -> None:
 @pytest.mark.parametrize(
     ("contraction", "recovery", "word"),
     [
-        (0.79, 0.89, words.IDENTIFIED),
-        (0.79, None, words.IDENTIFIED),
-        (0.79, 0.50, words.WEAKLY),
-        (0.27, 0.53, words.WEAKLY),
-        (0.21, 0.17, words.NOT),
-        (0.05, 0.90, words.NOT),
+        (0.79, 0.89, phrases.IDENTIFIED),
+        (0.79, None, phrases.IDENTIFIED),
+        (0.79, 0.50, phrases.WEAKLY),
+        (0.27, 0.53, phrases.WEAKLY),
+        (0.21, 0.17, phrases.NOT),
+        (0.05, 0.90, phrases.NOT),
     ],
 )
 def test_what_is_identified(contraction: float, recovery: float | None, word: str) -> None:
     one = fakes.evidence(PUBLISHED.figures).parameters[0]
     one = msgspec.structs.replace(one, contraction=contraction, recovery=recovery)
-    assert words.identified(one) == word
+    assert phrases.identified(one) == word
 
 
 def test_converging_is_never_claimed() -> None:
-    said = " ".join((*words.trust(whole().trust), *whole().misfits))  # type: ignore[arg-type]
+    said = " ".join((*phrases.trust(whole().trust), *whole().misfits))  # type: ignore[arg-type]
     assert "is not claimed" in said
     for sentence in re.split(r"(?<=[.:]) ", said):
         if "converg" in sentence:
@@ -271,17 +272,17 @@ def test_quartiles_that_differ_are_told_by_how_much() -> None:
     found = whole()
     near = [msgspec.structs.replace(one, value=6.9) for one in found.differences]
     far = [msgspec.structs.replace(one, value=-9.5 if one.a == "oracle" else 1.0) for one in found.differences]
-    assert "within 7 s of one another" in words.quartiles(found.spent, near)
-    assert "2.5 s beyond 7 s" in words.quartiles(found.spent, far)
+    assert "within 7 s of one another" in phrases.quartiles(found.spent, near)
+    assert "2.5 s beyond 7 s" in phrases.quartiles(found.spent, far)
 
 
 def test_small_words() -> None:
-    assert words.listed([]) == "none"
-    assert words.listed(["a", "b", "c"]) == "a, b and c"
-    assert words.signed(-0.04) == "0.0"
-    assert words.signed(-1.26) == "−1.3"
-    assert words.percent(None) == "–"
-    assert words.span(evidence.Band(low=-0.01, median=0.0, high=2.0)) == "0.0 … 2.0"
+    assert phrases.listed([]) == "none"
+    assert phrases.listed(["a", "b", "c"]) == "a, b and c"
+    assert phrases.signed(-0.04) == "0.0"
+    assert phrases.signed(-1.26) == "−1.3"
+    assert phrases.percent(None) == "–"
+    assert phrases.span(evidence.Band(low=-0.01, median=0.0, high=2.0)) == "0.0 … 2.0"
 
 
 def test_the_worst_kind_is_named() -> None:
@@ -289,7 +290,7 @@ def test_the_worst_kind_is_named() -> None:
         measures.played(name, fakes.trials(6, 1, {"none": 0.3, "frontier": 0.6, "oracle": oracle}), fakes.LEAST)
         for name, oracle in (("fast", 0.95), ("slow", 0.4))
     )
-    said = words.kinds(msgspec.structs.replace(whole(), kinds=kinds))
+    said = phrases.kinds(msgspec.structs.replace(whole(), kinds=kinds))
     assert "slow people fare worst" in said
     assert "does not hold in both SR and TWSR for slow" in said
 
@@ -298,7 +299,7 @@ def test_the_worst_kind_is_named() -> None:
 
 
 def verdicts(found: Findings) -> dict[str, str]:
-    return {gate.name: gate.verdict for gate in gates.judge(found)}
+    return {gate.name: gate.verdict for gate in criteria.judge(found)}
 
 
 def changed(**parts: object) -> Findings:
@@ -380,7 +381,7 @@ def test_the_page_is_whole_and_needs_nothing_else() -> None:
 
 def test_the_same_findings_make_the_same_page() -> None:
     assert page.render(whole(known=False)) == rendered(False)
-    drawings = [ink.svg(diagnostics.contraction(whole().evidence.parameters), "a", "b") for _ in range(2)]  # type: ignore[union-attr]
+    drawings = [matplotlib_svg.svg(diagnostics.contraction(whole().evidence.parameters), "a", "b") for _ in range(2)]  # type: ignore[union-attr]
     assert drawings[0] == drawings[1]
 
 
@@ -390,14 +391,14 @@ def test_drawings_are_well_formed_and_in_the_colours_of_the_page() -> None:
     for drawing in drawings:
         ElementTree.fromstring(drawing)
     assert not re.search(r"#[0-9a-f]{6}\b", body)
-    assert set(re.findall(r"var\(--(\w+)\)", body)) <= set(ink.VARIABLES.values())
-    assert ink.DARK.keys() == ink.VARIABLES.keys()
+    assert set(re.findall(r"var\(--(\w+)\)", body)) <= set(matplotlib_svg.VARIABLES.values())
+    assert matplotlib_svg.DARK.keys() == matplotlib_svg.VARIABLES.keys()
 
 
 def test_the_page_shows_the_numbers_of_its_findings() -> None:
     text = rendered(True)
     for row in whole().table:
-        assert f'<td class="n">{words.span(row.band, 100.0)}</td>' in text
+        assert f'<td class="n">{phrases.span(row.band, 100.0)}</td>' in text
     assert text.count(">not identified<") >= 20
     for one in whole().spent:
         assert f">{one.lower:.1f}</td>" in text
@@ -450,18 +451,18 @@ def test_evidence_that_cannot_be_used_says_what_to_do(tmp_path: Path) -> None:
 def test_evidence_of_another_population_is_not_believed(tmp_path: Path) -> None:
     known = fakes.evidence(PUBLISHED.figures)
     (tmp_path / evidence.FILE).write_bytes(evidence.encode(known))
-    found = people.find("literature")
-    assert validate._evidence(found, tmp_path) == (None, validate.OTHERS)
+    found = resolve.find("literature")
+    assert run._evidence(found, tmp_path) == (None, run.OTHERS)
     mine = msgspec.structs.replace(known.origin, population_sha256=found.population.sha256)
     (tmp_path / evidence.FILE).write_bytes(evidence.encode(msgspec.structs.replace(known, origin=mine)))
-    assert validate._evidence(found, tmp_path)[0] is not None
+    assert run._evidence(found, tmp_path)[0] is not None
 
 
 @pytest.mark.parametrize(
     ("name", "says"), [("greedy", "not calibrated"), ("cautious", "by hand"), ("literature", "no data")]
 )
 def test_people_without_evidence_are_told_apart(name: str, says: str) -> None:
-    known, missing = validate._evidence(people.find(name), None)
+    known, missing = run._evidence(resolve.find(name), None)
     assert known is None
     assert says in missing
 
@@ -474,20 +475,20 @@ def stage(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str, int]]:
     """Nobody plays; what would have been played is noted."""
     asked: list[tuple[str, str, int]] = []
 
-    def play(self: object, one: rounds.Round) -> tables.Table:
+    def play(self: object, one: plan.Round) -> tables.Table:
         asked.append((one.word, one.suite, one.participants))
         return fakes.trials(one.participants)
 
-    monkeypatch.setattr(validate._Stage, "play", play)
+    monkeypatch.setattr(run._Stage, "play", play)
     return asked
 
 
 def test_the_command_writes_the_report_and_fails_with_its_bars(
     stage: list[tuple[str, str, int]], tmp_path: Path
 ) -> None:
-    done = CliRunner().invoke(cli.app, ["humans", "validate", "literature", "--out", str(tmp_path), "--json"])
+    done = CliRunner().invoke(cli, ["humans", "validate", "literature", "--out", str(tmp_path), "--json"])
     stored = msgspec.json.decode((tmp_path / "validation.json").read_bytes(), type=Findings)
-    failed = gates.failed(stored.gates)
+    failed = criteria.failed(stored.gates)
     assert done.exit_code == (1 if failed else 0)
     assert failed  # the made-up people are too slow for the published TWSR
     assert msgspec.json.decode(done.stdout, type=Findings) == stored
@@ -498,19 +499,19 @@ def test_the_command_writes_the_report_and_fails_with_its_bars(
 
 
 def test_a_quick_run_is_small_and_judges_nothing_played(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
-    done = CliRunner().invoke(cli.app, ["humans", "validate", "greedy", "--quick", "--out", str(tmp_path)])
+    done = CliRunner().invoke(cli, ["humans", "validate", "greedy", "--quick", "--out", str(tmp_path)])
     assert done.exit_code == 0, done.stderr
-    assert [many for _, _, many in stage] == [rounds.QUICK]
+    assert [many for _, _, many in stage] == [plan.QUICK]
     assert "SR no robot" in done.stdout
 
 
 def test_a_dry_run_says_what_would_be_played_and_writes_nothing(tmp_path: Path) -> None:
     out = tmp_path / "report"
     words = ["humans", "validate", "greedy", "--participants", "6", "--suite", "smoke", "--dry-run", "--out", str(out)]
-    done = CliRunner().invoke(cli.app, words)
+    done = CliRunner().invoke(cli, words)
     assert done.exit_code == 0, done.stderr
     assert "540 of 540 trials would be played" in done.stdout  # greedy and random, then greedy on smoke
-    told = msgspec.json.decode(CliRunner().invoke(cli.app, [*words, "--json"]).stdout)
+    told = msgspec.json.decode(CliRunner().invoke(cli, [*words, "--json"]).stdout)
     assert [(one["people"], one["role"], one["suite"]) for one in told["runs"]][::3] == [
         ("greedy", "judged", "paper"),
         ("random", "rival", "paper"),
@@ -521,32 +522,32 @@ def test_a_dry_run_says_what_would_be_played_and_writes_nothing(tmp_path: Path) 
 
 
 def test_kinds_and_suites_are_played_when_asked_for(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
-    options = validate.Options(name="literature", quick=True, kinds=True, suites=("smoke",), out=tmp_path)
+    options = run.Options(name="literature", quick=True, kinds=True, suites=("smoke",), out=tmp_path)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(measures, "played", lambda name, run, least: _played(name))
-        done = validate.conduct(options, lambda _: pytest.fail("nobody plays"))
+        done = run.conduct(options, lambda _: pytest.fail("nobody plays"))
     names = [word for word, suite, _ in stage if suite == "paper"]
     assert "cautious" in names
-    assert ("literature", "smoke", rounds.QUICK) in stage
+    assert ("literature", "smoke", plan.QUICK) in stage
     assert "By kind of people" in (tmp_path / "validation.html").read_text()
     assert [one.name for one in done.findings.suites] == ["smoke"]
 
 
 def _played(name: str) -> object:
-    from hthor.calibration.report.document import Played
+    from hthor.calibration.validation.report.findings import Played
 
     return Played(name=name, figures=dict.fromkeys(FIGURES, 0.5), trials=30)
 
 
 def test_too_few_participants_are_refused_before_anything_is_played(stage: list[tuple[str, str, int]]) -> None:
     with pytest.raises(HthorError, match="too few"):
-        validate.conduct(validate.Options(participants=5), lambda _: pytest.fail("nobody plays"))
+        run.conduct(run.Options(participants=5), lambda _: pytest.fail("nobody plays"))
     assert not stage
 
 
 def test_few_people_are_not_judged(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
-    options = validate.Options(name="greedy", participants=12, out=tmp_path)
-    done = validate.conduct(options, lambda _: pytest.fail("nobody plays"))
+    options = run.Options(name="greedy", participants=12, out=tmp_path)
+    done = run.conduct(options, lambda _: pytest.fail("nobody plays"))
     assert [many for _, _, many in stage] == [12, 12]
     assert set(verdicts(done.findings).values()) == {"not judged"}
     assert "ask for 18 people or more" in (tmp_path / "validation.html").read_text()

@@ -14,10 +14,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor import catalog, houses
-from hthor.geometry import to_local
-from hthor.houses import solids, worktops
-from hthor.houses.freespace import FreeSpace
-from hthor.houses.solids import Slab
+from hthor.geometry.plane import to_local
+from hthor.houses import worktops
+from hthor.houses.space import solids
+from hthor.houses.space.free_space import FreeSpace
+from hthor.houses.space.solids import Slab
 from hthor.types import HouseSpec, Thing
 from hthor.world import World
 

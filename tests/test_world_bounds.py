@@ -18,9 +18,10 @@ from world_house import COFFEE, TABLE, on, task
 from hthor import catalog
 from hthor.errors import HthorError, PhysicsError, TaskError, UnknownName
 from hthor.types import Pick, Place, Pose, Wait
-from hthor.world import World, env, numbers
-from hthor.world.contents import DEFAULT_OBJECTS
-from hthor.world.touch import Touch
+from hthor.world import World, numbers
+from hthor.world.model import composer_env
+from hthor.world.model.inventory import DEFAULT_OBJECTS
+from hthor.world.state.overlap_test import Touch
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from benchmarks import reaching
@@ -97,7 +98,7 @@ def test_two_robots_place_on_one_spot_in_one_tick(world: World) -> None:
 @given(
     st.sampled_from(TARGETS),
     st.tuples(st.floats(0.3, 9.7), st.floats(0.3, 3.7), st.floats(0.3, 2.3)),
-    st.floats(3.0, env.FASTEST_M_S),
+    st.floats(3.0, composer_env.FASTEST_M_S),
     st.floats(-math.pi, math.pi),
     st.floats(-1.5, 1.5),
     st.floats(-math.pi, math.pi),
@@ -125,7 +126,7 @@ def test_a_thin_thing_that_hits_an_edge_does_not_spin_up_without_end(world: Worl
     for _ in range(60):
         world.step()
         fastest = max(fastest, float(np.abs(world._env.data.qvel).max()))
-    assert fastest <= env.FASTEST_RAD_S
+    assert fastest <= composer_env.FASTEST_RAD_S
 
 
 def test_faster_than_anything_flies_is_refused(world: World) -> None:

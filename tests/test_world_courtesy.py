@@ -12,7 +12,7 @@ from world_house import FRIDGE, on
 
 from hthor import plugins
 from hthor.episode import play
-from hthor.geometry import wrap
+from hthor.geometry.plane import wrap
 from hthor.types import (
     HUMAN,
     Action,

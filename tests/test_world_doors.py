@@ -12,7 +12,8 @@ from world_house import COUNTER, do, reason, task, wait
 
 from hthor import catalog
 from hthor.types import Close, HouseSpec, Move, Open, Pick, Place, Placement, Pose, Thing
-from hthor.world import World, leaves
+from hthor.world import World
+from hthor.world.model import door_geometry
 
 DOOR, DRESSER, STOVE, OVEN = "door|1|2", "dresser|1", "stove|1", "microwave|1"
 AT_DRESSER = Pose(x=6.0, y=2.6, yaw=math.pi / 2)
@@ -34,7 +35,7 @@ def house() -> HouseSpec:
 def within(thing: Thing, kind: str, name: str) -> Placement:
     """An object in the middle of one of the thing's surfaces."""
     surface = next(surface for surface in catalog.kind(thing.kind).surfaces(thing.size) if surface.name == name)
-    from hthor.geometry import to_house
+    from hthor.geometry.plane import to_house
 
     x, y, z = to_house(surface.centre, thing.centre, thing.yaw)
     height = catalog.kind(kind).size[2]
@@ -227,7 +228,7 @@ def test_reset_opens_all_doorways(world: World) -> None:
 
 
 def test_a_leaf_opens_into_the_first_room_clear_of_the_wall() -> None:
-    (leaf,) = leaves.of_house(house())
+    (leaf,) = door_geometry.of_house(house())
     (joint,) = leaf.joints
     world = World(house())
     first, end = world._scene.span[DOOR]
@@ -238,6 +239,6 @@ def test_a_leaf_opens_into_the_first_room_clear_of_the_wall() -> None:
     wide = msgspec.structs.replace(leaf.opening, b=(5.0, 3.1))
     spec = house()
     spec = msgspec.structs.replace(spec, openings=(wide,))
-    (double,) = leaves.of_house(spec)
+    (double,) = door_geometry.of_house(spec)
     assert [joint.name for joint in double.joints] == ["left door", "right door"]
     assert double.joints[0].axis == tuple(-axis for axis in double.joints[1].axis)

@@ -16,10 +16,10 @@ from world_house import COFFEE, COUNTER, FRIDGE, TABLE, do, on, reason, task, wa
 
 from hthor import houses, plugins, rules
 from hthor.errors import HthorError, TaskError, UnknownName
-from hthor.houses import solids
+from hthor.houses.space import solids
 from hthor.types import BodySpec, Move, Open, Pick, Place, Placement, Pose, RobotSpec, Rotate
 from hthor.world import World
-from hthor.world.engine import mujoco
+from hthor.world.model.engine import mujoco
 
 TESTS = Path(__file__).parent
 
@@ -65,7 +65,8 @@ def test_every_process_gives_the_same_story_and_wakes_no_renderer(world: World) 
         "import sys, test_world_episode as t\n"
         "print(t.play(w := t.World(t.tiny.house(), robots=('scout',))))\n"
         "frame = w.frame('robot')\n"
-        "print([m for m in sys.modules if m.startswith(('OpenGL', 'glfw', 'mujoco.egl', 'hthor.world.rendering'))])"
+        "late = ('OpenGL', 'glfw', 'mujoco.egl', 'hthor.world.rendering.opengl_renderer')\n"
+        "print([m for m in sys.modules if m.startswith(late)])"
     )
     environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "MUJOCO_GL")}
     environment |= {"PYTHONPATH": os.pathsep.join([str(TESTS), str(TESTS.parent), *sys.path]), "PYTHONHASHSEED": "7"}
@@ -190,7 +191,7 @@ def test_every_robot_keeps_the_contract(name: str) -> None:
 
 def _fits(world: World, seat: str, spec: BodySpec) -> None:
     """What is drawn stays within a hand's breadth of the cylinder that the world moves, and reaches its height."""
-    from hthor.world import bodies
+    from hthor.world.model.bodies import bodies
 
     parts = bodies.look(spec)
     assert max(part.centre[2] + part.half[2] for part in parts) == pytest.approx(spec.height, abs=0.03)

@@ -11,8 +11,10 @@ from world_house import COFFEE, COUNTER, FRIDGE, TABLE, do, on, reason, task, wa
 
 from hthor import catalog
 from hthor.types import Close, Move, Open, Pick, Place, Pose, RobotSpec, Rotate
-from hthor.world import World, bodies, contents
-from hthor.world.bodies import robot
+from hthor.world import World
+from hthor.world.model import inventory
+from hthor.world.model.bodies import bodies
+from hthor.world.model.bodies.bodies import robot
 
 AT_TABLE = Pose(x=2.5, y=3.4, yaw=-math.pi / 2)
 AT_FRIDGE = Pose(x=0.75, y=2.6, yaw=math.pi / 2)
@@ -212,7 +214,7 @@ def test_what_could_not_lie_as_the_house_says_stays_like_furniture() -> None:
         tiny.thing("plate|1", "plate", 3.2, 0.42, 0.0, low=0.9, parent=COUNTER),
         tiny.thing("egg|1", "egg", 3.2, 0.42, 0.0, low=0.922, parent="plate|1"),
     )
-    split = contents.split(msgspec.structs.replace(house, things=(*house.things, *odd)), ())
+    split = inventory.split(msgspec.structs.replace(house, things=(*house.things, *odd)), ())
     assert {movable.id for movable in split.movables} == {"book|old", "vase|1", "plate|1", "egg|1"}
     assert {thing.id for thing in odd[:3]} <= {thing.id for thing in split.statics}
     world = World(msgspec.structs.replace(house, things=(*house.things, *odd)), objects=())

@@ -20,7 +20,7 @@ from world_house import COFFEE, COUNTER, FRIDGE, TABLE, do, reason, task, wait
 
 from hthor import catalog, seeds
 from hthor.errors import HthorError
-from hthor.geometry import to_house
+from hthor.geometry.plane import to_house
 from hthor.types import Close, Drop, HouseSpec, Move, Open, Pick, Place, Placement, Pose, Rotate
 from hthor.world import World
 

@@ -16,8 +16,10 @@ from world_house import COFFEE, FRIDGE, TABLE, do, on, task
 
 from hthor.errors import RenderingUnavailable
 from hthor.types import Camera, Open, Pick, Pose, Rotate
-from hthor.world import World, avatar, bodies, opengl
-from hthor.world.solid import HEAD
+from hthor.world import World
+from hthor.world.model.bodies import avatar, bodies
+from hthor.world.model.bodies.primitives import HEAD
+from hthor.world.rendering import opengl_context
 
 TESTS = Path(__file__).parent
 
@@ -197,11 +199,11 @@ def test_without_any_back_end_it_says_what_to_install(monkeypatch: pytest.Monkey
     def fail(name: str, width: int, height: int) -> None:
         raise ImportError(f"no lib{name}")
 
-    monkeypatch.setattr(opengl, "_open", fail)
-    monkeypatch.setattr(opengl, "_forget", lambda loaded: None)
+    monkeypatch.setattr(opengl_context, "_open", fail)
+    monkeypatch.setattr(opengl_context, "_forget", lambda loaded: None)
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     with pytest.raises(RenderingUnavailable, match=r"egl: no libegl; osmesa: no libosmesa; glfw.*libegl1"):
-        opengl.context(8, 8)
+        opengl_context.context(8, 8)
 
 
 def test_everyone_s_place_is_known_and_drawn_from_above(world: World) -> None:

@@ -11,9 +11,10 @@ from world_house import COFFEE, FRIDGE, TABLE, do, on, task, wait
 
 from hthor import rules
 from hthor.errors import StaleObservation
-from hthor.navigation.map import OCCUPIED, UNKNOWN, GridMap
+from hthor.navigation.grid_map import OCCUPIED, UNKNOWN, GridMap
 from hthor.types import Close, Open, Pick, Pose, Rotate
-from hthor.world import World, bodies
+from hthor.world import World
+from hthor.world.model.bodies import bodies
 
 AT_FRIDGE = Pose(x=0.75, y=2.6, yaw=math.pi / 2)
 

@@ -15,12 +15,13 @@ from world_house import do, reason, wait
 
 from hthor import catalog, rules
 from hthor.errors import HthorError
-from hthor.houses import freespace
+from hthor.houses.space import free_space
 from hthor.types import Drop, Move, Pick, Place, Placement, Pose, Rotate, TaskSpec
-from hthor.world import World, tow
+from hthor.world import World
+from hthor.world.carrying import trailer_kernel
 
 TRUNK = catalog.kind("trunk")
-ROWS = freespace.obstacles(tiny.house(), 1.0)
+ROWS = free_space.obstacles(tiny.house(), 1.0)
 HALF = np.array(TRUNK.size[:2]) / 2
 
 
@@ -68,7 +69,7 @@ def sound(world: World) -> None:
     strangers = np.array(
         [(pose.x, pose.y, world.bodies[seat].radius) for seat, pose in world.poses().items()], dtype=float
     )
-    walls, bodies = tow.deepest(at, HALF, ROWS, strangers)
+    walls, bodies = trailer_kernel.deepest(at, HALF, ROWS, strangers)
     assert walls <= 0.003
     assert bodies <= 0.003
     for seat, pose in world.poses().items():
@@ -80,8 +81,8 @@ def sound(world: World) -> None:
 
 def test_a_trunk_is_too_heavy_for_anybody_alone_and_not_for_two() -> None:
     from hthor import plugins
-    from hthor.world.avatar import HUMAN
-    from hthor.world.bodies import robot
+    from hthor.world.model.bodies.avatar import HUMAN
+    from hthor.world.model.bodies.bodies import robot
 
     strengths = [body.strength for body in (HUMAN, *(robot(name) for name in plugins.names("robot"))) if body.strength]
     assert max(strengths) * rules.HANDLE_STRENGTH < TRUNK.mass
@@ -293,7 +294,7 @@ def test_teleporting_and_resetting_let_go(world: World) -> None:
 
 def test_what_one_is_strong_enough_for_goes_in_hand() -> None:
     from hthor.types import RobotSpec
-    from hthor.world.bodies import robot
+    from hthor.world.model.bodies.bodies import robot
 
     porter = robot("porter")
     data = {name: getattr(porter, name) for name in RobotSpec.__struct_fields__}

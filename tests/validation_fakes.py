@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from hthor.calibration import table as tables
-from hthor.calibration.report import evidence as ev
-from hthor.calibration.table import CONDITIONS, Table
-from hthor.humans import registry
+from hthor.calibration.pipeline import evidence as ev
+from hthor.calibration.simulation import trial_table as tables
+from hthor.calibration.simulation.trial_table import CONDITIONS, Table
+from hthor.humans.population import parameter_registry
 
 LEAST = np.linspace(20.0, 50.0, 30)
 RATES = {"none": 0.64, "frontier": 0.73, "oracle": 0.91}
@@ -118,7 +118,7 @@ def evidence(figures: dict[str, float], seed: int = 1) -> ev.Evidence:
                 coverage=float(chance.uniform(0.86, 0.94)),
                 ranks=tuple(int(n) for n in chance.multinomial(200, np.full(10, 0.1))) if one.fitted else (),
             )
-            for one in registry.PARAMETERS
+            for one in parameter_registry.PARAMETERS
             if one.prior is not None
         ),
         coverage=ev.Coverage(studies=240, mean=0.902, low=0.87, high=0.94),
@@ -139,7 +139,9 @@ def evidence(figures: dict[str, float], seed: int = 1) -> ev.Evidence:
             if outcome == "success" or condition != "none"
         ),
         abc=tuple(
-            ev.Shift(name=one.name, shift=float(chance.normal(0, 0.15))) for one in registry.PARAMETERS if one.fitted
+            ev.Shift(name=one.name, shift=float(chance.normal(0, 0.15)))
+            for one in parameter_registry.PARAMETERS
+            if one.fitted
         ),
         rankings=(
             ev.Ranking(
@@ -158,7 +160,7 @@ def evidence(figures: dict[str, float], seed: int = 1) -> ev.Evidence:
                         high=base + float(chance.normal(0, 0.03)),
                     )
                     for better, worse, base in (("oracle", "frontier", 0.18), ("frontier", "none", 0.09))
-                    for one in registry.PARAMETERS
+                    for one in parameter_registry.PARAMETERS
                 ),
             ),
         ),

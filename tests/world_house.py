@@ -71,7 +71,7 @@ def thing(id: str, kind: str, x: float, y: float, yaw: float = 0.0, low: float =
 
 def on(support: str, kind: str, u: float = 0.0, v: float = 0.0, surface: int = -1, id: str = "") -> Placement:
     """An object lying on a thing's surface, ``u`` and ``v`` [m] off its middle along its local axes."""
-    from hthor.geometry import to_house
+    from hthor.geometry.plane import to_house
 
     owner = next(thing for thing in house().things if thing.id == support)
     place = catalog.kind(owner.kind).surfaces(owner.size)[surface]

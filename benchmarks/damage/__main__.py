@@ -11,7 +11,7 @@ from pathlib import Path
 
 from benchmarks.damage import files, lines, playground
 from benchmarks.damage.asking import ask
-from hthor.eval import provenance
+from hthor import code_identity
 
 
 def main() -> None:
@@ -22,7 +22,7 @@ def main() -> None:
     options.add_argument("--seed", type=int, default=0)
     options.add_argument("--playground", type=Path, help="keep the sound files there, for the next time")
     given = options.parse_args()
-    provenance.keep_compiled()
+    code_identity.keep_compiled()
     with tempfile.TemporaryDirectory() as base:
         ground = given.playground or Path(base, "ground")
         if not ground.exists():

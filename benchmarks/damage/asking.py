@@ -16,7 +16,7 @@ from pathlib import Path
 from types import FrameType
 
 from hthor import cli
-from hthor.cli import ending
+from hthor.console import exit_status
 from hthor.houses import loader
 
 LIMIT_S = 120
@@ -45,9 +45,13 @@ class Said:
         found = []
         if self.broken or _TRACEBACK in self.err:
             found.append(f"traceback: {(self.broken or self.err).strip().splitlines()[-1]}")
-        if self.code not in ending.CODES:
+        if self.code not in exit_status.CODES:
             found.append(f"exit code {self.code} is not documented")
-        if self.code == ending.INTERNAL and not self.broken and not any(word in self.words[:2] for word in _CHECKS):
+        if (
+            self.code == exit_status.INTERNAL
+            and not self.broken
+            and not any(word in self.words[:2] for word in _CHECKS)
+        ):
             found.append("exit code 1 of a command that checks nothing")
         if self.code == 0 and (number := _NO_NUMBER.search(self.out)):
             found.append(f"no number on standard output: {number.group()}")
@@ -56,7 +60,7 @@ class Said:
                 json.loads(self.out, parse_constant=_refuse)
             except ValueError as error:
                 found.append(f"--json: {error}: {self.out[:80]!r}")
-        if self.code == ending.USAGE and not self.err.strip():
+        if self.code == exit_status.USAGE and not self.err.strip():
             found.append("refused without a word")
         return found
 
@@ -72,11 +76,11 @@ def ask(folder: Path, words: Sequence[str], limit_s: int = LIMIT_S) -> Said:
         try:
             cli.main()
         except SystemExit as end:
-            code = end.code if isinstance(end.code, int) else ending.INTERNAL if end.code else 0
+            code = end.code if isinstance(end.code, int) else exit_status.INTERNAL if end.code else 0
         except TooLong:
             code, broken = -1, f"no end within {limit_s} s"
         except BaseException:
-            code, broken = ending.INTERNAL, traceback.format_exc()
+            code, broken = exit_status.INTERNAL, traceback.format_exc()
     return Said(tuple(words), code, out.getvalue(), err.getvalue(), broken)
 
 

@@ -7,7 +7,7 @@ import typing
 from collections.abc import Iterator
 from typing import Any
 
-from hthor.cli import reference
+from hthor.console import reference
 
 OUTSIDE = {
     "hthor assets build": "loads a package from the network",

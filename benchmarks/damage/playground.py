@@ -8,10 +8,11 @@ from pathlib import Path
 import msgspec
 
 from hthor import calibration, humans, jsonio, tasks, world
-from hthor.eval import campaign, find, intent, progress, remains
-from hthor.tasks import commitment, library
-from hthor.tasks.commitment import Commitment, Revealed
-from hthor.tasks.salt import Salt
+from hthor.eval.records import find
+from hthor.eval.runner import experiment, fault_report, progress, run_options
+from hthor.tasks.suites import commitment, library
+from hthor.tasks.suites.commitment import Commitment, Revealed
+from hthor.tasks.suites.secret_salt import Salt
 
 ROOT = Path(__file__).resolve().parents[2]
 SALT = "5d41402abc4b2a76b9719d911017c592a1b2c3d4e5f60718293a4b5c6d7e8f90"
@@ -25,8 +26,10 @@ def make(folder: Path) -> Path:
     short = tuple(msgspec.structs.replace(one, time_limit=15.0, t_star=10.0) for one in few)
     suite = library.frozen("few", 1, short)
     jsonio.write(folder / "few.json", library.encode(suite))
-    options = intent.Options(agents=("silent", "oracle"), suite=str(folder / "few.json"), jobs=1, out=folder / "runs")
-    list(campaign.conduct(options, lambda _: progress.Silent()))
+    options = run_options.Options(
+        agents=("silent", "oracle"), suite=str(folder / "few.json"), jobs=1, out=folder / "runs"
+    )
+    list(experiment.conduct(options, lambda _: progress.Silent()))
     jsonio.write(folder / "runs" / "oracle" / "isolation.json", jsonio.pretty({"level": "L2", "landlock_abi": 4}))
     _faults(folder / "runs" / "oracle")
     _official(folder / "official", suite)
@@ -44,11 +47,11 @@ def _faults(run: Path) -> None:
     """What a run keeps of a trial in which an agent failed."""
     spec = find.trial(run, "0").spec
     key = find.trial(run, "0").key
-    failure = remains.Failure(seat="robot", agent="oracle", kind="raised", tick=3, time_s=0.3, detail="lost")
-    left = remains.Remains(
+    failure = fault_report.Failure(seat="robot", agent="oracle", kind="raised", tick=3, time_s=0.3, detail="lost")
+    left = fault_report.Remains(
         key=key, task=spec.task.id, participant=spec.participant, index=spec.index, failures=(failure,)
     )
-    jsonio.write(run / remains.FOLDER / f"{key}.json", jsonio.pretty(left))
+    jsonio.write(run / fault_report.FOLDER / f"{key}.json", jsonio.pretty(left))
 
 
 def _official(folder: Path, suite: tasks.Suite) -> None:

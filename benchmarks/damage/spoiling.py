@@ -14,8 +14,8 @@ import msgspec
 import numpy as np
 
 from hthor import jsonio
-from hthor.eval import record
-from hthor.tasks import library
+from hthor.eval.records import trial_record
+from hthor.tasks.suites import library
 from hthor.types import TrialSpec
 
 Spoil = Callable[[bytes, random.Random], bytes]
@@ -110,7 +110,7 @@ def mended_line(data: bytes, dice: random.Random) -> bytes:
         document = json.loads(spoiled)
         if isinstance(document, dict) and isinstance(document.get("spec"), dict) and dice.random() < 0.9:
             spec = msgspec.convert(document["spec"], TrialSpec)
-            document["key"] = record.key(spec)
+            document["key"] = trial_record.key(spec)
         body = json.dumps({**document, "check": None}).encode().rpartition(b', "check": null')[0]
     except (ValueError, TypeError, OverflowError, RecursionError):
         body = spoiled.strip()[:-1]

@@ -1,4 +1,4 @@
-"""The robots' minds, one file an agent, and the template for a new one; knows nothing of worlds or scores.
+"""The robots' minds, one file an agent, and the template for a new one.
 
 An agent file defines ``class Agent`` with ``begin(briefing)`` and ``act(observation) -> Action``. Optional class
 attributes: ``privileges`` (of "ideal_detector", "object_poses", "house_map"; they are printed with every result),

@@ -1,17 +1,17 @@
-"""The frontier robot of the paper: explores with a detector for what is near, and tells; knows nothing of the house."""
+"""The frontier robot of the paper: explores with a detector for what is near, and tells."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hthor.agents._jobs import PAPER_KINDS
-from hthor.agents._offers import APART_M, ASIDE_M, Offers, sighting, spot
+from hthor.agents.skills.message_timing import APART_M, ASIDE_M, Offers, sighting, spot
+from hthor.agents.skills.subgoals import PAPER_KINDS
 from hthor.types import HUMAN, Action, Briefing, Detection, Motion, Observation, Send, Wait
 
 if TYPE_CHECKING:
-    from hthor.agents._explorer import Explorer
-    from hthor.agents._gatherer import Gatherer
-    from hthor.navigation.courtesy import Courtesy
+    from hthor.agents.skills.explorer import Explorer
+    from hthor.agents.skills.multi_object_frontier import Gatherer
+    from hthor.navigation.yielding import Courtesy
 
 
 class Agent:
@@ -26,14 +26,14 @@ class Agent:
 
     def begin(self, briefing: Briefing) -> None:
         """Start with an empty map."""
-        from hthor.agents._explorer import Explorer
-        from hthor.navigation.courtesy import Courtesy
+        from hthor.agents.skills.explorer import Explorer
+        from hthor.navigation.yielding import Courtesy
 
         self.briefing = briefing
         self.gatherer: Gatherer | None = None
         carries = "pick" in briefing.body.capabilities and briefing.relation != "find"
         if carries or briefing.kind not in PAPER_KINDS:
-            from hthor.agents._gatherer import Gatherer
+            from hthor.agents.skills.multi_object_frontier import Gatherer
 
             self.gatherer = Gatherer(briefing)
             return
@@ -71,7 +71,7 @@ class Agent:
 
     def _watch(self, observation: Observation) -> Motion:
         """Wait where it is in nobody's way, facing the target; come back when there is reason to speak again."""
-        from hthor.navigation.follow import face
+        from hthor.navigation.path_follower import face
 
         assert self.target is not None
         pose, (x, y, _) = observation.pose, self.target.position

@@ -1,18 +1,18 @@
-"""The oracle robot of the paper: knows where everything is and walks there; knows nothing of the person's plans."""
+"""The oracle robot of the paper: knows where everything is and walks there."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hthor.agents._crew import able
-from hthor.agents._jobs import PAPER_KINDS, todo
-from hthor.agents._offers import ASIDE_M
+from hthor.agents.skills.message_timing import ASIDE_M
+from hthor.agents.skills.subgoals import PAPER_KINDS, todo
+from hthor.agents.skills.task_allocation import able
 from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Send, Wait
 
 if TYPE_CHECKING:
-    from hthor.agents._routes import Routes
-    from hthor.navigation.courtesy import Courtesy
-    from hthor.navigation.follow import Follower
+    from hthor.agents.skills.routes import Routes
+    from hthor.navigation.path_follower import Follower
+    from hthor.navigation.yielding import Courtesy
 
 _PATIENCE_S = 25.0
 """How long an object that is another robot's share is not spoken of."""
@@ -33,15 +33,15 @@ class Agent:
 
     def begin(self, briefing: Briefing) -> None:
         """Prepare the shortest ways of this house."""
-        from hthor.agents._crew import Crew
-        from hthor.agents._hands import Worker
-        from hthor.agents._hauling import Hauler
-        from hthor.agents._jobs import Knowledge
-        from hthor.agents._passing import Passing
-        from hthor.agents._routes import Routes
-        from hthor.agents._teller import Teller
-        from hthor.navigation.courtesy import Courtesy
-        from hthor.navigation.follow import Follower
+        from hthor.agents.skills.carrying import Hauler
+        from hthor.agents.skills.manipulation import Worker
+        from hthor.agents.skills.messenger import Teller
+        from hthor.agents.skills.routes import Routes
+        from hthor.agents.skills.subgoals import Knowledge
+        from hthor.agents.skills.task_allocation import Crew
+        from hthor.agents.skills.yielding import Passing
+        from hthor.navigation.path_follower import Follower
+        from hthor.navigation.yielding import Courtesy
 
         assert briefing.house is not None, "the oracle needs the privilege house_map"
         self.briefing, self.jobs = briefing, todo(briefing)

@@ -1,4 +1,4 @@
-"""No robot: the control condition; knows nothing at all."""
+"""No robot: the control condition."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Fitting the human model to published results and to logs, and checking it; knows nothing of commands."""
+"""Fitting the human model to published results and to logs, and checking it."""

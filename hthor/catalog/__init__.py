@@ -1,10 +1,10 @@
-"""Every kind of thing once: size, mass, affordances, form; knows nothing of houses, tasks or engines."""
+"""Every kind of thing once: size, mass, affordances, form."""
 
 from __future__ import annotations
 
 import re
 
-from hthor.catalog import background, priors, receptacles, targets
+from hthor.catalog import household, priors, receptacles, targets
 from hthor.catalog.kind import Family, Form, Kind
 from hthor.errors import UnknownName
 from hthor.types import Vec3
@@ -16,7 +16,7 @@ RECEPTACLES = tuple(kind.name for kind in receptacles.KINDS)
 TARGETS = tuple(kind.name for kind in targets.KINDS)
 """The benchmark's six target objects, by name."""
 
-_KINDS = {kind.name: kind for kind in (*receptacles.KINDS, *targets.KINDS, *background.KINDS)}
+_KINDS = {kind.name: kind for kind in (*receptacles.KINDS, *targets.KINDS, *household.KINDS)}
 _ASSET = re.compile(r"hthor_([a-z_]+?)(?:_(\d+)x(\d+)x(\d+))?(?:_v(\d+))?")
 
 

@@ -1,8 +1,8 @@
-"""Parametric kitchen and laundry machines with doors: microwave ovens, stoves, washers; knows nothing of kinds."""
+"""Parametric kitchen and laundry machines with doors: microwave ovens, stoves, washers."""
 
 from __future__ import annotations
 
-from hthor.catalog.colours import BLACK, IRON, STEEL
+from hthor.catalog.colors import BLACK, IRON, STEEL
 from hthor.catalog.hollow import flap, hinge, inside, shell
 from hthor.catalog.kind import Form
 from hthor.catalog.solids import box, rest

@@ -1,4 +1,4 @@
-"""Parametric furniture that opens: base and wall cabinets, wardrobes, chests with a drawer; knows nothing of kinds.
+"""Parametric furniture that opens: base and wall cabinets, wardrobes, chests with a drawer.
 
 Doors turn about the thing's outer edges and drawers slide to the front; of several drawers only the topmost is one,
 the others are drawn on. Fronts stand ``size[1]`` deep when closed, handles included.
@@ -6,7 +6,7 @@ the others are drawn on. Fronts stand ``size[1]`` deep when closed, handles incl
 
 from __future__ import annotations
 
-from hthor.catalog.colours import IRON, STEEL
+from hthor.catalog.colors import IRON, STEEL
 from hthor.catalog.hollow import PULL, hinge, inside, shell, slide, tray
 from hthor.catalog.kind import Form
 from hthor.catalog.solids import box, rest

@@ -1,8 +1,8 @@
-"""Parametric fixtures: the fridge with its door, basins, and what stands in a bathroom; knows nothing of kinds."""
+"""Parametric fixtures: the fridge with its door, basins, and what stands in a bathroom."""
 
 from __future__ import annotations
 
-from hthor.catalog.colours import GLASS, GREY, STEEL, WHITE
+from hthor.catalog.colors import GLASS, GREY, STEEL, WHITE
 from hthor.catalog.hollow import hinge
 from hthor.catalog.kind import Form
 from hthor.catalog.solids import box, pillar, rest, rounded

@@ -1,6 +1,5 @@
-"""Shells, doors and drawers for things that open, measured from a thing's left, back, bottom corner.
-
-It knows nothing of what is being built. ``size``, ``lo`` and ``hi`` are as in ``solids``; a shell is open in front.
+"""Shells, doors and drawers for things that open, measured from a thing's left, back, bottom corner. ``size``, ``lo``
+and ``hi`` are as in ``solids``; a shell is open in front.
 """
 
 from __future__ import annotations

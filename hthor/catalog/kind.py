@@ -1,4 +1,4 @@
-"""What a kind of thing is: a record of its size, mass, affordances and form; knows nothing of where things stand."""
+"""What a kind of thing is: a record of its size, mass, affordances and form."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parametric small things of one to three parts, and what hangs on walls; knows nothing of kinds."""
+"""Parametric small things of one to three parts, and what hangs on walls."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
-"""The benchmark's eight receptacles; knows nothing of where they stand."""
+"""The benchmark's eight receptacles."""
 
 from __future__ import annotations
 
 from functools import partial
 
 from hthor.catalog import cabinets, fixtures, shapes
-from hthor.catalog import colours as c
+from hthor.catalog import colors as c
 from hthor.catalog.kind import Kind
 
 KINDS = (

@@ -1,4 +1,4 @@
-"""Parametric furniture without doors: tables, open cabinets, shelves, seats, beds; knows nothing of kinds.
+"""Parametric furniture without doors: tables, open cabinets, shelves, seats, beds.
 
 Every function builds a thing of any positive size [m] whose parts fill its bounding box; z runs up from the floor and
 y from the back to the front while building (see ``solids``).
@@ -6,7 +6,7 @@ y from the back to the front while building (see ``solids``).
 
 from __future__ import annotations
 
-from hthor.catalog.colours import IRON, WHITE
+from hthor.catalog.colors import IRON, WHITE
 from hthor.catalog.kind import Form
 from hthor.catalog.solids import box, pillar, rest, rounded
 from hthor.types import Part, Rgba, Surface, Vec3

@@ -1,4 +1,4 @@
-"""Measuring out parts and surfaces from a thing's left, back, bottom corner; knows nothing of what is being built.
+"""Measuring out parts and surfaces from a thing's left, back, bottom corner.
 
 Every function takes the thing's ``size`` (width, depth, height) [m] and corners ``lo`` and ``hi`` [m] in a frame whose
 origin is the left back bottom corner of the bounding box, and returns records in the thing's local frame.

@@ -1,10 +1,10 @@
-"""The benchmark's six target objects; knows nothing of where they are hidden."""
+"""The benchmark's six target objects."""
 
 from __future__ import annotations
 
 from functools import partial
 
-from hthor.catalog import colours as c
+from hthor.catalog import colors as c
 from hthor.catalog import props
 from hthor.catalog.kind import Kind
 

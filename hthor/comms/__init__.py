@@ -1,1 +1,1 @@
-"""How robots and the person talk; knows nothing of worlds, minds or pictures."""
+"""How robots and the person talk."""

@@ -1,4 +1,4 @@
-"""How far a message is from the truth; knows nothing of who reads it or what becomes of it."""
+"""How far a message is from the truth."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from hthor import geometry
+from hthor.geometry import plane
 from hthor.types import HouseSpec, Send, Snapshot, Thing, Vec3
 
 OFF_M = 1.0
@@ -42,14 +42,14 @@ def _ways(name: str, position: Vec3, snapshot: Snapshot, house: HouseSpec) -> It
     spot = (position[0], position[1])
     for thing in house.things:
         if name in (thing.id, thing.kind) and _stands(thing, snapshot):
-            yield geometry.distance_to_rectangle(spot, thing.centre[:2], thing.size[:2], thing.yaw)
+            yield plane.distance_to_rectangle(spot, thing.centre[:2], thing.size[:2], thing.yaw)
     known = {thing.id: thing for thing in house.things}
     for state in snapshot.things.values():
         if name in (state.id, state.kind) and not (state.id in known and _stands(known[state.id], snapshot)):
             yield math.dist(state.position, position)
     for room in house.rooms:
         if name in (room.id, room.kind):
-            yield 0.0 if geometry.inside(spot, room.polygon) else geometry.distance_to_edge(spot, room.polygon)
+            yield 0.0 if plane.inside(spot, room.polygon) else plane.distance_to_edge(spot, room.polygon)
     if name in snapshot.poses:
         yield math.dist((snapshot.poses[name].x, snapshot.poses[name].y), spot)
 

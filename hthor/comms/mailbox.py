@@ -1,4 +1,4 @@
-"""The one mailbox of a trial: robots send, the person confirms or declines; knows nothing of worlds or minds.
+"""The one mailbox of a trial: robots send, the person confirms or declines.
 
 A message lives as sent, then shown, and ends as confirmed, declined or covered; one that nobody answers stays sent or
 shown. At most one message is open: a new one, from whichever robot, covers it.

@@ -1,4 +1,4 @@
-"""What a robot may write, made fit to be shown and logged; knows nothing of who reads it."""
+"""What a robot may write, made fit to be shown and logged."""
 
 from __future__ import annotations
 

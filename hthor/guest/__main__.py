@@ -1,10 +1,10 @@
-"""The guest's side: ``python -m hthor.guest TELL PARENT``; knows only its line to the host."""
+"""The guest's side: ``python -m hthor.guest TELL PARENT``."""
 
 from __future__ import annotations
 
 import sys
 
-from hthor.guest.keeper import main
+from hthor.guest.supervisor.supervisor import main
 
 if __name__ == "__main__":
     main(*(int(word) for word in sys.argv[1:3]))

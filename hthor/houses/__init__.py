@@ -1,4 +1,4 @@
-"""Floor plans as data: load a house, judge it; knows nothing of engines, minds or tasks."""
+"""Floor plans as data: load a house, judge it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hthor.houses.loader import load, names, shelve, shelves
 
 if TYPE_CHECKING:
-    from hthor.houses.check import check
+    from hthor.houses.checks.check import check
 
 __all__ = ["check", "load", "names", "shelve", "shelves"]
 
@@ -23,7 +23,7 @@ class _Houses(ModuleType):
     def __getattr__(self, name: str) -> Any:
         # The check compiles its grids, so it is imported only when asked for.
         if name == "check":
-            from hthor.houses.check import check
+            from hthor.houses.checks.check import check
 
             return check
         raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")

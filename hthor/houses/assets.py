@@ -1,4 +1,4 @@
-"""From an asset's id to its kind and size, ours or out of an asset database; knows nothing of where things stand."""
+"""From an asset's id to its kind and size, ours or out of an asset database."""
 
 from __future__ import annotations
 

@@ -12,9 +12,10 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
-from hthor import catalog, geometry
-from hthor.houses import solids
-from hthor.houses.solids import Slab
+from hthor import catalog
+from hthor.geometry import plane
+from hthor.houses.space import solids
+from hthor.houses.space.solids import Slab
 from hthor.types import HouseSpec, Thing, Vec3
 
 SUNK_M = 0.005
@@ -61,7 +62,7 @@ def movable(house: HouseSpec) -> tuple[Thing, ...]:
 def slabs(thing: Thing) -> Iterator[Slab]:
     """Every part of a thing, closed, as an upright box."""
     for part in catalog.kind(thing.kind).parts(thing.size):
-        x, y, z = geometry.to_house(part.centre, thing.centre, thing.yaw)
+        x, y, z = plane.to_house(part.centre, thing.centre, thing.yaw)
         yield Slab((x, y), (2 * part.half[0], 2 * part.half[1]), thing.yaw, z - part.half[2], z + part.half[2])
 
 
@@ -85,7 +86,7 @@ def _on_surface(thing: Thing, support: Thing | None) -> Thing | None:
 
 def _heights(support: Thing, point: Vec3) -> list[float]:
     """Heights [m] of the surfaces that the point is above or below."""
-    local = geometry.to_local(point, support.centre, support.yaw)
+    local = plane.to_local(point, support.centre, support.yaw)
     return [
         support.centre[2] + surface.centre[2]
         for surface in catalog.kind(support.kind).surfaces(support.size)

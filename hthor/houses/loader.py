@@ -1,4 +1,4 @@
-"""From a house file to a `HouseSpec`: frames turned, names given, doors judged; knows nothing of paths or engines.
+"""From a house file to a `HouseSpec`: frames turned, names given, doors judged.
 
 Unity's (x, y up, z) becomes the house frame's (x, z, y), and its clockwise yaw a counter-clockwise one.
 """
@@ -13,11 +13,12 @@ from typing import Any, Literal
 
 from hthor import jsonio
 from hthor.errors import HouseError, UnknownName
-from hthor.geometry import signed_area, wrap
-from hthor.houses import laying, schema, validate, worktops
+from hthor.geometry.plane import signed_area, wrap
+from hthor.houses import laying, schema, worktops
 from hthor.houses.assets import DATABASE, Assets
+from hthor.houses.checks import structure
+from hthor.houses.checks.structure import EXTERIOR, ROOM_KINDS
 from hthor.houses.schema import Agent, HouseFile, OpeningRow, RoomRow, WallRow
-from hthor.houses.validate import EXTERIOR, ROOM_KINDS
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec3, Wall
 
 _OWN = {
@@ -64,7 +65,7 @@ def load(name_or_path: str | Path, assets: Path | None = None) -> HouseSpec:
     """
     path, file = _locate(str(name_or_path))
     document, house = schema.read(path, file)
-    validate.validate(house, file)
+    structure.validate(house, file)
     return _build(house, path.stem, jsonio.sha256(document), file, Assets(path, assets))
 
 
@@ -75,7 +76,7 @@ def build(document: Any, name: str) -> HouseSpec:
         HouseError: as `load`, naming ``name`` as the file.
     """
     house = schema.convert(document, name)
-    validate.validate(house, name)
+    structure.validate(house, name)
     return _build(house, name, jsonio.sha256(document), name, Assets(Path()))
 
 
@@ -101,7 +102,7 @@ def _plain(name: str) -> bool:
 
 def _build(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) -> HouseSpec:
     walls = {wall.id: wall for wall in house.walls}
-    found = validate.start(house)
+    found = structure.start(house)
     if found is None:
         raise HouseError(file, "metadata.agent", "is missing")
     spec = HouseSpec(
@@ -114,7 +115,7 @@ def _build(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) 
             *(_opening(row, walls[row.wall0], door=False) for row in house.windows or ()),
         ),
         things=_things(house, file, assets),
-        height=max(high for _, high in map(validate.wall_heights, house.walls)),
+        height=max(high for _, high in map(structure.wall_heights, house.walls)),
         start=_pose(found[1]),
     )
     return laying.lay(spec)
@@ -130,7 +131,7 @@ def _rooms(rows: list[RoomRow]) -> tuple[Room, ...]:
         kind = ROOM_KINDS[row.room_type]
         title = kind.replace("_", " ")
         number = f" {seen[row.room_type]}" if total[row.room_type] > 1 else ""
-        corners = validate.floor(row)
+        corners = structure.floor(row)
         polygon = corners if signed_area(corners) > 0.0 else corners[::-1]
         material = row.floor_material.name if row.floor_material is not None else ""
         rooms.append(Room(id=row.id, kind=kind, name=title + number, polygon=polygon, floor=material))
@@ -138,8 +139,8 @@ def _rooms(rows: list[RoomRow]) -> tuple[Room, ...]:
 
 
 def _wall(row: WallRow) -> Wall:
-    a, b = validate.wall_line(row)
-    low, high = validate.wall_heights(row)
+    a, b = structure.wall_line(row)
+    low, high = structure.wall_heights(row)
     material = row.material if row.material is not None else schema.Material()
     colour = material.color
     rgb: Vec3 | None = None if colour is None else (colour.r, colour.g, colour.b)
@@ -149,7 +150,7 @@ def _wall(row: WallRow) -> Wall:
 
 
 def _opening(row: OpeningRow, wall: WallRow, *, door: bool) -> Opening:
-    start, end = validate.wall_line(wall)
+    start, end = structure.wall_line(wall)
     length = math.dist(start, end)
     ux, uy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
     near, far = sorted(corner.x for corner in row.hole_polygon)
@@ -173,10 +174,10 @@ def _opening(row: OpeningRow, wall: WallRow, *, door: bool) -> Opening:
 
 
 def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
-    rooms = [(room.id, validate.floor(room)) for room in house.rooms]
+    rooms = [(room.id, structure.floor(room)) for room in house.rooms]
     things: list[Thing] = []
     units: dict[str, tuple[Thing, ...]] = {}
-    for where, row, parent in validate.objects(house):
+    for where, row, parent in structure.objects(house):
         asset = assets.find(row.asset_id, file, f"{where}.assetId")
         at = row.position
         thing = Thing(
@@ -187,7 +188,7 @@ def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
             centre=(at.x, at.z, at.y),
             size=asset.size,
             yaw=wrap(0.0 - math.radians(row.rotation.y)),
-            room=validate.room_at((at.x, at.z), rooms) or "",
+            room=structure.room_at((at.x, at.z), rooms) or "",
             parent=worktops.beneath((at.x, at.z), units[parent]).id if parent in units else parent,
         )
         units[row.id] = worktops.units(thing, asset.plan)

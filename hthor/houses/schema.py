@@ -1,4 +1,4 @@
-"""ProcTHOR's house file, schema 1.0.0, as records: reading, finiteness and structure; knows nothing of geometry.
+"""ProcTHOR's house file, schema 1.0.0, as records: reading, finiteness and structure.
 
 Only the keys that hthor uses are declared; others are let through unread. Lengths are metres and angles degrees in
 Unity's left-handed frame: x right, y up, z forward, yaw clockwise seen from above.

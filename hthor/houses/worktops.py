@@ -1,4 +1,4 @@
-"""Worktops round a corner: an L- or C-shaped one as the straight units that it is made of; knows nothing of rooms.
+"""Worktops round a corner: an L- or C-shaped one as the straight units that it is made of.
 
 ProcTHOR's database gives such a worktop one bounding box, up to 3 m square. Made of straight units, each a thing of its
 own with its front to the inside, it is as deep as a worktop everywhere: for who walks, reaches, looks and searches.
@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 import msgspec
 
-from hthor.geometry import distance_to_rectangle, to_house, wrap
+from hthor.geometry.plane import distance_to_rectangle, to_house, wrap
 from hthor.types import Thing, Vec2
 
 DEPTH_M = 0.61

@@ -1,7 +1,4 @@
-"""People in the house: the seam where a proxy or a live person sits, and what a proxy is made of.
-
-Knows nothing of worlds, robots' minds or scoring.
-"""
+"""People in the house: the seam where a proxy or a live person sits, and what a proxy is made of."""
 
 from __future__ import annotations
 
@@ -10,11 +7,11 @@ def fingerprint(name: str) -> str:
     """Hash of everything that people of this name are made of: their model, and every number of their population.
 
     Args:
-        name: as `hthor.humans.people.find` reads it.
+        name: as `hthor.humans.population.resolve.find` reads it.
 
     Raises:
         UnknownName: when there are no such people.
     """
-    from hthor.humans import people
+    from hthor.humans.population import resolve
 
-    return people.find(name).sha256
+    return resolve.find(name).sha256

@@ -1,4 +1,4 @@
-"""The seam where a person sits: what every human model can do; knows nothing of any one model.
+"""The seam where a person sits: what every human model can do.
 
 A human model is one file in ``hthor/humans/models`` that defines ``class Model``. It is made once a session from a
 `Person` and what is left of earlier trials, and goes through the trials of the session in order: ``begin``, ``act``

@@ -1,4 +1,4 @@
-"""From a run's folder to an entry, scored anew from the run's log; knows nothing of other entries."""
+"""From a run's folder to an entry, scored anew from the run's log."""
 
 from __future__ import annotations
 
@@ -10,26 +10,21 @@ from pathlib import Path
 
 import msgspec
 
+from hthor import code_identity
 from hthor.errors import HthorError, RunError
-from hthor.eval import (
-    command,
-    control,
-    do_overs,
-    guarded,
-    machine,
-    metrics,
-    programme,
-    provenance,
-    reading,
-    score,
-    setup,
-)
-from hthor.eval.setup import Setup
+from hthor.eval.config import cli_command, run_config, task_selection
+from hthor.eval.config.run_config import Setup
+from hthor.eval.metrics import trial_metrics
+from hthor.eval.records import platform, reader, run_isolation, session_restarts
+from hthor.eval.results import aggregate, baseline
 from hthor.guest import Manifest
-from hthor.leaderboard import admission, checks, files, harness, invariants, outcomes, overrides, verification, worth
-from hthor.leaderboard.entry import LOCKSTEP, REALTIME, Agent, Counts, Entry, Hashes, Metrics
-from hthor.leaderboard.files import BoardError
-from hthor.leaderboard.submission import Submission
+from hthor.leaderboard import board_check
+from hthor.leaderboard.entries import entry_metrics, files, invariants, overrides, trial_outcomes, verification
+from hthor.leaderboard.entries.entry import LOCKSTEP, REALTIME, Agent, Counts, Entry, Hashes, Metrics
+from hthor.leaderboard.entries.files import BoardError
+from hthor.leaderboard.ranking import admission
+from hthor.leaderboard.submission import harness
+from hthor.leaderboard.submission.submission import Submission
 
 _SHOWN = 3
 OURS = "hthor.agents."
@@ -48,8 +43,8 @@ def add(folder: Path, board: Path, submission: Submission | None = None) -> list
     """
     made: dict[Path, Entry] = {}
     for run in _runs(folder):
-        plan = setup.load(run)
-        beside = control.place(run, plan)
+        plan = run_config.load(run)
+        beside = baseline.place(run, plan)
         for each in (run, *([beside] if beside else [])):
             made[each] = made.get(each) or of(each, submission if each == run else None)
     added = {entry.id: (entry, board / files.ENTRIES / f"{entry.id}.json") for entry in made.values()}
@@ -65,20 +60,22 @@ def add(folder: Path, board: Path, submission: Submission | None = None) -> list
 
 def of(folder: Path, submission: Submission | None = None) -> Entry:
     """The entry of one run."""
-    plan = setup.load(folder)
-    lines, kept = reading.records(folder, plan)
+    plan = run_config.load(folder)
+    lines, kept = reader.records(folder, plan)
     _whole(folder, plan, len(kept))
     found = overrides.of(plan, _crew(plan), len({one.spec.task.id for one in kept}))
     if found:
         raise BoardError(overrides.refusal(folder, plan, found))
-    records = [msgspec.structs.replace(one, metrics=metrics.measure(one.spec, one.log)) for one in kept]
-    gain = control.measure(folder, plan, records)
+    records = [msgspec.structs.replace(one, metrics=trial_metrics.measure(one.spec, one.log)) for one in kept]
+    gain = baseline.measure(folder, plan, records)
     if gain is None and plan.seats:
         raise RunError(f"{folder} has no run without a robot beside it. 'hthor eval' plays it without --no-control.")
-    held = guarded.load(folder)
-    result = score.summarise(plan, lines, records, uplift=gain, isolation=held, replays=do_overs.count(folder))
-    columns = outcomes.of(records, map(outcomes.leaf, lines))
-    whose = worth.people(len(records), plan.participants)
+    held = run_isolation.load(folder)
+    result = aggregate.summarise(
+        plan, lines, records, uplift=gain, isolation=held, replays=session_restarts.count(folder)
+    )
+    columns = trial_outcomes.of(records, map(trial_outcomes.leaf, lines))
+    whose = entry_metrics.people(len(records), plan.participants)
     agent = submission.agent if submission else Agent(name=plan.crew)
     _same_files(folder, result.agents, submission)
     return Entry(
@@ -92,7 +89,7 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
         hashes=Hashes(run=plan.sha256, trials=result.hashes.trials, merkle=columns.merkle),
         harness=harness.here(),
         mode=REALTIME if getattr(result, "mode", "") == REALTIME else LOCKSTEP,
-        platforms=machine.load(folder),
+        platforms=platform.load(folder),
         isolation=held,
         counts=Counts(
             trials=len(records),
@@ -102,10 +99,10 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
             faults_by_kind=result.counts.faults_by_kind,
             replays=result.counts.replays,
         ),
-        metrics=Metrics(**worth.scores(columns, whose, alone=not plan.seats)),
-        splits=worth.splits(columns, whose),
+        metrics=Metrics(**entry_metrics.scores(columns, whose, alone=not plan.seats)),
+        splits=entry_metrics.splits(columns, whose),
         uplift=gain,
-        trials=outcomes.pack(columns),
+        trials=trial_outcomes.pack(columns),
     )
 
 
@@ -126,7 +123,7 @@ def _refuse(board: Path, made: Mapping[Path, Entry]) -> None:
         drawn = {Path(drafts) / path.name: path for path in made}
         for draft, path in drawn.items():
             files.write(draft, made[path])
-        found = checks.problems(board, tuple(drawn))
+        found = board_check.problems(board, tuple(drawn))
     files.refuse(msgspec.structs.replace(one, file=str(drawn[Path(one.file)])) for one in found)
 
 
@@ -136,9 +133,9 @@ def _whole(folder: Path, plan: Setup, there: int) -> None:
     if plan.trials != there:
         raise RunError(
             f"{folder} lacks {plan.trials - there} of its {plan.trials} trials, and only whole runs go on the board. "
-            f"Finish it: {command.of(folder, plan)}"
+            f"Finish it: {cli_command.of(folder, plan)}"
         )
-    if plan.code_sha256 != (here := provenance.code_sha256(plan.humans.model, plan.kinds)):
+    if plan.code_sha256 != (here := code_identity.code_sha256(plan.humans.model, plan.kinds)):
         raise RunError(
             f"{folder / 'run.json'}: code_sha256 is {plan.code_sha256[:10]}, and here it is {here[:10]}: another "
             "version of hthor played it, by which it has to be added. Or play it anew."
@@ -148,7 +145,7 @@ def _whole(folder: Path, plan: Setup, there: int) -> None:
 def _crew(plan: Setup) -> tuple[str, ...]:
     """The bodies that the suite is made for; official ones have searches and deliveries, which are the scout's."""
     try:
-        chosen = programme.choose(plan.suite.name, "")
+        chosen = task_selection.choose(plan.suite.name, "")
     except HthorError:
         return ("scout",)
     return chosen.crew

@@ -6,8 +6,11 @@ from pathlib import Path
 
 from hthor import jsonio
 from hthor.errors import HthorError
-from hthor.leaderboard import admission, checks, files, listing, page, schema, verification
-from hthor.leaderboard.files import Problem
+from hthor.leaderboard import board_check, schema
+from hthor.leaderboard.entries import files, verification
+from hthor.leaderboard.entries.files import Problem
+from hthor.leaderboard.page import page
+from hthor.leaderboard.ranking import admission, listing
 
 
 def build(board: Path) -> list[Path]:
@@ -27,7 +30,7 @@ def build(board: Path) -> list[Path]:
 
 def made(board: Path) -> dict[str, bytes]:
     """The files that a board's entries make, by name."""
-    files.refuse(checks.problems(board))
+    files.refuse(board_check.problems(board))
     entries = [files.read(path) for path in files.entry_paths(board)]
     found = listing.board(entries, verification.load(board), admission.load(board))
     return {
@@ -42,7 +45,7 @@ def differences(board: Path) -> list[Problem]:
     try:
         wanted = made(board)
     except HthorError:
-        return checks.problems(board)
+        return board_check.problems(board)
     hint = "is not what the entries make; 'hthor leaderboard build' writes it"
     return [
         Problem(file=str(board / name), field="$", problem=hint)

@@ -7,8 +7,8 @@ from pathlib import Path
 import msgspec
 
 from hthor import jsonio
-from hthor.leaderboard import files, outcomes, worth
-from hthor.leaderboard.entry import Entry
+from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
+from hthor.leaderboard.entries.entry import Entry
 
 
 def rescore(board: Path) -> list[Path]:
@@ -30,12 +30,14 @@ def rescore(board: Path) -> list[Path]:
 
 
 def _fresh(entry: Entry, control: Entry | None) -> Entry:
-    columns = outcomes.unpack(entry.trials)
-    whose = worth.people(entry.trials.count, entry.run.participants)
-    scores: dict[str, object] = {**worth.scores(columns, whose, alone=entry.alone)}
+    columns = trial_outcomes.unpack(entry.trials)
+    whose = entry_metrics.people(entry.trials.count, entry.run.participants)
+    scores: dict[str, object] = {**entry_metrics.scores(columns, whose, alone=entry.alone)}
     return msgspec.structs.replace(
         entry,
         metrics=msgspec.structs.replace(entry.metrics, **scores),
-        splits=worth.splits(columns, whose),
-        uplift=worth.uplift(entry, columns, control, outcomes.unpack(control.trials)) if control else entry.uplift,
+        splits=entry_metrics.splits(columns, whose),
+        uplift=entry_metrics.uplift(entry, columns, control, trial_outcomes.unpack(control.trials))
+        if control
+        else entry.uplift,
     )

@@ -1,4 +1,4 @@
-"""The JSON schema of an entry and of the list, made from the records that they are; knows nothing of files.
+"""The JSON schema of an entry and of the list, made from the records that they are.
 
 What records cannot say, such as that a share lies between 0 and 1, is in a table here.
 """
@@ -9,9 +9,9 @@ from typing import Any
 
 import msgspec
 
-from hthor.eval.setup import Setup
-from hthor.leaderboard.board import Board
-from hthor.leaderboard.entry import Entry, Trials
+from hthor.eval.config.run_config import Setup
+from hthor.leaderboard.entries.entry import Entry, Trials
+from hthor.leaderboard.ranking.board import Board
 from hthor.types import RobotSeat
 
 NEVER = "shard"

@@ -1,4 +1,4 @@
-"""What things look like: meshes, textures, materials, made by numbers alone; knows nothing of houses or engines."""
+"""What things look like: meshes, textures, materials, made by numbers alone."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from hthor import catalog
-from hthor.looks.mesh import Material, Mesh, Piece
+from hthor.looks.meshes.mesh import Material, Mesh, Piece
 from hthor.types import Vec3
 
 CODE_PART = "pictures"

@@ -1,33 +1,15 @@
-"""From a kind to its pieces: who builds what, and how the pieces are put together; knows nothing of houses."""
+"""From a kind to its pieces: who builds what, and how the pieces are put together."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
 from hthor.catalog import Kind
-from hthor.looks import (
-    bathroom,
-    beds,
-    food,
-    fronts,
-    kitchen,
-    lamps,
-    machines,
-    paper,
-    plain,
-    plants,
-    screens,
-    seats,
-    shaping,
-    sinks,
-    small,
-    tableware,
-    toys,
-    trunks,
-    walls,
-)
 from hthor.looks.draft import Draft
-from hthor.looks.mesh import Material, Mesh, Piece
+from hthor.looks.furniture import appliances, bathroom, beds, fronts, kitchen, lamps, plain, seats, sinks, wall_items
+from hthor.looks.meshes import shaping
+from hthor.looks.meshes.mesh import Material, Mesh, Piece
+from hthor.looks.objects import food, paper, plants, screens, small, tableware, toys, trunks
 from hthor.types import Vec3
 
 _CLOSE_M = 1e-4
@@ -54,13 +36,13 @@ _BUILDERS: Mapping[str, Builder] = {
     "fridge": kitchen.fridge,
     "sink": sinks.sink,
     "faucet": sinks.faucet,
-    "stove": machines.stove,
-    "microwave": machines.microwave,
-    "safe": machines.microwave,
-    "washing_machine": machines.washer,
+    "stove": appliances.stove,
+    "microwave": appliances.microwave,
+    "safe": appliances.microwave,
+    "washing_machine": appliances.washer,
     "coffee_machine": kitchen.coffee_machine,
     "toaster": kitchen.toaster,
-    "range_hood": machines.range_hood,
+    "range_hood": appliances.range_hood,
     "sofa": seats.sofa,
     "armchair": seats.sofa,
     "chair": seats.chair,
@@ -108,12 +90,12 @@ _BUILDERS: Mapping[str, Builder] = {
     "vacuum_cleaner": lamps.vacuum_cleaner,
     "brush": lamps.brush,
     "house_plant": plants.house_plant,
-    "painting": walls.painting,
-    "mirror": walls.mirror,
-    "clock": walls.clock,
-    "curtain": walls.curtain,
-    "rug": walls.rug,
-    "light_switch": walls.light_switch,
+    "painting": wall_items.painting,
+    "mirror": wall_items.mirror,
+    "clock": wall_items.clock,
+    "curtain": wall_items.curtain,
+    "rug": wall_items.rug,
+    "light_switch": wall_items.light_switch,
     "basketball": toys.basketball,
     "teddy_bear": toys.teddy_bear,
     "statue": toys.statue,

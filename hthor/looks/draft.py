@@ -1,4 +1,4 @@
-"""What a builder of looks works from: a thing's size, solids and surfaces, set on the floor; knows no kinds."""
+"""What a builder of looks works from: a thing's size, solids and surfaces, set on the floor."""
 
 from __future__ import annotations
 

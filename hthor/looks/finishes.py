@@ -1,4 +1,4 @@
-"""What the names that houses give floors and walls stand for, a texture and a colour; knows nothing of pictures."""
+"""What the names that houses give floors and walls stand for, a texture and a colour."""
 
 from __future__ import annotations
 

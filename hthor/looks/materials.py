@@ -6,9 +6,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from hthor.catalog import colours
+from hthor.catalog import colors
 from hthor.looks import finishes, textures
-from hthor.looks.mesh import Material, Mesh, Piece
+from hthor.looks.meshes.mesh import Material, Mesh, Piece
 from hthor.types import Rgba, Vec3
 
 _WOODS = (
@@ -63,7 +63,7 @@ def metal(rgba: Rgba) -> Material:
     return tinted("brushed", rgba, 0.6, 0.6)
 
 
-def chrome(rgba: Rgba = colours.STEEL) -> Material:
+def chrome(rgba: Rgba = colors.STEEL) -> Material:
     """Polished metal of that colour."""
     return Material(rgba=rgba, specular=0.9, shininess=0.85)
 
@@ -73,7 +73,7 @@ def ceramic(rgba: Rgba) -> Material:
     return Material(rgba=rgba, specular=0.55, shininess=0.75)
 
 
-def glass(rgba: Rgba = colours.GLASS) -> Material:
+def glass(rgba: Rgba = colors.GLASS) -> Material:
     """Clear glass with a tint."""
     return Material(rgba=(*rgba[:3], min(rgba[3], 0.35)), specular=0.9, shininess=0.9)
 
@@ -93,7 +93,7 @@ def picture(texture: str, emission: float = 0.0) -> Material:
     return Material(texture=texture, specular=0.15 if emission == 0.0 else 0.3, emission=emission)
 
 
-_NAMES = {value: name for name, value in reversed(list(vars(colours).items())) if name.isupper()}
+_NAMES = {value: name for name, value in reversed(list(vars(colors).items())) if name.isupper()}
 
 
 @lru_cache(maxsize=1024)

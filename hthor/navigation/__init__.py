@@ -1,4 +1,4 @@
-"""What a mind may use to map, plan, find frontiers and walk; knows nothing of engines, tasks or messages.
+"""What a mind may use to map, plan, find frontiers and walk.
 
 Names are imported on first use, because the compiled parts take a moment to load.
 """
@@ -9,29 +9,29 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hthor.navigation.courtesy import Courtesy
-    from hthor.navigation.field import Field
-    from hthor.navigation.follow import Follower, face
+    from hthor.navigation.distance_field import Field
     from hthor.navigation.frontier import Frontier, Survey, frontiers, unvisited
-    from hthor.navigation.map import FREE, OCCUPIED, UNKNOWN, GridMap
-    from hthor.navigation.parking import park, retreat
+    from hthor.navigation.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+    from hthor.navigation.path_follower import Follower, face
     from hthor.navigation.planner import Planner
+    from hthor.navigation.waiting_spots import park, retreat
+    from hthor.navigation.yielding import Courtesy
 
 _HOMES = {
-    "Courtesy": "courtesy",
-    "park": "parking",
-    "retreat": "parking",
-    "Follower": "follow",
-    "face": "follow",
+    "Courtesy": "yielding",
+    "park": "waiting_spots",
+    "retreat": "waiting_spots",
+    "Follower": "path_follower",
+    "face": "path_follower",
     "Frontier": "frontier",
     "Survey": "frontier",
     "frontiers": "frontier",
     "unvisited": "frontier",
-    "FREE": "map",
-    "OCCUPIED": "map",
-    "UNKNOWN": "map",
-    "GridMap": "map",
-    "Field": "field",
+    "FREE": "grid_map",
+    "OCCUPIED": "grid_map",
+    "UNKNOWN": "grid_map",
+    "GridMap": "grid_map",
+    "Field": "distance_field",
     "Planner": "planner",
 }
 

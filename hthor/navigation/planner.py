@@ -1,4 +1,4 @@
-"""Shortest paths of a round body on a map that is still being made; knows nothing of goals or of motions."""
+"""Shortest paths of a round body on a map that is still being made."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor.navigation import marching, pulling, searching
-from hthor.navigation.field import ESCAPE_CELLS, Field, price
-from hthor.navigation.map import CELL_M, GridMap
-from hthor.navigation.window import Window
+from hthor.navigation import grid_search_kernel, path_smoothing_kernel, scan_kernel
+from hthor.navigation.distance_field import ESCAPE_CELLS, Field, price
+from hthor.navigation.grid_map import CELL_M, GridMap
+from hthor.navigation.search_window import Window
 from hthor.types import Vec2
 
 _HARD_M = 0.026
@@ -57,7 +57,7 @@ class Planner:
             snapped = spot != self._row_column(b)
             goal = (spot[1] + 0.5, spot[0] + 0.5) if snapped else goal
         apart = abs(start[1] - math.floor(goal[0])), abs(start[0] - math.floor(goal[1]))
-        key = searching.rank(*apart, within / CELL_M)
+        key = grid_search_kernel.rank(*apart, within / CELL_M)
         window = Window(self._cells, self._level, self.optimistic, self._window(start, (a, b)), start, key)
         end = window.seek(*goal, within / CELL_M, price(most))
         return None if end < 0 else self.pulled(window, end, a, None if snapped else b, escape)
@@ -94,20 +94,20 @@ class Planner:
         row, column = self._row_column((x, y))
         ny, nx = self._cells.shape
         inside = 0 <= row < ny and 0 <= column < nx
-        return inside and bool(searching.passable(self._cells, self._level, self.optimistic, row, column))
+        return inside and bool(grid_search_kernel.passable(self._cells, self._level, self.optimistic, row, column))
 
     def straight(self, a: Vec2, b: Vec2) -> bool:
         """Whether the body can go straight from ``a`` to ``b``; where it stands now does not count."""
         self._follow()
         ax, ay = self._cell(a)
         bx, by = self._cell(b)
-        return bool(pulling.line_cost(self._cells, self._level, self.optimistic, ax, ay, bx, by) >= 0.0)
+        return bool(path_smoothing_kernel.line_cost(self._cells, self._level, self.optimistic, ax, ay, bx, by) >= 0.0)
 
     def clear(self, points: Sequence[Vec2]) -> bool:
         """Whether the body can go straight from each point [m] to the next; where it stands now does not count."""
         self._follow()
         known, ends = (self._cells, self._level, self.optimistic), [self._cell(point) for point in points]
-        return all(pulling.line_cost(*known, *a, *b) >= 0.0 for a, b in pairwise(ends))
+        return all(path_smoothing_kernel.line_cost(*known, *a, *b) >= 0.0 for a, b in pairwise(ends))
 
     @property
     def levels(self) -> NDArray[np.uint8]:
@@ -124,7 +124,7 @@ class Planner:
             self._grow()
         self._cells = grid.cells
         obstacles = grid.obstacles
-        marching.inflate(self._level, obstacles, self._stamped, len(obstacles), grid.left, grid.bottom, self._disc)
+        scan_kernel.inflate(self._level, obstacles, self._stamped, len(obstacles), grid.left, grid.bottom, self._disc)
         self._stamped = len(obstacles)
         self._version = grid.version
 
@@ -139,7 +139,7 @@ class Planner:
         off = (x < reach) | (y < reach) | (x >= nx - reach) | (y >= ny - reach)
         obstacles = self.grid.obstacles[:stamped][off]
         frame = self.grid.left, self.grid.bottom
-        marching.inflate(self._level, obstacles, 0, len(obstacles), *frame, self._disc)
+        scan_kernel.inflate(self._level, obstacles, 0, len(obstacles), *frame, self._disc)
         self._stamped = stamped
 
     def _allocate(self) -> None:
@@ -178,7 +178,7 @@ class Planner:
     def _nearest(self, point: Vec2) -> tuple[int, int] | None:
         """The nearest cell the body may be in; None when there is none close by or the point is far outside."""
         row, column = self._row_column(point)
-        flat = searching.nearest(self._cells, self._level, self.optimistic, row, column, ESCAPE_CELLS)
+        flat = grid_search_kernel.nearest(self._cells, self._level, self.optimistic, row, column, ESCAPE_CELLS)
         return None if flat < 0 else divmod(int(flat), self._cells.shape[1])
 
     def _enter(self, a: Vec2) -> tuple[tuple[int, int] | None, bool]:
@@ -198,9 +198,9 @@ class Planner:
         if b is not None:
             points[-1] = self._cell(b)
         keep = np.empty(len(points), dtype=np.int64)
-        kept = pulling.straighten(self._cells, self._level, self.optimistic, points, costs, keep)
+        kept = path_smoothing_kernel.straighten(self._cells, self._level, self.optimistic, points, costs, keep)
         bends = np.ascontiguousarray(points[keep[:kept]])
-        kept = pulling.tighten(self._cells, self._level, self.optimistic, bends, kept)
+        kept = path_smoothing_kernel.tighten(self._cells, self._level, self.optimistic, bends, kept)
         way = [self._metres(x, y) for x, y in bends[:kept].tolist()]
         if b is not None:
             way[-1] = b

@@ -1,7 +1,9 @@
-"""Tasks: kinds, suites and their making; knows nothing of worlds, agents or people."""
+"""Tasks: kinds, suites and their making."""
 
 from __future__ import annotations
 
-from hthor.tasks.library import Suite, suite, suites
+from hthor.tasks.suites.library import Suite, suite, suites
+
+CODE_ROOT = "makers"
 
 __all__ = ["Suite", "suite", "suites"]

@@ -1,4 +1,4 @@
-"""What a kind of task is: how it is told, when it is done, and the least time it takes; knows no kind in particular."""
+"""What a kind of task is: how it is told, when it is done, and the least time it takes."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class TaskKind(ABC):
         Raises:
             HthorError: when the house has nothing for a task of this kind.
         """
-        from hthor.tasks.arrange import arrange
+        from hthor.tasks.generation.target_arrangement import arrange
 
         known = self.goals(house)
         if not known:

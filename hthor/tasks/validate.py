@@ -13,12 +13,12 @@ from msgspec import Struct
 
 from hthor import catalog, houses, plugins
 from hthor.errors import HouseError, HthorError, TaskError, UnknownName
-from hthor.houses.freespace import FreeSpace
-from hthor.houses.solids import overlap
-from hthor.tasks.avatar import HEIGHT_M, RADIUS_M
+from hthor.houses.space.free_space import FreeSpace
+from hthor.houses.space.solids import overlap
+from hthor.tasks.generation.avatar import HEIGHT_M, RADIUS_M
+from hthor.tasks.generation.placement import Shelves, as_thing, footprint, rests_of, stands
 from hthor.tasks.kind import TaskKind
-from hthor.tasks.library import Suite
-from hthor.tasks.placing import Shelves, as_thing, footprint, rests_of, stands
+from hthor.tasks.suites.library import Suite
 from hthor.types import HouseSpec, Placement, TaskSpec
 
 CODE_PART = "tools"

@@ -1,4 +1,4 @@
-"""The records that rooms hand to one another; knows nothing of engines, scoring or files.
+"""The records that rooms hand to one another.
 
 Frames and units, everywhere in hthor: metres, radians, seconds; the *house frame* is MuJoCo's world frame (x right,
 y forward, z up). A body's ``yaw`` is its heading, counter-clockwise from +x. A thing's ``yaw`` turns its *local
@@ -7,25 +7,10 @@ frame* (origin at the centre of its bounding box, front towards +y) counter-cloc
 
 from __future__ import annotations
 
-from hthor.types.acting import Action, Close, Drop, Motion, Move, Open, Pick, Place, Reply, Rotate, Send, Wait
-from hthor.types.bodies import AgentRef, BodySpec, Goal, Job, Placement, RobotSeat, RobotSpec, TaskSpec, TrialSpec
-from hthor.types.happening import Event, Mind, Snapshot
-from hthor.types.places import (
-    HUMAN,
-    HouseSpec,
-    Joint,
-    Opening,
-    Part,
-    Pose,
-    Rgba,
-    Room,
-    Surface,
-    Thing,
-    Vec2,
-    Vec3,
-    Wall,
-)
-from hthor.types.sensing import (
+from hthor.types.actions import Action, Close, Drop, Motion, Move, Open, Pick, Place, Reply, Rotate, Send, Wait
+from hthor.types.events import Event, Mind, Snapshot
+from hthor.types.house import HUMAN, HouseSpec, Joint, Opening, Part, Pose, Rgba, Room, Surface, Thing, Vec2, Vec3, Wall
+from hthor.types.observations import (
     Briefing,
     Camera,
     CameraSpec,
@@ -42,6 +27,7 @@ from hthor.types.sensing import (
     ThingState,
     View,
 )
+from hthor.types.specs import AgentRef, BodySpec, Goal, Job, Placement, RobotSeat, RobotSpec, TaskSpec, TrialSpec
 
 __all__ = [
     "HUMAN",

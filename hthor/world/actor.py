@@ -1,7 +1,7 @@
-"""A hand on one body: calls that take as long as they take, and what the body sees and says; knows nothing of minds.
+"""A hand on one body: calls that take as long as they take, and what the body sees and says.
 
 Each call here starts motions and lets ticks pass until the body is free again; the other bodies stand meanwhile, unless
-something else moves them. An umpire, which moves all bodies at once, uses `hthor.world.by_tick.TickedWorld` instead.
+something else moves them. An umpire, which moves all bodies at once, uses `hthor.world.simulation.TickedWorld` instead.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from hthor.types import (
     Vec3,
     Wait,
 )
-from hthor.world import journey, numbers
-from hthor.world.pictures import Size
+from hthor.world import numbers, walk_to
+from hthor.world.rendering.lazy_images import Size
 
 if TYPE_CHECKING:
     from hthor.types import View
@@ -114,7 +114,7 @@ class Actor:
     def look_at(self, target: str | Vec3) -> Outcome:
         """Turn body and camera towards a thing, an object, a seat or a point [m] of the house frame."""
         point = self._world.position(target) if isinstance(target, str) else numbers.point3("target", target)
-        return self.do(journey.towards(self.pose, self.body, point))
+        return self.do(walk_to.towards(self.pose, self.body, point))
 
     def go_to(self, target: str | Vec2) -> Outcome:
         """Walk the shortest way to the free floor nearest to a point (x, y) [m], or to where a thing, an object or a
@@ -126,7 +126,7 @@ class Actor:
         Raises:
             UnknownName: when there is no such thing. HthorError: when the point is in no room.
         """
-        return journey.go(self, self._world, target if isinstance(target, str) else numbers.point2("target", target))
+        return walk_to.go(self, self._world, target if isinstance(target, str) else numbers.point2("target", target))
 
     def teleport(self, x: float, y: float, yaw: float | None = None, pitch: float | None = None) -> Pose:
         """Be at (x, y) [m] at once, facing ``yaw`` [rad], camera at ``pitch`` [rad]; None keeps what is.

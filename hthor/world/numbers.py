@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from hthor import geometry
 from hthor.errors import HthorError
+from hthor.geometry import plane
 from hthor.types import Pose, Vec2, Vec3
 
 
@@ -77,7 +77,7 @@ def pose(value: Pose) -> Pose:
     """A pose of finite numbers, its heading in (-pi, pi]; raises as `number` does."""
     x, y = number("x", value.x, "metres"), number("y", value.y, "metres")
     yaw, pitch = number("yaw", value.yaw, "radians"), number("pitch", value.pitch, "radians")
-    return Pose(x=x, y=y, yaw=geometry.wrap(yaw), pitch=pitch)
+    return Pose(x=x, y=y, yaw=plane.wrap(yaw), pitch=pitch)
 
 
 def _vector(name: str, value: object, size: int, unit: str) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""The simulator by hand: set up a house, move bodies, look around, pass messages; knows nothing of minds or goals.
+"""The simulator by hand: set up a house, move bodies, look around, pass messages.
 
 from hthor.world import World
 
@@ -10,9 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from hthor import catalog, geometry, houses, rules
+from hthor import catalog, houses, rules
 from hthor.comms.mailbox import Mailbox
 from hthor.errors import UnknownName
+from hthor.geometry import plane
 from hthor.types import (
     HUMAN,
     Event,
@@ -27,9 +28,10 @@ from hthor.types import (
     ThingState,
     Vec3,
 )
-from hthor.world import numbers, starts
+from hthor.world import numbers
 from hthor.world.actor import Actor
-from hthor.world.by_sight import SeenWorld
+from hthor.world.motion import spawn
+from hthor.world.sensing_simulation import SeenWorld
 
 _LIMIT_TICKS = 36_000
 """An hour: a call that is not done by then never will be."""
@@ -70,7 +72,7 @@ class World(SeenWorld):
             return
         self._begin({})
         self._seed = seed
-        starts.stand(tuple(self._seats.values()), self.house.start, ())
+        spawn.stand(tuple(self._seats.values()), self.house.start, ())
 
     def objects(self, kind: str = "", room: str = "") -> tuple[ThingState, ...]:
         """True states of the objects that can be picked up, by id; of one kind, or in one room (its id), when given.
@@ -81,7 +83,7 @@ class World(SeenWorld):
         _known(kind)
         where = self._room(room).polygon if room else ()
         states = (item.state() for item in self._objects if item.present and kind in ("", item.kind))
-        return tuple(state for state in states if not where or geometry.inside(state.position[:2], where))
+        return tuple(state for state in states if not where or plane.inside(state.position[:2], where))
 
     def furniture(self, kind: str = "", room: str = "") -> tuple[Thing, ...]:
         """The things that stay where they are, as the house file has them; of one kind, or in one room, when given.

@@ -5,9 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from hthor.leaderboard import files, verification
-from hthor.leaderboard.entry import SCHEMA
-from hthor.leaderboard.files import BoardError
+from hthor.leaderboard.entries import files, verification
+from hthor.leaderboard.entries.entry import SCHEMA
+from hthor.leaderboard.entries.files import BoardError
 
 
 def main(board: Path) -> None:

@@ -18,11 +18,13 @@ from typing import Any
 import msgspec
 
 from hthor import guest, jsonio, tasks
-from hthor.eval import cast, crews, guarded, progress, remains, run, session, setup, worker
-from hthor.eval.log import read
-from hthor.eval.worker import News
+from hthor.eval.config import robot_team, run_config, sessions
+from hthor.eval.records import run_isolation
+from hthor.eval.records.trial_log import read
+from hthor.eval.runner import fault_report, progress, run, trial_runner, worker
+from hthor.eval.runner.worker import News
 from hthor.guest import Guest, IsolationError
-from hthor.tasks import library
+from hthor.tasks.suites import library
 from hthor.types import HUMAN, AgentRef
 from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, Case, source
 from tests.redteam.play import SECRET, lay_out, listening
@@ -32,10 +34,10 @@ _TASK, _LIMIT_S = "smoke/alder/manipulation-01", 3.0
 _WORLDS: dict[object, Any] = {}
 
 
-class _Stage(cast.Stage):
+class _Stage(trial_runner.Stage):
     """Keeps its world for the next run too, which saves building it for every agent."""
 
-    def __init__(self, sources: cast.Sources | None = None) -> None:
+    def __init__(self, sources: trial_runner.Sources | None = None) -> None:
         super().__init__(sources)
         self._worlds = _WORLDS
 
@@ -52,7 +54,7 @@ class _Here:
 def main(levels: list[str], wanted: list[str]) -> None:
     """Play the agents of these names, or all, at each level, with one that does nothing first."""
     os.environ["HTHOR_SALT"] = SECRET
-    cast.Stage = _Stage  # type: ignore[misc]
+    trial_runner.Stage = _Stage  # type: ignore[misc]
     cases = [one for one in (*HOSTILE, *HONEST) if not wanted or one.name in wanted]
     told: list[dict[str, Any]] = []
     missing: dict[str, str] = {}
@@ -82,20 +84,20 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
     task = next(task for task in tasks.suite("smoke").tasks if task.id == _TASK)
     suite = library.frozen("short", 1, (msgspec.structs.replace(task, time_limit=_LIMIT_S),))
     ref = AgentRef(name="agent", source="agent.py", sha256=hashlib.sha256(text.encode()).hexdigest())
-    crew = crews.form(["scout"], [crews.Character(ref=ref, path=str(path))])
-    plan = setup.settle(suite, crew, human="proxy", seed=0, participants=None)
+    crew = robot_team.form(["scout"], [robot_team.Character(ref=ref, path=str(path))])
+    plan = run_config.settle(suite, crew, human="proxy", seed=0, participants=None)
     hidden = (str(home / "runs"), str(home / "official.json"))
     make = functools.partial(
-        guarded.player, cast.Sources(minds=crew.minds, manifests=crew.manifests), held.level, hidden
+        run_isolation.player, trial_runner.Sources(minds=crew.minds, manifests=crew.manifests), held.level, hidden
     )
     result = run.evaluate(
         plan,
-        session.sessions(suite, agent=crew),
+        sessions.sessions(suite, agent=crew),
         make,
         folder=runs,
         engine=_Here(),
         watch=progress.Silent(),
-        extra={guarded.NAME: jsonio.pretty(held)},
+        extra={run_isolation.NAME: jsonio.pretty(held)},
     )
     ((_, record),) = read(runs / "trials.jsonl")
     fault = record.faults[0] if record.faults else None
@@ -116,8 +118,8 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
 
 def _breached(detail: str, key: str, runs: Path) -> bool:
     """Whether it says so with its last words; a traceback may also show the line that would have said it."""
-    left = runs / remains.FOLDER / f"{key}.json"
-    output = remains.load(left).failures[0].output if left.exists() else ""
+    left = runs / fault_report.FOLDER / f"{key}.json"
+    output = fault_report.load(left).failures[0].output if left.exists() else ""
     return any("BREACH" in line for line in (*detail.strip().splitlines()[-1:], *output.splitlines()))
 
 

@@ -1,4 +1,4 @@
-"""What was published of people, as counts to fit a model to; knows nothing of models or fitting.
+"""What was published of people, as counts to fit a model to.
 
 A target file says with how many trials each number was found, because percentages hide that, and marks what was
 inferred or only said in words. Our own lie in this folder.

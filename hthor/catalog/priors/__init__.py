@@ -1,4 +1,4 @@
-"""Where people expect things: the scene priors of the six targets; knows nothing of any one house, nor how to count.
+"""Where people expect things: the scene priors of the six targets.
 
 Each of the 65 triplets (target, relation, reference) has two parts: the ``frequency`` with which the target is seen so
 in 195 hand-made AI2-THOR scenes, which stands for what people know, and the ``similarity`` of the two names to a BERT-

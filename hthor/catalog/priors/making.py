@@ -1,4 +1,4 @@
-"""Computing the table of scene priors from its two sources, and comparing two tables; knows nothing of files' places.
+"""Computing the table of scene priors from its two sources, and comparing two tables.
 
 Which triplets there are, and which references are optional, is declared by the table that ships; the numbers follow.
 """

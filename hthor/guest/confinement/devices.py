@@ -1,4 +1,4 @@
-"""The GPUs of a machine as files, for agents that ask for some; knows nothing of who enforces what."""
+"""The GPUs of a machine as files, for agents that ask for some."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Puts one process under a policy, before it runs a line of anybody's code; knows nothing of agents.
+"""Puts one process under a policy, before it runs a line of anybody's code.
 
 Each layer is tried out once it is on: a filter that lets something through must not be taken for one that holds.
 """

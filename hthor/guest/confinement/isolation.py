@@ -1,4 +1,4 @@
-"""How strongly a guest is held, as a record of what is in force; knows nothing of how that is done."""
+"""How strongly a guest is held, as a record of what is in force."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Calls to the kernel that Python has no names for; knows nothing of what they are good for."""
+"""Calls to the kernel that Python has no names for."""
 
 from __future__ import annotations
 

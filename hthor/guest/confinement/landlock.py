@@ -1,4 +1,4 @@
-"""Which files a process may open, by the kernel's Landlock; knows nothing of which files those should be.
+"""Which files a process may open, by the kernel's Landlock.
 
 Rules only add: what no rule allows is refused, for this process and all that it starts, and nothing lifts that again.
 From version 4 of the kernel's interface TCP is refused too, from version 6 signals and abstract sockets to processes

@@ -1,4 +1,4 @@
-"""What a process may use up, and what it loses for good; knows nothing of files and calls."""
+"""What a process may use up, and what it loses for good."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command that gives a guest a world of its own, by bubblewrap; knows nothing of what runs in it.
+"""The command that gives a guest a world of its own, by bubblewrap.
 
 In there it sees no process but its own, no network, not even the machine's loopback, and no file but those that it may
 read. What it writes goes to memory of a fixed size and is gone with it.

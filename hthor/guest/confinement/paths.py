@@ -1,4 +1,4 @@
-"""What a guest may read of the machine, as a list; knows nothing of who enforces it.
+"""What a guest may read of the machine, as a list.
 
 Both enforcers only know rules that allow. So a folder that holds something to be hidden is not named itself; its other
 members are, one by one.
@@ -15,7 +15,7 @@ from hthor import jsonio
 from hthor.guest.confinement import hiding
 
 PACKAGE = Path(__file__).resolve().parents[2]
-_OURS = ("types", "guest", "agents", "navigation", "comms", "catalog")
+_OURS = ("types", "geometry", "guest", "agents", "navigation", "comms", "catalog", "houses/space")
 """Parts of this package that minds are made with. Houses, tasks, people and worlds are no business of theirs."""
 _LIBRARIES = ("site-packages", "dist-packages")
 _SYSTEM = ("/usr", "/bin", "/lib", "/lib64", "/lib32", "/etc/ld.so.cache", "/etc/localtime", "/etc/ssl")

@@ -1,4 +1,4 @@
-"""What holds one guest and what it may use, as one record that travels to its process; knows nothing of processes."""
+"""What holds one guest and what it may use, as one record that travels to its process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which system calls a process may make, as a filter assembled by hand; knows nothing of files.
+"""Which system calls a process may make, as a filter assembled by hand.
 
 What is not named is allowed, so this is a fence and no wall: a new kernel may have new calls. The numbers are those of
 x86_64; on another machine the filter refuses to be put on.

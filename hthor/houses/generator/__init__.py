@@ -1,4 +1,4 @@
-"""Houses from a seed, after ProcTHOR's published stages; knows nothing of engines, minds or tasks.
+"""Houses from a seed, after ProcTHOR's published stages.
 
 A house's rooms are grown on a grid, joined by doors, furnished in groups, hung and laid with small things, and checked
 by rules with names. The same arguments give the same bytes.
@@ -13,9 +13,11 @@ from typing import Any
 from hthor import jsonio
 from hthor.errors import HthorError
 from hthor.houses.generator.attempt import Flaw, build
-from hthor.houses.generator.chance import Dice
-from hthor.houses.generator.specs import SPECS, choose
-from hthor.houses.generator.wants import OPTIONAL, wants
+from hthor.houses.generator.draws import Dice
+from hthor.houses.generator.floorplan.room_specs import SPECS, choose
+from hthor.houses.generator.furnishing.requirements import OPTIONAL, wants
+
+CODE_ROOT = "makers"
 
 CODE_PART = "tools"
 

@@ -1,4 +1,4 @@
-"""One attempt at a house, stage by stage; knows nothing of retries."""
+"""One attempt at a house, stage by stage."""
 
 from __future__ import annotations
 
@@ -7,21 +7,23 @@ from typing import Any
 import msgspec
 
 from hthor.houses import loader
-from hthor.houses.freespace import FreeSpace
-from hthor.houses.generator import clutter, document, doors, growth, layout, starts, validity
-from hthor.houses.generator.boundary import boundary
-from hthor.houses.generator.chance import Dice
-from hthor.houses.generator.clutter import Table
-from hthor.houses.generator.doors import Door
-from hthor.houses.generator.finish import Finish
-from hthor.houses.generator.furnish import furnish
-from hthor.houses.generator.hangings import Wallwork
-from hthor.houses.generator.layout import Plan
-from hthor.houses.generator.making import Maker
-from hthor.houses.generator.pieces import Piece
-from hthor.houses.generator.space import RADIUS_M, RoomSpace
-from hthor.houses.generator.specs import LIVING, Spec, leaves
-from hthor.houses.generator.wants import Wants
+from hthor.houses.generator import document, starts, validity
+from hthor.houses.generator.draws import Dice
+from hthor.houses.generator.finishes import Finish
+from hthor.houses.generator.floorplan import doors, growth, layout
+from hthor.houses.generator.floorplan.boundary import boundary
+from hthor.houses.generator.floorplan.doors import Door
+from hthor.houses.generator.floorplan.layout import Plan
+from hthor.houses.generator.floorplan.room_specs import LIVING, Spec, leaves
+from hthor.houses.generator.furnishing import clutter
+from hthor.houses.generator.furnishing.clutter import Table
+from hthor.houses.generator.furnishing.floor_space import RADIUS_M, RoomSpace
+from hthor.houses.generator.furnishing.furnish import furnish
+from hthor.houses.generator.furnishing.item_styles import Maker
+from hthor.houses.generator.furnishing.pieces import Piece
+from hthor.houses.generator.furnishing.requirements import Wants
+from hthor.houses.generator.furnishing.wall_items import Wallwork
+from hthor.houses.space.free_space import FreeSpace
 from hthor.types import HouseSpec
 
 _OUTLINES, _DIVISIONS, _DOORINGS = 40, 60, 10

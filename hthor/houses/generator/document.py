@@ -1,4 +1,4 @@
-"""Writing a house down in ProcTHOR's schema 1.0.0; knows nothing of how it came about.
+"""Writing a house down in ProcTHOR's schema 1.0.0.
 
 The house frame's (x, y, z) becomes Unity's (x, z, y), and its counter-clockwise yaw a clockwise one in degrees.
 """
@@ -13,12 +13,12 @@ from typing import Any
 
 import msgspec
 
-from hthor.geometry import turn
-from hthor.houses.generator.doors import HIGH_M, Door
-from hthor.houses.generator.finish import Finish
-from hthor.houses.generator.hangings import Window
-from hthor.houses.generator.layout import OUTSIDE, Plan, Seam
-from hthor.houses.generator.pieces import Piece
+from hthor.geometry.plane import turn
+from hthor.houses.generator.finishes import Finish
+from hthor.houses.generator.floorplan.doors import HIGH_M, Door
+from hthor.houses.generator.floorplan.layout import OUTSIDE, Plan, Seam
+from hthor.houses.generator.furnishing.pieces import Piece
+from hthor.houses.generator.furnishing.wall_items import Window
 from hthor.types import Vec2
 
 _ASSETS = {"leaf": "hthor_door", "frame": "hthor_doorframe", "outside": "hthor_frontdoor"}

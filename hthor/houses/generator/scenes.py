@@ -1,4 +1,4 @@
-"""The benchmark's ten scenes: what each is made from, so that anybody can make them again; knows nothing of how.
+"""The benchmark's ten scenes: what each is made from, so that anybody can make them again.
 
 ``python -m hthor.houses.generator.scenes`` writes them to the folder that they ship in, or to one given.
 """

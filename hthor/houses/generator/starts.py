@@ -1,11 +1,11 @@
-"""Where a body starts: roomy floor of a random room; knows nothing of tasks."""
+"""Where a body starts: roomy floor of a random room."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from hthor.houses.freespace import Bools, FreeSpace
-from hthor.houses.generator.chance import Dice
+from hthor.houses.generator.draws import Dice
+from hthor.houses.space.free_space import Bools, FreeSpace
 from hthor.types import HouseSpec
 
 _GRID_M = 0.25

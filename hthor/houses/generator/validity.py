@@ -1,4 +1,4 @@
-"""Is a generated house one that people can live in? The first thing that is wrong, by name; knows no engine."""
+"""Is a generated house one that people can live in? The first thing that is wrong, by name."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from hthor import catalog
-from hthor.geometry import inside, to_house, to_local
-from hthor.houses import cells, solids
-from hthor.houses.check import check
-from hthor.houses.freespace import Bools, FreeSpace
-from hthor.houses.generator.clutter import takes_all
-from hthor.houses.generator.doors import LEAF_M
-from hthor.houses.solids import WALL_M, Slab
+from hthor.geometry.plane import inside, to_house, to_local
+from hthor.houses.checks.check import check
+from hthor.houses.generator.floorplan.doors import LEAF_M
+from hthor.houses.generator.furnishing.clutter import takes_all
+from hthor.houses.space import grid_kernel, solids
+from hthor.houses.space.free_space import Bools, FreeSpace
+from hthor.houses.space.solids import WALL_M, Slab
 from hthor.types import HouseSpec, Opening, Thing
 
 Fault = tuple[str, str, str]
@@ -54,7 +54,7 @@ def floor(house: HouseSpec, radius: float = RADIUS_M) -> tuple[FreeSpace, Bools]
     """The free-space grid, and its free cells when all leaves stand open."""
     space = FreeSpace(house, radius, HEIGHT_M)
     rows = np.array(leaves(house), dtype=float).reshape(-1, 5)
-    free: Bools = cells.clear(space.free, rows, *space.origin, space.cell, radius)
+    free: Bools = grid_kernel.clear(space.free, rows, *space.origin, space.cell, radius)
     return space, free
 
 
@@ -72,7 +72,7 @@ def reached(free: Bools) -> Bools:
 def faults(house: HouseSpec, space: FreeSpace, walkable: Bools) -> Iterator[Fault]:
     """Everything that is wrong: by rule, id and words.
 
-    The rules of `hthor.houses.check`, judged strictly, then those about open leaves, solids and free surfaces.
+    The rules of `hthor.houses.checks.check`, judged strictly, then those about open leaves, solids and free surfaces.
     """
     for finding in check(house, RADIUS_M, HEIGHT_M, strict=True):
         if finding.severity == "error":

@@ -10,7 +10,7 @@ the mean body of its population and its own head:
 - It confirms every message as soon as it has read it, useful or not, and follows it.
 - It misses nothing, does not get better with practice, and its trust stays where it was.
 
-Everybody is this person: participants differ in their tasks only. Knows nothing of what is likely.
+Everybody is this person: participants differ in their tasks only.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from typing import Any
 
 import msgspec
 
-from hthor.humans.glimpses import Head
+from hthor.humans.core.policy import Answer, Offer, Situation
+from hthor.humans.memory.object_memory import Known
 from hthor.humans.models import proxy
-from hthor.humans.parameters import Parameters
-from hthor.humans.perception import Eyes
-from hthor.humans.person import Person
-from hthor.humans.policy import Answer, Offer, Situation
-from hthor.humans.things import Known
+from hthor.humans.perception.detection_rate import Head
+from hthor.humans.perception.perception import Eyes
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.population.participant import Person
 from hthor.types import Detection
 
 SIGHT_M = 3.0

@@ -1,27 +1,24 @@
-"""A person who searches, reads messages and trusts more or less, as published studies suggest people do.
-
-Knows nothing but what a headset's wearer perceives.
-"""
+"""A person who searches, reads messages and trusts more or less, as published studies suggest people do."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from hthor.humans.agenda import BEGIN, REST, SEARCH, Agenda, Aim
-from hthor.humans.claims import Claims
-from hthor.humans.effects import practised
-from hthor.humans.errands import Errands
-from hthor.humans.jobs import Duties, todo
-from hthor.humans.memory import Memory
-from hthor.humans.perception import GLIMPSE_TICKS, Eyes
-from hthor.humans.person import Person
-from hthor.humans.policy import Policy
-from hthor.humans.subject import Deed, Subject
-from hthor.humans.talking import Talk
-from hthor.humans.things import Things
-from hthor.humans.trust import Trust, initial
-from hthor.humans.walking import Walker
+from hthor.humans.behaviours.behaviours import Errands
+from hthor.humans.communication.interpretation import Claims
+from hthor.humans.communication.trust import Trust, initial
+from hthor.humans.core.policy import Policy
+from hthor.humans.core.trial_context import Deed, Subject
+from hthor.humans.memory.object_memory import Things
+from hthor.humans.memory.spatial_memory import Memory
+from hthor.humans.memory.subgoals import Duties, todo
+from hthor.humans.models._dialogue import Talk
+from hthor.humans.models._goal_arbitration import BEGIN, REST, SEARCH, Agenda, Aim
+from hthor.humans.motor.locomotion import Walker
+from hthor.humans.perception.perception import GLIMPSE_TICKS, Eyes
+from hthor.humans.population.participant import Person
+from hthor.humans.population.random_effects import practised
 from hthor.types import Action, Briefing, Event, Motion, Observation, Reply, Vec2, Wait
 
 _RESTARTS = 2

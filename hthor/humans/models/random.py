@@ -3,15 +3,13 @@
 With `hthor.humans.models.greedy` it brackets what real people may do: no robot can help such a person by what it says,
 so what still differs between two robots is how much they stand in the way. Eyes, memory, legs and hands are those of
 any person of the population (`hthor.humans.models.proxy`), with their differences; messages are read, and declined.
-
-Knows nothing of what is likely, near or said.
 """
 
 from __future__ import annotations
 
 from hthor import seeds
+from hthor.humans.core.policy import Answer, Offer, Situation
 from hthor.humans.models import proxy
-from hthor.humans.policy import Answer, Offer, Situation
 from hthor.types import Briefing
 
 

@@ -11,8 +11,6 @@ so. The robot may be another one. What then happens is simple, and no person wou
   missed as fast as the stick and the body allow. Deeds are done at their places, so they come later too.
 - When anything else blocks it (a door that somebody shut), that part of the way is passed over after three tries.
 - When the log is at its end, so is the person: they stand still. The rating is the logged one.
-
-Knows nothing of why anything was done.
 """
 
 from __future__ import annotations
@@ -23,10 +21,10 @@ from typing import Any
 
 from hthor import rules
 from hthor.errors import HthorError
-from hthor.geometry import turn, wrap
-from hthor.humans import past
-from hthor.humans.past import Past
-from hthor.humans.person import Person
+from hthor.geometry.plane import turn, wrap
+from hthor.humans.models import _logged_trials
+from hthor.humans.models._logged_trials import Past
+from hthor.humans.population.participant import Person
 from hthor.types import Action, Briefing, Motion, Move, Observation, Pose, Reply, Rotate, Wait
 
 _EVERY = rules.LOG_EVERY_TICKS
@@ -50,7 +48,7 @@ class Model:
             raise HthorError("replay needs the run to replay: --humans replay:RUN, a run folder or its trials.jsonl.")
         self.person, self.source = person, source
         self.trials = int(state["trials"]) if state else 0
-        logged = past.read(source)
+        logged = _logged_trials.read(source)
         if person.participant not in logged:
             raise HthorError(
                 f"{source} has no participant {person.participant}; it holds {', '.join(map(str, sorted(logged)))}. "
@@ -101,7 +99,7 @@ class Model:
 
 def ingredients(source: str = "") -> dict[str, Any]:
     """What decides how these people behave: the log's bytes."""
-    return {"log_sha256": past.sha256(source)} if source else {}
+    return {"log_sha256": _logged_trials.sha256(source)} if source else {}
 
 
 class Reenactment:

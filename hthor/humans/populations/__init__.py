@@ -1,1 +1,1 @@
-"""The populations that ship with hthor, two files each: see `hthor.humans.population_file`."""
+"""The populations that ship with hthor, two files each: see `hthor.humans.population.population_file`."""

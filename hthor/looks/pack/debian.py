@@ -1,7 +1,4 @@
-"""Getting the library's files: from a Debian package, from where one is installed, or through apt; unpacks in memory.
-
-Knows nothing of furniture.
-"""
+"""Getting the library's files: from a Debian package, from where one is installed, or through apt."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Making a model of one size look right at another: what may be stretched, and how; knows nothing of files.
+"""Making a model of one size look right at another: what may be stretched, and how.
 
 A model is stretched along its three axes to fill the thing's box, piece by piece, so that the level place where things
 lie on it is exactly where the kind's own surface is: whatever rests there neither floats nor sinks.

@@ -1,4 +1,4 @@
-"""One library of furniture (.sh3f, a zip): its catalogue and the files of its models; knows nothing of packs."""
+"""One library of furniture (.sh3f, a zip): its catalogue and the files of its models."""
 
 from __future__ import annotations
 

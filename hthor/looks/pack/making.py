@@ -1,4 +1,4 @@
-"""Making a pack of the library: pick, bring into shape, check, write; knows nothing of where the library came from."""
+"""Making a pack of the library: pick, bring into shape, check, write."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hthor import catalog, jsonio
-from hthor.looks.mesh import Mesh
+from hthor.looks.meshes.mesh import Mesh
 from hthor.looks.pack import fitting, obj, shape, thinning
 from hthor.looks.pack.library import Entry, Library
 from hthor.looks.pack.picks import FREE, LICENCES, PICKS, Pick

@@ -1,4 +1,4 @@
-"""Reading Wavefront OBJ and MTL: triangles by material, in the model's own frame; knows nothing of what they show."""
+"""Reading Wavefront OBJ and MTL: triangles by material, in the model's own frame."""
 
 from __future__ import annotations
 

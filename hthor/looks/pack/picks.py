@@ -1,4 +1,4 @@
-"""Which models of the library stand for which kinds; knows nothing of how they are read.
+"""Which models of the library stand for which kinds.
 
 Kinds that open are not here, for no model of the library can, nor kinds with several shelves, where things would float.
 """

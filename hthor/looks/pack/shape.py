@@ -1,4 +1,4 @@
-"""Bringing a model into our frame, and finding where things lie on it; knows nothing of files."""
+"""Bringing a model into our frame, and finding where things lie on it."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from hthor.looks import shaping
-from hthor.looks.mesh import Mesh
+from hthor.looks.meshes import shaping
+from hthor.looks.meshes.mesh import Mesh
 from hthor.looks.pack.fitting import Rest
 from hthor.looks.pack.obj import Group
 from hthor.types import Surface, Vec3

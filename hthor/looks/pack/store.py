@@ -1,4 +1,4 @@
-"""Where packs lie, what is in one, and reading it; knows nothing of where its models came from.
+"""Where packs lie, what is in one, and reading it.
 
 A pack is a folder: ``pack.json``, ``meshes.npz``, ``textures/*.jpg``, ``LICENCES.md``, and ``ATTRIBUTION.md`` where a
 licence asks for it. Its hash is that of ``pack.json``, which holds the hashes of all other files.
@@ -19,7 +19,7 @@ from msgspec import Struct
 
 from hthor import documents
 from hthor.errors import HthorError, UnknownName
-from hthor.looks.mesh import Material, Mesh, Piece
+from hthor.looks.meshes.mesh import Material, Mesh, Piece
 from hthor.looks.pack import fitting
 from hthor.types import Rgba, Vec3
 

@@ -1,4 +1,4 @@
-"""Fewer triangles for detailed models, with their pictures kept in place; knows nothing of files or kinds."""
+"""Fewer triangles for detailed models, with their pictures kept in place."""
 
 from __future__ import annotations
 

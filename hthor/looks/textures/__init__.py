@@ -1,4 +1,4 @@
-"""Pictures made by numbers alone, for surfaces of every sort; knows nothing of meshes or things.
+"""Pictures made by numbers alone, for surfaces of every sort.
 
 Each is (H, W, 3) uint8 and at most 512 pixels a side; row 0 lies at v = 0, column 0 at u = 0. Those with a `scale`
 repeat without a seam and are near white, to be multiplied by a colour; the others fill what they are on.

@@ -1,4 +1,4 @@
-"""Soft surfaces: weaves, knit, terry, carpet, leather, stripes, rugs, wicker; knows nothing of furniture."""
+"""Soft surfaces: weaves, knit, terry, carpet, leather, stripes, rugs, wicker."""
 
 from __future__ import annotations
 

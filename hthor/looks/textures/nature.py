@@ -1,4 +1,4 @@
-"""Skins of what grows and of what lies outdoors: fruit, bread, leaves, soil, grass, sky; knows nothing of shapes.
+"""Skins of what grows and of what lies outdoors: fruit, bread, leaves, soil, grass, sky.
 
 Skins of food go once around a thing: rows run from its top (first) to its bottom, columns around it.
 """

@@ -1,4 +1,4 @@
-"""Smooth random fields that repeat without a seam, and mixing of colours by them; knows nothing of materials."""
+"""Smooth random fields that repeat without a seam, and mixing of colours by them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures that fill what they are on: paintings, screens, book covers, print, dials, keys; know nothing of frames."""
+"""Pictures that fill what they are on: paintings, screens, book covers, print, dials, keys."""
 
 from __future__ import annotations
 

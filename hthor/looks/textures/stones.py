@@ -1,4 +1,4 @@
-"""Mineral surfaces: tiles, marble, granite, brick, plaster, concrete; knows nothing of rooms."""
+"""Mineral surfaces: tiles, marble, granite, brick, plaster, concrete."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Wood: grain for furniture, and boards for floors, in tones to be coloured; knows nothing of what is made of it."""
+"""Wood: grain for furniture, and boards for floors, in tones to be coloured."""
 
 from __future__ import annotations
 

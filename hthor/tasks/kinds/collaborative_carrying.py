@@ -1,22 +1,24 @@
-"""Carry a trunk that is too heavy for one to another room, together; knows nothing of how several carry one thing.
+"""Carry a trunk that is too heavy for one to another room, together.
 
-The goal's only job, for which it takes two bodies with hands (see `hthor.world.together` for the rules)::
+The goal's only job, for which it takes two bodies with hands (see `hthor.world.carrying.joint_carrying` for the
+rules)::
 
     Job(target="trunk", relation="at", destinations=("room|5",), place=(2.4, 6.1, 0.2), hands=2)
 
-The trunk stands on the floor of another room. It has arrived when it stands in the room of
-that id, in nobody's hands, within `hthor.tasks.jobs.TOGETHER_M` of the place, which is beside a piece of furniture that
-the instruction names. Progress is the share of the way, as the crow flies, that the trunk has come.
+The trunk stands on the floor of another room. It has arrived when it stands in the room of that id, in nobody's
+hands, within `hthor.tasks.subgoals.TOGETHER_M` of the place, which is beside a piece of furniture that the
+instruction names. Progress is the share of the way, as the crow flies, that the trunk has come.
 """
 
 from __future__ import annotations
 
 import math
 
-from hthor import catalog, geometry, seeds
+from hthor import catalog, seeds
 from hthor.errors import HthorError
-from hthor.tasks.jobs import JobKind, carrying_way
-from hthor.tasks.spots import floor_spot, unique
+from hthor.geometry import plane
+from hthor.tasks.generation.free_spots import floor_spot, unique
+from hthor.tasks.subgoals import JobKind, carrying_way
 from hthor.types import Goal, HouseSpec, Job, Placement, Snapshot, TaskSpec
 
 TRUNK = "trunk"
@@ -48,7 +50,7 @@ class CollaborativeCarrying(JobKind):
         for attempt in range(_TRIES if marks else 0):
             own = seeds.derive(root, "try", attempt)
             mark = marks[seeds.choice([1.0] * len(marks), own, "mark")]
-            areas = [abs(geometry.signed_area(room.polygon)) for room in house.rooms]
+            areas = [abs(plane.signed_area(room.polygon)) for room in house.rooms]
             room = house.rooms[seeds.choice(areas, own, "room")]
             if room.id == mark.room or mark.room not in rooms:
                 continue

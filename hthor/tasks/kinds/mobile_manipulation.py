@@ -1,4 +1,4 @@
-"""Pick an object and place it in or on a thing of a kind: done when it rests there; knows nothing of hands.
+"""Pick an object and place it in or on a thing of a kind: done when it rests there.
 
 The least time is that of a person who knows where everything is:
 
@@ -73,7 +73,7 @@ class MobileManipulation(TaskKind):
         return _kind_of(support, house) == goal.destination
 
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
-        from hthor.tasks.ground import Ground
+        from hthor.tasks.generation.reachability import Ground
 
         target = next(placement for placement in objects if placement.id == goal.target)
         opening = [_kind_of(target.support, house) if target.relation == "in" else "", goal.destination]

@@ -1,4 +1,4 @@
-"""Gather three apples, wherever they are, in one place: more than one person can carry in time; knows no robots.
+"""Gather three apples, wherever they are, in one place: more than one person can carry in time.
 
 The goal's jobs, one for each of the objects ``apple``, ``apple_2`` and ``apple_3``, all the same but for that::
 
@@ -23,9 +23,9 @@ from collections.abc import Iterable
 from hthor import catalog, rules, seeds
 from hthor.catalog import priors
 from hthor.errors import HthorError
-from hthor.tasks.ground import Ground
-from hthor.tasks.jobs import JobKind, carrying_way
-from hthor.tasks.spots import room_of, spot, unique
+from hthor.tasks.generation.free_spots import room_of, spot, unique
+from hthor.tasks.generation.reachability import Ground
+from hthor.tasks.subgoals import JobKind, carrying_way
 from hthor.types import Goal, HouseSpec, Job, Placement, Pose, TaskSpec, Thing
 
 PLACES = ("dining_table", "counter_top", "coffee_table", "desk", "tv_stand")

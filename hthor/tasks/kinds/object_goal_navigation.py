@@ -1,4 +1,4 @@
-"""Find an object: done when the person has it in view from close by; knows nothing of how people search.
+"""Find an object: done when the person has it in view from close by.
 
 The least time is that of a person who knows where everything is:
 
@@ -47,7 +47,7 @@ class ObjectGoalNavigation(TaskKind):
         return False
 
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
-        from hthor.tasks.ground import Ground
+        from hthor.tasks.generation.reachability import Ground
 
         target = next(placement for placement in objects if placement.id == goal.target)
         ground = Ground.of(house)

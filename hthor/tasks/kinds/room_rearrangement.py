@@ -1,14 +1,14 @@
-"""Put a shuffled house back as a tour of the tidy one has recorded it; knows nothing of how the tour is remembered.
+"""Put a shuffled house back as a tour of the tidy one has recorded it.
 
 The goal's jobs are that record: one for every target that the tour has met, those included that were not moved since,
 and which those are nobody is told, but that the first of them was::
 
     Job(target="mug", relation="on", destinations=("desk",), place=(5.2348, 8.1624, 0.79))
 
-Whatever was moved, and the place that it came from, is within an arm's reach. A target is back when it rests on or in
-the same thing within `hthor.tasks.jobs.PLACE_M` of its recorded place. As in AI2-THOR's rearrangement challenge there
-are two scores. The share fixed, `progress`, counts the targets that were moved, less those that somebody displaced
-since. Strict success, `met`, is that everything is in its place.
+Whatever was moved, and the place that it came from, is within an arm's reach. A target is back when it rests on or
+in the same thing within `hthor.tasks.subgoals.PLACE_M` of its recorded place. As in AI2-THOR's rearrangement
+challenge there are two scores. The share fixed, `progress`, counts the targets that were moved, less those that
+somebody displaced since. Strict success, `met`, is that everything is in its place.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ import msgspec
 
 from hthor import catalog, seeds
 from hthor.errors import HthorError
-from hthor.tasks.jobs import JobKind
-from hthor.tasks.spots import at_hand, spot
+from hthor.tasks.generation.free_spots import at_hand, spot
+from hthor.tasks.subgoals import JobKind
 from hthor.types import Goal, HouseSpec, Job, Placement, Thing
 
 FEWEST, MOST = 2, 4
@@ -48,7 +48,7 @@ class RoomRearrangement(JobKind):
         return f"Some things were moved, {first.definite} among them. Put everything back where it was."
 
     def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]:
-        from hthor.tasks.arrange import arrange
+        from hthor.tasks.generation.target_arrangement import arrange
 
         count = FEWEST + int(seeds.draw(root, "count") * (MOST - FEWEST + 1))
         for attempt in range(_TRIES):

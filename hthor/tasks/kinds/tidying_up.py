@@ -1,8 +1,8 @@
-"""Put what is out of place where common sense expects it; knows nothing of where it was before.
+"""Put what is out of place where common sense expects it.
 
-There is no reference: any place that the judgement (`hthor.tasks.judgement`, as data) allows will do. The goal's jobs
-say so of every target, those included that lie well already, and which those are nobody is told, but that the first of
-them does not::
+There is no reference: any place that the judgement (`hthor.tasks.generation.commonsense_places`, as data) allows
+will do. The goal's jobs say so of every target, those included that lie well already, and which those are nobody is
+told, but that the first of them does not::
 
     Job(target="remote_control", relation="on", destinations=("coffee_table", "side_table", "sofa", ...))
 
@@ -15,9 +15,9 @@ from __future__ import annotations
 
 from hthor import catalog, seeds
 from hthor.errors import HthorError
-from hthor.tasks import judgement
-from hthor.tasks.jobs import JobKind
-from hthor.tasks.spots import spot
+from hthor.tasks.generation import commonsense_places
+from hthor.tasks.generation.free_spots import spot
+from hthor.tasks.subgoals import JobKind
 from hthor.types import Goal, HouseSpec, Job, Placement, Thing
 
 FEWEST, MOST = 2, 4
@@ -37,7 +37,7 @@ class TidyingUp(JobKind):
 
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
         present = {thing.kind for thing in house.things}
-        if not all(present.intersection(judgement.homes(target)) for target in catalog.TARGETS):
+        if not all(present.intersection(commonsense_places.homes(target)) for target in catalog.TARGETS):
             return ()
         return tuple(_goal(house, target, 0) for target in catalog.TARGETS)
 
@@ -62,7 +62,7 @@ def _goal(house: HouseSpec, first: str, root: int) -> Goal:
     order = sorted(seeds.shuffled(len(catalog.TARGETS), root, "jobs"), key=lambda n: catalog.TARGETS[n] != first)
     jobs = []
     for target in (catalog.TARGETS[number] for number in order):
-        kinds = tuple(kind for kind in judgement.homes(target) if kind in present)
+        kinds = tuple(kind for kind in commonsense_places.homes(target) if kind in present)
         jobs.append(Job(target=target, relation=catalog.kind(kinds[0]).relation, destinations=kinds))
     return Goal(target=first, relation=jobs[0].relation, destination=jobs[0].destinations[0], jobs=tuple(jobs))
 
@@ -74,8 +74,12 @@ def _strewn(house: HouseSpec, order: list[str], count: int, root: int) -> tuple[
 
         def weigh(thing: Thing, target: str = target, out: bool = rank < count) -> float:
             if out:
-                return float(judgement.is_out(target, thing.kind))
-            return judgement.of(target)[thing.kind].share if thing.kind in judgement.homes(target) else 0.0
+                return float(commonsense_places.is_out(target, thing.kind))
+            return (
+                commonsense_places.of(target)[thing.kind].share
+                if thing.kind in commonsense_places.homes(target)
+                else 0.0
+            )
 
         found = spot(house, target, target, weigh, seeds.derive(root, "spot", target), done)
         if found is None:

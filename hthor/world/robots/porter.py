@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from hthor import rules
-from hthor.looks import sweeps
-from hthor.looks.mesh import Piece
+from hthor.looks.meshes import sweeps
+from hthor.looks.meshes.mesh import Piece
 from hthor.types import Part, Rgba, RobotSpec, Vec3
-from hthor.world import skin
-from hthor.world.solid import HEAD, ball, box, post, rod, wheel
+from hthor.world.model.bodies import meshes
+from hthor.world.model.bodies.primitives import HEAD, ball, box, post, rod, wheel
 
 # Service robots of this kind measure 0.5 to 0.6 m across and 1.1 to 1.5 m in height; their arms reach 0.9 m and hold
 # 3 to 6 kg. Speed, turn rate, field of view and handling time are our choice.
@@ -78,8 +78,8 @@ def _arm(side: float) -> tuple[Part, ...]:
 
 def pieces() -> tuple[Piece, ...]:
     """The same in meshes."""
-    white, navy, dark = skin.gloss(_WHITE), skin.gloss(_NAVY), skin.gloss(_DARK)
-    coral, rubber, light = skin.gloss(_CORAL), skin.matte(_RUBBER), skin.glow(_GLOW)
+    white, navy, dark = meshes.gloss(_WHITE), meshes.gloss(_NAVY), meshes.gloss(_DARK)
+    coral, rubber, light = meshes.gloss(_CORAL), meshes.matte(_RUBBER), meshes.glow(_GLOW)
     skirt = [(0.0, 0.035), (0.26, 0.035), (0.275, 0.05), (0.275, 0.075), (0.0, 0.075)]
     base = [(0.0, 0.07), (0.28, 0.07), (0.297, 0.09), (0.292, 0.17), (0.27, 0.235), (0.235, 0.262), (0.0, 0.262)]
     band = [(0.272, 0.225), (0.278, 0.232), (0.262, 0.250), (0.252, 0.252)]
@@ -94,35 +94,35 @@ def pieces() -> tuple[Piece, ...]:
         (-0.012, 0.0, 1.135, 0.05, 0.055),
     )
     return (
-        *(skin.tire((0.0, side * 0.235, 0.07), 0.07, 0.028, rubber) for side in (-1.0, 1.0)),
-        skin.turned(skirt, dark),
-        skin.turned(base, white),
-        skin.turned(band, coral),
-        *(skin.tube(_slit(z), 0.006, dark) for z in (0.14, 0.151, 0.162)),
-        skin.turned(waist, dark, (-0.035, 0.0, 0.0)),
-        skin.limb(chest, white, fullness=2.5),
-        skin.box((0.128, 0.0, 0.92), (0.016, 0.085, 0.058), navy, 0.012),
-        *(skin.box((0.1445, 0.0, z), (0.001, w, 0.006), light, 0.0008) for z, w in ((0.94, 0.05), (0.915, 0.035))),
-        skin.rod((-0.008, 0.0, 1.15), 0.046, 0.07, "z", dark),
+        *(meshes.tire((0.0, side * 0.235, 0.07), 0.07, 0.028, rubber) for side in (-1.0, 1.0)),
+        meshes.turned(skirt, dark),
+        meshes.turned(base, white),
+        meshes.turned(band, coral),
+        *(meshes.tube(_slit(z), 0.006, dark) for z in (0.14, 0.151, 0.162)),
+        meshes.turned(waist, dark, (-0.035, 0.0, 0.0)),
+        meshes.limb(chest, white, fullness=2.5),
+        meshes.box((0.128, 0.0, 0.92), (0.016, 0.085, 0.058), navy, 0.012),
+        *(meshes.box((0.1445, 0.0, z), (0.001, w, 0.006), light, 0.0008) for z, w in ((0.94, 0.05), (0.915, 0.035))),
+        meshes.rod((-0.008, 0.0, 1.15), 0.046, 0.07, "z", dark),
         *(piece for side in (-1.0, 1.0) for piece in _limb(side)),
-        skin.box((0.385, 0.0, 0.846), (0.125, 0.175, 0.006), navy, 0.005),
-        *(skin.tube(edge, 0.009, coral) for edge in _rim()),
+        meshes.box((0.385, 0.0, 0.846), (0.125, 0.175, 0.006), navy, 0.005),
+        *(meshes.tube(edge, 0.009, coral) for edge in _rim()),
         *_face(),
     )
 
 
 def _limb(side: float) -> tuple[Piece, ...]:
     """A bent arm whose hand grips the tray's side."""
-    white, dark, coral = skin.gloss(_WHITE), skin.gloss(_DARK), skin.gloss(_CORAL)
+    white, dark, coral = meshes.gloss(_WHITE), meshes.gloss(_DARK), meshes.gloss(_CORAL)
     upper = sweeps.bend((-0.03, side * 0.225, 0.99), (-0.04, side * 0.232, 0.90), (-0.03, side * 0.228, 0.83))
     fore = sweeps.bend((-0.01, side * 0.226, 0.828), (0.12, side * 0.215, 0.822), (0.25, side * 0.192, 0.835))
     return (
-        skin.ball((-0.03, side * 0.215, 1.0), 0.073, coral),
-        skin.tube(upper, 0.045, white),
-        skin.ball((-0.03, side * 0.227, 0.828), 0.052, dark),
-        skin.tube(fore, [0.042 - 0.012 * k / (len(fore) - 1) for k in range(len(fore))], white),
-        skin.ball((0.275, side * 0.188, 0.842), (0.042, 0.026, 0.034), dark),
-        *(skin.tube(_grip(side, x), 0.011, dark) for x in (0.29, 0.318)),
+        meshes.ball((-0.03, side * 0.215, 1.0), 0.073, coral),
+        meshes.tube(upper, 0.045, white),
+        meshes.ball((-0.03, side * 0.227, 0.828), 0.052, dark),
+        meshes.tube(fore, [0.042 - 0.012 * k / (len(fore) - 1) for k in range(len(fore))], white),
+        meshes.ball((0.275, side * 0.188, 0.842), (0.042, 0.026, 0.034), dark),
+        *(meshes.tube(_grip(side, x), 0.011, dark) for x in (0.29, 0.318)),
     )
 
 
@@ -142,13 +142,16 @@ def _rim() -> list[Any]:
 
 
 def _face() -> tuple[Piece, ...]:
-    white, dark, light = skin.gloss(_WHITE), skin.gloss(_DARK), skin.glow(_GLOW)
+    white, dark, light = meshes.gloss(_WHITE), meshes.gloss(_DARK), meshes.glow(_GLOW)
     smile = sweeps.bend((0.099, 0.022, 1.222), (0.104, 0.0, 1.216), (0.099, -0.022, 1.222))
     return (
-        skin.ball((0.0, 0.0, 1.235), (0.098, 0.104, 0.092), white, HEAD),
-        skin.ball((0.028, 0.0, 1.24), (0.077, 0.084, 0.062), dark, HEAD),
-        *(skin.ball((0.098, side * 0.033, 1.248), (0.007, 0.012, 0.016), light, HEAD) for side in (-1.0, 1.0)),
-        skin.tube(smile, 0.003, light, HEAD),
-        *(skin.rod((0.0, side * 0.104, 1.235), 0.032, 0.014, "y", skin.gloss(_CORAL), HEAD) for side in (-1.0, 1.0)),
-        skin.rod((-0.01, 0.0, 1.327), 0.012, 0.024, "z", skin.glow(_CORAL), HEAD),
+        meshes.ball((0.0, 0.0, 1.235), (0.098, 0.104, 0.092), white, HEAD),
+        meshes.ball((0.028, 0.0, 1.24), (0.077, 0.084, 0.062), dark, HEAD),
+        *(meshes.ball((0.098, side * 0.033, 1.248), (0.007, 0.012, 0.016), light, HEAD) for side in (-1.0, 1.0)),
+        meshes.tube(smile, 0.003, light, HEAD),
+        *(
+            meshes.rod((0.0, side * 0.104, 1.235), 0.032, 0.014, "y", meshes.gloss(_CORAL), HEAD)
+            for side in (-1.0, 1.0)
+        ),
+        meshes.rod((-0.01, 0.0, 1.327), 0.012, 0.024, "z", meshes.glow(_CORAL), HEAD),
     )

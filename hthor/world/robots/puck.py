@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from hthor import rules
-from hthor.looks import sweeps
-from hthor.looks.mesh import Piece
+from hthor.looks.meshes import sweeps
+from hthor.looks.meshes.mesh import Piece
 from hthor.types import Part, Rgba, RobotSpec, Vec3
-from hthor.world import skin
-from hthor.world.solid import HEAD, ball, box, post, rod, wheel
+from hthor.world.model.bodies import meshes
+from hthor.world.model.bodies.primitives import HEAD, ball, box, post, rod, wheel
 
 # Robot vacuums measure 0.34 to 0.35 m across and 0.09 m in height. Speed, turn rate and field of view are our choice.
 SPEC = RobotSpec(
@@ -52,20 +52,20 @@ def look() -> tuple[Part, ...]:
 
 def pieces() -> tuple[Piece, ...]:
     """The same in meshes."""
-    silver, graphite, rubber = skin.gloss(_SILVER), skin.gloss(_GRAPHITE), skin.matte(_RUBBER)
+    silver, graphite, rubber = meshes.gloss(_SILVER), meshes.gloss(_GRAPHITE), meshes.matte(_RUBBER)
     bumper = [(0.0, 0.016), (0.15, 0.016), (0.166, 0.026), (0.17, 0.045), (0.168, 0.066), (0.160, 0.072), (0.0, 0.072)]
     lid = [(0.162, 0.071), (0.163, 0.078), (0.156, 0.086), (0.13, 0.0895), (0.0, 0.0895)]
     plate = [(0.122, 0.088), (0.121, 0.0905), (0.117, 0.0915), (0.0, 0.0915)]
     return (
-        *(skin.tire((0.0, side * 0.12, 0.03), 0.03, 0.013, rubber) for side in (-1.0, 1.0)),
-        skin.ball((-0.11, 0.0, 0.014), 0.014, silver),
-        skin.turned(bumper, skin.matte(_BUMPER)),
-        skin.turned(lid, graphite),
-        skin.turned(plate, silver, (-0.01, 0.0, 0.0)),
-        skin.rod((-0.03, 0.0, 0.0925), 0.028, 0.006, "z", skin.glow(_SKY)),
-        *(skin.rod((-0.03, side * 0.055, 0.092), 0.010, 0.004, "z", graphite) for side in (-1.0, 1.0)),
-        skin.tube(sweeps.bend((0.137, -0.075, 0.05), (0.168, 0.0, 0.05), (0.137, 0.075, 0.05)), 0.004, graphite),
-        skin.box((0.095, 0.0, 0.102), (0.023, 0.038, 0.017), graphite, 0.012, HEAD),
-        skin.rod((0.117, 0.0, 0.103), 0.013, 0.008, "x", silver, HEAD),
-        skin.ball((0.118, 0.0, 0.103), 0.010, skin.gloss(_LENS), HEAD),
+        *(meshes.tire((0.0, side * 0.12, 0.03), 0.03, 0.013, rubber) for side in (-1.0, 1.0)),
+        meshes.ball((-0.11, 0.0, 0.014), 0.014, silver),
+        meshes.turned(bumper, meshes.matte(_BUMPER)),
+        meshes.turned(lid, graphite),
+        meshes.turned(plate, silver, (-0.01, 0.0, 0.0)),
+        meshes.rod((-0.03, 0.0, 0.0925), 0.028, 0.006, "z", meshes.glow(_SKY)),
+        *(meshes.rod((-0.03, side * 0.055, 0.092), 0.010, 0.004, "z", graphite) for side in (-1.0, 1.0)),
+        meshes.tube(sweeps.bend((0.137, -0.075, 0.05), (0.168, 0.0, 0.05), (0.137, 0.075, 0.05)), 0.004, graphite),
+        meshes.box((0.095, 0.0, 0.102), (0.023, 0.038, 0.017), graphite, 0.012, HEAD),
+        meshes.rod((0.117, 0.0, 0.103), 0.013, 0.008, "x", silver, HEAD),
+        meshes.ball((0.118, 0.0, 0.103), 0.010, meshes.gloss(_LENS), HEAD),
     )

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from hthor import rules
-from hthor.looks.mesh import Piece
+from hthor.looks.meshes.mesh import Piece
 from hthor.types import Part, Rgba, RobotSpec, Vec3
-from hthor.world import skin
-from hthor.world.solid import HEAD, ball, box, post, rod, wheel
+from hthor.world.model.bodies import meshes
+from hthor.world.model.bodies.primitives import HEAD, ball, box, post, rod, wheel
 
 SPEC = RobotSpec(
     name="scout",
@@ -55,27 +55,27 @@ def look() -> tuple[Part, ...]:
 
 def pieces() -> tuple[Piece, ...]:
     """The same in meshes."""
-    white, dark, mint = skin.gloss(_WHITE), skin.matte(_DARK), skin.gloss(_MINT)
-    steel, rubber = skin.metal(_STEEL), skin.matte(_RUBBER)
+    white, dark, mint = meshes.gloss(_WHITE), meshes.matte(_DARK), meshes.gloss(_MINT)
+    steel, rubber = meshes.metal(_STEEL), meshes.matte(_RUBBER)
     drum = [(0.0, 0.028), (0.15, 0.028), (0.168, 0.045), (0.172, 0.075), (0.168, 0.105), (0.155, 0.12), (0.0, 0.12)]
     return (
-        *(skin.tire((0.0, side * 0.15, 0.052), 0.052, 0.02, rubber) for side in (-1.0, 1.0)),
-        *(skin.rod((0.0, side * 0.168, 0.052), 0.024, 0.008, "y", steel) for side in (-1.0, 1.0)),
-        skin.turned(drum, dark),
-        skin.rod((0.0, 0.0, 0.127), 0.174, 0.012, "z", mint),
-        *(skin.rod((x, y, 0.195), 0.007, 0.13, "z", steel) for x in (-0.09, 0.09) for y in (-0.09, 0.09)),
-        skin.box((-0.01, 0.0, 0.176), (0.078, 0.068, 0.042), white, 0.014),
-        *(skin.box((0.069, y, 0.176), (0.001, 0.003, 0.02), dark, 0.0005) for y in (-0.03, -0.015, 0.0, 0.015, 0.03)),
-        skin.rod((0.0, 0.0, 0.262), 0.157, 0.012, "z", mint),
-        skin.rod((0.075, 0.0, 0.288), 0.036, 0.04, "z", dark),
-        skin.box((-0.04, 0.0, 0.56), (0.018, 0.022, 0.295), steel, 0.004),
-        *(skin.box((-0.04, side * 0.0225, 0.56), (0.004, 0.001, 0.28), dark, 0.0005) for side in (-1.0, 1.0)),
-        skin.tube(((-0.064, 0.0, 0.27), (-0.066, 0.01, 0.55), (-0.06, 0.0, 0.86)), 0.005, dark),
-        skin.rod((-0.03, 0.0, 0.862), 0.034, 0.03, "z", dark),
-        skin.rod((-0.02, 0.0, 0.885), 0.018, 0.09, "y", steel, HEAD),
-        skin.box((0.0, 0.0, 0.914), (0.044, 0.088, 0.034), white, 0.022, HEAD),
-        skin.box((0.040, 0.0, 0.908), (0.006, 0.076, 0.022), skin.gloss(_DARK), 0.005, HEAD),
-        *(skin.rod((0.048, side * 0.045, 0.908), 0.015, 0.010, "x", steel, HEAD) for side in (-1.0, 1.0)),
-        *(skin.ball((0.050, side * 0.045, 0.908), 0.010, skin.gloss(_RUBBER), HEAD) for side in (-1.0, 1.0)),
-        skin.ball((0.046, 0.0, 0.908), 0.007, skin.glow(_MINT), HEAD),
+        *(meshes.tire((0.0, side * 0.15, 0.052), 0.052, 0.02, rubber) for side in (-1.0, 1.0)),
+        *(meshes.rod((0.0, side * 0.168, 0.052), 0.024, 0.008, "y", steel) for side in (-1.0, 1.0)),
+        meshes.turned(drum, dark),
+        meshes.rod((0.0, 0.0, 0.127), 0.174, 0.012, "z", mint),
+        *(meshes.rod((x, y, 0.195), 0.007, 0.13, "z", steel) for x in (-0.09, 0.09) for y in (-0.09, 0.09)),
+        meshes.box((-0.01, 0.0, 0.176), (0.078, 0.068, 0.042), white, 0.014),
+        *(meshes.box((0.069, y, 0.176), (0.001, 0.003, 0.02), dark, 0.0005) for y in (-0.03, -0.015, 0.0, 0.015, 0.03)),
+        meshes.rod((0.0, 0.0, 0.262), 0.157, 0.012, "z", mint),
+        meshes.rod((0.075, 0.0, 0.288), 0.036, 0.04, "z", dark),
+        meshes.box((-0.04, 0.0, 0.56), (0.018, 0.022, 0.295), steel, 0.004),
+        *(meshes.box((-0.04, side * 0.0225, 0.56), (0.004, 0.001, 0.28), dark, 0.0005) for side in (-1.0, 1.0)),
+        meshes.tube(((-0.064, 0.0, 0.27), (-0.066, 0.01, 0.55), (-0.06, 0.0, 0.86)), 0.005, dark),
+        meshes.rod((-0.03, 0.0, 0.862), 0.034, 0.03, "z", dark),
+        meshes.rod((-0.02, 0.0, 0.885), 0.018, 0.09, "y", steel, HEAD),
+        meshes.box((0.0, 0.0, 0.914), (0.044, 0.088, 0.034), white, 0.022, HEAD),
+        meshes.box((0.040, 0.0, 0.908), (0.006, 0.076, 0.022), meshes.gloss(_DARK), 0.005, HEAD),
+        *(meshes.rod((0.048, side * 0.045, 0.908), 0.015, 0.010, "x", steel, HEAD) for side in (-1.0, 1.0)),
+        *(meshes.ball((0.050, side * 0.045, 0.908), 0.010, meshes.gloss(_RUBBER), HEAD) for side in (-1.0, 1.0)),
+        meshes.ball((0.046, 0.0, 0.908), 0.007, meshes.glow(_MINT), HEAD),
     )

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from hthor import rules
-from hthor.looks import sweeps
-from hthor.looks.mesh import Piece
+from hthor.looks.meshes import sweeps
+from hthor.looks.meshes.mesh import Piece
 from hthor.types import Part, Rgba, RobotSpec, Vec3
-from hthor.world import skin
-from hthor.world.solid import HEAD, ball, box, post, rod, wheel
+from hthor.world.model.bodies import meshes
+from hthor.world.model.bodies.primitives import HEAD, ball, box, post, rod, wheel
 
 # Published of Hello Robot's Stretch: 0.33 by 0.34 m on the floor, 1.41 m tall; the arm goes out by 0.52 m and up by
 # 1.10 m, and holds 2 kg. Speed, turn rate, field of view and handling time are our choice.
@@ -67,8 +67,8 @@ def look() -> tuple[Part, ...]:
 
 def pieces() -> tuple[Piece, ...]:
     """The same in meshes."""
-    white, dark, grey = skin.gloss(_WHITE), skin.gloss(_DARK), skin.metal(_GREY)
-    rubber, amber = skin.matte(_RUBBER), skin.gloss(_AMBER)
+    white, dark, grey = meshes.gloss(_WHITE), meshes.gloss(_DARK), meshes.metal(_GREY)
+    rubber, amber = meshes.matte(_RUBBER), meshes.gloss(_AMBER)
     arm = (
         (0.045, 0.034, 0.16, white),
         (0.13, 0.029, 0.13, grey),
@@ -76,27 +76,27 @@ def pieces() -> tuple[Piece, ...]:
         (0.225, 0.019, 0.06, grey),
     )
     return (
-        *(skin.tire((0.03, side * 0.148, 0.05), 0.05, 0.017, rubber) for side in (-1.0, 1.0)),
-        *(skin.rod((0.03, side * 0.162, 0.05), 0.022, 0.008, "y", grey) for side in (-1.0, 1.0)),
-        skin.ball((-0.13, 0.0, 0.024), 0.024, rubber),
-        skin.box((-0.02, 0.0, 0.085), (0.142, 0.127, 0.048), dark, 0.03),
-        skin.box((-0.02, 0.0, 0.138), (0.132, 0.117, 0.010), white, 0.009),
-        skin.box((0.06, 0.0, 0.150), (0.045, 0.07, 0.008), amber, 0.006),
-        skin.box((-0.10, 0.0, 0.20), (0.055, 0.07, 0.06), dark, 0.02),
-        skin.rod((-0.08, 0.0, 0.72), 0.034, 1.16, "z", white),
-        skin.box((-0.045, 0.0, 0.72), (0.002, 0.008, 0.55), dark, 0.0015),
-        skin.box((-0.065, 0.0, 0.88), (0.068, 0.062, 0.078), dark, 0.022),
-        skin.box((0.004, 0.0, 0.93), (0.002, 0.04, 0.008), skin.glow(_AMBER), 0.0015),
-        *(skin.rod((x, 0.0, 0.88), radius, length, "x", material) for x, radius, length, material in arm),
-        skin.ball((0.258, 0.0, 0.88), 0.03, dark),
-        *(skin.tube(_finger(side), 0.0075, amber) for side in (-1.0, 1.0)),
-        *(skin.rod((0.352, side * 0.05, 0.88), 0.021, 0.016, "y", rubber) for side in (-1.0, 1.0)),
-        skin.rod((-0.06, 0.0, 1.305), 0.030, 0.05, "z", dark),
-        skin.rod((-0.03, 0.0, 1.33), 0.017, 0.10, "y", grey, HEAD),
-        skin.box((-0.012, 0.0, 1.358), (0.034, 0.078, 0.028), white, 0.018, HEAD),
-        skin.box((0.018, 0.0, 1.357), (0.006, 0.068, 0.020), dark, 0.005, HEAD),
-        *(skin.ball((0.022, y, 1.357), 0.009, skin.gloss(_RUBBER), HEAD) for y in (-0.045, 0.0, 0.045)),
-        skin.rod((-0.015, 0.0, 1.396), 0.027, 0.028, "z", skin.glow(_AMBER), HEAD),
+        *(meshes.tire((0.03, side * 0.148, 0.05), 0.05, 0.017, rubber) for side in (-1.0, 1.0)),
+        *(meshes.rod((0.03, side * 0.162, 0.05), 0.022, 0.008, "y", grey) for side in (-1.0, 1.0)),
+        meshes.ball((-0.13, 0.0, 0.024), 0.024, rubber),
+        meshes.box((-0.02, 0.0, 0.085), (0.142, 0.127, 0.048), dark, 0.03),
+        meshes.box((-0.02, 0.0, 0.138), (0.132, 0.117, 0.010), white, 0.009),
+        meshes.box((0.06, 0.0, 0.150), (0.045, 0.07, 0.008), amber, 0.006),
+        meshes.box((-0.10, 0.0, 0.20), (0.055, 0.07, 0.06), dark, 0.02),
+        meshes.rod((-0.08, 0.0, 0.72), 0.034, 1.16, "z", white),
+        meshes.box((-0.045, 0.0, 0.72), (0.002, 0.008, 0.55), dark, 0.0015),
+        meshes.box((-0.065, 0.0, 0.88), (0.068, 0.062, 0.078), dark, 0.022),
+        meshes.box((0.004, 0.0, 0.93), (0.002, 0.04, 0.008), meshes.glow(_AMBER), 0.0015),
+        *(meshes.rod((x, 0.0, 0.88), radius, length, "x", material) for x, radius, length, material in arm),
+        meshes.ball((0.258, 0.0, 0.88), 0.03, dark),
+        *(meshes.tube(_finger(side), 0.0075, amber) for side in (-1.0, 1.0)),
+        *(meshes.rod((0.352, side * 0.05, 0.88), 0.021, 0.016, "y", rubber) for side in (-1.0, 1.0)),
+        meshes.rod((-0.06, 0.0, 1.305), 0.030, 0.05, "z", dark),
+        meshes.rod((-0.03, 0.0, 1.33), 0.017, 0.10, "y", grey, HEAD),
+        meshes.box((-0.012, 0.0, 1.358), (0.034, 0.078, 0.028), white, 0.018, HEAD),
+        meshes.box((0.018, 0.0, 1.357), (0.006, 0.068, 0.020), dark, 0.005, HEAD),
+        *(meshes.ball((0.022, y, 1.357), 0.009, meshes.gloss(_RUBBER), HEAD) for y in (-0.045, 0.0, 0.045)),
+        meshes.rod((-0.015, 0.0, 1.396), 0.027, 0.028, "z", meshes.glow(_AMBER), HEAD),
     )
 
 

@@ -1,0 +1,1 @@
+"""What our robots share: exploring, routes, manipulation, carrying, messages and task allocation."""

@@ -1,0 +1,205 @@
+"""Carrying what is too heavy for one, with whoever takes the other end.
+
+Several hold such a thing by its handles, at the ends of its length; once they are strong enough together, whoever goes
+draws it and the others along, like a trailer. Whoever lets go puts it down.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+from hthor.agents.skills import viewpoints
+from hthor.agents.skills.manipulation import Errand, Worker, stride
+from hthor.agents.skills.subgoals import Knowledge
+from hthor.agents.skills.task_allocation import Crew, able, rank
+from hthor.agents.skills.viewpoints import Ways
+from hthor.agents.skills.yielding import bumped
+from hthor.geometry import plane
+from hthor.navigation.path_follower import Follower, face, shift
+from hthor.types import HUMAN, Briefing, Drop, Job, Motion, Observation, Pick, ThingState, Vec2, Vec3, Wait
+
+_THERE_M = 0.45
+"""This close to its place it is put down."""
+_ENOUGH_M = 0.7
+"""And this close when it does not come closer."""
+_PAST_M = (0.9, 0.6, 0.3, 0.0)
+"""How far past the place the leader goes, so that what hangs behind comes to lie there."""
+_BESIDE_M, _BY_M, _ASIDE_M = 0.12, 1.4, 1.2
+_AIMS = 24
+_STUCK = 4
+"""After so many moves in a row that were stopped, somebody else may lead for a while."""
+_REST_S = 6.0
+
+
+class Drawn(Ways, Protocol):
+    """Ways for whoever draws something along."""
+
+    def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]: ...
+
+
+class Hauler:
+    """One body's part in carrying one thing; ``waits`` says whether it lets a person take hold first."""
+
+    def __init__(self, briefing: Briefing, ways: Drawn, worker: Worker, crew: Crew, waits: bool = True) -> None:
+        self.briefing, self.body, self.ways, self.worker, self.crew = briefing, briefing.body, ways, worker, crew
+        self.follower = Follower(step=stride(briefing.body, briefing.tick_s))
+        self._waits = waits
+        self._yaw: float | None = None
+        self._half = 0.4
+        self._parked = self._squeezed = False
+        self._goal: tuple[str, float, float] = ("", 0.0, 0.0)
+        self._stuck, self._until, self._number = 0, -1, 0
+
+    def is_close(self, observation: Observation, knowledge: Knowledge, job: Job) -> bool:
+        """Whether it holds the thing, or stands by it: then whoever is near is there to help, and nobody gives way."""
+        here, place = (observation.pose.x, observation.pose.y), knowledge.states[job.target].position
+        return observation.holding == job.target or math.dist(here, place[:2]) < _BY_M
+
+    def motion(self, observation: Observation, knowledge: Knowledge, job: Job) -> Motion:
+        """The next motion of this job."""
+        state = knowledge.states[job.target]
+        self._look(observation, job)
+        if observation.holding != job.target:
+            return self._approach(observation, state, job)
+        if not state.held_by:
+            return self._attend(observation, state)
+        place = job.place or self._room(knowledge, job, state)
+        if place is None or self._led_by(state) != self.briefing.seat:
+            return Wait(seconds=0.3)
+        return self._lead(observation, state, place)
+
+    def _look(self, observation: Observation, job: Job) -> None:
+        """Which way it lies."""
+        for seen in observation.detections:
+            if seen.id == job.target:
+                self._yaw, self._half = seen.yaw, seen.size[0] / 2
+
+    # --------------------------------------------------------------------------------------------------- taking hold
+
+    def _approach(self, observation: Observation, state: ThingState, job: Job) -> Motion:
+        """Go to a handle and take it, from where it is in front and the thing behind it if that can be.
+
+        A person is let choose their end first: standing at one, a robot might be in their way.
+        """
+        if self._waits and not state.bearers and self._counts_on_person(state, job):
+            return self._await(observation, state)
+        handle = self._handle(state)
+        out = math.atan2(handle[1] - state.position[1], handle[0] - state.position[0])
+        apart = self.body.radius + _BESIDE_M
+        stand = (handle[0] + apart * math.cos(out), handle[1] + apart * math.sin(out), handle[2])
+        if bumped(observation) and not self._squeezed:
+            self._squeezed = True
+            self.worker.drop()
+        free = self._yaw is not None and not self._squeezed
+        errand = Errand(job.target, (handle,), Pick(object=job.target), stand=stand if free else None)
+        return self.worker.pursue(observation, errand) or Wait(seconds=0.3)
+
+    def _counts_on_person(self, state: ThingState, job: Job) -> bool:
+        """Whether it takes the person, as there are not enough robots with hands."""
+        robots = [seat for seat, body in self.crew.bodies.items() if seat != HUMAN and able(body, state.kind, job)]
+        return HUMAN in self.crew.bodies and len(robots) < job.hands
+
+    def _await(self, observation: Observation, state: ThingState) -> Motion:
+        """Come near, then wait where it is in nobody's way, facing the thing."""
+        here, place = (observation.pose.x, observation.pose.y), state.position
+        goal = ("await", round(place[0], 1), round(place[1], 1))
+        outcome = observation.outcome
+        stopped = outcome is not None and not outcome.ok and outcome.motion == "move"
+        if goal != self._goal or stopped:
+            self._goal, self._parked = goal, False
+            self.follower.take(viewpoints.route(self.ways, here, (place,), _BY_M, but=[here] if stopped else []))
+        step = self.follower.next(observation.pose)
+        if step is None and not self._parked:
+            self._parked = True
+            self.follower.take(self.ways.retreat(here, place[:2], _ASIDE_M))
+            step = self.follower.next(observation.pose)
+        return step or self._attend(observation, state)
+
+    def _handle(self, state: ThingState) -> Vec3:
+        """The free handle, of two the one that the person gets to last; the middle until one sees how it lies."""
+        if self._yaw is None:
+            return state.position
+        ends = [plane.to_house((side * self._half, 0.0, 0.0), state.position, self._yaw) for side in (1.0, -1.0)]
+        others = [self.crew.place(seat) for seat in state.bearers if seat != self.briefing.seat]
+        if others:
+            return max(ends, key=lambda end: round(math.dist(end[:2], others[0]), 3))
+        way = self.ways.way(self.crew.place(HUMAN), self.ways.loose(state.position[:2]))
+        last = way[-2] if len(way) > 1 else self.crew.place(HUMAN)
+        return max(ends, key=lambda end: round(math.dist(end[:2], last), 3))
+
+    def _attend(self, observation: Observation, state: ThingState) -> Motion:
+        """Wait for another to take the other end, facing it."""
+        turn = face(observation.pose, state.position, self.body.eye, self.body.pitch_limit)
+        return turn if turn is not None and abs(turn.yaw) > 0.2 else Wait(seconds=0.5)
+
+    # -------------------------------------------------------------------------------------------------- on the way
+
+    def _led_by(self, state: ThingState) -> str:
+        """Who goes first: of the robots the one whose seat comes first; they know the way."""
+        robots = [seat for seat in state.bearers if seat != HUMAN]
+        return min(robots, key=rank, default=HUMAN)
+
+    def _lead(self, observation: Observation, state: ThingState, place: Vec3) -> Motion:
+        """Draw it to its place and put it down there."""
+        here, outcome = (observation.pose.x, observation.pose.y), observation.outcome
+        apart = math.dist(state.position[:2], place[:2])
+        if apart < _THERE_M:
+            return Drop()
+        if observation.tick < self._until:
+            return Wait(seconds=0.3)
+        goal = ("lead", round(place[0], 1), round(place[1], 1))
+        stopped = outcome is not None and not outcome.ok and outcome.motion == "move"
+        self._stuck = self._stuck + 1 if stopped else 0
+        if goal != self._goal:
+            self._goal, self._number = goal, 0
+            self.follower.take(self._course(here, state, place))
+        elif stopped:
+            return self._free(observation, state, place)
+        step = self.follower.next(observation.pose)
+        if step is not None:
+            return step
+        self._number += 1
+        if apart < _ENOUGH_M or self._number > _AIMS:
+            return Drop()
+        self.follower.take(self._course(here, state, place))
+        return self.follower.next(observation.pose) or Wait(seconds=0.3)
+
+    def _course(self, here: Vec2, state: ThingState, place: Vec3) -> tuple[Vec2, ...]:
+        """The way to the place and past it; seen from the thing at first, from other sides when that did not do."""
+        way = self.ways.broad(here, place[:2])
+        before = way[-2] if len(way) > 1 and self._number == 0 else state.position[:2]
+        angle = math.atan2(place[1] - before[1], place[0] - before[0]) + _swing(self._number)
+        for past in _PAST_M:
+            end = (place[0] + past * math.cos(angle), place[1] + past * math.sin(angle))
+            if self.ways.stands(end) and (past == 0.0 or self.ways.fits(place[:2], end)):
+                return self.ways.broad(here, end)
+        return way
+
+    def _free(self, observation: Observation, state: ThingState, place: Vec3) -> Motion:
+        """Something is in the way of one of us: swing out to a side; after several tries, let the others lead."""
+        here = (observation.pose.x, observation.pose.y)
+        if self._stuck >= _STUCK:
+            self._stuck = 0
+            self._until = observation.tick + round(_REST_S / self.briefing.tick_s)
+            self.follower.take(self._course(here, state, place))
+            return Wait(seconds=0.3)
+        ahead = self.follower.ahead or place[:2]
+        angle = math.atan2(ahead[1] - here[1], ahead[0] - here[0]) + (0.0, 1.0, -1.0, 2.2)[self._stuck % 4]
+        spot = (here[0] + 0.3 * math.cos(angle), here[1] + 0.3 * math.sin(angle))
+        self.follower.take((spot, *self._course(spot, state, place)) if self.ways.fits(here, spot) else None)
+        return shift(observation.pose, spot, 0.3)
+
+    def _room(self, knowledge: Knowledge, job: Job, state: ThingState) -> Vec3 | None:
+        """The middle of the room that it belongs in, where no place is told."""
+        rooms = [knowledge.rooms[name] for name in job.destinations if name in knowledge.rooms]
+        if not rooms:
+            return None
+        corners = rooms[0].polygon
+        x, y = (sum(corner[axis] for corner in corners) / len(corners) for axis in (0, 1))
+        return (x, y, state.position[2])
+
+
+def _swing(number: int) -> float:
+    """0, then ever farther to either side [rad]."""
+    return (1 if number % 2 else -1) * 0.5 * ((number + 1) // 2)

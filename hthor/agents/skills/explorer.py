@@ -1,0 +1,149 @@
+"""Exploring a house with a map of one's own."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+
+from hthor.geometry.plane import wrap
+from hthor.navigation.frontier import Frontier, Survey
+from hthor.navigation.grid_map import CELL_M, UNKNOWN, GridMap
+from hthor.navigation.path_follower import Follower
+from hthor.navigation.planner import Planner
+from hthor.navigation.waiting_spots import retreat
+from hthor.types import BodySpec, Motion, Observation, Pose, Rotate, Vec2
+
+CLOSE_M = 1.15
+"""From this far what lies near the edge of a table or a counter is within the detector's range."""
+_TURN_M_RAD = 1.5
+"""What a radian of turning costs, in metres."""
+_LEAST_M = 0.5
+_TURN_RAD = 0.8
+"""A body may go sideways: turning less costs less."""
+_THINK_M = 1.0
+"""A place that is seen to be worth nothing any more on the way there is gone to on so far before it thinks again."""
+_TRIES = 4
+_LOW_M, _HIGH_M, _ASIDE_M = 0.4, 1.1, 1.0
+
+
+class Explorer:
+    """Looks around, then goes to the cheapest of frontiers and places never seen from close by."""
+
+    def __init__(self, body: BodySpec) -> None:
+        self.body = body
+        self.grid: GridMap | None = None
+        self.follower = Follower(step=0.5, turn_rad=_TURN_RAD)
+        self._turns = math.ceil(2.0 * math.pi / (0.9 * body.fov[0]))
+        self._integrated: Pose | None = None
+        self._place: Frontier | None = None
+        self._chose: Vec2 = (0.0, 0.0)
+        self._tries: dict[tuple[int, int], int] = {}
+
+    def see(self, observation: Observation) -> None:
+        """Bring the map up to date; call at every act."""
+        pose = observation.pose
+        if self.grid is None:
+            self.grid = GridMap(pose.x, pose.y)
+            self.planner = Planner(self.grid, self.body.radius, optimistic=False)
+        if self._integrated != pose:
+            self.grid.integrate(observation.scan, CLOSE_M, 0.45 * self.body.fov[0])
+            self._integrated = pose
+        outcome = observation.outcome
+        if observation.idle and outcome is not None and not outcome.ok and outcome.motion == "move":
+            self._bumped(pose, outcome.by)
+
+    def motion(self, observation: Observation) -> Motion:
+        """The next motion of the exploration."""
+        if self._turns:
+            return self._look_around(observation.pose)
+        pose, place = observation.pose, self._place
+        if place is None or self.follower.done or (self._has_moved(pose) and not self._is_open(place)):
+            self._choose(pose)
+        step = self.follower.next(observation.pose)
+        if step is None:
+            self._place = None
+            return Rotate(yaw=0.9 * self.body.fov[0])
+        return step
+
+    def fits(self, a: Vec2, b: Vec2) -> bool:
+        """Whether the body can go straight from ``a`` to ``b``, as far as the map tells."""
+        return self.planner.straight(a, b)
+
+    def retreat(self, pose: Pose, point: Vec2, apart_m: float) -> None:
+        """Set out for a spot where it is in nobody's way, ``apart_m`` metres from ``point``; `follower` leads there."""
+        assert self.grid is not None
+        self.drop()
+        self.follower.take(retreat(self.grid, self.planner, (pose.x, pose.y), point, apart_m))
+
+    def drop(self) -> None:
+        """Forget where it was going."""
+        self._place = None
+        self.follower.take(None)
+
+    def _look_around(self, pose: Pose) -> Motion:
+        self._turns -= 1
+        return Rotate(yaw=0.9 * self.body.fov[0], pitch=gaze(self.body) - pose.pitch)
+
+    def _has_moved(self, pose: Pose) -> bool:
+        """Whether it has come so far since its last choice that it pays to think again."""
+        x, y = self._chose
+        return math.hypot(pose.x - x, pose.y - y) >= _THINK_M
+
+    def _is_open(self, place: Frontier) -> bool:
+        """Whether there is still something to learn at the place."""
+        assert self.grid is not None
+        x, y = place.centre
+        if place.is_edge:
+            around = ((CELL_M, 0.0), (-CELL_M, 0.0), (0.0, CELL_M), (0.0, -CELL_M))
+            return any(self.grid.at(x + dx, y + dy) == UNKNOWN for dx, dy in around)
+        return not self.grid.was_near(x, y)
+
+    def _choose(self, pose: Pose) -> None:
+        assert self.grid is not None
+        self.drop()
+        self._chose = pose.x, pose.y
+        survey = Survey(self.grid, self.planner, pose, _LEAST_M)
+        for place in survey.ranked(partial(_turning, pose)):
+            key = _key(place)
+            if self._tries.get(key, 0) >= _TRIES:
+                continue
+            self._tries[key] = self._tries.get(key, 0) + 1
+            path = survey.path(place)
+            if path is not None:
+                self._place = place
+                self.follower.take(path)
+                return
+        self.grid.forget_near()  # all seen: go round once more
+        self._tries.clear()
+
+    def _bumped(self, pose: Pose, by: str) -> None:
+        """What the scan does not show closes the cell in front; a body in the way makes another place look better."""
+        assert self.grid is not None
+        goal = self.follower.ahead
+        if _is_seat(by):
+            if self._place is not None:
+                self._tries[_key(self._place)] = _TRIES
+        elif goal is not None:
+            angle = math.atan2(goal[1] - pose.y, goal[0] - pose.x)
+            reach = self.body.radius + CELL_M
+            self.grid.mark_blocked(pose.x + reach * math.cos(angle), pose.y + reach * math.sin(angle))
+        self.drop()
+
+
+def gaze(body: BodySpec) -> float:
+    """Camera pitch [rad] that keeps the tops of tables in view from a metre away."""
+    low, high = (math.atan2(height - body.eye, _ASIDE_M) for height in (_LOW_M, _HIGH_M))
+    return max(-body.pitch_limit, min(body.pitch_limit, (low + high) / 2.0))
+
+
+def _turning(pose: Pose, point: Vec2) -> float:
+    """What turning towards a point costs, in metres."""
+    return _TURN_M_RAD * abs(wrap(math.atan2(point[1] - pose.y, point[0] - pose.x) - pose.yaw))
+
+
+def _key(place: Frontier) -> tuple[int, int]:
+    return round(place.centre[0] / 0.2), round(place.centre[1] / 0.2)
+
+
+def _is_seat(name: str) -> bool:
+    return name == "human" or name.startswith("robot")

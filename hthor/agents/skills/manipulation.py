@@ -1,0 +1,230 @@
+"""Fetching objects and putting them where they belong, motion by motion."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+from msgspec import Struct
+
+from hthor import catalog, rules
+from hthor.agents.skills import viewpoints
+from hthor.agents.skills.subgoals import Knowledge, hides, resting
+from hthor.agents.skills.viewpoints import Ways
+from hthor.agents.skills.yielding import Passing, bumped
+from hthor.geometry import plane
+from hthor.navigation.path_follower import Follower, face
+from hthor.types import BodySpec, Job, Motion, Observation, Open, Pick, Place, Thing, Vec2, Vec3, Wait
+
+AGAIN_S = 10.0
+"""How long something that failed several times is left alone."""
+_REACHES = ((0.85, 0.12), (0.985, 0.045))
+"""Shares of the arm's length and how finely [m] to look: near at first, at a stretch when that did not do."""
+_TRIES = 6
+_PAUSE_S = 0.5
+_TURN_RAD = 0.7
+"""A body may go, and reach, a little sideways: turning less costs less."""
+_MOVED_M = 0.1
+_AT_M = 0.2
+"""How close one comes to a spot where one ought to stand."""
+
+
+class Errand(Struct, frozen=True):
+    """Where to go and what to do there: have one of the ``points`` [m] in reach, face it, then ``act``.
+
+    ``stand`` [m] is where to stand for it, if that matters.
+    """
+
+    name: str
+    points: tuple[Vec3, ...]
+    act: Motion
+    holder: Thing | None = None
+    stand: Vec3 | None = None
+
+
+class Worker:
+    """Carries one object after the other. What fails several times is left alone for a while.
+
+    ``follower`` holds the way that it is on.
+    """
+
+    def __init__(self, body: BodySpec, ways: Ways, passing: Passing, tick_s: float) -> None:
+        self.body, self.ways, self.passing = body, ways, passing
+        self.follower = Follower(step=stride(body, tick_s), turn_rad=_TURN_RAD, arrived_m=0.01)
+        self._again = round(AGAIN_S / tick_s)
+        self._left_alone: dict[str, int] = {}
+        self._errand, self._at = "", (0.0, 0.0, 0.0)
+        self._misses: list[Vec2] = []
+
+    def can_try(self, name: str, tick: int) -> bool:
+        """Whether an object, or an object and a thing to put it on, was not given up just now."""
+        return self._left_alone.get(name, 0) <= tick
+
+    def leave(self, name: str, until: int) -> None:
+        """Leave it alone until this tick."""
+        self._left_alone[name] = until
+
+    def motion(self, observation: Observation, knowledge: Knowledge, job: Job) -> Motion | None:
+        """The next motion of this job, None when nothing can be done about it now."""
+        if observation.holding == job.target:
+            errand = self._delivery(observation, knowledge, job)
+        else:
+            errand = self._fetching(knowledge, job)
+        return None if errand is None else self.pursue(observation, errand)
+
+    def open(self, observation: Observation, thing: Thing) -> Motion | None:
+        """The next motion towards an open door, None when it was given up."""
+        if not self.can_try(thing.id, observation.tick):
+            return None
+        x, y, z = plane.to_house((0.0, thing.size[1] / 2, 0.0), thing.centre, thing.yaw)
+        return self.pursue(observation, Errand(thing.id, ((x, y, z),), Open(thing=thing.id), thing))
+
+    def drop(self) -> None:
+        """Forget where it was going."""
+        self._errand = ""
+        self.follower.take(None)
+
+    # ---------------------------------------------------------------------------------------------- what is to be done
+
+    def _fetching(self, knowledge: Knowledge, job: Job) -> Errand | None:
+        state = knowledge.states.get(job.target)
+        if state is None or state.held_by:
+            return None
+        holder = knowledge.things.get(state.support)
+        act: Motion = Open(thing=state.support) if knowledge.is_shut(state.support) else Pick(object=job.target)
+        return Errand(job.target, (state.position,), act, holder)
+
+    def _delivery(self, observation: Observation, knowledge: Knowledge, job: Job) -> Errand | None:
+        thing = self._bearer(observation, knowledge, job)
+        if thing is None:
+            return None
+        act: Motion = Place(on=thing.id, position=job.place)
+        if knowledge.is_shut(thing.id):
+            act = Open(thing=thing.id)
+        points = (job.place,) if job.place is not None else self._room_for(job, thing, knowledge)
+        return Errand(_at(job, thing), points, act, thing)
+
+    def _bearer(self, observation: Observation, knowledge: Knowledge, job: Job) -> Thing | None:
+        """What to put it on: what one is going to already, or else the nearest that was not given up."""
+        able = [
+            thing
+            for thing in knowledge.bearers(job)
+            if self._in_reach(thing, 0.0) and (not knowledge.is_shut(thing.id) or "open" in self.body.capabilities)
+        ]
+        going = next((thing for thing in able if _at(job, thing) == self._errand), None)
+        if going is not None:
+            return going
+        things = [thing for thing in able if self.can_try(_at(job, thing), observation.tick)] or able
+        if len(things) < 2:
+            return things[0] if things else None
+        here = (observation.pose.x, observation.pose.y)
+        return viewpoints.closest(self.ways, here, things, lambda thing: self._in_reach(thing, 0.0), self.body.reach)
+
+    def _in_reach(self, thing: Thing, inset_m: float) -> tuple[Vec3, ...]:
+        """Points of the thing's surfaces at heights that the arm gets to."""
+        return _between(thing, inset_m, self.body.reach_low, self.body.reach_high - 0.1)
+
+    def _room_for(self, job: Job, thing: Thing, knowledge: Knowledge) -> tuple[Vec3, ...]:
+        """Where on the thing the object fits beside what is known to lie there; anywhere when that is nowhere."""
+        states = knowledge.states
+        wide = _wide(states[job.target].kind)
+        points = self._in_reach(thing, wide)
+        there = [(one.position, _wide(one.kind) + wide) for one in states.values() if one.support == thing.id]
+        free = [point for point in points if all(math.dist(point[:2], at[:2]) > apart for at, apart in there)]
+        return tuple(free) or points
+
+    # ------------------------------------------------------------------------------------------------------- doing it
+
+    def pursue(self, observation: Observation, errand: Errand) -> Motion | None:
+        """Go, face, act; from another spot when that was refused."""
+        outcome, here = observation.outcome, (observation.pose.x, observation.pose.y)
+        moved = len(errand.points) == 1 and math.dist(errand.points[0], self._at) > _MOVED_M
+        if errand.name != self._errand or moved:
+            self._errand, self._at, self._misses = errand.name, errand.points[0], []
+            if not self._set_out(here, errand):
+                return self._give_up(observation)
+        elif outcome is not None and not outcome.ok:
+            if bumped(observation) and not self._is_taken(observation):
+                if not self._gets_past(observation):
+                    return Wait(seconds=_PAUSE_S)
+            elif not self._recover(observation, errand):
+                return self._give_up(observation)
+        step = self.follower.next(observation.pose)
+        if step is not None:
+            return step
+        turn = face(observation.pose, viewpoints.nearest(errand.points, here), self.body.eye, self.body.pitch_limit)
+        return turn if turn is not None and abs(turn.yaw) > _TURN_RAD else errand.act
+
+    def _recover(self, observation: Observation, errand: Errand) -> bool:
+        """After a failure: from another spot, or out of a tight corner first. False when all was tried."""
+        outcome, here = observation.outcome, (observation.pose.x, observation.pose.y)
+        assert outcome is not None
+        if outcome.motion != "move":
+            self._misses.append(here)
+            return len(self._misses) <= _TRIES and self._set_out(here, errand)
+        goal = self.follower.goal
+        if bumped(observation):
+            if goal is not None:
+                self._misses.append(goal)
+            return len(self._misses) <= _TRIES and self._set_out(here, errand)
+        loose = self.ways.loose(here)
+        if not self._set_out(loose, errand):
+            return False
+        self.follower.take((loose, *self.follower.path))
+        return True
+
+    def _is_taken(self, observation: Observation) -> bool:
+        """Whether the one whom one ran into stands where one wants to."""
+        goal = self.follower.goal
+        return goal is None or self.passing.is_taken(observation, goal)
+
+    def _gets_past(self, observation: Observation) -> bool:
+        """Set out round somebody; False when one has to wait for them to go."""
+        goal = self.follower.goal
+        way = self.passing.around(observation, goal) if goal is not None else ()
+        if way:
+            self.follower.take(way)
+        return bool(way)
+
+    def _set_out(self, here: Vec2, errand: Errand) -> bool:
+        """Take the way to a spot; False when there is none."""
+        if errand.stand is not None:
+            way = viewpoints.route(self.ways, here, (errand.stand,), _AT_M, but=self._misses, grid_m=_AT_M / 3.0)
+            if way:
+                self.follower.take(way)
+                return True
+        holder = errand.holder
+        front = holder is not None and hides(holder)
+        for share, grid_m in _REACHES:
+            reach = share * self.body.reach
+            way = viewpoints.route(self.ways, here, errand.points, reach, holder, front, self._misses, grid_m)
+            if way:
+                self.follower.take(way)
+                return True
+        return False
+
+    def _give_up(self, observation: Observation) -> Motion:
+        self._left_alone[self._errand] = observation.tick + self._again
+        self.drop()
+        return Wait(seconds=2.0 if observation.holding else 0.3)
+
+
+def stride(body: BodySpec, tick_s: float) -> float:
+    """The longest move [m] of an action that takes whole ticks at full speed: none of its time is lost."""
+    tick_m = body.speed * tick_s
+    return tick_m * math.floor(rules.MOVE_MAX_M / tick_m + 1e-9) if tick_m < rules.MOVE_MAX_M else rules.MOVE_MAX_M
+
+
+def _wide(kind: str) -> float:
+    """How far an object of this kind reaches from its middle along a side [m]."""
+    return max(catalog.kind(kind).size[:2]) / 2
+
+
+def _at(job: Job, thing: Thing) -> str:
+    return f"{job.target} {thing.id}"
+
+
+@functools.lru_cache(maxsize=1024)
+def _between(thing: Thing, inset_m: float, low: float, high: float) -> tuple[Vec3, ...]:
+    """Points of the thing's surfaces between two heights [m]."""
+    return tuple(point for point in resting(thing, inset_m) if low <= point[2] <= high)

@@ -1,0 +1,69 @@
+"""When to speak, again or not at all, and in which words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from hthor.types import Briefing, Detection, Observation, Receipt
+
+AGAIN_S = 10.0
+"""How long to leave the person alone after a message was declined or covered."""
+ASIDE_M = 2.0
+"""So far from it a robot waits: whoever opens a fridge and reaches into it needs the floor before it."""
+APART_M = 1.3
+"""How far from the target a robot waits: out of the person's way, and close enough to see it."""
+_HOLLOW = ("bathtub", "fridge", "garbage_can", "sink")
+
+
+class Offers:
+    """Counts what was said about one thing: once, and again some time after it was turned down."""
+
+    def __init__(self, briefing: Briefing, most: int) -> None:
+        """``most`` messages are sent at the very most."""
+        self.most, self.sent = most, 0
+        self._again = round(AGAIN_S / briefing.tick_s)
+        self._mark = 0
+
+    def due(self, tick: int, receipt: Receipt | None) -> bool:
+        """Whether to speak now."""
+        if self.sent == 0:
+            return True
+        if self.sent >= self.most or tick < self._mark + self._again or receipt is None:
+            return False
+        return receipt.status in ("declined", "covered") and tick >= receipt.tick + self._again
+
+    def note(self, tick: int) -> None:
+        """A message was sent."""
+        self.sent, self._mark = self.sent + 1, tick
+
+
+def title(kind: str) -> str:
+    """A kind's name in a sentence, such as "the dining table"."""
+    return "the " + kind.replace("_", " ")
+
+
+def place(kind: str) -> str:
+    """Where something is that rests on or in a thing of this kind, such as "on the dining table"."""
+    return f"{'in' if kind in _HOLLOW else 'on'} {title(kind)}"
+
+
+def sighting(seen: Detection, kinds: Mapping[str, str]) -> str:
+    """What a robot says of an object in its view; ``kinds`` gives the kind of each piece of furniture it knows."""
+    where = f" {place(kinds[seen.support])}" if seen.support in kinds else ""
+    return f"I found {title(seen.kind)}{where} in front of me."
+
+
+def spot(observation: Observation, name: str) -> Detection | None:
+    """The object of this id, when it is in view."""
+    return next((seen for seen in observation.detections if seen.id == name and seen.family == "object"), None)
+
+
+def please_look(kind: str, wanted: Sequence[str]) -> str:
+    """What a robot without a hand for doors says in front of a closed one, such as of a "fridge"; ``wanted`` kinds."""
+    things = " and ".join(dict.fromkeys(title(name) for name in wanted))
+    return f"I cannot open {title(kind)} in front of me. Please look inside for {things}."
+
+
+def lend_a_hand(kind: str, held: bool) -> str:
+    """What a robot says of a thing of this kind, which is too heavy for it; ``held``: it has one end already."""
+    return f"Please help me carry {title(kind)}: {'I have one end' if held else 'take one end, I take the other'}."

@@ -1,0 +1,246 @@
+"""Showing the person where things are: goes where they come into view, then tells."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from hthor import rules
+from hthor.agents.skills.message_timing import ASIDE_M, Offers, lend_a_hand, place, please_look, sighting, spot, title
+from hthor.agents.skills.subgoals import PAPER_KINDS, Knowledge
+from hthor.geometry import plane
+from hthor.types import HUMAN, Briefing, Job, Motion, Observation, Receipt, Send, Thing, ThingState, Vec2, Vec3, Wait
+
+if TYPE_CHECKING:
+    from hthor.agents.skills.routes import Routes
+    from hthor.agents.skills.yielding import Passing
+    from hthor.navigation.path_follower import Follower
+
+_LOOKS = 3
+"""Spots to look from before saying that the target must be in there: over the rim of a sink, a low eye sees nothing."""
+_MOST = {"target": 3, "destination": 1, "help": 4, "done": 1}
+_UNANSWERED_S, _CONFIRMED_S = 8.0, 20.0
+"""How long to stay with an object that was told of, while no answer comes, and while the person may be on the way."""
+
+
+class Teller:
+    """Tells of one job at a time: of the object, and once the person has it in hand, of where it belongs.
+
+    Speaks only when close enough to detect. Behind a closed door it cannot detect: it says so in front of the door.
+    """
+
+    def __init__(
+        self, briefing: Briefing, routes: Routes, follower: Follower, knowledge: Knowledge, passing: Passing | None
+    ) -> None:
+        """``passing`` is None where there is one job and no other robot, as in the paper."""
+        self.briefing, self.routes, self.follower = briefing, routes, follower
+        self.knowledge, self.passing, self.many = knowledge, passing, passing is not None
+        self.kinds = {thing.id: thing.kind for thing in knowledge.things.values()}
+        self._offers: dict[tuple[str, str], Offers] = {}
+        self._answers: dict[tuple[str, str], Receipt] = {}
+        self.spoken_about = ("", "")
+        self.target = ""
+        self._looked: dict[str, tuple[Vec3, list[Vec2]]] = {}
+        self._anew()
+
+    def _anew(self) -> None:
+        self.goal: Vec3 | None = None
+        self.misses: list[Vec2] = []
+        self.aside = ""
+
+    def take(self, job: Job) -> None:
+        """Turn to a job; nothing changes when it is the one at hand."""
+        if job.target != self.target:
+            if self.goal is not None:
+                self._looked[self.target] = (self.goal, self.misses)
+            self.target = job.target
+            self._anew()
+            self.follower.take(None)
+
+    def offers(self, job: Job, errand: str) -> Offers:
+        """What was said of the job's "target" or "destination"."""
+        return self._offers.setdefault((job.target, errand), Offers(self.briefing, most=_MOST[errand]))
+
+    # ------------------------------------------------------------------------------------------------ what to tell of
+
+    def hear(self, observation: Observation) -> None:
+        """Keep the answer to what was said last."""
+        if self.many and observation.receipt is not None:
+            self._answers[self.spoken_about] = observation.receipt
+
+    def waits(self, observation: Observation, job: Job) -> bool:
+        """Whether the person may still act on what they were told of this job, or was not told yet."""
+        if self.offers(job, "target").sent == 0:
+            return True
+        answer = self._answers.get((job.target, "target"))
+        if answer is None:
+            return False
+        patience = {"sent": _UNANSWERED_S, "shown": _UNANSWERED_S, "confirmed": _CONFIRMED_S}.get(answer.status, 0.0)
+        return observation.tick < answer.tick + patience / self.briefing.tick_s
+
+    def is_due(self, observation: Observation, job: Job, errand: str = "target") -> bool:
+        """Whether there is reason to speak of the job, again or for the first time."""
+        key = (job.target, errand)
+        receipt = observation.receipt if self.spoken_about == key else self._answers.get(key)
+        return self.offers(job, errand).due(observation.tick, receipt)
+
+    def is_exhausted(self, job: Job) -> bool:
+        """Whether the object was spoken of as often as it may be."""
+        return self.offers(job, "target").sent >= _MOST["target"]
+
+    def errand(self, job: Job) -> tuple[str, Vec3]:
+        """What to show now, the target or the destination, and where it is [m]."""
+        target = self.knowledge.states[job.target]
+        if target.held_by == HUMAN:
+            where = self._belongs(job, target)
+            if where is not None:
+                return "destination", where[1]
+        return "target", target.position
+
+    def _belongs(self, job: Job, target: ThingState) -> tuple[Thing, Vec3] | None:
+        """The thing to bring the object to that is nearest to it by the floor, and the spot to show."""
+        things = self.knowledge.bearers(job)
+        if not things:
+            return None
+        here = (target.position[0], target.position[1])
+        thing = min(things, key=lambda thing: (self.routes.near(here, thing.centre), thing.id))
+        return thing, thing.centre if job.place is None else job.place
+
+    # ------------------------------------------------------------------------------------------------------- speaking
+
+    def say(self, observation: Observation, job: Job) -> Send | None:
+        """The message about the job at hand, when it is time and the thing in question is near."""
+        errand, where = self.errand(job)
+        if not self.is_due(observation, job, errand):
+            return None
+        target = self.knowledge.states[job.target]
+        if errand == "destination":
+            message = self._destined(observation, job, target, where)
+        else:
+            message = self._found(observation, target)
+        return self._note(observation, job, errand, message)
+
+    def in_view(self, observation: Observation, jobs: Sequence[Job]) -> list[Job]:
+        """Those jobs whose objects are in view, in nobody's hand, and worth a word now."""
+        seen = {thing.id for thing in observation.detections if thing.family == "object" and not thing.held_by}
+        return [job for job in jobs if job.target in seen and self.is_due(observation, job)]
+
+    def mention(self, observation: Observation, job: Job) -> Send | None:
+        """A message about an object in view."""
+        seen = spot(observation, job.target)
+        assert seen is not None
+        message = Send(text=sighting(seen, self.kinds), object=seen.id, position=seen.position)
+        return self._note(observation, job, "target", message)
+
+    def ask_for_help(self, observation: Observation, job: Job) -> Send | None:
+        """A request to take the other end of what is too heavy for one."""
+        state = self.knowledge.states[job.target]
+        if not self.is_due(observation, job, "help"):
+            return None
+        message = Send(text=lend_a_hand(state.kind, bool(state.bearers)), object=state.id, position=state.position)
+        return self._note(observation, job, "help", message)
+
+    def report(self, observation: Observation, job: Job) -> Send | None:
+        """Word that an object is where it belongs, so that nobody looks for it any longer."""
+        state = self.knowledge.states[job.target]
+        thing = self.knowledge.things.get(state.support)
+        if thing is None or not self.is_due(observation, job, "done"):
+            return None
+        text = f"I put {title(state.kind)} {place(thing.kind)}."
+        return self._note(observation, job, "done", Send(text=text, object=state.id, position=state.position))
+
+    def _note(self, observation: Observation, job: Job, errand: str, message: Send | None) -> Send | None:
+        if message is not None:
+            self.offers(job, errand).note(observation.tick)
+            self.spoken_about = (job.target, errand)
+        return message
+
+    def _found(self, observation: Observation, target: ThingState) -> Send | None:
+        seen = spot(observation, target.id)
+        if seen is not None and seen.held_by != HUMAN:
+            return Send(text=sighting(seen, self.kinds), object=seen.id, position=seen.position)
+        support = self.knowledge.things.get(target.support)
+        if support is None or not self._is_close(observation, support):
+            return None
+        shut = self._is_shut(support.id)
+        if len(self.misses) < _LOOKS and not shut:
+            return None
+        text = f"{title(target.kind).capitalize()} is {place(support.kind)}."
+        if shut and self.briefing.kind not in PAPER_KINDS and "open" not in self.briefing.body.capabilities:
+            text = please_look(support.kind, (target.kind,))
+        return Send(text=text, object=target.id, position=target.position)
+
+    def _is_shut(self, name: str) -> bool:
+        """Whether this is a thing with a door, and the door is closed."""
+        state = self.knowledge.states.get(name)
+        return state is not None and state.kind == "fridge" and not state.open
+
+    def _destined(self, observation: Observation, job: Job, target: ThingState, where: Vec3) -> Send | None:
+        found = self._belongs(job, target)
+        if found is None or not self._is_close(observation, found[0]):
+            return None
+        return Send(text=f"{title(found[0].kind).capitalize()} is here.", object=found[0].id, position=where)
+
+    def _is_close(self, observation: Observation, thing: Thing) -> bool:
+        """Whether the robot is within the detector's range of a thing's outline, in the same room."""
+        here = (observation.pose.x, observation.pose.y)
+        apart = plane.distance_to_rectangle(
+            here, (thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw
+        )
+        return apart <= rules.DETECTOR_RANGE_M and self.routes.same_room(here, thing.centre)
+
+    # --------------------------------------------------------------------------------------------------------- walking
+
+    def motion(self, observation: Observation, job: Job) -> Motion:
+        """Walk to where the place is in range, face it, then stand aside; try another spot when it is not seen."""
+        from hthor.navigation.path_follower import face
+
+        errand, where = self.errand(job)
+        if self.goal is None or math.dist(self.goal, where) > 0.3:
+            goal, misses = self._looked.get(job.target, (where, []))
+            self.goal, self.misses = where, misses if math.dist(goal, where) <= 0.3 else []
+            self._route(observation, where)
+        elif self.aside == errand and self.is_due(observation, job, errand):
+            self.aside = ""
+            self._route(observation, where)
+        elif observation.outcome is not None and observation.outcome.motion == "move" and not observation.outcome.ok:
+            self._reroute(observation, where)
+        step = self.follower.next(observation.pose)
+        if step is not None:
+            return step
+        body = self.briefing.body
+        turn = face(observation.pose, where, body.eye, body.pitch_limit)
+        if turn is not None:
+            return turn
+        unsaid = self.is_due(observation, job, errand) if self.many else self.offers(job, errand).sent == 0
+        if unsaid and len(self.misses) < 2 * _LOOKS:
+            self.misses.append((observation.pose.x, observation.pose.y))
+            self._route(observation, where)
+            return self.follower.next(observation.pose) or Wait(seconds=0.5)
+        return self.stand_aside(observation, where, errand)
+
+    def _route(self, observation: Observation, where: Vec3) -> None:
+        here = (observation.pose.x, observation.pose.y)
+        self.follower.take(self.routes.to_view(here, where, self.misses))
+
+    def _reroute(self, observation: Observation, where: Vec3) -> None:
+        """Stopped on the way: go round whoever stands there, or step back from a corner that was cut too close."""
+        here, goal = (observation.pose.x, observation.pose.y), self.follower.goal
+        if self.passing is not None and goal is not None:
+            way = self.passing.around(observation, goal)
+            if way:
+                self.follower.take(way)
+                return
+        people = [seen.position for seen in observation.detections if seen.family == "person"]
+        via = self.routes.around(here, where, people) if people else self.routes.clear(here)
+        self.follower.take((via, *self.routes.to_view(via, where, self.misses)))
+
+    def stand_aside(self, observation: Observation, where: Vec3, errand: str) -> Motion:
+        """Go where it is in nobody's way, once."""
+        if self.aside == errand:
+            return Wait(seconds=0.5)
+        self.aside = errand
+        here = (observation.pose.x, observation.pose.y)
+        self.follower.take(self.routes.retreat(here, (where[0], where[1]), ASIDE_M))
+        return self.follower.next(observation.pose) or Wait(seconds=0.5)

@@ -1,0 +1,184 @@
+"""The frontier robot where there is more to do than to find: explores, carries what it can, tells the rest."""
+
+from __future__ import annotations
+
+import math
+
+from hthor import rules
+from hthor.agents.skills.carrying import Hauler
+from hthor.agents.skills.explorer import Explorer
+from hthor.agents.skills.manipulation import Worker
+from hthor.agents.skills.message_timing import Offers, lend_a_hand, please_look, sighting, spot
+from hthor.agents.skills.observed_map import Found, Seen
+from hthor.agents.skills.subgoals import Knowledge, todo
+from hthor.agents.skills.task_allocation import Crew, able
+from hthor.agents.skills.viewpoints import gap
+from hthor.agents.skills.yielding import Passing
+from hthor.navigation.yielding import Courtesy
+from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Place, Receipt, Send, ThingState, Vec3
+
+_MOST = 2
+_LATER_S = 15.0
+
+
+class Gatherer:
+    """One robot's mind for one trial."""
+
+    def __init__(self, briefing: Briefing) -> None:
+        self.briefing, self.jobs = briefing, todo(briefing)
+        self.seen = Seen()
+        self.explorer = Explorer(briefing.body)
+        ways = Found(self.explorer)
+        self.courtesy = Courtesy(briefing.body, self.explorer.fits)
+        self.passing = Passing(briefing, ways)
+        self.worker = Worker(briefing.body, ways, self.passing, briefing.tick_s)
+        self.crew = Crew(briefing, lambda here, place: math.dist(here, place[:2]))
+        self.hauler = Hauler(briefing, ways, self.worker, self.crew, waits=False)
+        self.mine: Job | None = None
+        self.placing: Place | None = None
+        self._offers: dict[str, Offers] = {}
+        self._answers: dict[str, Receipt] = {}
+        self._spoken = ""
+
+    def act(self, observation: Observation) -> Action:
+        """Look, tell, and go on."""
+        self.explorer.see(observation)
+        self.seen.note(observation)
+        self.crew.see(observation, self.seen)
+        if observation.receipt is not None:
+            self._answers[self._spoken] = observation.receipt
+        if observation.idle:
+            self._look_back(observation)
+            self.mine = self._own(observation)
+        say = self._say(observation)
+        if not observation.idle:
+            return Action(say=say)
+        motion = self._motion(observation)
+        self.passing.note(observation, motion)
+        self.placing = motion if isinstance(motion, Place) else None
+        return Action(motion=motion, say=say)
+
+    def _motion(self, observation: Observation) -> Motion:
+        if self.mine is not None and self.mine.hands > 1 and self.hauler.is_close(observation, self.seen, self.mine):
+            self.explorer.drop()
+            return self.hauler.motion(observation, self.seen, self.mine)
+        yielding = self.passing.refuge(observation)
+        if yielding is None:
+            yielding = self.courtesy.motion(observation, observation.tick * self.briefing.tick_s)
+        if yielding is None:
+            yielding = self.passing.motion(observation)
+        if yielding is not None:
+            return yielding
+        motion = None
+        if self.mine is not None and self.mine.hands > 1:
+            motion = self.hauler.motion(observation, self.seen, self.mine)
+        elif self.mine is not None:
+            motion = self.worker.motion(observation, self.seen, self.mine)
+        elif "open" in self.briefing.body.capabilities and self._missing():
+            motion = self._open(observation)
+        if motion is None:
+            return self.explorer.motion(observation)
+        self.explorer.drop()
+        return motion
+
+    # ------------------------------------------------------------------------------------------------------- carrying
+
+    def _own(self, observation: Observation) -> Job | None:
+        """What it does itself now: what it holds, or the first of what it knows of and knows where to bring."""
+        holding = next((job for job in self.jobs if job.target == observation.holding), None)
+        if holding is not None:
+            return holding
+        mine = [job for job in self.jobs if self._can(observation, job)]
+        if self.mine in mine:
+            return self.mine
+        self.worker.drop()
+        return mine[0] if mine else None
+
+    def _can(self, observation: Observation, job: Job) -> bool:
+        state = self._waits(job)
+        if state is None or job.relation == "find" or not self.worker.can_try(job.target, observation.tick):
+            return False
+        shut = self.seen.is_shut(state.support)
+        return able(self.briefing.body, state.kind, job, shut) and (job.hands > 1 or bool(self.seen.bearers(job)))
+
+    def _waits(self, job: Job) -> ThingState | None:
+        """The object, when it was seen, in nobody's hand and not where it belongs."""
+        state = self.seen.states.get(job.target)
+        return None if state is None or state.held_by or self.seen.is_done(job) else state
+
+    def _look_back(self, observation: Observation) -> None:
+        """How the last motion went: what was put down and still is not right can wait, what was not there is gone."""
+        job, outcome, placed = self.mine, observation.outcome, self.placing
+        if job is None or outcome is None:
+            return
+        if placed is not None and outcome.motion == "place" and outcome.ok:
+            self.seen.put(job.target, placed)
+            if not self.seen.is_done(job):
+                self.worker.leave(job.target, observation.tick + round(_LATER_S / self.briefing.tick_s))
+        elif not observation.holding and not self.worker.can_try(job.target, observation.tick):
+            self.seen.forget(job.target)
+
+    def _open(self, observation: Observation) -> Motion | None:
+        """Look into what is shut, while something is still missing."""
+        return next(
+            (motion for thing in self.seen.shut() if (motion := self.worker.open(observation, thing)) is not None), None
+        )
+
+    def _missing(self) -> list[Job]:
+        """The jobs whose objects were never seen."""
+        return [job for job in self.jobs if job.target not in self.seen.states]
+
+    # -------------------------------------------------------------------------------------------------------- telling
+
+    def _say(self, observation: Observation) -> Send | None:
+        """A word about an object in view that it does not carry itself, or about a door that it cannot open."""
+        if any(state.held_by == HUMAN for state in self.seen.states.values()):
+            return None
+        if self.mine is not None and self.mine.hands > 1:
+            return self._ask_for_help(observation, self.mine)
+        for job in self.jobs:
+            seen = spot(observation, job.target)
+            if seen is None or seen.held_by or job is self.mine or self.seen.is_done(job):
+                continue
+            if self._is_due(observation, job.target):
+                return self._note(observation, job.target, sighting(seen, _kinds(self.seen)), seen.id, seen.position)
+        return self._ask(observation)
+
+    def _ask_for_help(self, observation: Observation, job: Job) -> Send | None:
+        """Somebody has to take the other end, as long as the thing is not off the floor."""
+        state, name = self.seen.states[job.target], f"help {job.target}"
+        if observation.holding != job.target or state.held_by or not self._is_due(observation, name):
+            return None
+        return self._note(observation, name, lend_a_hand(state.kind, held=True), job.target, state.position)
+
+    def _ask(self, observation: Observation) -> Send | None:
+        """Please look inside: in front of a closed door that it cannot open, while something is missing."""
+        missing = self._missing()
+        if not missing or "open" in self.briefing.body.capabilities:
+            return None
+        here = (observation.pose.x, observation.pose.y)
+        in_view = {seen.id for seen in observation.detections}
+        for thing in self.seen.shut():
+            is_near = gap(thing, here) <= rules.DETECTOR_RANGE_M
+            if is_near and thing.id in in_view and self._is_due(observation, thing.id):
+                text = please_look(thing.kind, tuple(_kind(job.target) for job in missing))
+                return self._note(observation, thing.id, text, thing.id, thing.centre)
+        return None
+
+    def _is_due(self, observation: Observation, name: str) -> bool:
+        offers = self._offers.setdefault(name, Offers(self.briefing, most=_MOST))
+        return offers.due(observation.tick, self._answers.get(name))
+
+    def _note(self, observation: Observation, name: str, text: str, about: str, position: Vec3) -> Send:
+        self._offers[name].note(observation.tick)
+        self._spoken = name
+        return Send(text=text, object=about, position=position)
+
+
+def _kinds(seen: Knowledge) -> dict[str, str]:
+    return {thing.id: thing.kind for thing in seen.things.values()}
+
+
+def _kind(target: str) -> str:
+    """The kind of an object that was never seen, by its id: "apple_2" is an apple."""
+    return target.rstrip("0123456789").rstrip("_")

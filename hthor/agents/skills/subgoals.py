@@ -1,0 +1,91 @@
+"""What there is to do and what of it is done, as far as one knows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+
+from hthor import catalog
+from hthor.geometry import plane
+from hthor.types import Briefing, Job, Room, Thing, ThingState, Vec3
+
+PAPER_KINDS = ("", "mobile_manipulation", "object_goal_navigation")
+"""The two kinds of the paper, in which robots say and do what the paper's robots did; "" is an unnamed kind."""
+CLOSE_M, TOGETHER_M = 0.25, 0.7
+"""An object this close to where it belongs is left alone, and one that takes several to carry."""
+
+_STEP_M = 0.15
+
+
+def todo(briefing: Briefing) -> tuple[Job, ...]:
+    """All there is to do; a briefing without a list of jobs tells of one."""
+    if briefing.jobs:
+        return briefing.jobs
+    destinations = (briefing.destination,) if briefing.destination else ()
+    relation = briefing.relation if briefing.relation in ("on", "in", "at") else "find"
+    return (Job(target=briefing.target, relation=relation, destinations=destinations),)  # type: ignore[arg-type]
+
+
+class Knowledge:
+    """Furniture and objects that a mind knows of.
+
+    ``things`` are pieces of furniture and ``states`` objects and what opens, both by id. ``rooms`` is empty for a mind
+    without a map.
+    """
+
+    def __init__(self, things: Iterable[Thing] = (), rooms: Iterable[Room] = ()) -> None:
+        self.things: dict[str, Thing] = {thing.id: thing for thing in things}
+        self.rooms: dict[str, Room] = {room.id: room for room in rooms}
+        self.states: Mapping[str, ThingState] = {}
+
+    def is_done(self, job: Job) -> bool:
+        """Whether the object lies where it belongs; a search is never done."""
+        state = self.states.get(job.target)
+        if state is None or state.held_by or state.bearers or job.relation == "find":
+            return False
+        close = TOGETHER_M if job.hands > 1 else CLOSE_M
+        if job.place is not None and math.dist(state.position[:2], job.place[:2]) > close:
+            return False
+        return not job.destinations or any(self._is_at(state, place) for place in job.destinations)
+
+    def bearers(self, job: Job) -> list[Thing]:
+        """The furniture that the object may be put on or in."""
+        return [thing for thing in self.things.values() if self.serves(thing, job)]
+
+    def serves(self, thing: Thing, job: Job) -> bool:
+        """Whether the object belongs on or in this thing."""
+        return thing.id in job.destinations or thing.kind in job.destinations
+
+    def is_shut(self, id: str) -> bool:
+        """Whether this is a thing with a door in front of what lies in it, and the door is closed."""
+        thing, state = self.things.get(id), self.states.get(id)
+        return thing is not None and hides(thing) and (state is None or not state.open)
+
+    def _is_at(self, state: ThingState, place: str) -> bool:
+        if place in self.rooms:
+            return plane.inside(state.position[:2], self.rooms[place].polygon)
+        thing = self.things.get(state.support)
+        return state.support == place or (thing is not None and thing.kind == place)
+
+
+def hides(thing: Thing) -> bool:
+    """Whether it must be opened before one sees what lies in it."""
+    return catalog.kind(thing.kind).hides
+
+
+def resting(thing: Thing, inset_m: float) -> tuple[Vec3, ...]:
+    """Points [m] all over its surfaces where an object that reaches ``inset_m`` from its middle could lie."""
+    points = []
+    for surface in catalog.kind(thing.kind).rests(thing.size):
+        (x, y, z), (w, d) = surface.centre, surface.half
+        us, vs = _steps(w - inset_m), _steps(d - inset_m)
+        points += [plane.to_house((x + u, y + v, z), thing.centre, thing.yaw) for u in us for v in vs]
+    return tuple(points)
+
+
+def _steps(half: float) -> list[float]:
+    """Evenly from one end to the other of a line that is twice ``half`` [m] long."""
+    if half <= 0.0:
+        return [0.0]
+    count = math.ceil(2.0 * half / _STEP_M)
+    return [half * (2.0 * k / count - 1.0) for k in range(count + 1)]

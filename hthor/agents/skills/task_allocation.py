@@ -1,0 +1,147 @@
+"""Who is where, and who had best do which job, worked out alike by everyone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Sequence
+
+from hthor import catalog
+from hthor.agents.skills.subgoals import Knowledge, todo
+from hthor.types import HUMAN, BodySpec, Briefing, Job, Observation, Vec2, Vec3
+
+UNKNOWING_M = 4.0
+"""A person has to find an object first: as if it lay this much farther from them."""
+DOOR_M = 2.0
+"""Opening a door first is worth this long a walk."""
+AT_HAND_M = 2.0
+"""What lies this close to the person is left to them."""
+_REVIEW_S = 2.0
+
+Apart = Callable[[Vec2, Vec3], float]
+"""Walking distance [m] from a place to the floor beside a point."""
+
+
+class Crew:
+    """Everybody in the trial, and where they were seen last; who was never seen is taken to be at one's own start.
+
+    ``now`` holds where those are [m] of whom one knows at this moment, ``places`` also where the others were.
+    """
+
+    def __init__(self, briefing: Briefing, apart: Apart) -> None:
+        self.me, self.bodies, self._apart = briefing.seat, dict(briefing.crew), apart
+        self.bodies.setdefault(briefing.seat, briefing.body)
+        self.seats = sorted(self.bodies, key=rank)
+        self.places: dict[str, Vec2] = {}
+        self.now: dict[str, Vec2] = {}
+        self._start: Vec2 | None = None
+        self._shared: tuple[object, dict[str, Job]] = (None, {})
+        self._period = round(_REVIEW_S / briefing.tick_s)
+        self.tick = 0
+        self.jobs = todo(briefing)
+        self._ways: dict[tuple[Vec2, Vec2], float] = {}
+
+    def see(self, observation: Observation, knowledge: Knowledge) -> None:
+        """Note where everybody is that can be seen, or that holds an object of which one knows where it is."""
+        here, self.tick = (observation.pose.x, observation.pose.y), observation.tick
+        self._start = self._start or here
+        self.now = {}
+        for state in knowledge.states.values():
+            if state.held_by and not state.bearers:
+                self.now[state.held_by] = state.position[:2]
+        for seen in observation.detections:
+            if seen.family in ("person", "robot"):
+                self.now[seen.id] = seen.position[:2]
+        self.now[self.me] = here
+        self.places.update(self.now)
+
+    def share(self, jobs: Sequence[Job], knowledge: Knowledge) -> dict[str, Job]:
+        """The job that each seat does best next: the shortest ways first, nobody gets two, a job as many as it takes.
+
+        Whoever holds something has their hands full and gets none. Worked out anew when jobs or hands have changed, and
+        every other second.
+        """
+        busy = {state.held_by for state in knowledge.states.values()}
+        moment = (tuple(job.target for job in jobs), frozenset(busy), self.tick // self._period)
+        if moment != self._shared[0]:
+            self._shared = (moment, self._dealt(jobs, busy, knowledge))
+        return self._shared[1]
+
+    def _dealt(self, jobs: Sequence[Job], busy: Collection[str], knowledge: Knowledge) -> dict[str, Job]:
+        free = [seat for seat in self.seats if seat not in busy]
+        bids = [
+            (self.cost(seat, job, knowledge), rank(seat), number, seat, job)
+            for number, job in enumerate(jobs)
+            for seat in free
+        ]
+        given = {seat: job for job in jobs for seat in knowledge.states[job.target].bearers}
+        for cost, _, _, seat, job in sorted(bids, key=lambda bid: bid[:3]):
+            if math.isfinite(cost) and seat not in given and list(given.values()).count(job) < job.hands:
+                given[seat] = job
+        return given
+
+    def reserved(self, jobs: Sequence[Job], knowledge: Knowledge) -> str:
+        """The object that is left to the person where a robot without hands is there to tell them of it; "" for none.
+
+        It is the one with the least way to where it belongs; what is behind a door counts as nearer, as the person can
+        open it. All who know where everything is come to the same answer.
+        """
+        tellers = [seat for seat in self.seats if seat != HUMAN and "pick" not in self.bodies[seat].capabilities]
+        todo = [job for job in jobs if job.hands == 1 and job.relation != "find"]
+        if not tellers or len(todo) < 2 or HUMAN not in self.bodies:
+            return ""
+        return min(todo, key=lambda job: (round(self._carry(job, knowledge), 2), job.target)).target
+
+    def _carry(self, job: Job, knowledge: Knowledge) -> float:
+        """The way [m] from an object to where it belongs."""
+        state = knowledge.states[job.target]
+        ends = [job.place] if job.place is not None else [thing.centre for thing in knowledge.bearers(job)]
+        way = min((math.dist(state.position[:2], end[:2]) for end in ends), default=0.0)
+        return way - (DOOR_M if knowledge.is_shut(state.support) else 0.0)
+
+    def cost(self, seat: str, job: Job, knowledge: Knowledge) -> float:
+        """The way [m] from a seat to an object, with what comes on top; infinite for who cannot take it."""
+        state = knowledge.states[job.target]
+        shut = knowledge.is_shut(state.support)
+        if not able(self.bodies[seat], state.kind, job, shut):
+            return math.inf
+        way = self._apart(self.place(seat), state.position)
+        return way + UNKNOWING_M if seat == HUMAN else way + (DOOR_M if shut else 0.0) - self._later(job, knowledge)
+
+    def _later(self, job: Job, knowledge: Knowledge) -> float:
+        """The way [m] to an object from where another job ends: what is far from there is best fetched first."""
+        object, ways = knowledge.states[job.target].position, [math.inf]
+        for other in self.jobs:
+            ends = (other.place,) if other.place is not None else tuple(one.centre for one in knowledge.bearers(other))
+            if other is not job and not knowledge.is_done(other):
+                ways += [self._between(end, object) for end in ends]
+        return min(ways) if math.isfinite(min(ways)) else 0.0
+
+    def _between(self, a: Vec3, b: Vec3) -> float:
+        """Walking distance [m] between two things, remembered."""
+        key = (a[:2], b[:2])
+        if key not in self._ways:
+            self._ways[key] = self._apart(a[:2], b)
+        return self._ways[key]
+
+    def place(self, seat: str) -> Vec2:
+        """Where a seat's body is [m], or was last, or may have begun."""
+        return self.places.get(seat) or self._start or (0.0, 0.0)
+
+    def leaves_to_person(self, job: Job, knowledge: Knowledge) -> bool:
+        """Whether the person is seen beside the object, with a free hand."""
+        state = knowledge.states[job.target]
+        if any(other.held_by == HUMAN for other in knowledge.states.values()) or HUMAN not in self.now:
+            return False
+        return math.dist(self.now[HUMAN], state.position[:2]) < AT_HAND_M
+
+
+def able(body: BodySpec, kind: str, job: Job, shut: bool = False) -> bool:
+    """Whether a body can take its part of a job with an object of this kind: alone, or with one hand of several."""
+    if "pick" not in body.capabilities or (shut and "open" not in body.capabilities):
+        return False
+    return job.hands > 1 or catalog.kind(kind).mass <= body.strength
+
+
+def rank(seat: str) -> tuple[int, str]:
+    """Seats in order: the person, "robot", "robot2", ... "robot10"."""
+    return (0 if seat == HUMAN else len(seat), seat)

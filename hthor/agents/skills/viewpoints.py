@@ -1,0 +1,152 @@
+"""Where a body can stand to have something in reach, and the shortest way there."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hthor.geometry import plane
+from hthor.houses.space.grid_kernel import close
+from hthor.types import Thing, Vec2, Vec3
+
+Floats = NDArray[np.float64]
+
+_MISS_M, _GRID_M = 0.3, 0.12
+_SLACK_M = 1e-6
+"""Lengths that differ by less may be the same one, added up otherwise."""
+
+
+class Ways(Protocol):
+    """A house as one body knows it."""
+
+    def stands(self, spot: Vec2) -> bool: ...
+    def standing(self, spots: Sequence[Vec2]) -> list[Vec2]: ...
+    def fits(self, a: Vec2, b: Vec2) -> bool: ...
+    def lengths(self, here: Vec2, spots: Sequence[Vec2]) -> Sequence[float]: ...
+    def way(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]: ...
+    def retreat(self, here: Vec2, point: Vec2, apart_m: float) -> tuple[Vec2, ...]: ...
+    def loose(self, here: Vec2) -> Vec2: ...
+    def open_to(self, spot: Vec2, edge: Vec2) -> bool: ...
+    def sees(self, spot: Vec2, point: Vec3) -> bool: ...
+
+
+def route(
+    ways: Ways,
+    here: Vec2,
+    points: Sequence[Vec3],
+    reach: float,
+    holder: Thing | None = None,
+    front: bool = False,
+    but: Sequence[Vec2] = (),
+    grid_m: float = _GRID_M,
+) -> tuple[Vec2, ...]:
+    """The shortest way to a spot from which one of the points is at most ``reach`` [m] away; () when there is none.
+
+    Args:
+        holder: the furniture that the points belong to: no wall may be between it and the spot.
+        front: the spot must lie in front of the holder, where its door is.
+        but: spots that turned out to be no good; nothing within 0.3 m of them is proposed.
+        grid_m: how far the spots that are looked at lie apart [m].
+    """
+    spots = [
+        spot
+        for spot in ways.standing(_lattice(tuple(points), reach, grid_m))
+        if not (front and holder is not None and not _in_front(holder, spot, reach))
+        and all(math.dist(spot, miss) > _MISS_M for miss in but)
+    ]
+    return _first(ways, here, spots, points, holder)
+
+
+def closest(
+    ways: Ways, here: Vec2, things: Sequence[Thing], over: Callable[[Thing], Sequence[Vec3]], reach: float
+) -> Thing:
+    """The thing with the shortest `route` to points ``over`` it; of equals, or when there is no way, by id.
+
+    Who is farther off as the crow flies than the best way is long is not looked at any closer.
+    """
+    looked = []
+    for thing in things:
+        points = over(thing)
+        spots = ways.standing(_lattice(tuple(points), reach, _GRID_M))
+        looked.append((_least(here, spots), thing.id, thing, points, spots))
+    crow = ways.stands(here)  # or else the way begins elsewhere
+    best, answer = (math.inf, ""), things[0]
+    for least, id, thing, points, spots in sorted(looked, key=lambda one: one[:2]):
+        if crow and least > best[0] + _SLACK_M:
+            break
+        way = _first(ways, here, spots, points, thing)
+        far = (length(way) if way else math.inf, id)
+        if best[1] == "" or far < best:
+            best, answer = far, thing
+    return answer
+
+
+def length(way: Sequence[Vec2]) -> float:
+    """Length [m] of a way."""
+    return math.fsum(math.dist(a, b) for a, b in itertools.pairwise(way))
+
+
+def _first(
+    ways: Ways, here: Vec2, spots: Sequence[Vec2], points: Sequence[Vec3], holder: Thing | None
+) -> tuple[Vec2, ...]:
+    """The way to the nearest spot from which the point nearest to it can be got at; () when there is none."""
+    lengths = ways.lengths(here, spots) if spots else ()
+    plan = np.array([point[:2] for point in points])
+    order = sorted((round(length, 6), number) for number, length in enumerate(lengths) if math.isfinite(length))
+    for _, number in order:
+        spot = spots[number]
+        point = nearest(_few(points, plan, spot), spot)
+        if ways.open_to(spot, point[:2] if holder is None else edge(holder, spot)) and ways.sees(spot, point):
+            return ways.way(here, spot)
+    return ()
+
+
+def nearest(points: Sequence[Vec3], spot: Vec2) -> Vec3:
+    """The one of the points that is nearest to a spot on the plan, the first of equals."""
+    return min(points, key=lambda point: round(math.dist(point[:2], spot), 6))
+
+
+def _few(points: Sequence[Vec3], plan: Floats, spot: Vec2) -> Sequence[Vec3]:
+    """Those of the points, on the plan (N, 2), that may be the nearest to a spot: to compare all exactly is slow."""
+    apart = np.hypot(plan[:, 0] - spot[0], plan[:, 1] - spot[1])
+    return list(itertools.compress(points, (apart <= apart.min() + 10.0 * _SLACK_M).tolist()))
+
+
+def edge(thing: Thing, spot: Vec2) -> Vec2:
+    """The point of a thing's outline, or inside it, that is nearest to a spot."""
+    u, v, _ = plane.to_local((*spot, 0.0), thing.centre, thing.yaw)
+    w, d = thing.size[0] / 2, thing.size[1] / 2
+    x, y, _ = plane.to_house((max(-w, min(w, u)), max(-d, min(d, v)), 0.0), thing.centre, thing.yaw)
+    return (x, y)
+
+
+def gap(thing: Thing, spot: Vec2) -> float:
+    """Distance [m] from a spot to a thing's outline."""
+    return plane.distance_to_rectangle(spot, thing.centre[:2], thing.size[:2], thing.yaw)
+
+
+def _least(here: Vec2, spots: Sequence[Vec2]) -> float:
+    """Distance [m] to the nearest of the spots as the crow flies."""
+    return min((math.dist(here, spot) for spot in spots), default=math.inf)
+
+
+@functools.lru_cache(maxsize=256)
+def _lattice(points: tuple[Vec3, ...], reach: float, grid_m: float) -> tuple[Vec2, ...]:
+    """Spots of a square lattice within reach of any of the points [m] on the plan, row by row."""
+    plan = np.array(points)[:, :2].copy()
+    low, high = np.ceil((plan.min(0) - reach) / grid_m), np.floor((plan.max(0) + reach) / grid_m)
+    xs, ys = (np.arange(low[axis], high[axis] + 1) * grid_m for axis in (0, 1))
+    rows, columns = np.nonzero(close(xs, ys, plan, reach))
+    return tuple(zip(xs[columns].tolist(), ys[rows].tolist(), strict=True))
+
+
+def _in_front(thing: Thing, spot: Vec2, reach: float) -> bool:
+    """Whether the door is straight ahead: from the side an open leaf is in the way."""
+    u, v, _ = plane.to_local((*spot, 0.0), (*thing.centre[:2], 0.0), thing.yaw)
+    return v > thing.size[1] / 2 and abs(u) < min(thing.size[0] / 2, 0.4 * reach)

@@ -1,0 +1,176 @@
+"""Getting past other bodies: who makes room, and which way round."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from hthor.agents.skills.task_allocation import rank
+from hthor.agents.skills.viewpoints import Ways
+from hthor.geometry.plane import turn
+from hthor.navigation.path_follower import Follower, shift
+from hthor.types import HUMAN, Briefing, Motion, Move, Observation, Vec2, Wait
+
+_YIELD_S, _REST_S = 3.0, 2.0
+"""How long to keep out of another's way, and then not to be asked again."""
+_OFTEN_S, _BUMPS, _REFUGE_S, _APART_M = 8.0, 2, 4.0, 1.2
+"""So many meetings with the person within this time send a robot this far away, for so long."""
+_STEP_M = 0.4
+_ELBOW_M = 0.45
+_BESIDE_M = 0.15
+_SIDEWAYS = 1.5
+"""A step to the side is worth so much more than one straight back."""
+_DIRECTIONS = 16
+
+
+class Passing:
+    """What to do about a robot that one has run into: one of the two makes room, the other goes round it.
+
+    Who has hands goes first, and of equals whose seat comes first. The person is not meant: see
+    `hthor.navigation.yielding`.
+    """
+
+    def __init__(self, briefing: Briefing, ways: Ways) -> None:
+        self.seat, self.ways, self.tick_s = briefing.seat, ways, briefing.tick_s
+        self.bodies = {briefing.seat: briefing.body, **briefing.crew}
+        self.radius = briefing.body.radius
+        self._along: Vec2 = (0.0, 0.0)
+        self._until = self._rest = -1.0
+        self._other: Vec2 | None = None
+        self._follower = Follower(turn_rad=math.pi)
+        self._bumps: list[float] = []
+        self._waited = -1.0
+
+    def note(self, observation: Observation, motion: Motion) -> None:
+        """What one sets out to do now; by that one tells where somebody stands whom one runs into unseen."""
+        if isinstance(motion, Move):
+            self._along = turn((motion.forward, motion.left), observation.pose.yaw)
+
+    def motion(self, observation: Observation) -> Motion | None:
+        """A step out of the way, or None to carry on."""
+        seconds = observation.tick * self.tick_s
+        by = bumped(observation)
+        if by and by != HUMAN and self._goes_first(by) and seconds >= self._rest:
+            self._until, self._rest = seconds + _YIELD_S, seconds + _YIELD_S + _REST_S
+        if seconds >= self._until:
+            return None
+        if by:
+            self._other = self.place(observation, by)
+        if self._other is None or math.dist(self._other, _here(observation)) > self._room(by):
+            return Wait(seconds=0.3)
+        aside = self._aside(_here(observation), self._other)
+        return Wait(seconds=0.3) if aside is None else shift(observation.pose, aside, _STEP_M)
+
+    def refuge(self, observation: Observation) -> Motion | None:
+        """After running into the person again and again: out of the passage, and wait; None to carry on."""
+        seconds = observation.tick * self.tick_s
+        if seconds < self._waited and bumped(observation):
+            self._follower.take(None)  # no way out: stand still until they are past
+        elif bumped(observation) == HUMAN:
+            self._bumps = [when for when in self._bumps if seconds - when < _OFTEN_S] + [seconds]
+        if len(self._bumps) >= _BUMPS and seconds >= self._waited:
+            person = self.place(observation, HUMAN) or _here(observation)
+            self._follower.take(self.ways.retreat(_here(observation), person, _APART_M))
+            self._waited, self._bumps = seconds + _REFUGE_S, []
+        if seconds >= self._waited:
+            return None
+        return self._follower.next(observation.pose) or Wait(seconds=0.3)
+
+    def give_way(self, observation: Observation, places: Mapping[str, Vec2]) -> Motion | None:
+        """A step away from a robot that comes close, for who has nothing to do; None when none does, or no step helps.
+
+        ``places`` [m] tells where the other robots are.
+        """
+        here = _here(observation)
+        for seat in sorted(places, key=rank):
+            if seat not in (self.seat, HUMAN) and math.dist(here, places[seat]) < self._room(seat):
+                aside = self._aside(here, places[seat])
+                if aside is not None:
+                    return shift(observation.pose, aside, _STEP_M)
+        return None
+
+    def place(self, observation: Observation, seat: str) -> Vec2 | None:
+        """Where somebody is whom one sees, or has just run into."""
+        for seen in observation.detections:
+            if seen.id == seat:
+                return seen.position[:2]
+        length = math.hypot(*self._along)
+        if seat != bumped(observation) or length == 0.0:
+            return None
+        share = self._touching(seat) / length
+        return (observation.pose.x + share * self._along[0], observation.pose.y + share * self._along[1])
+
+    def _goes_first(self, seat: str) -> bool:
+        return self._precedence(seat) < self._precedence(self.seat)
+
+    def _precedence(self, seat: str) -> tuple[bool, tuple[int, str]]:
+        body = self.bodies.get(seat)
+        return (body is None or "pick" not in body.capabilities, rank(seat))
+
+    def _touching(self, seat: str) -> float:
+        body = self.bodies.get(seat)
+        return self.radius + (self.radius if body is None else body.radius)
+
+    def _room(self, seat: str) -> float:
+        return self._touching(seat) + _ELBOW_M
+
+    def around(self, observation: Observation, goal: Vec2) -> tuple[Vec2, ...]:
+        """A way to ``goal`` past the body that is in the way; () when there is none."""
+        here, by = _here(observation), bumped(observation)
+        other = self.place(observation, by)
+        if other is None:
+            return ()
+        apart = self._touching(by) + _BESIDE_M
+        spots = [
+            spot
+            for spot in (*_ring(other, apart), *_ring(other, 1.5 * apart))
+            if self.ways.stands(spot) and self.ways.fits(here, spot) and _misses(here, spot, other, apart - _BESIDE_M)
+        ]
+        if not spots:
+            return ()
+        left = self.ways.lengths(goal, spots)
+        best = min(range(len(spots)), key=lambda k: (math.dist(here, spots[k]) + left[k], k))
+        return (spots[best], *self.ways.way(spots[best], goal)) if math.isfinite(left[best]) else ()
+
+    def is_taken(self, observation: Observation, spot: Vec2) -> bool:
+        """Whether the body that is in the way stands where one wants to."""
+        by = bumped(observation)
+        other = self.place(observation, by)
+        return other is not None and math.dist(other, spot) < self._touching(by)
+
+    def _aside(self, here: Vec2, other: Vec2) -> Vec2 | None:
+        """The spot a step away that leaves the other most room, rather to the side than back; None when none does."""
+        apart = max(math.dist(here, other), 1e-6)
+        ux, uy = (here[0] - other[0]) / apart, (here[1] - other[1]) / apart
+        best, most = None, apart + 0.05
+        for spot in _ring(here, _STEP_M):
+            dx, dy = spot[0] - other[0], spot[1] - other[1]
+            score = math.hypot(dx, dy) + _SIDEWAYS * abs(ux * dy - uy * dx) if ux * dx + uy * dy > 0.5 * apart else 0.0
+            if score > most + 1e-9 and self.ways.stands(spot) and self.ways.fits(here, spot):
+                best, most = spot, score
+        return best
+
+
+def bumped(observation: Observation) -> str:
+    """The seat of the body that ended the last move, empty for none."""
+    outcome = observation.outcome
+    if outcome is None or outcome.ok or outcome.motion != "move":
+        return ""
+    return outcome.by if outcome.by == HUMAN or outcome.by.startswith("robot") else ""
+
+
+def _here(observation: Observation) -> Vec2:
+    return (observation.pose.x, observation.pose.y)
+
+
+def _ring(centre: Vec2, radius: float) -> list[Vec2]:
+    angles = (2.0 * math.pi * k / _DIRECTIONS for k in range(_DIRECTIONS))
+    return [(centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)) for angle in angles]
+
+
+def _misses(a: Vec2, b: Vec2, point: Vec2, radius: float) -> bool:
+    """Whether the straight way keeps ``radius`` [m] from a point, or leads away from it."""
+    ex, ey = b[0] - a[0], b[1] - a[1]
+    along = ((point[0] - a[0]) * ex + (point[1] - a[1]) * ey) / max(ex * ex + ey * ey, 1e-12)
+    share = max(0.0, min(1.0, along))
+    return along <= 0.0 or math.dist((a[0] + share * ex, a[1] + share * ey), point) >= radius

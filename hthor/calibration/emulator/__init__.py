@@ -1,0 +1,1 @@
+"""The emulator: a network ensemble that predicts trial outcomes from human parameters."""

@@ -1,0 +1,96 @@
+"""Small networks that foretell several yes-or-no outcomes at once."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+from msgspec import Struct
+
+from hthor.calibration.emulator.single_thread import alone
+from hthor.errors import MissingExtra
+
+Array = np.ndarray[Any, Any]
+
+HIDDEN = (48, 48)
+"""Units of the hidden layers."""
+EPOCHS = 20
+"""Passes over the trials; a fixed number, as held-out trials of the same people would not show overfitting."""
+ALPHA = 0.3
+"""L2 penalty, for about 25 outcomes at once."""
+_BATCHES = 64
+"""Steps of a pass over the trials, unless a batch would be smaller or larger than these:"""
+_LEAST_BATCH, _MOST_BATCH = 32, 512
+_STEP = 2e-3
+_CHUNK = 16384
+
+
+class Network(Struct, frozen=True, kw_only=True, eq=False):
+    """Layers of rectified units, and a logistic one at the end; float32."""
+
+    weights: tuple[Array, ...]
+    biases: tuple[Array, ...]
+
+    def __call__(self, inputs: Array, first: int | None = None) -> Array:
+        """(N, K) float64 probabilities of K outcomes, or of the ``first`` of them, for inputs (N, F)."""
+        told = inputs.astype(np.float32)
+        return np.concatenate([self._run(told[at : at + _CHUNK], first) for at in range(0, max(1, len(told)), _CHUNK)])
+
+    def _run(self, held: Array, first: int | None) -> Array:
+        for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
+            held = held @ weight
+            held += bias
+            np.maximum(held, 0.0, out=held)
+        logits = held @ self.weights[-1][:, :first] + self.biases[-1][:first]
+        chance: Array = (1.0 / (1.0 + np.exp(-np.clip(logits, -30.0, 30.0)))).astype(np.float64)
+        return chance
+
+
+def fit(inputs: Array, outcomes: Array, seed: int, scale: Array | None = None, epochs: int = EPOCHS) -> Network:
+    """A network for inputs (N, F) and outcomes (N, K) of 0 and 1, K at least 2.
+
+    Args:
+        seed: of its first weights and of the order of the trials; the same on every machine of one kind.
+        scale: (F,) weight of each input; small ones are hard to use, so that what does not matter is left out.
+
+    Raises:
+        MissingExtra: without scikit-learn.
+    """
+    try:
+        from sklearn.exceptions import ConvergenceWarning
+        from sklearn.neural_network import MLPClassifier
+    except ImportError:
+        raise MissingExtra("calibration", "calibration") from None
+    weighed = np.ones(inputs.shape[1]) if scale is None else scale
+    model = MLPClassifier(
+        hidden_layer_sizes=HIDDEN,
+        alpha=ALPHA,
+        batch_size=min(len(inputs), max(_LEAST_BATCH, min(_MOST_BATCH, len(inputs) // _BATCHES))),
+        learning_rate_init=_STEP,
+        max_iter=epochs,
+        tol=0.0,
+        random_state=seed % 2**32,
+    )
+    with warnings.catch_warnings(), alone():
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        model.fit((inputs * weighed).astype(np.float32), outcomes.astype(np.int64))
+    first, *others = (weight.astype(np.float32) for weight in model.coefs_)
+    biases = tuple(bias.astype(np.float32) for bias in model.intercepts_)
+    return Network(weights=(first * weighed[:, None].astype(np.float32), *others), biases=biases)
+
+
+def sensitivity(networks: list[Network], inputs: Array, step: float = 0.1) -> Array:
+    """(F,) how much the networks' answers change with each input: root mean square slope."""
+
+    def answer(at: Array) -> Array:
+        total: Array = np.mean([network(at) for network in networks], axis=0)
+        return total
+
+    base = answer(inputs)
+    slopes = []
+    for place in range(inputs.shape[1]):
+        moved = inputs.copy()
+        moved[:, place] += step
+        slopes.append(np.sqrt(np.mean(((answer(moved) - base) / step) ** 2)))
+    return np.array(slopes)

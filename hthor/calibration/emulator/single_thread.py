@@ -1,0 +1,22 @@
+"""Sums on one thread, so that their last bits do not depend on the number of cores."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from typing import Any
+
+from hthor.errors import MissingExtra
+
+
+def alone() -> AbstractContextManager[Any]:
+    """A context in which numerical libraries use one thread.
+
+    Raises:
+        MissingExtra: without scikit-learn, whose dependency does it.
+    """
+    try:
+        from threadpoolctl import threadpool_limits
+    except ImportError:
+        raise MissingExtra("calibration", "calibration") from None
+    limits: AbstractContextManager[Any] = threadpool_limits(1)
+    return limits

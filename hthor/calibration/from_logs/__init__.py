@@ -1,0 +1,1 @@
+"""Parameters of people from the logs of their trials."""

@@ -1,0 +1,35 @@
+"""What a person's hands tried in a trial, read off the journal."""
+
+from __future__ import annotations
+
+from msgspec import Struct
+
+from hthor import rules
+from hthor.eval.records.trial_record import Record
+
+
+class Attempt(Struct, frozen=True, kw_only=True):
+    """One try of the hands: how long it took [s], whether the hand ``missed``, and whether it was ``cut`` short."""
+
+    seconds: float
+    missed: bool
+    cut: bool
+
+
+def of(record: Record) -> tuple[Attempt, ...]:
+    """The attempts of a trial in order; one without an end was cut short when the person went on, or by the end."""
+    walked = [
+        tick
+        for event in record.journal
+        if event.kind == "stick"
+        for tick, deflection in zip(event.data["runs"][::2], event.data["runs"][1::2], strict=True)
+        if deflection > 0
+    ]
+    found = []
+    for event in record.journal:
+        if event.kind == "attempt":
+            cut = "ok" not in event.data
+            until = min((tick for tick in walked if tick > event.tick), default=record.ticks)
+            seconds = (until - event.tick) * rules.TICK_S if cut else float(event.data["seconds"])
+            found.append(Attempt(seconds=seconds, missed=event.data.get("why") == "missed", cut=cut))
+    return tuple(found)

@@ -1,0 +1,139 @@
+"""How a person dealt with messages in a trial, read off events, stick and journal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import rules
+from hthor.calibration.from_logs.features import locomotion
+from hthor.eval.records.trial_record import Record
+from hthor.humans.communication.message_reading import same
+from hthor.types import Event, Message
+
+_ANSWERS = ("confirmed", "declined")
+_BEFORE_TICKS = round(1.5 / rules.TICK_S)
+_SLOWER = 0.75
+"""Who slows down to so much of their pace, without letting go of the stick, has noticed that a message came."""
+
+
+class Reading(Struct, frozen=True, kw_only=True):
+    """A message from when it was shown to its answer: the ``seconds`` between, or until nobody could answer any more.
+
+    ``words`` is its length; ``known`` says that the same had been shown before.
+    """
+
+    seconds: float
+    answered: bool
+    words: int
+    known: bool
+
+
+class Offer(Struct, frozen=True, kw_only=True):
+    """A message about the task that was read: what spoke for and against it, and whether it was ``confirmed``."""
+
+    gain: float
+    load: float
+    again: float
+    confirmed: bool
+
+
+def readings(record: Record) -> tuple[Reading, ...]:
+    """Every message that was shown; one that only repeats the one before it while that is read goes on with it."""
+    sent = _messages(record)
+    found: list[Reading] = []
+    shown: list[Message] = []
+    begun: tuple[int, Message, bool] | None = None
+    for event in record.events:
+        if event.kind == "shown":
+            message = sent[event.data["message"]]
+            if begun is None or not same(message, begun[1]):
+                found += _left(begun, event.tick)
+                begun = event.tick, message, any(same(message, old) for old in shown)
+            shown.append(message)
+        elif event.kind in _ANSWERS and begun is not None:
+            found.append(_reading(begun, event.tick, answered=True))
+            begun = None
+    return (*found, *_left(begun, record.ticks))
+
+
+def noticings(record: Record) -> tuple[tuple[float, bool], ...]:
+    """For each message that came while the person walked: seconds until they slowed down, and whether they did.
+
+    Who let go of the stick first was not seen to slow down; what they did later tells nothing.
+    """
+    stick = locomotion.stick(record)
+    found: list[tuple[float, bool]] = []
+    if stick is None:
+        return ()
+    for event in record.events:
+        if event.kind != "shown":
+            continue
+        before = stick[max(0, event.tick - _BEFORE_TICKS) : event.tick]
+        after = stick[event.tick : _answer(record, event)]
+        if len(before) < _BEFORE_TICKS or before.min() <= 0 or not len(after):
+            continue
+        slow = np.flatnonzero((after > 0) & (after < _SLOWER * float(np.median(before))) & _kept(after))
+        off = np.flatnonzero(after <= 0)
+        until = int(off[0]) if len(off) else len(after)
+        noticed = len(slow) > 0 and int(slow[0]) < until
+        found.append(((int(slow[0]) if noticed else until) * rules.TICK_S, noticed))
+    return tuple(pair for pair in found if pair[0] > 0.0)
+
+
+def offers(record: Record) -> tuple[Offer, ...]:
+    """The messages about the task that were read, in order."""
+    return tuple(
+        Offer(
+            gain=float(event.data["gain"]),
+            load=float(event.data["load"]),
+            again=float(event.data["again"]),
+            confirmed=event.data["answer"] == "confirm",
+        )
+        for event in record.journal
+        if event.kind == "offer" and event.data["relevant"]
+    )
+
+
+def _kept(stick: Any) -> Any:
+    """Whether a deflection lasts for more than a tick: the last step to a corner is a short one for everybody."""
+    follows = np.append(stick[1:], 0)
+    return np.abs(follows - stick) <= 0.02 * stick
+
+
+def _answer(record: Record, shown: Event) -> int:
+    number = shown.data["message"]
+    ends = (e.tick for e in record.events if e.kind in (*_ANSWERS, "covered") and e.data["message"] == number)
+    return min(next(ends, record.ticks), record.ticks)
+
+
+def _messages(record: Record) -> dict[int, Message]:
+    return {event.data["message"]: _message(event) for event in record.events if event.kind == "sent"}
+
+
+def _message(event: Event) -> Message:
+    place: Sequence[float] | None = event.data["position"]
+    position = None if place is None else (place[0], place[1], place[2])
+    data = event.data
+    return Message(
+        id=data["message"],
+        sender=event.seat,
+        tick=event.tick,
+        text=data["text"],
+        object=data["object"],
+        position=position,
+    )
+
+
+def _left(begun: tuple[int, Message, bool] | None, tick: int) -> tuple[Reading, ...]:
+    """A message that nobody answered until ``tick``."""
+    return () if begun is None or tick <= begun[0] else (_reading(begun, tick, answered=False),)
+
+
+def _reading(begun: tuple[int, Message, bool], tick: int, *, answered: bool) -> Reading:
+    since, message, known = begun
+    seconds = max(1, tick - since) * rules.TICK_S
+    return Reading(seconds=seconds, answered=answered, words=len(message.text.split()), known=known)

@@ -1,0 +1,1 @@
+"""One regression per human ability, fitted to features of logged trials."""

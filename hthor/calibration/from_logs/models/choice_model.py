@@ -1,0 +1,72 @@
+"""Where people chose to search, as a conditional logit of what each option promised; reads no files.
+
+The worth of an option is (w knowledge + (1 - w) uniform) exp(-exposure) / seconds^kappa, and it is chosen with a chance
+that follows worth^beta; beta differs from person to person.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from msgspec import Struct
+
+from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, fit
+from hthor.calibration.from_logs.models.priors import Belief, off
+from hthor.calibration.from_logs.models.timing_models import spread_term
+from hthor.humans.population.parameter_registry import parameter
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.search.option_choice import DOOR_S, SETTLE_S
+
+_LEAST = 1e-12
+
+
+class Choice(Struct, frozen=True, kw_only=True):
+    """One choice: rows [knowledge, uniform, metres, exposure, closed, is_door] of the options, and which was taken.
+
+    ``pace`` [m/s] is how fast this person walked.
+    """
+
+    options: Sequence[Sequence[float]]
+    chosen: int
+    pace: float
+
+
+def conditional_logit(choices: Sequence[Choice], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
+    """Fit ``beta``, ``kappa`` and ``w_prior``, with the spread of ``beta`` between people.
+
+    Args:
+        person: (N,) int, whose choice each is.
+        beliefs: of these three, and of ``t_dwell`` and ``t_manip``, which stay as they are believed.
+    """
+    width = max(len(choice.options) for choice in choices)
+    table = np.zeros((len(choices), width, 6))
+    there = np.zeros((len(choices), width), dtype=bool)
+    for row, choice in enumerate(choices):
+        table[row, : len(choice.options)] = choice.options
+        there[row, : len(choice.options)] = True
+    knowledge, uniform, metres, exposure, closed, door = np.moveaxis(table, 2, 0)
+    pace = np.array([choice.pace for choice in choices])[:, None]
+    dwell, manip = beliefs["t_dwell"].middle, beliefs["t_manip"].middle
+    place_s = metres / pace + dwell + SETTLE_S + manip * closed
+    log_seconds = np.log(np.where(door > 0.0, metres / pace + DOOR_S, place_s))
+    rows, chosen = np.arange(len(choices)), np.array([choice.chosen for choice in choices])
+    w_scale = beliefs["w_prior"].scale
+
+    def likelihood(values: dict[str, float], effects: Array) -> Array:
+        w = off(values["w_prior"], w_scale)
+        worth = np.log(np.maximum(w * knowledge + (1.0 - w) * uniform, _LEAST)) - exposure
+        utility = np.exp(values["beta"] + effects)[:, None] * (worth - values["kappa"] * log_seconds)
+        utility = np.where(there, utility, -np.inf)
+        top = utility.max(axis=1)
+        total = top + np.log(np.exp(utility - top[:, None]).sum(axis=1))
+        picked: Array = utility[rows, chosen] - total
+        return picked
+
+    terms = [beliefs[name].term() for name in ("beta", "kappa", "w_prior")]
+    return fit(likelihood, terms, person, spread_term(parameter("beta").effect))
+
+
+def default_pace() -> float:
+    """How fast somebody walks whose walk is not known [m/s]."""
+    return Parameters().v_pace

@@ -1,0 +1,105 @@
+"""What is believed of each parameter before logs are looked at, as normal laws on a fitting scale; reads no logs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from msgspec import Struct
+
+from hthor.calibration.from_logs.models.mixed_effects import Term
+from hthor.humans.population.distributions import Beta, LogNormal, LogUniform
+from hthor.humans.population.parameter_registry import PARAMETERS, Parameter
+
+Scale = Literal["log", "logit", "plain"]
+_SHARES = (0.1587, 0.5, 0.8413)
+_EDGES = (0.0005, 0.9995)
+_LEAST = 1e-6
+
+
+class Belief(Struct, frozen=True, kw_only=True):
+    """A parameter on its scale: normal around ``mean`` with ``sd``; ``low`` and ``high`` bound it in its own unit."""
+
+    name: str
+    unit: str
+    scale: Scale
+    mean: float
+    sd: float
+    low: float
+    high: float
+
+    @property
+    def middle(self) -> float:
+        """The median in the parameter's own unit."""
+        return float(off(self.mean, self.scale))
+
+    def term(self) -> Term:
+        """The parameter in a model, with what is believed as its prior."""
+        return Term(name=self.name, start=self.mean, mean=self.mean, sd=self.sd)
+
+
+Beliefs = Mapping[str, Belief]
+
+
+def on(value: Any, scale: Scale) -> Any:
+    """A value or an array of them on a scale."""
+    if scale == "log":
+        return np.log(np.maximum(value, _LEAST))
+    if scale == "logit":
+        share = np.clip(value, 1e-4, 1.0 - 1e-4)
+        return np.log(share / (1.0 - share))
+    return value
+
+
+def off(value: Any, scale: Scale) -> Any:
+    """The inverse of `on`."""
+    if scale == "log":
+        return np.exp(value) if isinstance(value, np.ndarray) else math.exp(value)
+    return 1.0 / (1.0 + np.exp(-value)) if scale == "logit" else value
+
+
+def scale(parameter: Parameter) -> Scale:
+    """On which scale a parameter's errors are most nearly symmetric."""
+    if isinstance(parameter.prior, LogUniform | LogNormal):
+        return "log"
+    return "logit" if isinstance(parameter.prior, Beta) else "plain"
+
+
+def of_registry() -> dict[str, Belief]:
+    """The priors themselves."""
+    return {
+        p.name: _belief(p, [p.prior.quantile(share) for share in _SHARES]) for p in PARAMETERS if p.prior is not None
+    }
+
+
+def of_draws(names: Sequence[str], draws: Any, weights: Any) -> dict[str, Belief]:
+    """A population: ``draws`` (D, P) in the parameters' units, ``weights`` (D,)."""
+    held = dict(zip(names, np.asarray(draws).T, strict=True))
+    return {
+        p.name: _belief(p, [_quantile(held[p.name], weights, share) for share in _SHARES])
+        for p in PARAMETERS
+        if p.name in held
+    }
+
+
+def _belief(parameter: Parameter, quantiles: Sequence[float]) -> Belief:
+    kind, prior = scale(parameter), parameter.prior
+    assert prior is not None
+    low, middle, high = (float(on(value, kind)) for value in quantiles)
+    return Belief(
+        name=parameter.name,
+        unit=parameter.unit,
+        scale=kind,
+        mean=middle,
+        sd=max(0.5 * (high - low), 1e-3),
+        low=prior.quantile(_EDGES[0]),
+        high=prior.quantile(_EDGES[1]),
+    )
+
+
+def _quantile(values: Any, weights: Any, share: float) -> float:
+    order = np.argsort(values, kind="stable")
+    total = np.cumsum(np.asarray(weights)[order])
+    return float(np.asarray(values)[order][min(np.searchsorted(total, share * total[-1]), len(values) - 1)])

@@ -1,0 +1,111 @@
+"""How people's trust moved, from their ratings: a hierarchical Beta law (Guo and Yang 2021); reads no files.
+
+Trust is Beta(alpha, beta); each trial adds counts for what the robots were worth in it, and the rating is its mean on
+the scale of 1 to 7 with some noise. The first mean differs from person to person.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import rules
+from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, fit
+from hthor.calibration.from_logs.models.priors import Belief
+from hthor.calibration.from_logs.models.timing_models import spread_term
+from hthor.humans.population.parameter_registry import parameter
+from hthor.humans.population.parameters import Parameters
+
+TERMS = ("mu0", "n0", "w_s", "w_f", "tau_s")
+_LEAST = 1e-12
+
+
+class Experience(Struct, frozen=True, kw_only=True):
+    """What the robots did in one trial, as its log tells, and how they were rated after it.
+
+    ``offered`` says whether any message was shown, ``helped`` [s] when the first good one was confirmed (NaN without),
+    ``misled`` how many of those that were confirmed led nowhere, ``met`` whether the goal was met; ``rating`` is 1 to
+    7, 0 for none.
+    """
+
+    offered: bool
+    helped: float
+    misled: int
+    met: bool
+    rating: int
+
+
+class Course(Struct, frozen=True, kw_only=True):
+    """The experiences of every session, (S, T) arrays; ``there`` marks the trials that are in the log."""
+
+    offered: Array
+    helped: Array
+    misled: Array
+    met: Array
+    rating: Array
+    there: Array
+    person: Array
+
+
+def course(sessions: Sequence[Sequence[Experience]], person: Array) -> Course:
+    """Sessions side by side. ``person`` (S,) int is whose each is."""
+    shape = (len(sessions), max(map(len, sessions)))
+    arrays = {name: np.zeros(shape) for name in ("offered", "helped", "misled", "met", "rating", "there")}
+    for row, session in enumerate(sessions):
+        for column, one in enumerate(session):
+            for name in ("offered", "helped", "misled", "met", "rating"):
+                arrays[name][row, column] = getattr(one, name)
+            arrays["there"][row, column] = 1.0
+    return Course(person=person, **arrays)
+
+
+def means(data: Course, values: Mapping[str, float], effects: Array) -> tuple[Array, Array]:
+    """Mean trust (S, T) at the beginning of each trial, and after it; ``effects`` (S,) are added to mu0's logit."""
+    fixed, n0 = Parameters(), math.exp(values["n0"])
+    w_s, w_f, tau = (math.exp(values[name]) for name in ("w_s", "w_f", "tau_s"))
+    first = 1.0 / (1.0 + np.exp(-(values["mu0"] + effects)))
+    alpha, beta = first * n0, (1.0 - first) * n0
+    before, after = np.zeros(data.rating.shape), np.zeros(data.rating.shape)
+    signal = _signals(data, tau, fixed)
+    for column in range(data.rating.shape[1]):
+        before[:, column] = alpha / (alpha + beta)
+        beta = beta + w_f * data.misled[:, column]
+        worth, there = signal[:, column], data.there[:, column]
+        alpha, beta = alpha + there * w_s * worth, beta + there * w_f * (1.0 - worth)
+        after[:, column] = alpha / (alpha + beta)
+    return before, after
+
+
+def dynamics(data: Course, beliefs: Mapping[str, Belief]) -> Fit:
+    """Fit first trust, its firmness, and what moves it, with the spread of first trust between people."""
+    from scipy.special import ndtr
+
+    rows, columns = np.nonzero(data.rating > 0.0)
+    rated, noise = data.rating[rows, columns], Parameters().sd_report
+    person = np.unique(data.person, return_inverse=True)[1]
+    owner = person[rows]
+    first = np.full(int(person.max()) + 1, 0)
+    first[owner[::-1]] = np.arange(len(owner))[::-1]
+    span = rules.TRUST_MAX - rules.TRUST_MIN
+
+    def likelihood(values: dict[str, float], effects: Array) -> Array:
+        own = effects[first][person] if len(effects) else np.zeros(len(person))
+        _, after = means(data, values, own)
+        mean = rules.TRUST_MIN + span * after[rows, columns]
+        low = np.where(rated <= rules.TRUST_MIN, -np.inf, (rated - 0.5 - mean) / noise)
+        high = np.where(rated >= rules.TRUST_MAX, np.inf, (rated + 0.5 - mean) / noise)
+        return np.log(np.maximum(ndtr(high) - ndtr(low), _LEAST))
+
+    return fit(likelihood, [beliefs[name].term() for name in TERMS], owner, spread_term(parameter("mu0").effect))
+
+
+def _signals(data: Course, tau: float, fixed: Parameters) -> Array:
+    """Worth of the robots (S, T): the law of `hthor.humans.communication.trust`."""
+    helped = data.helped > 0.0
+    worth = np.where(data.offered > 0.0, fixed.s_offered, 0.0)
+    worth = np.where(data.misled > 0.0, 0.0, worth)
+    worth = np.where(helped, 0.5 + 0.5 * np.exp(-data.helped / tau), worth)
+    return np.where(data.met > 0.0, worth, worth * fixed.s_failed)

@@ -1,0 +1,144 @@
+"""From logs to a population and a table of what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from msgspec import Struct
+
+from hthor import jsonio, rules
+from hthor.calibration.from_logs import estimate_all, load_sessions
+from hthor.calibration.from_logs.estimate import Estimate
+from hthor.calibration.from_logs.load_sessions import Sessions
+from hthor.calibration.from_logs.models import priors
+from hthor.calibration.from_logs.update_population import Updated, update
+from hthor.errors import RunError
+from hthor.humans.population import parameter_registry, resolve
+from hthor.humans.population.population import Population, Validity
+from hthor.humans.population.resolve import PROXY
+
+SCHEMA = "hthor.estimates/1"
+
+
+class Row(Struct, frozen=True, kw_only=True):
+    """A parameter before and after, medians and 90 % intervals in its unit, and what the logs say of it, if any."""
+
+    name: str
+    unit: str
+    before: float
+    before_low: float
+    before_high: float
+    after: float
+    after_low: float
+    after_high: float
+    estimate: Estimate | None
+
+
+class Found(Struct, frozen=True, kw_only=True):
+    """What a calibration with logs gave; ``effective`` old draws stand behind the new ones."""
+
+    schema: str = SCHEMA
+    prior: str
+    people: int
+    sessions: int
+    trials: int
+    effective: float
+    widening: float
+    rows: tuple[Row, ...]
+    notes: tuple[str, ...]
+
+
+def conduct(
+    logs: Sequence[Path], prior: str, out: Path, tell: Callable[[str], None], *, seed: int = 0
+) -> tuple[Found, Population]:
+    """Estimate, bring the population ``prior`` up to date, and write both to the folder ``out``.
+
+    Raises:
+        RunError: when a log cannot be read, or holds no stick.
+        MissingExtra: without scipy.
+    """
+    tell("reading")
+    data = load_sessions.read(logs)
+    if not any(event.kind == "stick" for one in data.trials for event in one.record.journal):
+        raise RunError(
+            f"{logs[0]} holds no journal of the person: no stick, no attempts. It was written by an older version of "
+            "hthor; play the run again with 'hthor eval'."
+        )
+    old = Population.load(resolve.default() if prior == PROXY else prior)
+    before = priors.of_draws(old.names, old.draws, old.weights)
+    estimates = estimate_all.everything(data, before, tell)
+    tell("updating")
+    changed = update(old.names, old.draws, old.weights, before, estimates, seed)
+    new = _population(old, changed, estimates, data, logs, out, seed)
+    found = Found(
+        prior=old.name,
+        people=data.people,
+        sessions=data.sessions,
+        trials=len(data.trials),
+        effective=round(changed.effective, 1),
+        widening=round(changed.widening, 3),
+        rows=_rows(old, new, estimates),
+        notes=new.notes,
+    )
+    out.mkdir(parents=True, exist_ok=True)
+    new.save(out / "population")
+    jsonio.write(out / "estimates.json", jsonio.pretty(found))
+    return found, new
+
+
+def _population(
+    old: Population,
+    changed: Updated,
+    estimates: Sequence[Estimate],
+    data: Sessions,
+    logs: Sequence[Path],
+    out: Path,
+    seed: int,
+) -> Population:
+    suites = {one.record.spec.suite_sha256 for one in data.trials}
+    few = [one.name for one in estimates if not one.used]
+    notes = [
+        f"Brought up to date with {len(data.trials)} trials of {data.people} people; {len(changed.direct)} parameters "
+        f"were estimated from them, the others were weighted by those ({changed.effective:.0f} effective draws)."
+    ]
+    if few:
+        notes.append(f"The logs held too little on {', '.join(few)}; they are as they were.")
+    return Population.of(
+        out.resolve().name,
+        changed.draws,
+        purpose=f"{old.name}, brought up to date with logs of {data.people} people",
+        seed=seed,
+        command=f"hthor calibrate {' '.join(f'--target {log.name}' for log in logs)} --prior {old.name}",
+        names=old.names,
+        statistics=tuple(f"{one.name}: {one.method}" for one in estimates if one.used),
+        figures={"effective": round(changed.effective, 1), "widening": round(changed.widening, 3)},
+        notes=notes,
+        validity=Validity(
+            suite=old.validity.suite if suites == {old.validity.suite_sha256} else "the suite of the logs",
+            suite_sha256=next(iter(suites)) if len(suites) == 1 else "",
+            targets="logs",
+            simulation=rules.SIMULATION,
+            mind=parameter_registry.MIND,
+        ),
+    )
+
+
+def _rows(old: Population, new: Population, estimates: Sequence[Estimate]) -> tuple[Row, ...]:
+    by_name = {one.name: one for one in estimates}
+    shares = (0.05, 0.5, 0.95)
+    before, after = old.quantiles(shares), new.quantiles(shares)
+    return tuple(
+        Row(
+            name=spec.name,
+            unit=spec.unit,
+            before=float(before[1, k]),
+            before_low=float(before[0, k]),
+            before_high=float(before[2, k]),
+            after=float(after[1, k]),
+            after_low=float(after[0, k]),
+            after_high=float(after[2, k]),
+            estimate=by_name.get(spec.name),
+        )
+        for k, spec in enumerate(new.specs)
+    )

@@ -1,0 +1,130 @@
+"""A population brought up to date with what logs say.
+
+What the logs measure takes the place of what was believed: each draw gets new values of those parameters, by their
+estimates and errors. The other parameters keep the draws that go with such values, by importance weights: draws far
+from the estimates count less. Only measured parameters that the others evidently go together with are weighed: where
+draws are independent, weighing would add nothing but noise. Estimates are often far more exact than draws are dense,
+so their errors are widened for the weights, as little as leaves enough draws.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import seeds
+from hthor.calibration.from_logs.estimate import Estimate
+from hthor.calibration.from_logs.estimate_all import READING
+from hthor.calibration.from_logs.models.priors import Belief, Beliefs, off, on
+
+_WIDENINGS = tuple(0.05 * 1.2**k for k in range(30))
+_LEAST_SHARE, _LEAST_DRAWS = 0.1, 50.0
+_REACH = 3.0
+_EVIDENT = 4.0
+"""A correlation is evident when it is so many times what independent draws show by chance."""
+
+
+class Updated(Struct, frozen=True, kw_only=True):
+    """New draws (D, P) in the parameters' units, all of equal weight.
+
+    ``effective`` is how many of the old draws they are worth, ``widening`` by how many standard deviations of the old
+    draws the errors were widened, ``direct`` the parameters that the logs measured.
+    """
+
+    draws: Any
+    effective: float
+    widening: float
+    direct: tuple[str, ...]
+
+
+def update(
+    names: Sequence[str], draws: Any, weights: Any, beliefs: Beliefs, estimates: Sequence[Estimate], seed: int
+) -> Updated:
+    """Bring draws up to date.
+
+    Args:
+        names: of the columns (P). draws: (D, P). weights: (D,), adding up to 1.
+        beliefs: of these draws, see `hthor.calibration.from_logs.models.priors.of_draws`.
+    """
+    used = {one.name: one for one in estimates if one.used and one.name in names}
+    scaled = {name: on(draws[:, names.index(name)], beliefs[name].scale) for name in used}
+    others = [on(draws[:, names.index(name)], beliefs[name].scale) for name in names if name not in used]
+    telling = {name: values for name, values in scaled.items() if _tells(values, others, np.asarray(weights))}
+    weight, effective, widening = _weights(telling, used, beliefs, np.asarray(weights))
+    kept = np.array(draws)[_picked(weight, seeds.draw(seed, "pick"), len(draws))]
+    for name in used:
+        kept[:, names.index(name)] = _drawn(used[name], beliefs[name], len(kept), seed)
+    _whole_reading(kept, names, estimates, beliefs, seed)
+    return Updated(draws=kept, effective=effective, widening=widening, direct=tuple(used))
+
+
+def _tells(values: Any, others: Sequence[Any], weights: Any) -> bool:
+    """Whether any of the others goes together with these values, more than chance would make it."""
+    chance = _EVIDENT * math.sqrt(float((weights**2).sum()))
+    return any(abs(_correlation(values, other, weights)) > chance for other in others)
+
+
+def _correlation(a: Any, b: Any, weights: Any) -> float:
+    x, y = (values - float((weights * values).sum()) for values in (a, b))
+    scale = math.sqrt(float((weights * x * x).sum()) * float((weights * y * y).sum()))
+    return float((weights * x * y).sum()) / scale if scale > 0.0 else 0.0
+
+
+def _weights(
+    scaled: dict[str, Any], used: dict[str, Estimate], beliefs: Beliefs, before: Any
+) -> tuple[Any, float, float]:
+    """Importance weights, and how much the errors had to be widened for them."""
+    least = max(_LEAST_DRAWS, _LEAST_SHARE / (before**2).sum())
+    weight, effective, widening = before, 1.0 / float((before**2).sum()), 0.0
+    if not scaled:
+        return weight, effective, widening
+    for widening in _WIDENINGS:
+        log = np.log(np.maximum(before, 1e-300))
+        for name, values in scaled.items():
+            at, error = _told(used[name], beliefs[name])
+            spread = math.hypot(error, widening * beliefs[name].sd)
+            log = log - 0.5 * ((values - at) / spread) ** 2
+        weight = np.exp(log - log.max())
+        weight = weight / weight.sum()
+        effective = 1.0 / float((weight**2).sum())
+        if effective >= least:
+            break
+    return weight, effective, widening
+
+
+def _told(estimate: Estimate, belief: Belief) -> tuple[float, float]:
+    """What the logs alone say: the estimate without what was believed before."""
+    precision = max(estimate.se**-2 - belief.sd**-2, (_REACH * belief.sd) ** -2)
+    at = (estimate.at * estimate.se**-2 - belief.mean * belief.sd**-2) / precision
+    near = _REACH * belief.sd
+    return min(max(at, belief.mean - near), belief.mean + near), precision**-0.5
+
+
+def _picked(weight: Any, start: float, count: int) -> Any:
+    """Rows, each as often as its weight says: systematic resampling."""
+    marks = (np.arange(count) + start) / count
+    return np.minimum(np.searchsorted(np.cumsum(weight), marks), count - 1)
+
+
+def _drawn(estimate: Estimate, belief: Belief, count: int, seed: int) -> Any:
+    """Values by the estimate and its error, within the bounds of the prior."""
+    normal = np.array([seeds.normal(seed, estimate.name, k) for k in range(count)])
+    return np.clip(off(estimate.at + estimate.se * normal, belief.scale), belief.low, belief.high)
+
+
+def _whole_reading(kept: Any, names: Sequence[str], estimates: Sequence[Estimate], beliefs: Beliefs, seed: int) -> None:
+    """Noticing and reading are measured better together than each: the sum is drawn, noticing is its part."""
+    whole = next((one for one in estimates if one.name == READING and one.used), None)
+    if whole is None or "t_notice" not in names or "t_read" not in names:
+        return
+    normal = np.array([seeds.normal(seed, READING, k) for k in range(len(kept))])
+    total = np.exp(whole.at + whole.se * normal)
+    notice, read = names.index("t_notice"), names.index("t_read")
+    part = kept[:, notice] / (kept[:, notice] + kept[:, read])
+    for column, share in ((notice, part), (read, 1.0 - part)):
+        belief = beliefs[names[column]]
+        kept[:, column] = np.clip(total * share, belief.low, belief.high)

@@ -1,0 +1,1 @@
+"""From an emulator and published counts to a posterior over human parameters."""

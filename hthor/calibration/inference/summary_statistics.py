@@ -1,0 +1,105 @@
+"""What studies, published or simulated, are compared in: counts and ratios."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from msgspec import Struct
+
+from hthor.calibration.simulation import trial_table as tables
+from hthor.calibration.simulation.trial_table import CONDITIONS, Table
+from hthor.calibration.targets import Targets
+
+Array = np.ndarray[Any, Any]
+
+FIGURES = (
+    *(f"{metric} {condition}" for metric in ("sr", "twsr") for condition in CONDITIONS),
+    *(f"adoption {condition}" for condition in CONDITIONS[1:]),
+)
+"""The eight published figures; nobody can adopt a robot that is not there."""
+
+
+class Observed(Struct, frozen=True, kw_only=True, eq=False):
+    """Results of S studies, float64 arrays (S, 3) by study and condition.
+
+    Attributes:
+        successes, trials: counts of the success rate; 0 trials where a study tells nothing of a condition.
+        adopted, asked: counts of adoption; 0 asked likewise.
+        ratio: TWSR / SR, the mean of T*/max(T*, T) over the successes; NaN where there is none.
+    """
+
+    successes: Array
+    trials: Array
+    adopted: Array
+    asked: Array
+    ratio: Array
+
+    def __len__(self) -> int:
+        return len(self.trials)
+
+    def one(self, study: int) -> Observed:
+        """A single study, still with S = 1."""
+        return Observed(**{name: getattr(self, name)[study : study + 1] for name in self.__struct_fields__})
+
+    def without(self, condition: str) -> Observed:
+        """The same studies, without anything about one condition."""
+        return self._keeping([name != condition for name in CONDITIONS])
+
+    def only(self, condition: str) -> Observed:
+        """The same studies, with nothing but one condition."""
+        return self._keeping([name == condition for name in CONDITIONS])
+
+    def _keeping(self, kept: list[bool]) -> Observed:
+        counts = {name: getattr(self, name) * np.array(kept) for name in ("successes", "trials", "adopted", "asked")}
+        return Observed(**counts, ratio=np.where(kept, self.ratio, np.nan))
+
+    def figures(self) -> dict[str, Array]:
+        """The eight figures (S,) by name, as fractions; NaN where a study does not tell."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            sr, adoption = self.successes / self.trials, self.adopted / self.asked
+        held = {"sr": sr, "twsr": sr * self.ratio, "adoption": adoption}
+        return {name: held[name.split()[0]][:, CONDITIONS.index(name.split()[1])] for name in FIGURES}
+
+
+def published(targets: Targets) -> Observed:
+    """The one study that was published; what the targets leave out is left out."""
+    counts = np.zeros((4, 1, len(CONDITIONS)))
+    ratio = np.full((1, len(CONDITIONS)), np.nan)
+    for place, name in enumerate(CONDITIONS):
+        if name in targets.sr:
+            counts[:2, 0, place] = targets.sr[name].k, targets.sr[name].n
+        if name in targets.adoption:
+            counts[2:, 0, place] = targets.adoption[name].k, targets.adoption[name].n
+        ratio[0, place] = targets.ratio.get(name, np.nan)
+    return Observed(successes=counts[0], trials=counts[1], adopted=counts[2], asked=counts[3], ratio=ratio)
+
+
+def studies(table: Table, least: Array) -> tuple[Array, Observed]:
+    """Simulated studies as if they had been published: points (S, P) of the unit cube, and results in that order.
+
+    Args:
+        table: whole studies; trials outside any are passed over.
+        least: T* [s] by task.
+    """
+    held = table.take(table.study >= 0)
+    numbers, rows, study = np.unique(held.study, return_index=True, return_inverse=True)
+    shape = (len(numbers), len(CONDITIONS))
+
+    def total(values: Array) -> Array:
+        sums = np.zeros(shape)
+        np.add.at(sums, (study, held.condition), values)
+        return sums
+
+    met = held.met & held.valid
+    successes, worth = total(met), total(np.where(met, tables.twsr(held, least), 0.0))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratio = worth / successes
+    found = Observed(
+        successes=successes,
+        trials=total(held.valid),
+        adopted=total(held.adopted & held.counted),
+        asked=total(held.counted),
+        ratio=ratio,
+    )
+    return held.unit(rows), found

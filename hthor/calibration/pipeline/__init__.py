@@ -1,0 +1,1 @@
+"""The stages of `hthor calibrate`, their cache, progress and summary."""

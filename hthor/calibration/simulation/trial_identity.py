@@ -1,0 +1,69 @@
+"""What a simulated trial depends on, as hashes: stored trials of another world or person are never reused."""
+
+from __future__ import annotations
+
+import msgspec
+from msgspec import Struct
+
+from hthor import code_identity, installation, jsonio, plugins, rules
+from hthor.calibration.simulation.trial_table import AGENTS
+from hthor.humans.population.parameter_registry import PARAMETERS
+from hthor.tasks import Suite
+
+ROBOT = "scout"
+"""The body of the article's robots."""
+_T_STAR = "T_STAR"
+_NOT_COURSE = ("t_star", "difficulty", "split")
+
+
+class Identity(Struct, frozen=True, kw_only=True):
+    """Hashes of all that decides the course of trials of a suite: ``parts`` by the name of what they are of."""
+
+    parts: dict[str, str]
+
+    @property
+    def sha256(self) -> str:
+        """Hash of them all."""
+        return jsonio.sha256(self.parts)
+
+    def differences(self, other: Identity) -> list[str]:
+        """Names of what is not the same in both."""
+        names = sorted({*self.parts, *other.parts})
+        return [name for name in names if self.parts.get(name) != other.parts.get(name)]
+
+
+def of(suite: Suite) -> Identity:
+    """What trials of this suite hang on, in this version of everything."""
+    numbers = {name: value for name, value in rules.as_dict().items() if not name.startswith(_T_STAR)}
+    priors = [(one.name, one.prior, one.effect, one.scale) for one in PARAMETERS]
+    versions = {name: version for name, version in installation.versions().items() if name != "hthor"}
+    return Identity(
+        parts={
+            f"suite {suite.name}": jsonio.sha256([_course(task) for task in suite.tasks]),
+            "rules": jsonio.sha256(numbers),
+            "parameters and their priors": jsonio.sha256(priors),
+            **{f"version of {name}": version for name, version in versions.items()},
+            "code": _code(suite),
+        }
+    )
+
+
+def _course(task: object) -> dict[str, object]:
+    """A task without what has no part in the course of its trials."""
+    told: dict[str, object] = msgspec.to_builtins(task)
+    return {name: value for name, value in told.items() if name not in _NOT_COURSE}
+
+
+def _code(suite: Suite) -> str:
+    """Hash of the code that plays sessions: the world, the proxy, the article's three robots, the suite's kinds."""
+    own = [
+        *(plugins.module("agent", name) for name in AGENTS),
+        plugins.module("robot", ROBOT),
+        *(plugins.module("task kind", kind) for kind in {task.kind for task in suite.tasks}),
+    ]
+    return code_identity.modules_sha256([*code_identity.roots("trial"), *code_identity.roots("sessions"), *own])
+
+
+def of_statistics() -> str:
+    """Hash of the code that turns tables of trials into populations."""
+    return code_identity.modules_sha256(code_identity.roots("statistics"))

@@ -1,0 +1,191 @@
+"""A table of simulated trials: what became of each, and whose it was.
+
+Everything that statistics are computed from is here, as numpy arrays with one entry a trial. T* is not among them: it
+is looked up from the suite, so that a table outlives a change of T*.
+"""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import jsonio, rules
+from hthor.calibration.targets import CONDITIONS
+from hthor.errors import RunError
+from hthor.tasks import Suite
+
+Array = np.ndarray
+
+AGENTS = ("silent", "frontier", "oracle")
+"""Whose robot helps in each of `CONDITIONS`, the paper's, in the order of their numbers."""
+
+_TYPES: dict[str, str] = {
+    "study": "<i4",
+    "session": "<i4",
+    "point": "<i4",
+    "condition": "<i1",
+    "participant": "<i4",
+    "index": "<i1",
+    "task": "<i2",
+    "met": "|b1",
+    "ticks": "<i4",
+    "sent": "<i4",
+    "shown": "<i4",
+    "confirmed": "<i4",
+    "declined": "<i4",
+    "picked": "<i4",
+    "messages": "<i2",
+    "adopted": "|b1",
+    "trust": "<i1",
+    "valid": "|b1",
+    "counted": "|b1",
+}
+TRIAL = tuple(_TYPES)
+"""Names of the columns that have an entry a trial."""
+_EPOCH = (1980, 1, 1, 0, 0, 0)
+
+
+__all__ = [
+    "AGENTS",
+    "CONDITIONS",
+    "TRIAL",
+    "Table",
+    "build",
+    "encode",
+    "join",
+    "load",
+    "seconds",
+    "store",
+    "t_star",
+    "twsr",
+]
+
+
+class Table(Struct, frozen=True, kw_only=True, eq=False):
+    """Trials of simulated people, N of them, in order of study, session and index.
+
+    Attributes:
+        names: names (P,) of the parameters.
+        points: (T, P) float64, points of the prior's unit cube: populations that people were drawn from.
+        study: number of the simulated study, -1 outside any. session: number of the session, from 0 in each study.
+        point: row of ``points``. condition: 0 none, 1 frontier, 2 oracle. participant: the person's number.
+        index: the trial's place in its session, from 0. task: number in the suite.
+        met: whether the goal was met. ticks: length [ticks of 0.1 s], the limit's after a failure.
+        sent, shown, confirmed, declined: tick of the first message to be so, -1 when none was.
+        picked: tick at which the target was first in the person's hand, -1 when it never was.
+        messages: how many were sent. adopted: whether one was confirmed. trust: 1 to 7, 0 where none was asked for.
+        valid: whether the trial counts in a study's success rate. counted: and whether in its adoption.
+    """
+
+    names: tuple[str, ...]
+    points: Array
+    study: Array
+    session: Array
+    point: Array
+    condition: Array
+    participant: Array
+    index: Array
+    task: Array
+    met: Array
+    ticks: Array
+    sent: Array
+    shown: Array
+    confirmed: Array
+    declined: Array
+    picked: Array
+    messages: Array
+    adopted: Array
+    trust: Array
+    valid: Array
+    counted: Array
+
+    def __len__(self) -> int:
+        return len(self.study)
+
+    def take(self, rows: Array) -> Table:
+        """The trials of a mask or of row numbers; all points are kept."""
+        return Table(names=self.names, points=self.points, **{name: getattr(self, name)[rows] for name in TRIAL})
+
+    def unit(self, rows: Array | None = None) -> Array:
+        """(N, P) point of each trial, or of those of ``rows``."""
+        found: Array = self.points[self.point if rows is None else self.point[rows]]
+        return found
+
+
+def build(names: Sequence[str], points: Array, columns: dict[str, Any]) -> Table:
+    """A table of columns that numpy can read, each of length N."""
+    typed = {name: np.asarray(columns[name]).astype(kind) for name, kind in _TYPES.items()}
+    return Table(names=tuple(names), points=np.asarray(points, dtype="<f8").reshape(-1, len(names)), **typed)
+
+
+def join(tables: Sequence[Table]) -> Table:
+    """One table of several, whose points are numbered on; studies and sessions keep their numbers."""
+    shifts = np.cumsum([0, *(len(table.points) for table in tables)])
+    columns = {name: np.concatenate([getattr(table, name) for table in tables]) for name in TRIAL}
+    columns["point"] = np.concatenate([table.point + shift for table, shift in zip(tables, shifts, strict=False)])
+    return build(tables[0].names, np.concatenate([table.points for table in tables]), columns)
+
+
+def seconds(table: Table) -> Array:
+    """(N,) float64, time spent [s]: the time limit where the goal was not met."""
+    spent: Array = table.ticks * rules.TICK_S
+    return spent
+
+
+def t_star(suite: Suite) -> Array:
+    """(tasks,) float64, T* [s] by a task's number in the suite."""
+    return np.array([task.t_star for task in suite.tasks])
+
+
+def twsr(table: Table, least: Array) -> Array:
+    """(N,) float64, success weighted by time: T* / max(T*, T), 0 after a failure.
+
+    Args:
+        least: T* [s] by task, as `t_star` gives it.
+    """
+    best = least[table.task]
+    worth: Array = np.where(table.met, best / np.maximum(best, seconds(table)), 0.0)
+    return worth
+
+
+def store(path: Path, table: Table) -> None:
+    """Write a table as NPZ; equal tables give equal bytes."""
+    jsonio.write(path, encode({"names": np.array(table.names), "points": table.points, **_columns(table)}))
+
+
+def encode(arrays: dict[str, Array]) -> bytes:
+    """Arrays as an NPZ file's bytes, without the hour that numpy would write into it."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        for name, array in arrays.items():
+            part = io.BytesIO()
+            np.lib.format.write_array(part, np.ascontiguousarray(array), allow_pickle=False)
+            entry = zipfile.ZipInfo(f"{name}.npy", date_time=_EPOCH)
+            archive.writestr(entry, part.getvalue(), zipfile.ZIP_DEFLATED, 6)
+    return out.getvalue()
+
+
+def load(path: Path) -> Table:
+    """The table in a file.
+
+    Raises:
+        RunError: when there is none, or it is not whole.
+    """
+    try:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as held:
+            columns = {name: held[name] for name in TRIAL}
+            return build([str(name) for name in held["names"]], held["points"], columns)
+    except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile) as error:
+        raise RunError(
+            f"{path}: no table of trials: {error}. Delete it and repeat the command that wrote it."
+        ) from None
+
+
+def _columns(table: Table) -> dict[str, Array]:
+    return {name: getattr(table, name) for name in TRIAL}

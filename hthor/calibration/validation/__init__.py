@@ -1,0 +1,1 @@
+"""`hthor humans validate`: simulated study groups against the published figures."""

@@ -1,0 +1,138 @@
+"""Whom a validation plays, and where; plays nobody itself."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Literal
+
+from msgspec import Struct
+
+from hthor import code_identity, jsonio, rules, tasks
+from hthor.calibration.simulation.trial_table import AGENTS
+from hthor.calibration.validation.report.study_groups import PEOPLE
+from hthor.errors import HthorError
+from hthor.eval.config import human_populations
+from hthor.eval.dry_run import forecast
+from hthor.eval.dry_run.forecast import Ahead
+from hthor.eval.runner import experiment, progress, run_options
+from hthor.eval.runner.run_options import RUNS, Intent
+from hthor.humans.population import kinds, resolve
+from hthor.humans.population.resolve import PROXY
+
+SUITE = "paper"
+QUICK = 12
+"""Participants in each condition of a quick run, at most: two study groups, enough to see that all works."""
+RIVALS = human_populations.EXTREMES
+_RIVAL_MOST, _KIND_MOST = 30, 20
+"""Participants in each condition of a simple model, and of each kind of people, at most."""
+
+
+class Options(Struct, frozen=True, kw_only=True):
+    """What the user asked for.
+
+    Attributes:
+        name: as `hthor.humans.population.resolve.find` reads it.
+        calibration: folder of the calibration that these people come from; None for what ships with them.
+        suites: other suites to rank the robots on. kinds: whether every kind of people is played too.
+        quick: few people and no simple models; what is played is then not judged.
+    """
+
+    name: str = PROXY
+    calibration: Path | None = None
+    participants: int = 60
+    out: Path | None = None
+    jobs: int | None = None
+    seed: int = 0
+    quick: bool = False
+    kinds: bool = False
+    suites: tuple[str, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """Participants in each condition."""
+        return min(QUICK, self.participants) if self.quick else self.participants
+
+
+class Round(Struct, frozen=True, kw_only=True):
+    """People who play a suite in all conditions: ``word`` as `hthor.humans.population.resolve.find` reads it, and what
+    for.
+    """
+
+    word: str
+    suite: str
+    participants: int
+    role: Literal["judged", "rival", "kind", "suite"]
+
+
+def rounds(options: Options) -> tuple[Round, ...]:
+    """All that is played, in order.
+
+    Raises:
+        UnknownName: when there are no such people, or no such suite.
+        HthorError: when there are too few participants for a study group.
+    """
+    count = options.count
+    if count < PEOPLE:
+        raise HthorError(f"--participants {count} is too few: a group of the published study has {PEOPLE}.")
+    found = resolve.find(options.name)
+    for name in options.suites:
+        tasks.suite(name)
+    rivals = () if options.quick else tuple(name for name in RIVALS if name != found.name)
+    kin = kinds.names() if options.kinds else ()
+    return (
+        Round(word=found.word, suite=SUITE, participants=count, role="judged"),
+        *(Round(word=one, suite=SUITE, participants=min(count, _RIVAL_MOST), role="rival") for one in rivals),
+        *(Round(word=one, suite=SUITE, participants=min(count, _KIND_MOST), role="kind") for one in kin),
+        *(Round(word=found.word, suite=one, participants=count, role="suite") for one in options.suites),
+    )
+
+
+def folder(options: Options) -> Path:
+    """Where the report goes."""
+    if options.out:
+        return options.out
+    found, suite = resolve.find(options.name), tasks.suite(SUITE)
+    what = [
+        found.sha256,
+        suite.sha256,
+        options.seed,
+        options.count,
+        rules.sha256(),
+        code_identity.code_sha256(found.model, (task.kind for task in suite.tasks)),
+    ]
+    return RUNS / f"validation-{found.name}-{jsonio.sha256(what)[:10]}"
+
+
+def asked(options: Options, one: Round) -> run_options.Options:
+    """A round as an evaluation, in a folder of its own."""
+    suite = tasks.suite(one.suite)
+    name = f"{resolve.find(one.word).name}-{Path(suite.name).name}-{one.participants}"
+    return run_options.Options(
+        agents=AGENTS,
+        humans=(one.word,),
+        suite=one.suite,
+        seed=options.seed,
+        participants=one.participants,
+        jobs=options.jobs or len(os.sched_getaffinity(0)),
+        out=folder(options) / "runs" / name,
+    )
+
+
+def ahead(options: Options) -> Iterator[tuple[Round, Ahead]]:
+    """Each run that would be played, how far it is, and how long it takes, found out without playing or writing.
+
+    Raises:
+        HthorError: as `rounds`.
+    """
+    for one in rounds(options):
+        evaluation, runs = asked(options, one), list[Ahead]()
+
+        def note(wanted: Intent, evaluation: run_options.Options = evaluation, runs: list[Ahead] = runs) -> bool:
+            runs += forecast.of(evaluation, wanted, {}).runs
+            return False
+
+        for _ in experiment.conduct(evaluation, lambda _: progress.Silent(), note):
+            raise AssertionError("a dry run plays nothing")
+        yield from ((one, run) for run in runs)

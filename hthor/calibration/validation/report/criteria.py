@@ -1,0 +1,130 @@
+"""The bars that a human model has to clear: each says what it asks and what was found; shows nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import msgspec
+
+from hthor.calibration.pipeline.evidence import Evidence
+from hthor.calibration.validation.report import phrases
+from hthor.calibration.validation.report.findings import Findings, Gate, Predicted, Trust, Verdict
+
+COVERAGE = (0.86, 0.94)
+STUDIES = 200
+Z_SD = (0.9, 1.1)
+ABC_SHIFT = 0.5
+ORDER = 0.95
+"""Share of posterior draws that have to rank the robots oracle > frontier > none."""
+
+
+def judge(found: Findings) -> tuple[Gate, ...]:
+    """Every gate's verdict. What a short run or a model without a calibration cannot tell is not judged."""
+    short = found.setting.quick
+    return (
+        *_table(found.table, short),
+        _trust(found.trust, short),
+        *of_evidence(found.evidence),
+    )
+
+
+def of_evidence(found: Evidence | None) -> tuple[Gate, ...]:
+    """The bars for a calibration. A quick one is shown and not judged."""
+    gates = (*_held_out(found), _coverage(found), _emulator(found), _abc(found), _ranking(found))
+    if found is None or not found.origin.quick:
+        return gates
+    return tuple(msgspec.structs.replace(gate, verdict="not judged") for gate in gates)
+
+
+def failed(gates: Sequence[Gate]) -> list[Gate]:
+    """Those that were not passed."""
+    return [gate for gate in gates if gate.verdict == "failed"]
+
+
+def _gate(name: str, asks: str, found: str, passed: bool | None) -> Gate:
+    verdict: Verdict = "not judged" if passed is None else "passed" if passed else "failed"
+    return Gate(name=name, asks=asks, found=found, verdict=verdict)
+
+
+def _table(rows: Sequence[Predicted], short: bool) -> tuple[Gate, ...]:
+    out = [phrases.figure(row.figure) for row in rows if not row.covered]
+    far = [phrases.figure(row.figure) for row in rows if not row.close]
+    total = len(rows)
+    return (
+        _gate(
+            "published figures covered",
+            f"all {total} inside the 90 % intervals of simulated study groups",
+            f"{total - len(out)} of {total}" + (f"; outside: {phrases.listed(out)}" if out else ""),
+            None if short else not out,
+        ),
+        _gate(
+            "medians close",
+            "SR and TWSR within 4 points, adoption within 7",
+            f"{total - len(far)} of {total}" + (f"; too far: {phrases.listed(far)}" if far else ""),
+            None if short else not far,
+        ),
+    )
+
+
+def _trust(found: Trust | None, short: bool) -> Gate:
+    name, asks = "trust", "in the oracle above that in the frontier robot over the session, and rising"
+    if found is None:
+        return _gate(name, asks, "nobody rated both robots", None)
+    slope = next(curve.slope for curve in found.curves if curve.condition == "oracle")
+    said = f"{phrases.signed(found.gap, 2)} above, {phrases.signed(slope, 3)} a trial"
+    return _gate(name, asks, said, None if short else found.gap > 0.0 and slope > 0.0)
+
+
+def _absent(found: Evidence | None) -> str:
+    return "there is no calibration to ask" if found is None else "not worked out in this calibration"
+
+
+def _held_out(found: Evidence | None) -> tuple[Gate, ...]:
+    inside = ("held-out figures", "every one that exists inside its 80 % interval")
+    better = ("held-out log scores", "above the prior's in every condition")
+    if found is None or not found.held_out:
+        return (_gate(*inside, _absent(found), None), _gate(*better, _absent(found), None))
+    rows = [row for part in found.held_out for row in part.figures]
+    out = [phrases.figure(row.figure) for row in rows if not row.inside]
+    gains = {phrases.CONDITION[part.condition]: part.log_score - part.log_score_prior for part in found.held_out}
+    said = f"{len(rows) - len(out)} of {len(rows)}" + (f"; outside: {phrases.listed(out)}" if out else "")
+    scores = phrases.listed(f"{name} {phrases.signed(gain, 2)}" for name, gain in gains.items()) + " nats"
+    return (_gate(*inside, said, not out), _gate(*better, scores, min(gains.values()) > 0.0))
+
+
+def _coverage(found: Evidence | None) -> Gate:
+    low, high = COVERAGE
+    ask = ("coverage", f"90 % intervals hold {low:.2f} to {high:.2f} of the truths, over {STUDIES} studies or more")
+    if found is None or found.coverage is None:
+        return _gate(*ask, _absent(found), None)
+    said = f"{found.coverage.mean:.3f} over {found.coverage.studies} studies"
+    return _gate(*ask, said, found.coverage.studies >= STUDIES and low <= found.coverage.mean <= high)
+
+
+def _emulator(found: Evidence | None) -> Gate:
+    low, high = Z_SD
+    ask = ("emulator", f"standard deviation of its standardised errors from {low} to {high}")
+    if found is None or found.emulator_z is None:
+        return _gate(*ask, _absent(found), None)
+    return _gate(*ask, f"{found.emulator_z:.2f}", low <= found.emulator_z <= high)
+
+
+def _abc(found: Evidence | None) -> Gate:
+    ask = ("ABC cross-check", f"medians of the fitted parameters within {ABC_SHIFT} posterior standard deviations")
+    if found is None or not found.abc:
+        return _gate(*ask, _absent(found), None)
+    worst = max(found.abc, key=lambda one: abs(one.shift))
+    return _gate(*ask, f"at most {abs(worst.shift):.2f} ({worst.name})", abs(worst.shift) < ABC_SHIFT)
+
+
+def _ranking(found: Evidence | None) -> Gate:
+    ask = (
+        "order of the robots",
+        f"oracle > frontier > none, SR and TWSR, in {100 * ORDER:.0f} % of the posterior draws",
+    )
+    home = next((one for one in found.rankings if one.suite == found.origin.suite), None) if found else None
+    if home is None:
+        return _gate(*ask, _absent(found), None)
+    share = min(home.sr, home.twsr)
+    said = f"SR {phrases.percent(home.sr)} %, TWSR {phrases.percent(home.twsr)} %, at {home.trials} trials a robot"
+    return _gate(*ask, said, share >= ORDER)

@@ -1,0 +1,162 @@
+"""Figures that set published numbers against predicted ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from hthor.calibration.pipeline.evidence import Band, HeldOut, Predictive
+from hthor.calibration.simulation.trial_table import CONDITIONS
+from hthor.calibration.validation.report.findings import Findings, Predicted
+from hthor.report.html import matplotlib_svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+METRICS = {"sr": "success rate", "twsr": "time-weighted success", "adoption": "adoption"}
+CONDITION = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
+
+
+def table(rows: Sequence[Predicted]) -> Figure:
+    """The eight figures: published values, and what simulated study groups show."""
+    with matplotlib_svg.style():
+        made, panels = _panels(1.75, [row.band for row in rows])
+        for row in rows:
+            metric, condition = row.figure.split()
+            ax, y, shade = panels[metric], CONDITIONS.index(condition), matplotlib_svg.CONDITION[condition]
+            half = 100.0 * row.tolerance
+            ax.barh(y, 2 * half, left=100.0 * row.published - half, height=0.56, color=matplotlib_svg.SHADE, zorder=1)
+            _interval(ax, y, row.band, shade)
+            _diamond(ax, y, row.published)
+        made.legend(
+            handles=[
+                _line(matplotlib_svg.SOFT, "study group, median and 90 %"),
+                _mark("published"),
+                _patch("allowed for the median"),
+            ],
+            loc="outside lower center",
+            ncols=3,
+        )
+    return made
+
+
+def before_after(rows: Sequence[Predictive], published: dict[str, float]) -> Figure:
+    """Prior and posterior predictive intervals of the eight figures."""
+    with matplotlib_svg.style():
+        made, panels = _panels(2.1, [band for row in rows for band in (row.prior, row.posterior)])
+        for row in rows:
+            metric, condition = row.figure.split()
+            ax, y = panels[metric], CONDITIONS.index(condition)
+            _interval(ax, y - 0.2, row.prior, matplotlib_svg.PRIOR, width=2.0)
+            _interval(ax, y + 0.2, row.posterior, matplotlib_svg.CONDITION[condition])
+            _diamond(ax, y, published[row.figure])
+        made.legend(
+            handles=[
+                _line(matplotlib_svg.PRIOR, "prior, 90 %"),
+                _line(matplotlib_svg.ORACLE, "posterior, 90 %"),
+                _mark("published"),
+            ],
+            loc="outside lower center",
+            ncols=3,
+        )
+    return made
+
+
+def held_out(parts: Sequence[HeldOut]) -> Figure:
+    """What the other two conditions predict of each, 80 % intervals."""
+    with matplotlib_svg.style():
+        made, panels = _panels(1.75, [row.band for part in parts for row in part.figures])
+        for part in parts:
+            for row in part.figures:
+                metric, condition = row.figure.split()
+                ax, y = panels[metric], CONDITIONS.index(condition)
+                _interval(ax, y, row.band, matplotlib_svg.CONDITION[condition])
+                _diamond(ax, y, row.published)
+        made.legend(
+            handles=[_line(matplotlib_svg.SOFT, "predicted without it, median and 80 %"), _mark("published")],
+            loc="outside lower center",
+            ncols=2,
+        )
+    return made
+
+
+def scores(findings: Findings) -> Figure:
+    """Log scores of each condition's published data: held out, prior, and simple human models."""
+    assert findings.evidence is not None
+    with matplotlib_svg.style():
+        made = matplotlib_svg.sheet(1.9)
+        panels = made.subplots(1, len(findings.evidence.held_out), sharex=True, sharey=True, squeeze=False)[0]
+        for ax, part in zip(panels, findings.evidence.held_out, strict=True):
+            named = {
+                "fitted on the others": part.log_score,
+                "prior": part.log_score_prior,
+                **dict(sorted(part.rivals.items())),
+            }
+            for y, score in enumerate(named.values()):
+                shade = matplotlib_svg.CONDITION[part.condition] if y == 0 else matplotlib_svg.PRIOR
+                ax.barh(y, score, height=0.6, color=shade)
+                ax.text(
+                    score,
+                    y,
+                    f"{score:.1f} ".replace("-", "−"),
+                    ha="right",
+                    va="center",
+                    fontsize=7,
+                    color=matplotlib_svg.INK,
+                )
+            ax.set_yticks(range(len(named)), list(named))
+            ax.set_title(f"{CONDITION[part.condition]} held out")
+            ax.set_xlabel("log score [nats], higher is better")
+            matplotlib_svg.bare(ax)
+            ax.set_xlim(1.3 * min(0.0, *named.values()), 0.0)
+        panels[0].invert_yaxis()
+    return made
+
+
+def _panels(height: float, bands: Sequence[Band]) -> tuple[Figure, dict[str, Axes]]:
+    """Three axes that share a scale, from the ten below the lowest band on."""
+    first = 10 * int(10.0 * min([0.5, *(band.low for band in bands)]))
+    made = matplotlib_svg.sheet(height)
+    panels = made.subplots(1, 3, sharey=True)
+    for ax, (metric, title) in zip(panels, METRICS.items(), strict=True):
+        matplotlib_svg.bare(ax)
+        ax.set_title(f"{title} [%]")
+        ax.set_xlim(first, 100)
+        ax.set_ylim(2.6, -0.6)
+        ax.set_yticks(range(3), [CONDITION[name] for name in CONDITIONS])
+        if metric == "adoption":
+            ax.text(
+                (first + 100) / 2,
+                0,
+                "no robot to adopt",
+                ha="center",
+                va="center",
+                color=matplotlib_svg.SOFT,
+                fontsize=7,
+            )
+    return made, dict(zip(METRICS, panels, strict=True))
+
+
+def _interval(ax: Axes, y: float, band: Band, shade: str, width: float = 2.6) -> None:
+    ax.plot((100.0 * band.low, 100.0 * band.high), (y, y), color=shade, lw=width, zorder=3)
+    ax.plot(100.0 * band.median, y, "o", color=shade, ms=5.2, mec=matplotlib_svg.PAPER, mew=0.9, zorder=4)
+
+
+def _diamond(ax: Axes, y: float, value: float) -> None:
+    ax.plot(100.0 * value, y, "D", mfc="none", mec=matplotlib_svg.PUBLISHED, mew=1.4, ms=6.4, zorder=5)
+
+
+def _line(shade: str, label: str) -> Line2D:
+    return Line2D([], [], color=shade, lw=2.6, marker="o", ms=5, mec=matplotlib_svg.PAPER, mew=0.9, label=label)
+
+
+def _mark(label: str) -> Line2D:
+    return Line2D([], [], ls="", marker="D", mfc="none", mec=matplotlib_svg.PUBLISHED, mew=1.4, ms=6, label=label)
+
+
+def _patch(label: str) -> Patch:
+    return Patch(facecolor=matplotlib_svg.SHADE, edgecolor=matplotlib_svg.LINE, linewidth=0.5, label=label)

@@ -1,0 +1,168 @@
+"""A validation as one page that needs nothing else: no network, no script; computes no statistics.
+
+The first and last sections are here, those of the calibration in
+`hthor.calibration.validation.report.calibration_sections`.
+"""
+
+from __future__ import annotations
+
+from html import escape
+
+from hthor.calibration.simulation.trial_table import CONDITIONS
+from hthor.calibration.validation.report import calibration_sections, phrases, tables
+from hthor.calibration.validation.report.figures import predictions, sessions
+from hthor.calibration.validation.report.findings import Findings
+from hthor.report.html import html, matplotlib_svg, style
+
+_TITLES = (
+    ("data", "Data"),
+    ("table", "Published and predicted"),
+    ("predictive", "Before and after the fit"),
+    ("held-out", "Each condition held out"),
+    ("parameters", "What the data tell of each parameter"),
+    ("coverage", "Coverage"),
+    ("emulator", "Emulator and cross-check"),
+    ("sessions", "Time spent and trust"),
+    ("ranking", "How firm the ranking of robots is"),
+    ("misfits", "Known misfits"),
+    ("scope", "Scope"),
+)
+
+
+def render(found: Findings) -> str:
+    """The page, the same bytes for the same findings."""
+    bodies = (
+        _data(found),
+        _table(found),
+        calibration_sections.predictive(found),
+        calibration_sections.held_out(found),
+        calibration_sections.parameters(found),
+        calibration_sections.coverage(found),
+        calibration_sections.emulator(found),
+        _sessions(found),
+        calibration_sections.ranking(found),
+        [html.bullets(found.misfits) if found.misfits else html.paragraph("None that the numbers show.")],
+        [html.paragraph(found.scope, "lead")],
+    )
+    sections = [
+        html.section(number, name, title, *body)
+        for number, ((name, title), body) in enumerate(zip(_TITLES, bodies, strict=True), 1)
+    ]
+    links = " ".join(
+        f'<a href="#{name}">{number} {escape(title)}</a>' for number, (name, title) in enumerate(_TITLES, 1)
+    )
+    title = f"Validation of {found.subject.name}"
+    return (
+        f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n<title>{escape(title)}</title>\n'
+        f"<style>{style.css()}</style>\n</head>\n<body>\n<main>\n{_head(found, title)}\n<nav>{links}</nav>\n"
+        + "\n".join(sections)
+        + f"\n{_foot(found)}\n</main>\n</body>\n</html>\n"
+    )
+
+
+def _head(found: Findings, title: str) -> str:
+    subject, setting = found.subject, found.setting
+    facts = {
+        "people": f"{subject.name}: {subject.purpose}" if subject.purpose else subject.name,
+        "human model": subject.model,
+        "population": f"{subject.population} ({subject.population_sha256[:10]})" if subject.population else "none",
+        "played": f"{setting.participants} participants in each condition on {setting.suite} "
+        f"({setting.suite_sha256[:10]}), {setting.trials} trials, seed {setting.seed}",
+        "world": f"version {setting.simulation}, code {setting.code_sha256[:10]}",
+    }
+    listed = "".join(f"<dt>{escape(name)}</dt><dd>{escape(value)}</dd>" for name, value in facts.items())
+    failed = [gate.name for gate in found.gates if gate.verdict == "failed"]
+    judged = [gate for gate in found.gates if gate.verdict != "not judged"]
+    said = f"{len(judged) - len(failed)} of {len(judged)} bars that could be judged are passed."
+    if failed:
+        said += f" Failed: {phrases.listed(failed)}."
+    notes = list(subject.notes)
+    if setting.quick:
+        notes.append(
+            "Too few people to judge what was played. For a verdict leave out --quick, and ask for 18 people or more."
+        )
+    return "\n".join(
+        (
+            f"<h1>{escape(title)}</h1>",
+            html.paragraph(found.scope, "soft"),
+            f"<dl>{listed}</dl>",
+            html.paragraph(said, "lead"),
+            *(html.paragraph(note, "note") for note in notes),
+            html.table(tables.GATES, tables.gates(found.gates), words=range(4)),
+        )
+    )
+
+
+def _data(found: Findings) -> list[str]:
+    published = found.published
+    ratios = phrases.listed(
+        f"{phrases.CONDITION[name]} {published.ratio[name]:.3f}" for name in CONDITIONS if name in published.ratio
+    )
+    says = [f"{about}: {text}" for about, text in published.verbal]
+    return [
+        html.paragraph(f"Source: {published.source}. Targets “{published.name}”, {published.sha256[:10]}."),
+        html.paragraph(f"Design: {published.design}") if published.design else "",
+        html.table(tables.COUNTS, tables.counts(published), words=(0, 3, 4)),
+        html.paragraph(
+            f"TWSR is used as its ratio to SR ({ratios}), because the two are not independent. Each figure of the "
+            "study is that of one group of six people, so a model is compared with groups of six, not with its own "
+            "mean alone."
+        ),
+        "<h3>What the article says in words</h3>" + html.bullets(says) if says else "",
+    ]
+
+
+def _table(found: Findings) -> list[str]:
+    drawing = matplotlib_svg.svg(
+        predictions.table(found.table), "table", "Published figures and intervals of simulated study groups"
+    )
+    return [
+        html.paragraph(phrases.verdict(found), "lead"),
+        html.table(tables.TABLE, tables.table(found.table)),
+        html.figure(
+            drawing,
+            "Diamonds: the published figures, with the distance allowed to the median shaded. Dots and lines: median "
+            "and 90 % interval of simulated study groups of six people, with as many trials as the study counted.",
+        ),
+        html.paragraph(phrases.reach(found.reach)) if found.reach else "",
+        "<h3>Against simple human models</h3>"
+        + html.table(
+            tables.MODELS, tables.models([found.own.played, *(one.played for one in found.rivals)]), "Means [%]"
+        )
+        if found.rivals
+        else "",
+    ]
+
+
+def _sessions(found: Findings) -> list[str]:
+    parts = [
+        html.paragraph(phrases.quartiles(found.spent, found.differences)),
+        html.paragraph(phrases.minima(found.differences)),
+        html.figure(
+            matplotlib_svg.svg(sessions.spent(found.spent), "spent", "Box plots of the time spent in each condition"),
+            "Time spent: minimum, quartiles and maximum over all trials of each condition.",
+        ),
+        html.table(tables.SPENT, tables.spent(found.spent), "Time spent [s]"),
+        html.table(tables.DIFFERENCES, tables.differences(found.differences)),
+        "<h3>Trust</h3>",
+    ]
+    if found.trust is None:
+        return [*parts, html.paragraph("These people rate no robot, so there is nothing to say of trust.")]
+    return [
+        *parts,
+        html.paragraphs(phrases.trust(found.trust)),
+        html.figure(
+            matplotlib_svg.svg(
+                sessions.trust(found.trust), "trust", "Mean trust by trial in the frontier robot and in the oracle"
+            ),
+            "Mean rating by trial, 1 to 7, with bars of one standard error over people.",
+        ),
+        html.table(tables.CURVES, tables.curves(found.trust.curves), "Mean ± standard error"),
+    ]
+
+
+def _foot(found: Findings) -> str:
+    versions = ", ".join(f"{name} {version}" for name, version in sorted(found.setting.versions.items()))
+    said = f"Every number on this page is in the JSON beside it, schema {found.schema}. {versions}."
+    return f"<footer>{escape(said)}</footer>"

@@ -1,0 +1,147 @@
+"""Study groups put together of simulated people: what six of them would have shown.
+
+The published study had six people in each condition. A group is made of whole rounds of people, in which every task is
+done once, as in the study; it loses the trials that the study lost. Groups share people, so there are many more of them
+than people, but their spread is that of people drawn from one population.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import seeds
+from hthor.calibration.pipeline.evidence import FIGURES
+from hthor.calibration.simulation import trial_table as tables
+from hthor.calibration.simulation.trial_table import CONDITIONS, Table
+from hthor.errors import HthorError
+
+Array = np.ndarray
+PEOPLE = 6
+"""In a group (P)."""
+DRAWS = 4000
+"""Groups that are put together."""
+
+
+class Groups(Struct, frozen=True, kw_only=True, eq=False):
+    """One condition's groups, G of them; arrays (G,), nan where a group shows nothing of the sort.
+
+    ``trust`` is (G, T), the mean rating by trial; ``slope`` the mean over people of their slopes [points a trial].
+    """
+
+    sr: Array
+    twsr: Array
+    ratio: Array
+    adoption: Array
+    lower: Array
+    least: Array
+    trust: Array
+    slope: Array
+
+
+def figures(groups: Mapping[str, Groups]) -> dict[str, Array]:
+    """Each of the eight figures in every group, (G,)."""
+    return {name: getattr(groups[name.split()[1]], name.split()[0]) for name in FIGURES if name.split()[1] in groups}
+
+
+def together(
+    played: Table,
+    least: Array,
+    *,
+    hands: int,
+    valid: Mapping[str, int],
+    counted: Mapping[str, int],
+    seed: int = 0,
+    draws: int = DRAWS,
+) -> dict[str, Groups]:
+    """Groups of every condition that was played.
+
+    Args:
+        least: T* [s] by task.
+        hands: people who together do every task once.
+        valid: by condition, trials of a group that count; the rest are lost at random.
+        counted: and those in which adoption is counted.
+        seed: of the chance that puts groups together.
+
+    Raises:
+        HthorError: when there are too few people for a group.
+    """
+    found = {}
+    for number, condition in enumerate(CONDITIONS):
+        rows = np.flatnonzero(played.condition == number)
+        if rows.size:
+            one = played.take(rows)
+            chance = np.random.Generator(np.random.Philox(key=seeds.derive(seed, "groups", condition)))
+            found[condition] = _groups(one, least, chance, hands, valid[condition], counted.get(condition, 0), draws)
+    return found
+
+
+def _groups(
+    one: Table, least: Array, chance: np.random.Generator, hands: int, valid: int, counted: int, draws: int
+) -> Groups:
+    people = _people(one)
+    chosen = _chosen(len(people), hands, chance, draws)  # (G, 6) rows of `people`
+    rows = people[chosen].reshape(draws, -1)  # (G, 60) rows of the table
+    mixed = np.take_along_axis(rows, np.argsort(chance.random(rows.shape), axis=1), axis=1)
+    kept, asked = mixed[:, : valid or None], mixed[:, : counted or None]
+    worth, spent = tables.twsr(one, least), tables.seconds(one)
+    met = one.met[kept].sum(axis=1)
+    trust = one.trust.astype(float)[people][chosen]  # (G, 6, T)
+    return Groups(
+        sr=one.met[kept].mean(axis=1),
+        twsr=worth[kept].mean(axis=1),
+        ratio=np.where(met > 0, worth[kept].sum(axis=1) / np.maximum(met, 1), np.nan),
+        adoption=one.adopted[asked].mean(axis=1),
+        lower=np.percentile(spent[kept], 25.0, axis=1),
+        least=spent[kept].min(axis=1),
+        trust=trust.mean(axis=1),
+        slope=slopes(trust).mean(axis=1),
+    )
+
+
+def _people(one: Table) -> Array:
+    """(people, T) rows of each person's trials, in order; people in order of their numbers."""
+    order = np.lexsort((one.index, one.participant))
+    count = len(np.unique(one.participant))
+    if len(one) % count or not np.array_equal(one.index[order], np.tile(np.arange(len(one) // count), count)):
+        raise HthorError("some people's trials are missing; finish the run by repeating the command.")
+    rows: Array = order.reshape(count, -1)
+    return rows
+
+
+def _chosen(count: int, hands: int, chance: np.random.Generator, draws: int) -> Array:
+    """(draws, 6) which people make up each group: whole rounds where six people are whole rounds."""
+    size = hands if PEOPLE % hands == 0 else 1
+    units, wanted = count // size, PEOPLE // size
+    if units < wanted:
+        raise HthorError(f"{count} people are too few for a group of {PEOPLE}; ask for {PEOPLE} or more.")
+    picked = np.argsort(chance.random((draws, units)), axis=1)[:, :wanted]
+    members: Array = (picked[:, :, None] * size + np.arange(size)).reshape(draws, PEOPLE)
+    return members
+
+
+def slopes(trust: Array) -> Array:
+    """Least-squares slope along the last axis [points a trial]."""
+    steps = np.arange(trust.shape[-1]) - (trust.shape[-1] - 1) / 2.0
+    found: Array = (trust * steps).sum(axis=-1) / max(1e-12, float((steps**2).sum()))
+    return found
+
+
+def log_count(k: int, n: int, p: float, phi: float) -> float:
+    """Log chance [nats] of k of n clustered trials: beta-binomial, with ``phi`` times the binomial variance."""
+    p, rho = min(max(p, 0.005), 0.995), min(max((phi - 1.0) / (n - 1.0), 1e-4), 0.5)
+    a, b = p * (1.0 - rho) / rho, (1.0 - p) * (1.0 - rho) / rho
+    ways = math.lgamma(n + 1) - math.lgamma(k + 1) - math.lgamma(n - k + 1)
+    return ways + _log_beta(k + a, n - k + b) - _log_beta(a, b)
+
+
+def log_normal(x: float, mean: float, sd: float) -> float:
+    """Log density [nats] of a normal number."""
+    return -0.5 * ((x - mean) / sd) ** 2 - math.log(sd) - 0.5 * math.log(2.0 * math.pi)
+
+
+def _log_beta(a: float, b: float) -> float:
+    return math.lgamma(a) + math.lgamma(b) - math.lgamma(a + b)

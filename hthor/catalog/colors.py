@@ -1,0 +1,37 @@
+"""The paint box: colours (red, green, blue, opacity), each 0 to 1."""
+
+from __future__ import annotations
+
+from hthor.types import Rgba
+
+OAK: Rgba = (0.72, 0.54, 0.35, 1.0)
+WALNUT: Rgba = (0.40, 0.27, 0.18, 1.0)
+BIRCH: Rgba = (0.85, 0.74, 0.58, 1.0)
+WHITE: Rgba = (0.93, 0.92, 0.90, 1.0)
+CREAM: Rgba = (0.90, 0.86, 0.76, 1.0)
+LINEN: Rgba = (0.82, 0.79, 0.72, 1.0)
+STONE: Rgba = (0.62, 0.61, 0.59, 1.0)
+GREY: Rgba = (0.50, 0.51, 0.53, 1.0)
+STEEL: Rgba = (0.74, 0.76, 0.78, 1.0)
+IRON: Rgba = (0.25, 0.26, 0.28, 1.0)
+BLACK: Rgba = (0.08, 0.08, 0.09, 1.0)
+GLASS: Rgba = (0.72, 0.84, 0.88, 0.35)
+BLUE: Rgba = (0.27, 0.38, 0.55, 1.0)
+SKY: Rgba = (0.55, 0.70, 0.82, 1.0)
+TEAL: Rgba = (0.22, 0.47, 0.47, 1.0)
+SAGE: Rgba = (0.55, 0.63, 0.52, 1.0)
+LEAF: Rgba = (0.22, 0.48, 0.22, 1.0)
+LETTUCE: Rgba = (0.55, 0.76, 0.31, 1.0)
+APPLE: Rgba = (0.74, 0.13, 0.14, 1.0)
+TOMATO: Rgba = (0.91, 0.28, 0.14, 1.0)
+RED: Rgba = (0.80, 0.14, 0.12, 1.0)
+RUST: Rgba = (0.66, 0.36, 0.22, 1.0)
+TERRACOTTA: Rgba = (0.72, 0.42, 0.30, 1.0)
+MUSTARD: Rgba = (0.83, 0.65, 0.24, 1.0)
+CRUST: Rgba = (0.74, 0.50, 0.25, 1.0)
+SHELL: Rgba = (0.91, 0.80, 0.68, 1.0)
+PAPER: Rgba = (0.95, 0.93, 0.86, 1.0)
+CARDBOARD: Rgba = (0.70, 0.55, 0.38, 1.0)
+SHADE: Rgba = (0.96, 0.90, 0.74, 1.0)
+BOTTLE: Rgba = (0.20, 0.40, 0.24, 1.0)
+MIRROR: Rgba = (0.80, 0.86, 0.90, 1.0)

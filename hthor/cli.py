@@ -1,0 +1,85 @@
+"""The command line: every command of `hthor`, put together. A command's work is imported when it is called."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+from hthor.console import python_version
+
+python_version.check()  # type: ignore[no-untyped-call]  # before anything is imported that another Python could not read
+
+from typing import Annotated
+
+import typer
+
+from hthor import __version__
+from hthor.commands import assets, compare, doctor, houses, merge, priors, report, runs, score, suite, tasks
+from hthor.commands.agent import listings, serve
+from hthor.commands.calibrate import calibrate
+from hthor.commands.eval import evaluate
+from hthor.commands.humans import human_commands
+from hthor.commands.leaderboard import board_commands, listing
+from hthor.console import completion, exit_status, help_text, startup, waiting_notice
+
+app = typer.Typer(
+    name="hthor",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    epilog=exit_status.words(),
+    rich_markup_mode=None if os.environ.get("TERM") == "dumb" else "rich",
+)
+app.command("eval")(evaluate.evaluate)
+app.command("merge")(merge.merge)
+app.command("score")(score.score)
+app.command("compare")(compare.compare)
+app.command("power")(compare.power)
+app.command("replay")(score.replay)
+app.command("report")(report.report)
+app.command("case")(report.case)
+app.command("calibrate")(calibrate.calibrate)
+app.command("doctor")(doctor.doctor)
+app.add_typer(runs.app, name="runs")
+board_commands.app.command("list")(listing.list_entries)
+app.add_typer(board_commands.app, name="leaderboard")
+app.add_typer(assets.app, name="assets")
+app.add_typer(houses.app, name="houses")
+app.add_typer(tasks.app, name="tasks")
+app.add_typer(suite.app, name="suite")
+app.add_typer(priors.app, name="priors")
+app.add_typer(human_commands.app, name="humans")
+listings.agent.command("serve")(serve.serve)
+for _name, _group in listings.GROUPS.items():
+    app.add_typer(_group, name=_name)
+help_text.flow(app)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"hthor {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def root(
+    version: Annotated[  # noqa: ARG001
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """Evaluate robots that help people in a shared house."""
+    startup.check_arguments()
+    from hthor import code_identity
+
+    code_identity.keep_compiled()  # here, so that no command can miss it
+
+
+def main() -> None:
+    """Run `hthor` with the arguments of this process, and turn the user's errors into one clear line."""
+    startup.open_streams()
+    if "FORCE_COLOR" not in os.environ and not sys.stdout.isatty():
+        os.environ["_TYPER_FORCE_DISABLE_TERMINAL"] = "1"  # typer would also colour for GITHUB_ACTIONS and PY_COLORS
+    if completion.VARIABLE in os.environ:
+        completion.attach(app)
+    groups = [str(group.name) for group in app.registered_groups]
+    with waiting_notice.shown(sys.argv[1:], groups):
+        exit_status.conclude(app)

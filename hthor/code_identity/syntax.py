@@ -1,0 +1,164 @@
+"""One module's syntax as tokens that stay the same however the module is spelled, documented, named or placed."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from msgspec import Struct
+
+SIMULATION, PICTURES, TOOLS = "simulation", "pictures", "tools"
+_PART, _ROOT = "CODE_PART", "CODE_ROOT"
+_DATA = (".json", ".xml", ".txt", ".csv", ".npz")
+_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+_DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+class Module(Struct, frozen=True, kw_only=True):
+    """A module as its source says it.
+
+    ``tokens`` is its syntax, with a ``Bound`` where a name stands that an import of ours binds. ``imports`` are the
+    modules of ours that it imports, wherever in it, but for what only type checkers read. ``data`` is the hash of
+    each data file beside a module that knows where it lies. ``part`` and ``root`` are empty where it does not say.
+    """
+
+    name: str
+    tokens: tuple[str | Bound, ...]
+    imports: tuple[str, ...]
+    data: tuple[str, ...]
+    part: str
+    root: str
+
+
+class Bound(Struct, frozen=True):
+    """A name that stands for modules of ours, or for something in them: pairs of a module and an attribute."""
+
+    targets: tuple[tuple[str, str], ...]
+
+
+def is_python(path: Path) -> bool:
+    """Whether a file can be read as Python of this version."""
+    try:
+        ast.parse(path.read_bytes())
+    except (SyntaxError, ValueError, RecursionError):
+        return False
+    return True
+
+
+def parse(name: str, path: Path, find: Callable[[str], Path | None], text: bytes | None = None) -> Module:
+    """A module read from its file, or from another ``text`` in its place."""
+    tree = ast.parse(path.read_bytes() if text is None else text)
+    reader = _Reader(_bindings(tree, find))
+    reader.read(tree)
+    marks = dict(mark for node in tree.body if (mark := _mark(node)))
+    if marks.get(_PART, SIMULATION) not in (SIMULATION, PICTURES, TOOLS):
+        raise ValueError(f"{path}: {_PART} is '{marks[_PART]}'; valid: '{PICTURES}', '{SIMULATION}', '{TOOLS}'")
+    beside = sorted(one for one in path.parent.iterdir() if one.suffix in _DATA) if reader.knows_its_place else []
+    return Module(
+        name=name,
+        tokens=tuple(reader.tokens),
+        imports=tuple(sorted({module for bound in reader.bound.values() for module, _ in bound.targets} - {name})),
+        data=tuple(hashlib.sha256(one.read_bytes()).hexdigest() for one in beside),
+        part=marks.get(_PART, ""),
+        root=marks.get(_ROOT, ""),
+    )
+
+
+def _bindings(tree: ast.Module, find: Callable[[str], Path | None]) -> dict[str, Bound]:
+    """What of ours the names stand for that a file's imports bind, but for what only type checkers read."""
+    found: dict[str, set[tuple[str, str]]] = {}
+    for node in _executed(tree):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                if find(alias.name) is not None:
+                    found.setdefault(alias.asname or alias.name.partition(".")[0], set()).add((alias.name, ""))
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            for alias in node.names:
+                own, held = f"{node.module}.{alias.name}", alias.asname or alias.name
+                if find(own) is not None:
+                    found.setdefault(held, set()).add((own, ""))
+                elif find(node.module) is not None:
+                    found.setdefault(held, set()).add((node.module, alias.name))
+    return {name: Bound(tuple(sorted(targets))) for name, targets in found.items()}
+
+
+def _executed(tree: ast.AST) -> Iterator[ast.AST]:
+    """Every node below, but for what only type checkers read."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
+            continue
+        yield node
+        yield from _executed(node)
+
+
+class _Reader:
+    """Turns syntax into tokens that are the same for every spelling, and in every version of Python."""
+
+    def __init__(self, bound: dict[str, Bound]) -> None:
+        self.bound = bound
+        self.tokens: list[str | Bound] = []
+        self.knows_its_place = False
+        self._in_function = 0
+
+    def read(self, node: ast.AST) -> None:
+        """Add the tokens of a node and of all below it."""
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            self._foreign(node)
+            return
+        if isinstance(node, ast.Name) and node.id in self.bound:
+            self.tokens += ["Name", self.bound[node.id]]
+            return
+        self.knows_its_place |= isinstance(node, ast.Name) and node.id == "__file__"
+        self.tokens.append(type(node).__name__)
+        self._in_function += isinstance(node, _FUNCTIONS)
+        for field, value in ast.iter_fields(node):
+            if value not in (None, []) and not self._is_only_typed(node, field):
+                self.tokens.append(field)
+                self._value(_statements(value) if field == "body" and isinstance(node, _DOCUMENTED) else value)
+        self._in_function -= isinstance(node, _FUNCTIONS)
+        self.tokens.append(")")
+
+    def _value(self, value: object) -> None:
+        if isinstance(value, ast.AST):
+            self.read(value)
+        elif isinstance(value, list):
+            for one in value:
+                self._value(one)
+        else:
+            self.tokens.append(f"{type(value).__name__} {value!r}")
+
+    def _is_only_typed(self, node: ast.AST, field: str) -> bool:
+        """Annotations of functions and in them do nothing; those of classes are the fields of records."""
+        if field in ("kind", "type_comment", "type_params", "ctx"):
+            return True
+        if isinstance(node, ast.AnnAssign):
+            return field == "annotation" and self._in_function > 0
+        return (isinstance(node, ast.arg) and field == "annotation") or field == "returns"
+
+    def _foreign(self, node: ast.Import | ast.ImportFrom) -> None:
+        """An import of somebody else's; one of ours counts by the names that it binds."""
+        module = getattr(node, "module", None) or ""
+        for alias in node.names:
+            if (alias.asname or alias.name.partition(".")[0]) not in self.bound:
+                self.tokens.append(f"import {module} {alias.name} {alias.asname}")
+
+
+def _statements(body: Sequence[ast.stmt]) -> list[ast.stmt]:
+    """Without docstrings, and without what only type checkers read."""
+    return [
+        one
+        for one in body
+        if not (isinstance(one, ast.Expr) and isinstance(one.value, ast.Constant))
+        and not (isinstance(one, ast.If) and isinstance(one.test, ast.Name) and one.test.id == "TYPE_CHECKING")
+        and not _mark(one)
+    ]
+
+
+def _mark(node: ast.stmt) -> tuple[str, str] | None:
+    """The name and the value of a statement that says what part its module has in trials; None for other statements."""
+    if not isinstance(node, ast.Assign) or not isinstance(node.value, ast.Constant):
+        return None
+    names = [target.id for target in node.targets if isinstance(target, ast.Name)]
+    return (names[0], str(node.value.value)) if names and names[0] in (_PART, _ROOT) else None

@@ -1,0 +1,1 @@
+"""The commands of `hthor`, one file or folder each; `hthor.cli` puts them together."""

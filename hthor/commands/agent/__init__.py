@@ -1,0 +1,1 @@
+"""`hthor agent`, `hthor agents` and `hthor robots`."""

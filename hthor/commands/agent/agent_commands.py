@@ -1,0 +1,159 @@
+"""`hthor agent run` and `check`: an author looks at one mind of their own; knows what to show, not how it is found."""
+
+from __future__ import annotations
+
+import shlex
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hthor.commands.eval.agent_inputs import AgentArgs, Readable
+from hthor.commands.eval.evaluate import Camera, CameraSize, Json, Run
+from hthor.console import output
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from hthor.eval.agent_check.checks import Report
+    from hthor.eval.replay.rerun import Rerun
+    from hthor.eval.runner.fault_report import Failure
+
+_FAULTS_EXIT, _BROKEN_EXIT = 3, 4
+_LOOKS = 5
+Isolation = Annotated[
+    str, typer.Option(help="How the agent is held: L1, L2, L3, or auto, the strongest that there is.")
+]
+
+
+def run(
+    run: Run,
+    trial: Annotated[
+        str, typer.Argument(metavar="TRIAL", help="A key or its start, a task's id, or a number counted from 0.")
+    ],
+    agent: Annotated[
+        list[str] | None,
+        typer.Option(help="The file of an agent that is not built in; it may have been mended.", show_default=False),
+    ] = None,
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
+    robot: Annotated[
+        list[str] | None, typer.Option(help="The file of a body of your own, if any.", show_default=False)
+    ] = None,
+    kind: Annotated[str, typer.Option(help="The file of a kind of task of your own, if any.", show_default=False)] = "",
+    humans: Annotated[str, typer.Option(help="The people's file, if any.", show_default=False)] = "",
+    isolation: Isolation = "auto",
+    json: Json = False,
+) -> None:
+    """Play one trial of a run once more with your agent as it is now, and say how it went.
+
+    The person's trials before it are played too, as they shape what the person does. Exit code 3 when the agent fails.
+    """
+    from hthor import houses
+    from hthor.eval.records import find
+    from hthor.eval.replay import rerun
+    from hthor.guest.agent import inputs
+
+    houses.shelve(run / "houses")  # where the suite brought its own
+    wanted = find.trial(run, trial)
+    files = rerun.Files(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
+    done = rerun.play(run, wanted, files, isolation, inputs.read(agent_args or (), readable or ()))
+    if json:
+        output.put_json(done)
+    else:
+        _tell(output.console(), done)
+    if done.record.faults:
+        raise typer.Exit(_FAULTS_EXIT)
+
+
+def check(
+    agent: Annotated[
+        str,
+        typer.Argument(
+            metavar="AGENT",
+            help="A Python file or module, my_agent.py, my_agent.py:MyClass, package.module:MyClass; a program, "
+            "'cmd:node my_agent.js'; or a served agent, ws://host:port.",
+        ),
+    ],
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
+    robot: Annotated[
+        str, typer.Option(help="The body it is tried in.", show_default="the first that it is made for, or scout")
+    ] = "",
+    camera: Camera = "own",
+    camera_size: CameraSize = "",
+    isolation: Isolation = "auto",
+    json: Json = False,
+) -> None:
+    """Check that your agent keeps to the contract, in a few short trials: loads, acts, repeats itself, keeps nothing.
+
+    Exit code 4 when something is broken; warnings cost nothing.
+    """
+    from hthor.eval.agent_check import checks
+    from hthor.guest.agent import inputs
+    from hthor.types import cameras
+
+    more = inputs.read(agent_args or (), readable or ())
+    seen = cameras.tidy(camera, camera_size)
+    report = checks.check(agent, robot=robot, camera=seen, isolation=isolation, given=more)
+    if json:
+        output.put_json(report)
+    else:
+        _show_check(report)
+    if not report.sound:
+        raise typer.Exit(_BROKEN_EXIT)
+
+
+def _show_check(report: Report) -> None:
+    rows: list[tuple[str, str, str]] = []
+    for one in report.findings:
+        rows.append((one.check, one.status, one.told))
+        if one.advice:
+            rows.append(("", "", f"-> {one.advice}"))
+    output.put_table(("check", "", "found"), rows)
+    broken = sum(one.status == "broken" for one in report.findings)
+    if broken:
+        output.put_line(f"{report.agent}: {broken} broken")
+    else:
+        words = ["hthor", "eval", "--agent", report.agent, "--humans", "proxy"]
+        output.put_line(f"{report.agent}: sound    next:  {shlex.join(words)}")
+
+
+def _tell(paper: Console, done: Rerun) -> None:
+    """How the trial went, what failed, and whether that is as it was logged."""
+    from hthor import rules
+
+    spec, ended = done.record.spec, done.record.ticks * rules.TICK_S
+    how = "the goal was met" if done.record.met else "the time was up"
+    lines = [
+        f"{spec.task.id}, trial {spec.index + 1} of participant {spec.participant}: {spec.task.instruction}",
+        f"after {ended:.1f} s {how}; {len(done.record.faults) or 'no'} fault{'s' * (len(done.record.faults) != 1)}",
+    ]
+    for failure in done.left.failures if done.left else ():
+        lines += ["", *failure_lines(failure)]
+    if done.changed:
+        lines += ["", "the agent's files have changed since the run, so this may go otherwise than it was logged."]
+    else:
+        lines += ["", "as it was logged." if done.same else "it went otherwise than it was logged."]
+    for line in lines:
+        paper.print(line, markup=False, highlight=False, soft_wrap=True)
+
+
+def failure_lines(failure: Failure) -> list[str]:
+    """A failure for its author to read: when and what, the last looks, the last output."""
+    when = f"after {failure.time_s:.1f} s (tick {failure.tick})"
+    lines = [f"{failure.seat} ({failure.agent}) failed {when}: {failure.kind}", *_indented(failure.detail)]
+    if failure.looks:
+        lines.append("what it did last:")
+    for look in failure.looks[-_LOOKS:]:
+        pose = look.observation["pose"]
+        where = f"tick {look.tick:4d} at ({pose['x']:.2f}, {pose['y']:.2f})"
+        said = f", {look.action.say}" if look.action is not None and look.action.say else ""
+        done = "failed" if look.action is None else f"{look.action.motion}{said}"
+        lines.append(f"    {where}: {done}")
+    if failure.output.strip():
+        lines += ["what it printed last:", *_indented("\n".join(failure.output.splitlines()[-10:]))]
+    return lines
+
+
+def _indented(text: str) -> list[str]:
+    return [f"    {line}" for line in text.strip().splitlines()]

@@ -1,0 +1,107 @@
+"""`hthor agents`, `agent` and `robots`: what there is; evaluates nothing."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from hthor.commands.agent import agent_commands as agents_of_mine
+from hthor.commands.eval.evaluate import Json
+from hthor.console import formats, output
+from hthor.console.formats import Format, Shape
+
+agents = typer.Typer(no_args_is_help=True, help="Robots' minds that ship with hthor.")
+agent = typer.Typer(no_args_is_help=True, help="Your own robot's mind.")
+robots = typer.Typer(no_args_is_help=True, help="Robots' bodies.")
+
+GROUPS = {"agents": agents, "agent": agent, "robots": robots}
+
+for _group in GROUPS.values():
+    _group.callback()(lambda: None)  # a group of one command would otherwise swallow the command's name
+
+
+@agents.command("list")
+def list_agents(shape: Shape = Format.TABLE, json: Json = False) -> None:
+    """The robots' minds that ship with hthor, and the privileges that they declare."""
+    from hthor import plugins
+
+    rows = []
+    for name in plugins.names("agent"):
+        row: dict[str, Any] = {"name": name, "privileges": [], "purpose": plugins.purpose("agent", name)}
+        made = _loaded("agent", name)
+        row["privileges"] = list(getattr(made, "privileges", ()))
+        rows.append(row)
+    _put(rows, json, shape)
+
+
+@agent.command("new")
+def new_agent(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The file to write, such as my_agent.py.")],
+    force: Annotated[bool, typer.Option("--force", help="Write over a file that is there.")] = False,
+    json: Json = False,
+) -> None:
+    """Write a small complete mind to start from."""
+    from hthor import agents as minds
+    from hthor.errors import AgentError, HthorError
+
+    try:
+        minds.write_template(file, force)
+    except AgentError as error:  # exit code 4 is for agents that do not load
+        raise HthorError(str(error)) from None
+    output.put_files([file], json)
+    quoted = shlex.quote(str(file))
+    for line in output.following(f"hthor agent check {quoted}", f"hthor eval --agent {quoted} --humans proxy"):
+        sys.stderr.write(f"{line}\n")
+
+
+agent.command("check")(agents_of_mine.check)
+agent.command("run")(agents_of_mine.run)
+
+
+@robots.command("list")
+def list_robots(shape: Shape = Format.TABLE, json: Json = False) -> None:
+    """The robots' bodies."""
+    from hthor import plugins
+    from hthor.eval.config import robot_team
+
+    rows = []
+    for name in plugins.names("robot"):
+        spec = plugins.load("robot", name)
+        rows.append(
+            {
+                "name": name,
+                "alias": [alias for alias, body in robot_team.ALIASES.items() if body == name],
+                "title": spec.title,
+                "radius_m": spec.radius,
+                "height_m": spec.height,
+                "speed_m_s": spec.speed,
+                "sight_m": spec.sight_range,
+                "can": sorted(spec.capabilities),
+            }
+        )
+    _put(rows, json, shape)
+
+
+def _loaded(sort: str, name: str) -> Any:
+    """The plug-in, None when what it needs is not installed."""
+    from hthor import plugins
+    from hthor.errors import MissingExtra
+
+    try:
+        return plugins.load(sort, name)
+    except (ImportError, MissingExtra):
+        return None
+
+
+def _put(rows: Sequence[dict[str, Any]], json: bool, shape: Format) -> None:
+    """Rows as JSON, or as a table."""
+    if formats.asks_json(json, shape):
+        output.put_json(rows)
+        return
+    headings = list(rows[0]) if rows else ["nothing"]
+    output.put_table(headings, [[row[name] for name in headings] for row in rows], shape)

@@ -1,0 +1,43 @@
+"""`hthor agent serve`; knows what the user types, not how an agent is served."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from typing import Annotated
+
+import typer
+
+from hthor.commands.eval.agent_inputs import AgentArgs, Readable
+
+
+def serve(
+    agent: Annotated[
+        str,
+        typer.Argument(metavar="AGENT", help="A Python agent: my_agent.py, my_agent.py:Class, package.module:Class."),
+    ],
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="The port to listen at; 0 takes any free one.")] = 8765,
+    host: Annotated[str, typer.Option(help="The address to listen at; 0.0.0.0 lets other machines in.")] = "127.0.0.1",
+) -> None:
+    """Serve an agent for evaluations elsewhere, until interrupted: hthor eval --agent ws://HOST:PORT.
+
+    It runs in this process, with everything that this machine has, and nothing holds it.
+    """
+    from hthor.errors import HthorError
+    from hthor.guest.agent import inputs
+    from hthor.guest.client import websocket_server
+
+    try:
+        server = websocket_server.serve(agent, host, port, inputs.read(agent_args or (), readable or ()))
+    except OSError as error:
+        words = os.strerror(error.errno) if error.errno else str(error)
+        raise HthorError(f"cannot listen at {host}:{port}: {words}. Give another --port, or 0 for any.") from None
+    sys.stdout.write(f"{websocket_server.address(server)}\n")
+    sys.stdout.flush()
+    sys.stderr.write(f"serves {agent}; stop it with Ctrl-C\n")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C, for who stops it from a script
+    with server:
+        server.serve_forever()

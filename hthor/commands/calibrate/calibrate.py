@@ -1,0 +1,130 @@
+"""`hthor calibrate`; knows what the user types, not how anything is fitted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from hthor.commands.eval.evaluate import Json
+from hthor.console import output
+
+
+def calibrate(
+    target: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="What to fit to: published results by name or file (paper), or the logs of sessions, "
+            "a run's folder or trials.jsonl; repeat it for several logs.",
+            show_default="paper",
+        ),
+    ] = None,
+    suite: Annotated[str, typer.Option(help="The tasks that the people do ('hthor tasks list').")] = "paper",
+    out: Annotated[
+        Path | None, typer.Option(help="The folder of the calibration.", show_default="calibration/TARGET-SUITE-SEED")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Equal seeds give the same population, byte for byte.")] = 0,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one a CPU")] = None,
+    sessions: Annotated[
+        int | None, typer.Option(min=30, help="Sessions to train on, ten trials each.", show_default="4000")
+    ] = None,
+    studies: Annotated[
+        int | None, typer.Option(min=10, help="Whole studies to check against.", show_default="200")
+    ] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="A small one, in minutes: shows that it works, and is not for use.")
+    ] = False,
+    until: Annotated[
+        str, typer.Option(help="Stop after this stage, such as training or studies.", show_default="the last")
+    ] = "",
+    prior: Annotated[str, typer.Option(help="With logs: the population that they add to.")] = "proxy",
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Only say what would be done, and where; write nothing.")
+    ] = False,
+    json: Json = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+) -> None:
+    """Fit the human proxies to published results, or to logs of sessions.
+
+    Everything that was simulated is kept: the same command resumes an interrupted calibration, and a larger one goes on
+    from a smaller. The folder holds the population (population.npz and .json), the evidence for it, and the tables of
+    simulated trials. Exit code 1 when a gate was not passed.
+    """
+    targets = tuple(target or ("paper",))
+    if all(_is_log(word) for word in targets):
+        from hthor.commands.calibrate import from_logs
+
+        if dry_run:
+            _foretell({"targets": list(targets), "prior": prior, "folder": str(out or from_logs.OUT)}, json)
+            return
+        from_logs.run(targets, prior, out, json)
+        return
+    from hthor.calibration.pipeline import run
+
+    options = run.Options(
+        targets=targets,
+        suite=suite,
+        out=out,
+        seed=seed,
+        jobs=jobs,
+        sessions=sessions,
+        studies=studies,
+        quick=quick,
+        until=until,
+    )
+    if dry_run:
+        brief = run.settle(options)
+        sizes = {name: getattr(brief.sizes, name) for name in brief.sizes.__struct_fields__}
+        _foretell(
+            {
+                "targets": [brief.targets.name],
+                "suite": brief.suite.name,
+                "folder": str(brief.folder),
+                "seed": seed,
+                "jobs": brief.jobs,
+                "until": until,
+                **sizes,
+            },
+            json,
+        )
+        return
+    talk = output.console(talk=True)
+    from hthor.calibration.pipeline import stage_progress
+
+    teller = stage_progress.Silent() if quiet else stage_progress.Aloud(talk, live=output.live())
+    found = run.conduct(options, teller)
+    if found is None:
+        if json:
+            output.put_json({"folder": str(run.settle(options).folder), "until": until})
+        return
+    if json:
+        output.put_json(found)
+    else:
+        from hthor.calibration.pipeline import terminal
+
+        for part in terminal.parts(found):
+            output.console().print(part)
+        folder = run.settle(options).folder
+        talk.print(f"files: {folder}/population.json, population.npz, evidence.json, result.json", soft_wrap=True)
+    if not found.passed:
+        raise typer.Exit(1)
+
+
+def _foretell(brief: dict[str, Any], json: bool) -> None:
+    """What a calibration would do. How long each part takes depends on what its folder holds already."""
+    if json:
+        output.put_json({"resumes": Path(brief["folder"]).exists(), **brief})
+        return
+    output.put_table(
+        ("what", "value"), [(name, one if isinstance(one, list) else str(one)) for name, one in brief.items()]
+    )
+    there = "goes on with what is there" if Path(brief["folder"]).exists() else "begins anew"
+    output.put_line(f"it {there}; nothing was written.")
+
+
+def _is_log(target: str) -> bool:
+    """Whether a target is a run's folder or its log, not published results."""
+    from hthor.calibration import targets
+
+    return target not in targets.names() and (Path(target).is_dir() or target.endswith(".jsonl"))

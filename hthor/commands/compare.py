@@ -1,0 +1,105 @@
+"""`hthor compare` and `hthor power`; knows what the user types, not how any of it is worked out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hthor.commands.eval.evaluate import Json
+from hthor.console import formats, output
+from hthor.console.formats import Format, Shape
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hthor.eval.comparison.compare import Comparison
+
+_WORSE_EXIT = 6
+
+
+def compare(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RUN RUN...", help="Folders of runs with the same suite, people and seed; baseline first"
+        ),
+    ],
+    fail_if_worse: Annotated[
+        bool, typer.Option("--fail-if-worse", help="Exit with 6 when a run is worse in success than the first one.")
+    ] = False,
+    shape: Shape = Format.TABLE,
+    json: Json = False,
+) -> None:
+    """Say which run is better and by how much, trial by trial, or that these data cannot tell."""
+    from hthor.eval.comparison import compare as comparing
+    from hthor.report.terminal import comparison_tables
+
+    found = comparing.runs(runs)
+    if json := formats.asks_json(json, shape):
+        output.put_json(found)
+    elif shape is Format.CSV:
+        output.put_records([row for pair in found.pairs for row in _rows(pair)])
+    else:
+        for pair in found.pairs:
+            output.put_rich(comparison_tables.table(pair), shape)
+            if len(found.pairs) == 1:
+                for by in pair.groups:
+                    output.put_rich(comparison_tables.groups_table(pair, by), shape)
+            for line in comparison_tables.lines(pair):
+                output.put_line(line, shape)
+    talk = output.console(talk=True)
+    if len(found.pairs) > 1 and not json:
+        talk.print(
+            "by kind, split, difficulty and scene: compare two runs, or see --json", markup=False, highlight=False
+        )
+    for party in found.runs:
+        if party.trials < party.planned:
+            lacks = f"{party.name}: {party.planned - party.trials} of {party.planned} trials are not played yet."
+            talk.print(lacks, markup=False, highlight=False, soft_wrap=True)
+    if fail_if_worse and found.worse:
+        raise typer.Exit(_WORSE_EXIT)
+
+
+def _rows(pair: Comparison) -> Iterator[dict[str, object]]:
+    """A comparison for a spreadsheet: a row a metric, then success by kind, split, difficulty and scene."""
+    names = {"run": pair.second, "baseline": pair.first}
+    for metric, found in pair.differences.items():
+        yield {**names, "by": "", "group": "", "metric": metric, **formats.flat(found)}
+    for by, groups in pair.groups.items():
+        for group, found in groups.items():
+            yield {**names, "by": by, "group": group, "metric": "sr", **formats.flat(found)}
+
+
+def power(
+    runs: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[RUN RUN]", help="Two runs to take rates and correlation from.", show_default=False),
+    ] = None,
+    rates: Annotated[
+        str, typer.Option(help="Instead, two success rates: 0.73,0.76.", metavar="RATE,RATE", show_default=False)
+    ] = "",
+    correlation: Annotated[
+        float | None,
+        typer.Option(help="Of the outcomes of the same trial with either robot.", show_default="0.5, or as measured"),
+    ] = None,
+    difference: Annotated[
+        float | None, typer.Option(help="Another difference than the two runs have: 0.03.", show_default=False)
+    ] = None,
+    wanted: Annotated[float, typer.Option("--power", min=0.5, max=0.99, help="Probability of seeing it.")] = 0.8,
+    shape: Shape = Format.TABLE,
+    json: Json = False,
+) -> None:
+    """Say how many tasks and people it takes to see a difference in success, paired and not."""
+    from hthor.eval.comparison import sample_size
+
+    found = sample_size.plan(tuple(runs or ()), rates, correlation, difference, wanted)
+    if formats.asks_json(json, shape):
+        output.put_json(found)
+        return
+    rows = [
+        (name, need.trials, need.people) for name, need in (("paired", found.paired), ("not paired", found.unpaired))
+    ]
+    output.put_table(("", "tasks, once each, for either robot", "people, ten tasks each"), rows, shape)
+    output.put_line(found.sentence, shape)

@@ -1,0 +1,135 @@
+"""`hthor humans validate`; knows what the user types, not what a validation is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hthor.commands.eval.evaluate import Json
+from hthor.console import output
+
+if TYPE_CHECKING:
+    from hthor.calibration.validation.plan import Options
+    from hthor.eval.runner.experiment import ClosableWatcher
+
+
+def validate(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="[NAME]",
+            help="Whom: a population, a kind of people or a human model ('hthor humans list'), or a file, my_human.py "
+            "or pop.npz.",
+        ),
+    ] = "proxy",
+    calibration: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of the calibration that these people come from.", show_default="what ships with them"
+        ),
+    ] = None,
+    participants: Annotated[int, typer.Option(min=6, help="People in each condition, ten tasks each.")] = 60,
+    suite: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Another suite to see whether the robots keep their order on; repeat it.", show_default=False
+        ),
+    ] = None,
+    kinds: Annotated[bool, typer.Option("--kinds", help="Play every kind of people too.")] = False,
+    seed: Annotated[int, typer.Option(help="Equal seeds give equal people.")] = 0,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one a CPU")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="The report's folder.", show_default="runs/validation-NAME-HASH")
+    ] = None,
+    quick: Annotated[
+        bool,
+        typer.Option("--quick", help="Few people and no simple models: shows that it works, judges nothing played."),
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Only say what would be played, and where; write nothing.")
+    ] = False,
+    json: Json = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+) -> None:
+    """Set people against the published study, and write what is known of how far they may be trusted.
+
+    Plays NAME on the suite paper without a robot, with the frontier robot and with the oracle; greedy and random people
+    stand beside them. Prints the eight published figures with predicted medians and 90 % intervals, and writes
+    validation.html, one page that needs nothing else, and validation.json. The same command resumes an interrupted run.
+    Exit code 1 when a bar was not cleared.
+    """
+    from hthor.calibration.validation import run as validation
+    from hthor.calibration.validation.plan import Options
+    from hthor.calibration.validation.report import criteria, terminal
+    from hthor.eval.runner import progress
+
+    talk = output.console(talk=True)
+
+    def watcher(title: str) -> ClosableWatcher:
+        if quiet:
+            return progress.Silent()
+        return progress.Live(talk, title) if output.live() else progress.Plain(talk, title)
+
+    options = Options(
+        name=name,
+        calibration=calibration,
+        participants=participants,
+        out=out,
+        jobs=jobs,
+        seed=seed,
+        quick=quick,
+        kinds=kinds,
+        suites=tuple(suite or ()),
+    )
+    if dry_run:
+        _foretell(options, json)
+        return
+    done = validation.conduct(options, watcher)
+    paper = talk if json else output.console()
+    paper.print(terminal.figures(done.findings))
+    paper.print(terminal.gates(done.findings))
+    if json:
+        output.put_json(done.findings)
+    for note in done.findings.subject.notes:
+        talk.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+    words = f"report: {done.folder}/validation.html, validation.json"
+    talk.print(words, markup=False, highlight=False, soft_wrap=True)
+    failed = criteria.failed(done.findings.gates)
+    if failed:
+        listed = ", ".join(gate.name for gate in failed)
+        talk.print(f"not cleared: {listed}.", markup=False, highlight=False, soft_wrap=True)
+        raise typer.Exit(1)
+
+
+def _foretell(options: Options, json: bool) -> None:
+    from hthor.calibration.validation import plan
+    from hthor.commands.eval import dry_run_table
+
+    found = list(plan.ahead(options))
+    trials, played = (sum(getattr(run, name) for _, run in found) for name in ("trials", "played"))
+    times = [run.seconds for _, run in found]
+    seconds = None if None in times else round(sum(filter(None, times)), 1)
+    folder = str(plan.folder(options))
+    if json:
+        runs = [{"people": one.word, "suite": one.suite, "role": one.role, "run": run} for one, run in found]
+        output.put_json({"folder": folder, "trials": trials, "played": played, "seconds": seconds, "runs": runs})
+        return
+    output.put_table(
+        ("people", "as", "suite", "run", "trials", "played", "time"),
+        [
+            (
+                one.word,
+                one.role,
+                one.suite,
+                run.name,
+                run.trials,
+                run.played,
+                dry_run_table.time(run.seconds) or "unknown",
+            )
+            for one, run in found
+        ],
+    )
+    about = f", {dry_run_table.time(seconds)}" if seconds is not None else ""
+    output.put_line(f"{trials - played} of {trials} trials would be played{about}, in {folder}/; nothing was written.")

@@ -1,0 +1,64 @@
+"""`hthor leaderboard list`: the board as tables; knows how they look, not how agents are ranked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hthor.commands.eval.evaluate import Json
+from hthor.console import formats, output
+from hthor.console.formats import Format, Shape
+
+if TYPE_CHECKING:
+    from hthor.leaderboard.ranking.board import Row
+
+_METRICS = ("sr", "twsr", "adoption", "time_s", "trust")
+
+
+def list_entries(
+    board: Annotated[Path, typer.Option(help="The leaderboard's folder.")] = Path("leaderboard"),
+    shape: Shape = Format.TABLE,
+    json: Json = False,
+) -> None:
+    """The built board as tables, one for each set of entries that can be compared."""
+    from hthor import documents
+    from hthor.errors import HthorError
+    from hthor.leaderboard.entries import files
+    from hthor.leaderboard.ranking.board import Board
+
+    path = board / files.LIST
+    if not path.is_file():
+        raise HthorError(f"{path} is not there. 'hthor leaderboard build --board {board}' makes it from the entries.")
+    found = documents.read(path, Board, HthorError)
+    if formats.asks_json(json, shape):
+        output.put_json(found)
+    elif shape is Format.CSV:
+        output.put_records(
+            [
+                {"suite": part.suite.name, "people": part.humans, **_flat(row)}
+                for part in found.sections
+                for row in part.rows
+            ]
+        )
+    else:
+        headings = ("rank", "agent", "success", "time-weighted", "adoption", "time [s]", "trust", "faults")
+        for part in found.sections:
+            output.put_line(f"{part.suite.name}, {part.trials} trials, {part.humans} people", shape)
+            output.put_table(headings, map(_cells, part.rows), shape)
+
+
+def _cells(row: Row) -> tuple[object, ...]:
+    from hthor.report.terminal import result_tables
+
+    units = ("%", "%", "%", "", "")
+    shown = [result_tables.number(getattr(row, name), unit) for name, unit in zip(_METRICS, units, strict=True)]
+    return (row.ranks.sr.rank if row.ranks else "–", row.name, *shown, row.faults)
+
+
+def _flat(row: Row) -> dict[str, object]:
+    """An entry for a spreadsheet: rates as shares, intervals in two columns."""
+    ranks = {"rank": row.ranks.sr.rank if row.ranks else None}
+    numbers = {f"{name}_{key}": value for name in _METRICS for key, value in formats.flat(getattr(row, name)).items()}
+    return {"agent": row.name, "id": row.id, **ranks, **numbers, "faults": row.faults}

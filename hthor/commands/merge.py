@@ -1,0 +1,62 @@
+"""`hthor merge`; knows what the user types, not how records are joined."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hthor.commands.eval.evaluate import Json
+from hthor.console import output
+
+_MISSING_EXIT, _FAULTS_EXIT = 1, 3
+
+
+def merge(
+    folders: Annotated[list[Path], typer.Argument(metavar="FOLDER...", help="The shards' folders.")],
+    out: Annotated[Path, typer.Option(help="The whole run's folder.")],
+    json: Json = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Only say how many trials would be there; write nothing.")
+    ] = False,
+) -> None:
+    """Join the shards of a run that 'hthor eval --shard i/N' played on several machines.
+
+    The result is the one of an undivided run, byte for byte but for what it cost. Says what is missing, if anything,
+    and the commands that play it; merge again when they are done.
+    """
+    from hthor.eval.merge import merge_shards as merging
+
+    done = merging.merge(folders, out, dry=dry_run)
+    if json:
+        output.put_json(done)
+    elif done.result is not None:
+        from hthor.report.terminal import result_tables
+
+        output.console().print(result_tables.result_table(done.result))
+        for note in result_tables.notes([done.result]):
+            output.put_line(note)
+    talk = output.console(talk=True)
+
+    def say(text: str) -> None:
+        talk.print(text, markup=False, highlight=False, soft_wrap=True)
+
+    if dry_run:
+        would = f"{done.trials} of {done.plan.trials} trials would be in {out}/, {done.new} of them new"
+        say(f"{would}; nothing was written.")
+        raise typer.Exit(0 if done.trials == done.plan.trials else _MISSING_EXIT)
+    say(f"{done.trials} of {done.plan.trials} trials are in {out}/, {done.new} of them new.")
+    if done.result is not None:
+        if done.result.counts.faults:
+            raise typer.Exit(_FAULTS_EXIT)
+        return
+    for gap in done.gaps:
+        lacks = "is missing" if gap.trials is None else f"lacks {gap.trials} trials"
+        say(f"{f'shard {gap.number}/{gap.of}' if gap.of > 1 else 'the run'} {lacks}: {gap.command}")
+    for name in dict.fromkeys(seat.agent.source.partition(":")[0] for seat in done.plan.robots):
+        if name.endswith(".py"):
+            say(f"{name} is the agent's file: name it by its path.")
+    if any(gap.of > 1 for gap in done.gaps):
+        say("Then merge again.")
+    raise typer.Exit(_MISSING_EXIT)

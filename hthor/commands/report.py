@@ -1,0 +1,81 @@
+"""`hthor report` and `hthor case`; knows what the user types, not what a report is made of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hthor.commands.eval.agent_inputs import AgentArgs, Readable
+from hthor.commands.eval.evaluate import Json
+from hthor.console import output
+
+Runs = Annotated[list[Path], typer.Argument(metavar="RUN...", help="Runs' folders, such as runs/demo/frontier.")]
+
+_PAPER = "paper"
+
+
+def report(
+    runs: Runs,
+    out: Annotated[Path, typer.Option(help="The report's folder.")] = Path("report"),
+    json: Json = False,
+) -> None:
+    """Tell of runs of one suite on one page: results against no robot and the article, figures, best and worst trials.
+
+    Writes report.html, which needs nothing else, report.json with every number, and figures/*.svg. Runs of several
+    peoples make a section by kind of person; the rest is of the first run's people. Nothing is simulated.
+    """
+    from hthor.calibration import targets
+    from hthor.report.analysis.document import Published, Share
+    from hthor.report.page import write
+
+    study = targets.load(_PAPER)
+    counts = {f"{metric} {name}": one for metric in ("sr", "adoption") for name, one in getattr(study, metric).items()}
+    write.report(
+        runs,
+        out,
+        Published(
+            name=study.name,
+            source=study.source,
+            sha256=study.sha256,
+            suite=_PAPER,
+            figures={name: round(value / 100.0, 6) for name, value in study.published.items()},
+            counts={name: Share(k=one.k, n=one.n, inferred=one.inferred) for name, one in counts.items()},
+        ),
+    )
+    page = out / "report.html"
+    output.put_files([page, out / "report.json", out / "figures"] if json else [page], json)
+
+
+def case(
+    runs: Runs,
+    task: Annotated[str, typer.Argument(metavar="TASK", help="A task's id, such as smoke/maple/navigation-02.")],
+    out: Annotated[Path, typer.Option(help="The folder of the two files.")] = Path("report"),
+    person: Annotated[
+        int | None,
+        typer.Option(help="Which participant.", show_default="the first who did the task in every run"),
+    ] = None,
+    nice: Annotated[
+        bool, typer.Option("--nice", help="Views with textures and shadows; needs OpenGL, and bytes depend on it.")
+    ] = False,
+    agent: Annotated[
+        list[str] | None,
+        typer.Option(help="The file of an agent that is not built in; repeat it for several.", show_default=False),
+    ] = None,
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
+    humans: Annotated[str, typer.Option(help="The people's file, if any.", show_default=False)] = "",
+    json: Json = False,
+) -> None:
+    """Draw one task under several robots: the ways from above, and what person and robot saw at key moments.
+
+    A row a run, as SVG and as PNG. The person's session is played again for the views, and must go as it was logged.
+    """
+    from hthor.guest.agent import inputs
+    from hthor.report.page import case_study as cases
+
+    more = inputs.read(agent_args or (), readable or ())
+    profile = "nice" if nice else "fast"
+    paths = cases.study(runs, task, out, person=person, profile=profile, agents=agent or (), humans=humans, given=more)
+    output.put_files(paths, json, task=task)

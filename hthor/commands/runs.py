@@ -1,0 +1,141 @@
+"""`hthor runs`: the runs that lie in folders; knows what the user types and how it looks, not how runs are read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hthor.commands.eval.evaluate import Json, Run
+from hthor.console import formats, output
+from hthor.console.formats import Format, Shape
+
+if TYPE_CHECKING:
+    from hthor.eval.browse.run_list import Seen
+    from hthor.eval.browse.run_view import Line, View
+
+app = typer.Typer(no_args_is_help=True, help="Runs that were played, or begun.")
+
+
+@app.callback()
+def _group() -> None:
+    """Runs that were played, or begun."""
+
+
+@app.command("list")
+def list_runs(
+    folder: Annotated[
+        Path, typer.Argument(metavar="[FOLDER]", help="Where to look, with all folders below it.")
+    ] = Path("runs"),
+    shape: Shape = Format.TABLE,
+    json: Json = False,
+) -> None:
+    """The runs below a folder, the latest first: who, with whom, how far, and what came of it.
+
+    A run that cannot be read is listed with what is wrong with it.
+    """
+    from hthor.errors import RunError
+    from hthor.eval.browse import run_list
+
+    if not folder.is_dir():
+        raise RunError(f"{folder} is no folder. Name the one that your runs are in; 'hthor eval' writes to runs/.")
+    found = run_list.below(folder)
+    if formats.asks_json(json, shape):
+        output.put_json(found)
+        return
+    if shape is Format.CSV:
+        output.put_records([formats.flat(one) | {"agents": "+".join(one.agents)} for one in found.runs])
+        return
+    readable = [one for one in found.runs if not one.problem]
+    headings = ("folder", "name", "suite", "people", "trials", "success", "faults", "last change (UTC)")
+    if readable:
+        output.put_table(headings, map(_row, readable), shape)
+    for one in found.runs:
+        if one.problem:
+            output.put_line(f"{one.folder}: cannot be read: {one.problem}", shape)
+    if not found.runs:
+        output.put_line(f"there is no run below {folder}; 'hthor eval' plays one.", shape)
+
+
+def _row(one: Seen) -> tuple[object, ...]:
+    agents = "+".join(one.agents)
+    name = one.name if agents == one.name else f"{one.name} ({agents})"
+    done = str(one.done) if one.done == one.total else f"{one.done} of {one.total}"
+    success = "–" if one.success is None else f"{100.0 * one.success:.1f} %"
+    return one.folder, name, one.suite, one.people, done, success, one.faults, one.when[:16].replace("T", " ")
+
+
+@app.command("view")
+def view_run(
+    run: Run,
+    trials: Annotated[bool, typer.Option("--trials", help="Every trial too, in a line each.")] = False,
+    task: Annotated[str, typer.Option(help="Only trials of this task, or with this target.")] = "",
+    kind: Annotated[str, typer.Option(help="Only trials of this kind of task.")] = "",
+    house: Annotated[str, typer.Option(help="Only trials in this house.")] = "",
+    participant: Annotated[
+        int | None, typer.Option(min=0, help="Only this person's trials, counted from 0.", show_default=False)
+    ] = None,
+    met: Annotated[
+        bool | None, typer.Option("--met/--failed", help="Only trials that succeeded, or that did not.")
+    ] = None,
+    faulty: Annotated[
+        bool | None, typer.Option("--faulty/--sound", help="Only trials in which an agent failed, or none did.")
+    ] = None,
+    shape: Shape = Format.TABLE,
+    json: Json = False,
+) -> None:
+    """A run's result, its faults, its trials one by one, and what to do next.
+
+    Any option that chooses trials lists those that fit. CSV has the trials alone.
+    """
+    from hthor.eval.browse import run_view
+    from hthor.report.terminal import result_tables
+
+    wanted = run_view.Wanted(task=task, kind=_kind(kind), house=house, participant=participant, met=met, faulty=faulty)
+    found, result = run_view.look(run, wanted)
+    if formats.asks_json(json, shape):
+        output.put_json(found)
+        return
+    if shape is Format.CSV:
+        output.put_records([formats.flat(line) for line in found.trials])
+        return
+    if trials := trials or wanted != run_view.Wanted():
+        headings = ("no.", "task", "house", "person", "outcome", "time [s]", "sent", "accepted", "trust", "fault")
+        output.put_table(headings, map(_trial, found.trials), shape)
+        output.put_line(f"{len(found.trials)} of {found.done} trials", shape)
+    if result is not None and (not trials or shape is Format.TABLE):
+        output.put_rich(result_tables.result_table(result), shape)
+        for note in result_tables.notes([result]):
+            output.put_line(note, shape)
+    if found.done < found.total:
+        output.put_line(f"{found.done} of {found.total} trials are played; the numbers are of these.", shape)
+    if result is not None and result.counts.faults:
+        kinds = ", ".join(f"{count} {kind}" for kind, count in result.counts.faults_by_kind.items())
+        output.put_line(f"an agent failed in {result.counts.faults} of {found.done} trials: {kinds}", shape)
+    _put_next(found, shape)
+
+
+def _kind(word: str) -> str:
+    """A kind's whole name; a user's own kind has no other."""
+    from hthor.errors import UnknownName
+    from hthor.eval.config import task_selection
+
+    try:
+        return task_selection.find(word).name if word else ""
+    except UnknownName:
+        return word
+
+
+def _trial(line: Line) -> tuple[object, ...]:
+    trust = "–" if line.trust is None else line.trust
+    outcome = "met" if line.met else "not met"
+    return (
+        line.number, line.task, line.house, line.participant, outcome, f"{line.time_s:.1f}", line.sent, line.accepted,
+        trust, line.fault,
+    )  # fmt: skip
+
+
+def _put_next(found: View, shape: Format) -> None:
+    for number, words in enumerate(found.next):
+        output.put_line(f"{'      ' if number else 'next: '} {words}", shape)

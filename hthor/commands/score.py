@@ -1,0 +1,130 @@
+"""`hthor score` and `replay`: what a run's log tells later; knows what the user types, not how it is worked out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hthor.commands.eval.agent_inputs import AgentArgs, Readable
+from hthor.commands.eval.evaluate import Json, Run
+from hthor.console import formats, output
+from hthor.console.formats import Format, Shape
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hthor.eval.results.result_file import Result
+
+
+def score(
+    run: Run,
+    everything: Annotated[
+        bool,
+        typer.Option("--all", help="With messages, idle time, bodies in the way, and shares of the work."),
+    ] = False,
+    shape: Shape = Format.TABLE,
+    json: Json = False,
+) -> None:
+    """Work out a run's metrics again from its log alone; nothing is simulated."""
+    from hthor.eval.results import aggregate as scoring
+    from hthor.eval.results import result_file
+    from hthor.report.terminal import result_tables
+
+    plan, result, stored = scoring.rescore(run)
+    talk = output.console(talk=True)
+
+    def say(text: str) -> None:
+        talk.print(text, markup=False, highlight=False, soft_wrap=True)
+
+    if formats.asks_json(json, shape):
+        output.put_json(result)
+    elif shape is Format.CSV:
+        output.put_records(list(_rows(result, everything)))
+    else:
+        output.put_rich(result_tables.result_table(result, everything=everything), shape)
+        if everything and len(result.by_kind) > 1:
+            output.put_rich(result_tables.kinds_table(result), shape)
+    for note in result_tables.notes([result]):
+        say(note)
+    missing = plan.trials - result.counts.trials
+    if missing:
+        say(f"{missing} of {plan.trials} trials are missing, so this is no result yet and was not stored.")
+        return
+    if stored is None:
+        say(f"stored as {run / 'result.json'}.")
+    elif stored != result:
+        say(f"differs from {run / 'result.json'} in {_difference(stored, result)}; stored anew.")
+    else:
+        say(f"the same as {run / 'result.json'}.")
+        return
+    result_file.store(run, result)
+
+
+def _rows(result: Result, everything: bool) -> Iterator[dict[str, object]]:
+    """A result for a spreadsheet: a row a metric, of all tasks and then of each kind; rates are shares, not percent."""
+    from hthor.eval.metrics import trial_metrics
+    from hthor.report.terminal import result_tables
+
+    names = trial_metrics.NAMES if everything else result_tables.MAIN
+    parts = {"": result.metrics, **(result.by_kind if len(result.by_kind) > 1 else {})}
+    for kind, scores in parts.items():
+        for name in names:
+            estimate = formats.flat(getattr(scores, name))
+            yield {"run": result.name, "people": result.humans.name, "kind": kind, "metric": name, **estimate}
+    if result.uplift:
+        for name in ("sr", "twsr", "time_s"):
+            gain = formats.flat(getattr(result.uplift, name))
+            mean = gain.pop("difference")
+            known = {key: gain.get(key) for key in ("n", "ci95_low", "ci95_high", "mde80")}
+            whose = {"run": result.name, "people": result.humans.name, "kind": ""}
+            yield {**whose, "metric": f"uplift_{name}", "mean": mean, **known}
+
+
+def replay(
+    run: Run,
+    trial: Annotated[
+        str, typer.Argument(metavar="TRIAL", help="A key or its start, a task's id, or a number counted from 0.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="The file to write.", show_default="RUN/replays/TASK-KEY.png, or .webm")
+    ] = None,
+    video: Annotated[bool, typer.Option("--video", help="Write a film instead of a picture.")] = False,
+    mind: Annotated[
+        bool, typer.Option("--mind", help="Instead, what the person believed, saw and chose; the session is replayed.")
+    ] = False,
+    agent: Annotated[
+        list[str] | None,
+        typer.Option(help="With --mind: the file of an agent that is not built in.", show_default=False),
+    ] = None,
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
+    humans: Annotated[str, typer.Option(help="With --mind: the people's file, if any.", show_default=False)] = "",
+    json: Annotated[
+        bool, typer.Option("--json", help="What was written as JSON; with --mind: the thoughts, and no picture.")
+    ] = False,
+) -> None:
+    """Draw one trial from above: the paths, the messages and what came of them."""
+    if mind:
+        from hthor.commands import replay_mind
+        from hthor.guest.agent import inputs
+
+        replay_mind.replay(run, trial, out, agent or (), humans, inputs.read(agent_args or (), readable or ()), json)
+        return
+    from hthor import houses
+    from hthor.eval.records import find
+    from hthor.report.drawing import render_trial
+
+    houses.shelve(run / "houses")  # where the suite brought its own
+    record = find.trial(run, trial)
+    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'webm' if video else 'png'}"
+    render_trial.draw(record, path, video=video)
+    output.put_files([path], json, key=record.key, task=record.spec.task.id)
+
+
+def _difference(stored: object, result: object) -> str:
+    import msgspec
+
+    before, now = msgspec.to_builtins(stored), msgspec.to_builtins(result)
+    return ", ".join(name for name in now if before.get(name) != now[name])

@@ -1,0 +1,189 @@
+"""`hthor suite`: suites from a secret salt, made, revealed and verified."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hthor.commands.eval.evaluate import Json
+from hthor.console import output
+
+if TYPE_CHECKING:
+    from hthor.tasks.suites.commitment import Commitment
+    from hthor.tasks.suites.secret_suites import Each, Proof
+    from hthor.types import TaskSpec
+
+app = typer.Typer(
+    no_args_is_help=True, help="Official suites: made from a secret salt, in houses that nobody has seen."
+)
+
+Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="The suite's folder, as 'hthor suite make' wrote it.")]
+Jobs = Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one a CPU]")]
+_SALT = "The file with the secret salt ('hthor suite salt'). It is never printed and never part of a result."
+SaltFile = Annotated[Path, typer.Option("--salt-file", help=_SALT)]
+
+
+@app.command("salt")
+def salt(
+    out: Annotated[Path, typer.Option(help="The file to write; only you will be able to read it.")],
+    json: Json = False,
+) -> None:
+    """Make a secret salt of 256 bits. Keep it: without it no suite can be revealed."""
+    from hthor.tasks.suites import secret_salt as salts
+
+    salts.fresh(out)
+    output.put_files([out], json)
+    sys.stderr.write(f"next:  hthor suite make NAME --salt-file {shlex.quote(str(out))}\n")
+
+
+@app.command("make")
+def make(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="What to call the suite, such as official-2027a.")],
+    salt_file: SaltFile,
+    houses: Annotated[int, typer.Option(min=1, help="How many houses, of 4 to 7 rooms.")] = 40,
+    tasks: Annotated[int, typer.Option(min=1, help="How many tasks over all houses.")] = 2000,
+    out: Annotated[Path | None, typer.Option(help="The folder to write. [default: NAME]", show_default=False)] = None,
+    jobs: Jobs = None,
+    json: Json = False,
+) -> None:
+    """Make a suite from a salt: its houses, its tasks, and the commitment that can be published now."""
+    from hthor import code_identity, installation
+    from hthor.errors import HthorError
+    from hthor.tasks.suites import commitment, secret_suites
+
+    folder = out or Path(name)
+    secret_suites.unused(name)
+    held = _salt(salt_file, folder)
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise HthorError(f"{folder} is there and not empty. Choose another folder with --out.")
+    order = secret_suites.Order(name=name, houses=houses, tasks=tasks)
+    files = secret_suites.files(order, held, _proof(), _each(jobs, houses))
+    made_with = {**installation.versions(), "code": code_identity.makers_sha256()}
+    path = secret_suites.write(order, held, folder, files, made_with)
+    made = commitment.load(path)
+    if json:
+        output.put_json({"folder": str(folder), "commitment": made})
+        return
+    sys.stdout.write(f"{folder}: {made.tasks} tasks in {made.houses} houses, suite {made.suite_sha256[:10]}\n")
+    sys.stdout.write(f"publish now:    {path} (salt {made.salt[:10]})\n")
+    sys.stdout.write(f"keep to yourself until the season is over: {salt_file}, and the rest of {folder}\n")
+    sys.stderr.write(f"next:  hthor eval --suite {shlex.quote(str(folder))} --agent frontier\n")
+
+
+@app.command("reveal")
+def reveal(folder: Folder, salt_file: SaltFile, json: Json = False) -> None:
+    """Publish a suite's salt: from now on everybody can make the suite again, and nobody is tested by it."""
+    from hthor.tasks.suites import commitment
+
+    path = commitment.reveal(folder, _salt(salt_file, folder))
+    output.put_files([path], json)
+    sys.stderr.write(f"next:  hthor suite verify {shlex.quote(str(folder))}\n")
+
+
+@app.command("verify")
+def verify(
+    folder: Folder,
+    published: Annotated[
+        Path | None,
+        typer.Option("--commitment", help="The commitment as it was published. [default: FOLDER/commitment.json]"),
+    ] = None,
+    salt_file: Annotated[
+        Path | None, typer.Option("--salt-file", help="The salt, for who has it before it is revealed.")
+    ] = None,
+    jobs: Jobs = None,
+    json: Json = False,
+) -> None:
+    """Compare a suite with its commitment, and, once the salt is revealed, make it again and compare every byte."""
+    from hthor.tasks.suites import commitment, secret_suites
+
+    held = commitment.load(published or folder / commitment.COMMITMENT)
+    salt = commitment.revealed(folder) if salt_file is None else _salt(salt_file, folder)
+    found = list(commitment.changes(folder, held))
+    if salt is not None:
+        found += secret_suites.differences(folder, held, salt, _proof(), _each(jobs, held.houses))
+    state = "differs" if found else "sealed" if salt is None else "verified"
+    if json:
+        problems = [{"file": file, "problem": problem} for file, problem in found]
+        output.put_json({"folder": str(folder), "name": held.name, "state": state, "problems": problems})
+    else:
+        for file, problem in found:
+            sys.stdout.write(f"{file}: {problem}\n")
+        sys.stdout.write(f"{folder}: {_verdict(held, state, len(found))}\n")
+    if found:
+        _tell_versions(held)
+        raise typer.Exit(1)
+
+
+def _verdict(held: Commitment, state: str, problems: int) -> str:
+    if state == "verified":
+        return f"verified: {held.houses} houses and {held.tasks} tasks came out of the salt byte for byte"
+    if state == "sealed":
+        return "sealed: the files are those that were committed to; the salt is not revealed, so no more can be said"
+    return f"NOT what was committed to ({problems} {'problem' if problems == 1 else 'problems'})"
+
+
+def _tell_versions(held: Commitment) -> None:
+    """Say what of hthor is not as it was when the suite was made: the honest reason for a difference."""
+    from hthor import code_identity, installation
+
+    here = {**installation.versions(), "code": code_identity.makers_sha256()}
+    other = [f"{key} {held.made_with.get(key, 'unknown')[:10]} (here {value[:10]})" for key, value in here.items()]
+    changed = [text for text, key in zip(other, here, strict=True) if held.made_with.get(key) != here[key]]
+    if changed:
+        sys.stderr.write(f"it was made with {', '.join(changed)}; with another version it may come out otherwise\n")
+
+
+def _salt(path: Path, folder: Path) -> Any:
+    """The salt in a file, which must not lie among what is published."""
+    from hthor.tasks.suites import secret_salt as salts
+    from hthor.tasks.suites import secret_suites
+
+    secret_suites.beside(path, folder)
+    held = salts.read(path)
+    if salts.exposed(path):
+        sys.stderr.write(f"warning: others can read {path}; 'chmod 600 {path}' keeps it secret\n")
+    return held
+
+
+def _proof() -> Proof:
+    """Houses are proved as by `hthor houses check --full`, tasks as by `hthor tasks check`."""
+    from hthor.tasks.suites.secret_suites import Proof
+    from hthor.world.validation.house_soundness import prove
+
+    return Proof(house=prove, task=_possible)
+
+
+def _possible(task: TaskSpec) -> bool:
+    from hthor.eval.task_check import proof
+
+    return not proof.examine(task).faults
+
+
+def _each(jobs: int | None, total: int) -> Each:
+    """What makes houses in several processes, with progress on standard error where somebody watches."""
+    import functools
+    import os
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    from tqdm import tqdm
+
+    from hthor import code_identity
+
+    count = min(jobs or len(os.sched_getaffinity(0)), total)
+
+    def each(work: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
+        watched = functools.partial(tqdm, total=total, disable=not output.live(), leave=False, unit="house")
+        if count == 1:
+            yield from watched(map(work, items))
+            return
+        code_identity.keep_compiled()
+        with ProcessPoolExecutor(count, get_context("spawn")) as pool:
+            yield from watched(pool.map(work, items))
+
+    return each

@@ -1,0 +1,107 @@
+"""How a command ends: its exit code, and its error in words or as a document."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from typing import Any, NoReturn
+
+from hthor import plugins
+from hthor.console import output
+from hthor.errors import HthorError
+
+INTERNAL, USAGE, INTERRUPTED = 1, 2, 130
+
+CODES = {
+    0: "done",
+    INTERNAL: "a check failed (a house, a task, a suite, a table, a gate of a calibration, a merge or an evaluation "
+    "that lacks trials, an entry of the leaderboard), or an error of our own",
+    USAGE: "wrong usage or input",
+    3: "done, but the agent failed in more trials than --max-faults",
+    4: "the agent's file does not load, or breaks the contract",
+    5: "less isolation than is required, or 'hthor doctor' found that something that is needed does not work, or "
+    "'hthor leaderboard verify' refuted an entry",
+    6: "compare --fail-if-worse found a run worse than the first",
+    75: "the run is being written by another process",
+    INTERRUPTED: "interrupted, the same command resumes",
+}
+
+
+def words() -> str:
+    """The exit codes in a sentence."""
+    return f"Exit codes: {'; '.join(f'{code} {meaning}' for code, meaning in CODES.items())}."
+
+
+def conclude(command: Callable[..., Any]) -> None:
+    """Run the command line to its end, and turn the user's errors into one clear line.
+
+    With ``--json`` an error is also a document on standard output, unless the command wrote its own before it failed.
+    """
+    output.documents.clear()
+    if "--json" not in sys.argv[1:]:
+        _perform(lambda: command(prog_name="hthor"))
+        return
+    try:
+        code = _perform(lambda: command(prog_name="hthor", standalone_mode=False))
+    except Exception as error:
+        if (words := _usage(error)) is not None:
+            _fail(words, getattr(error, "exit_code", USAGE))
+        sys.stderr.write(traceback.format_exc())
+        _fail("".join(traceback.format_exception_only(error)).strip(), INTERNAL, told=True)
+    if code == INTERRUPTED:
+        _fail("interrupted.", INTERRUPTED)
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def _perform(command: Callable[[], Any]) -> Any:
+    try:
+        return command()
+    except HthorError as error:
+        _fail(str(error), error.exit_code)
+    except KeyboardInterrupt:
+        _fail("interrupted.", INTERRUPTED)
+    except BrokenPipeError:
+        _unread()
+    except SystemExit as error:
+        if isinstance(error.__context__, BrokenPipeError):  # the libraries that parse and print exit with 1 then
+            _unread()
+        _blame(error)
+        raise
+    except OSError as error:
+        _blame(error)
+        # A place that cannot be read or written, a full disk: the user's to mend, like any wrong input.
+        place = f"{error.filename}: " if error.filename else ""
+        _fail(f"{place}{error.strerror or error}.", USAGE)
+    except Exception as error:
+        _blame(error)
+        raise
+
+
+def _blame(error: BaseException) -> None:
+    if (own := plugins.blamed(error)) is not None:
+        _fail(str(own), own.exit_code)
+
+
+def _unread() -> NoReturn:
+    """Whoever read our output has gone, as `head` does. Python would complain once more at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(0)
+
+
+def _fail(words: str, code: int, *, told: bool = False) -> NoReturn:
+    if not told:
+        sys.stderr.write(f"error: {words}\n")
+    if "--json" in sys.argv[1:] and not output.documents:
+        output.put_json({"error": words, "exit_code": code})
+    sys.exit(code)
+
+
+def _usage(error: Exception) -> str | None:
+    """What was wrong with the command line; None for any other error. (The parser's classes have no public home.)"""
+    if not hasattr(error, "format_message"):
+        return None
+    text = str(error.format_message()).rstrip(".") + "."
+    context = getattr(error, "ctx", None)
+    return f"{text} Try '{context.command_path} --help'." if context is not None else text

@@ -1,0 +1,1 @@
+"""`hthor agent check`: does an agent keep to the contract?"""

@@ -1,0 +1,117 @@
+"""What every agent has to keep to, checked one by one on a real agent in real trials; prints nothing.
+
+Each finding says what was wrong and what to do next. What is broken would cost the agent trials; a warning only says
+what its author would want to know.
+"""
+
+from __future__ import annotations
+
+import time
+
+from msgspec import Struct
+
+from hthor import code_identity, plugins
+from hthor.errors import AgentError, HthorError
+from hthor.eval.agent_check import criteria
+from hthor.eval.agent_check.criteria import Finding
+from hthor.eval.agent_check.probe_trials import Rehearsal
+from hthor.eval.config import robot_team
+from hthor.eval.config.robot_team import Character
+from hthor.guest import Given, Guest, Isolation, confine_guests
+from hthor.guest.host import snapshot
+from hthor.types.cameras import OWN
+
+SCHEMA = "hthor.check/1"
+CHECKS = ("loads", "files", "begins", "acts", "deterministic", "keeps nothing", "fast enough", "held")
+
+
+class Report(Struct, frozen=True, kw_only=True):
+    """All that was found of an agent. ``sound`` says that nothing is broken.
+
+    ``figures`` are seconds to load and to begin, milliseconds a step, the share of a trial's time that thinking took,
+    and megabytes of memory, as measured here and now.
+    """
+
+    schema: str = SCHEMA
+    agent: str
+    sound: bool
+    findings: tuple[Finding, ...]
+    privileges: tuple[str, ...] = ()
+    persistent: bool = False
+    isolation: Isolation | None = None
+    figures: dict[str, float] = {}
+
+
+def check(
+    agent: str, *, robot: str = "", camera: str = OWN, isolation: str = "auto", given: Given | None = None
+) -> Report:
+    """Check an agent's file, ``file.py`` or ``file.py:Class``.
+
+    Args:
+        robot: the body; by default the first that the agent is made for, or scout. camera: its
+            camera, as `hthor.types.cameras.tidy` spells it.
+        given: arguments, and files beyond its own that it may read.
+
+    Raises:
+        IsolationError: when the level cannot be had.
+    """
+    if agent in plugins.names("agent"):
+        raise HthorError(f"'{agent}' ships with hthor; give an agent of your own, such as my_agent.py.")
+    confine_guests(isolation, given=given)
+    code_identity.keep_compiled()
+    try:
+        character = robot_team.introduce(agent)
+    except AgentError as error:
+        broken = Finding(check="loads", status="broken", told=str(error), advice="Mend that, and check again.")
+        return _report(agent, [broken], {})
+    if character.absent:
+        raise HthorError(f"{agent} says that there is no robot at all (absent = True), so there is nothing to check.")
+    rehearsal = Rehearsal(character, robot or (character.bodies[0] if character.bodies else "scout"), camera)
+    with Guest(agent) as guest:
+        began = time.perf_counter()
+        info = guest.load()
+        load_s = time.perf_counter() - began
+        (first,) = rehearsal.play(guest, [rehearsal.a])
+        known = character.manifest
+        later = snapshot.later(guest.take_opened(), known, guest.grounds, guest.reference.path) if known else ()
+    findings = [criteria.loads(load_s, character), criteria.files(character, later), *criteria.plays(first, agent)]
+    figures = {"load_s": load_s, **criteria.figures(first)}
+    if not first.faults:
+        with Guest(agent) as guest:
+            again, other, last = rehearsal.play(guest, [rehearsal.a, rehearsal.b, rehearsal.a])
+        if not other.faults:  # only from the second trial on it has to be imported anew
+            findings[2], figures["begin_s"] = criteria.plays(other, agent)[0], other.begin_s
+        findings += [
+            criteria.same("deterministic", first, again, "the same trial twice", criteria.VARIES),
+            *([criteria.plays(other, agent)[-1]] if other.faults else []),
+            criteria.same("keeps nothing", again, last, "the same trial before and after another one", criteria.LEAKS),
+            criteria.speed(first),
+        ]
+        findings += criteria.warnings((first, other), character)
+    held = info.isolation
+    words = held.level + (f"; not higher, as {held.reason_not_higher}" if held.reason_not_higher else "")
+    findings.append(Finding(check="held", status="ok", told=words))
+    return _report(agent, findings, figures, character, info.persistent, held)
+
+
+def _report(
+    agent: str,
+    findings: list[Finding],
+    figures: dict[str, float],
+    character: Character | None = None,
+    persistent: bool = False,
+    held: Isolation | None = None,
+) -> Report:
+    """In the order of `CHECKS`, what was not come to included; warnings last."""
+    found = {one.check for one in findings}
+    skipped = [Finding(check=name, status="skipped") for name in CHECKS if name not in found]
+    order = {name: place for place, name in enumerate(CHECKS)}
+    return Report(
+        agent=agent,
+        sound=all(one.status != "broken" for one in findings),
+        findings=tuple(sorted([*findings, *skipped], key=lambda one: order.get(one.check, len(order)))),
+        privileges=character.ref.privileges if character else (),
+        persistent=persistent,
+        isolation=held,
+        figures={name: round(value, 3) for name, value in figures.items()},
+    )

@@ -1,0 +1,194 @@
+"""The points of an agent's contract, each judged by what came of its trials; plays nothing."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Sequence
+from typing import Literal
+
+from msgspec import Struct
+
+from hthor import rules
+from hthor.episode import Fault
+from hthor.eval.agent_check.probe_trials import Notes
+from hthor.eval.config.robot_team import Character
+from hthor.eval.runner import redact
+from hthor.guest import File
+from hthor.humans.population.parameters import Parameters
+
+Status = Literal["ok", "broken", "warning", "skipped"]
+_ADVICE = {
+    "raised": "The last lines say where it failed. Mend that, and check again.",
+    "timeout": "A step may take 5 s, and 60 s more in all. Do less in act, or spread the work over several steps.",
+    "died": "Its process ended. Look for os._exit, a crash in a library, or what it printed last.",
+    "memory": "Load less, or load it in smaller parts.",
+    "disk": "Write less, and remove what is done with; only the folder that TMPDIR names can be written.",
+    "wrong_type": "Return hthor.types.Action(motion=..., say=...) from every path through act.",
+    "garbage": "Give the fields of Action values of the types that docs/agents.md lists.",
+    "oversized": "Shorten texts and ids: an action takes 64 KiB at most.",
+    "not_finite": "Look for a division by zero, or a mean of nothing, on the way to that number.",
+}
+_FILES = 8
+_SLOW_LOAD_S, _SLOW_BEGIN_S, _LOUD = 5.0, 1.0, 15_000
+_ON_ONE_SPOT = 0.5
+"""Share of a trial that an agent may spend on one spot before it is warned; our choice."""
+_A_FEW, _TAKES_S = 2, 2.0 * Parameters().t_read
+"""Messages that a person takes: these, and one more in this time [s], in which the median person reads and answers."""
+_READING = "A person takes some 3 s to read a message, and each new one covers the one before."
+
+
+class Finding(Struct, frozen=True, kw_only=True):
+    """One check: how it ended, in words, and what to do next."""
+
+    check: str
+    status: Status
+    told: str = ""
+    advice: str = ""
+
+
+def loads(seconds: float, character: Character) -> Finding:
+    """How long it took to load, and the privileges that it asks for."""
+    asked = ", ".join(character.ref.privileges) or "no privileges"
+    told = f"in {seconds:.2f} s; asks for {asked}"
+    if seconds < _SLOW_LOAD_S:
+        return Finding(check="loads", status="ok", told=told)
+    advice = "60 s are allowed. Import less, or later; import libraries at the top of the file, where it is done once."
+    return Finding(check="loads", status="warning", told=told, advice=advice)
+
+
+def files(character: Character, later: Sequence[File] = ()) -> Finding:
+    """Which files it consists of.
+
+    Args:
+        later: those that it opened only while it played.
+    """
+    held = character.manifest.files if character.manifest else ()
+    names = [file.path for file in held]
+    shown = ", ".join(names[:_FILES]) + (f" and {len(names) - _FILES} more" if len(names) > _FILES else "")
+    size = sum(file.bytes for file in held)
+    claim = ", as its server says" if character.manifest and character.manifest.claimed else ""
+    told = f"{shown or 'none named'} ({size} bytes){claim}"
+    if later:
+        told += f"; only in play: {', '.join(file.path for file in later[:_FILES])}"
+    return Finding(check="files", status="ok", told=told)
+
+
+def plays(notes: Notes, agent: str) -> list[Finding]:
+    """Whether it began, and acted to the trial's end."""
+    if notes.faults:
+        fault = notes.faults[0]
+        began = bool(notes.asked or fault.tick)
+        broken = _broken("acts" if began else "begins", fault, agent, len(notes.actions) + 1)
+        return [Finding(check="begins", status="ok"), broken] if began else [broken]
+    slow = notes.begin_s > _SLOW_BEGIN_S
+    begins = Finding(
+        check="begins",
+        status="warning" if slow else "ok",
+        told=f"in {notes.begin_s:.2f} s",
+        advice="Every trial takes that. Import libraries at the top of the file; persistent = True keeps the process."
+        if slow
+        else "",
+    )
+    return [begins, Finding(check="acts", status="ok", told=f"{len(notes.actions)} actions in a trial, all legal")]
+
+
+def _broken(name: str, fault: Fault, agent: str, step: int) -> Finding:
+    when = f"step {step}, after {fault.tick * rules.TICK_S:.1f} s" if name == "acts" else "in begin"
+    detail = redact.words(fault.detail.strip(), [agent])
+    return Finding(
+        check=name, status="broken", told=f"{fault.kind}, {when}\n{detail}", advice=_ADVICE.get(fault.kind, "")
+    )
+
+
+VARIES = (
+    "Draw chance from random.Random(0) or numpy.random.default_rng(0) made in begin, look at no clock, and let threads "
+    "decide nothing."
+)
+LEAKS = "Make everything anew in begin: what is kept at the class or the module, or in a file, lasts for other trials."
+
+
+def same(name: str, one: Notes, other: Notes, what: str, advice: str) -> Finding:
+    """Whether two plays of one trial came out equal, and else where they part."""
+    if one.line == other.line and one.actions == other.actions:
+        return Finding(check=name, status="ok", told=f"{what}: {len(one.actions)} actions and every byte the same")
+    for step, (a, b) in enumerate(zip(one.actions, other.actions, strict=False), 1):
+        if a != b:
+            told = f"{what} parts at step {step} (tick {a[0]}): {a[1]} and {b[1]}"
+            return Finding(check=name, status="broken", told=told, advice=advice)
+    told = f"{what}: {len(one.actions)} actions and {len(other.actions)}"
+    if other.faults:
+        told += f"; the second time it failed: {other.faults[0].kind}"
+    return Finding(check=name, status="broken", told=told, advice=advice)
+
+
+def figures(notes: Notes) -> dict[str, float]:
+    """What a trial took of the agent, in numbers."""
+    if not notes.thought_s:
+        return {"begin_s": notes.begin_s}
+    ordered = sorted(notes.thought_s)
+    return {
+        "begin_s": notes.begin_s,
+        "step_ms_median": 1000.0 * statistics.median(ordered),
+        "step_ms_p99": 1000.0 * ordered[math.ceil(0.99 * len(ordered)) - 1],
+        "share": sum(ordered) / max(notes.lasted_s, rules.TICK_S),
+        "memory_mb": notes.memory_mb,
+    }
+
+
+def speed(notes: Notes) -> Finding:
+    """Whether it thought for less time than the trial lasted."""
+    found = figures(notes)
+    told = (
+        f"median {found['step_ms_median']:.2f} ms a step, 99 % within {found['step_ms_p99']:.2f} ms, "
+        f"{100.0 * found['share']:.1f} % of the trial's {notes.lasted_s:.0f} s"
+    )
+    if found["memory_mb"]:
+        told += f"; {found['memory_mb']:.0f} MB"
+    if found["share"] <= 1.0:
+        return Finding(check="fast enough", status="ok", told=told)
+    advice = "It thinks longer than the trial lasts: 'hthor eval --realtime' would charge that."
+    return Finding(check="fast enough", status="warning", told=told, advice=advice)
+
+
+def warnings(trials: tuple[Notes, ...], character: Character) -> list[Finding]:
+    """What keeps to the contract, but is hardly meant."""
+    found: list[tuple[str, str]] = []
+    if any(len(one.output) > _LOUD for one in trials):
+        found.append(("it prints much", "Only the last 16 KiB are kept, and printing costs time."))
+    found += _moving(trials)
+    refused, motions = sum(one.refused for one in trials), sum(one.motions for one in trials)
+    if motions and refused > motions / 2:
+        found.append(
+            (f"{refused} of {motions} motions failed", "observation.outcome says why: blocked, out of reach ...")
+        )
+    found += _speaking(trials)
+    unseen, claims = sum(one.unseen for one in trials), sum(one.claims for one in trials)
+    if unseen and "object_poses" not in character.ref.privileges:
+        advice = "Claims are scored, and false ones cost trust: say what was detected."
+        found.append((f"{unseen} of {claims} messages were about what it had not detected", advice))
+    return [Finding(check="note", status="warning", told=told, advice=advice) for told, advice in found]
+
+
+def _moving(trials: tuple[Notes, ...]) -> list[tuple[str, str]]:
+    """Of an agent that leaves its robot where it is."""
+    if not any(one.motions for one in trials):
+        return [("it never moved", "Return Action(motion=Move(...)) or Rotate(...) when observation.idle.")]
+    longest = max(trials, key=lambda one: one.spot_s)
+    if longest.spot_s <= _ON_ONE_SPOT * longest.lasted_s:
+        return []
+    told = f"it stood on one spot for {longest.spot_s:.0f} of {longest.lasted_s:.0f} s"
+    return [(told, "What it has not seen it cannot tell: go on exploring, and look at observation.outcome.")]
+
+
+def _speaking(trials: tuple[Notes, ...]) -> list[tuple[str, str]]:
+    """Of an agent that never speaks, or more than a person can take."""
+    if not any(one.sent for one in trials):
+        return [("it never sent a message", "Without Send(text, object, position) the person learns nothing from it.")]
+    loudest = max(trials, key=lambda one: one.sent)
+    if loudest.sent > _A_FEW + loudest.lasted_s / _TAKES_S:
+        parts = ((loudest.covered, "covered by the next one"), (loudest.repeated, "the same as the one before"))
+        counted = ", ".join(f"{count} {what}" for count, what in parts if count)
+        told = f"it sent {loudest.sent} messages in {loudest.lasted_s:.0f} s" + (f": {counted}" if counted else "")
+        return [(told, f"{_READING} Send what is new, once, and again only after observation.receipt says declined.")]
+    return []

@@ -1,0 +1,168 @@
+"""Short real trials with one submitted agent, closely watched: what it did, saw and took; judges nothing of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import msgspec
+from msgspec import Struct
+
+from hthor import activity, rules, tasks
+from hthor.episode import Fault, play
+from hthor.eval.config import robot_team
+from hthor.eval.config.robot_team import Character
+from hthor.eval.config.sessions import Session, sessions
+from hthor.eval.metrics import conduct
+from hthor.eval.records import trial_record
+from hthor.eval.runner import trial_runner
+from hthor.eval.runner.agent_recorder import Watched
+from hthor.guest import Guest
+from hthor.guest.process_tools import resource_usage
+from hthor.tasks.suites import library
+from hthor.thinking_time import Timed
+from hthor.types import Action, Briefing, Detection, Observation, Send, TrialSpec, Wait
+from hthor.types.cameras import OWN
+
+_TASKS = ("smoke/alder/manipulation-01", "smoke/elder/manipulation-02")
+_LIMIT_S = 30.0
+_LOOK_EVERY = 16
+
+
+class Notes(Struct, frozen=True, kw_only=True):
+    """What came of one trial.
+
+    Attributes:
+        line: the record as it would be written.
+        asked: how often it was asked to act. actions: what was done, with the tick at which it was asked for.
+        thought_s: seconds of each ``act``, without what its pictures and scans took; ``begin_s`` of ``begin``.
+        memory_mb: the most memory that was seen in use; 0 where the agent runs elsewhere.
+        lasted_s: seconds of the trial, as they are counted in the house.
+        motions, refused: how many motions there were, and how many of them did not come to a good end.
+        spot_s: the longest time that it stayed on one spot before the person confirmed a message.
+        sent, covered, repeated: messages, how many of them were covered by its next one, and how many said the same as
+            the one before although the person had not declined that.
+        claims, unseen: messages about an object, and how many of these it had not detected before.
+        output: the end of what was printed.
+    """
+
+    line: bytes
+    faults: tuple[Fault, ...]
+    asked: int
+    actions: tuple[tuple[int, Action], ...]
+    thought_s: tuple[float, ...]
+    begin_s: float
+    memory_mb: float
+    lasted_s: float
+    motions: int
+    refused: int
+    spot_s: float
+    sent: int
+    covered: int
+    repeated: int
+    claims: int
+    unseen: int
+    output: str
+
+
+class Rehearsal:
+    """Two short trials, A and B, for one agent, to be played as often as wanted.
+
+    Args:
+        character: the agent, from a file.
+        robot: the body it is in. camera: its camera, as `hthor.types.cameras.tidy` spells it.
+    """
+
+    def __init__(self, character: Character, robot: str, camera: str = OWN) -> None:
+        self._stage = trial_runner.Stage()
+        crew = robot_team.form([robot], [character], camera=camera)
+        known = {task.id: task for task in tasks.suite("smoke").tasks}
+        short = [msgspec.structs.replace(known[name], time_limit=_LIMIT_S) for name in _TASKS]
+        dealt = sessions(library.frozen("rehearsal", 1, tuple(short)), agent=crew, participants=1)[0]
+        by_task = {trial.task.id: trial for trial in dealt.trials}
+        self.a, self.b = (by_task[name] for name in _TASKS)
+
+    def play(self, guest: Guest, trials: Sequence[TrialSpec]) -> list[Notes]:
+        """Play trials one after the other with the same guest, each with a person who knows of no other."""
+        found = []
+        for number, trial in enumerate(trials, 1):
+            activity.say(f"playing short trial {number} of {len(trials)}")
+            found.append(self._play(guest, trial))
+        return found
+
+    def _play(self, guest: Guest, trial: TrialSpec) -> Notes:
+        human = self._stage.enter(Session(participant=trial.participant, trials=(trial,))).human
+        noted, world = _Noted(guest), self._stage.world(trial)
+        seat = trial.robots[0].seat
+        log = play(trial, world, human, {seat: noted})
+        done = [(look.tick, action) for look, action in noted.looks if action is not None]
+        says = [(action.say, seen) for (_, action), seen in zip(done, noted.seen, strict=False)]
+        about = [(say.object, seen) for say, seen in says if isinstance(say, Send) and say.object]
+        ended = [look.outcome for look, _ in noted.looks if look.idle and look.outcome is not None]
+        kept = trial_record.of(trial, log)
+        return Notes(
+            line=trial_record.encode(kept),
+            faults=log.faults,
+            asked=len(noted.looks),
+            actions=tuple(done),
+            thought_s=tuple(noted.thought_s),
+            begin_s=noted.begin_s,
+            memory_mb=noted.memory_mb,
+            lasted_s=log.ticks * rules.TICK_S,
+            motions=sum(not isinstance(action.motion, Wait) for _, action in done),
+            refused=sum(not outcome.ok for outcome in ended),
+            spot_s=conduct.on_one_spot_s(log, seat),
+            sent=kept.metrics.sent or 0,
+            covered=kept.metrics.covered or 0,
+            repeated=conduct.repeated(log, seat),
+            claims=len(about),
+            unseen=0 if noted.looked else sum(name not in seen for name, seen in about),
+            output=noted.output,
+        )
+
+
+class _Senses(Timed):
+    """Tells what a mind has detected, and whether it looked at pictures, in which it may have seen more."""
+
+    ids: tuple[str, ...] = ()
+    looked = False
+
+    def detections(self) -> tuple[Detection, ...]:
+        found: tuple[Detection, ...] = self.timed("detections")()
+        self.ids = tuple(one.id for one in found)
+        return found
+
+    def rgb(self) -> object:
+        self.looked = True
+        return self.timed("rgb")()
+
+
+class _Noted(Watched):
+    """A guest with a stopwatch beside it."""
+
+    def __init__(self, guest: Guest) -> None:
+        super().__init__(guest, last=None)
+        self.thought_s: list[float] = []
+        self.seen: list[frozenset[str]] = []
+        self.begin_s = self.memory_mb = 0.0
+        self.looked = False
+        self._known: frozenset[str] = frozenset()
+
+    def begin(self, briefing: Briefing) -> None:
+        began = time.perf_counter()
+        try:
+            super().begin(briefing)
+        finally:
+            self.begin_s = time.perf_counter() - began
+
+    def act(self, observation: Observation) -> Action:
+        senses = _Senses(observation.senses, time.perf_counter)
+        began = time.perf_counter()
+        action = super().act(msgspec.structs.replace(observation, senses=senses))
+        self.thought_s.append(time.perf_counter() - began - senses.spent)
+        self._known |= frozenset(senses.ids)
+        self.seen.append(self._known)
+        self.looked = self.looked or senses.looked
+        if len(self.seen) % _LOOK_EVERY == 1 and (pid := self.mind.pid):
+            self.memory_mb = max(self.memory_mb, resource_usage.resident_mb(pid))
+        return action

@@ -1,0 +1,1 @@
+"""Runs and trials as lists, for people who look through them."""

@@ -1,0 +1,57 @@
+"""Which of two robots is better, for any number of comparisons at once: the one rule of every verdict in words.
+
+`hthor compare` and `hthor report` judge with it; ranks use the same test and the same adjustment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from msgspec import Struct
+
+from hthor.eval.results import paired_difference
+from hthor.eval.statistics import intervals
+
+
+class Judgement(Struct, frozen=True, kw_only=True):
+    """The verdict on one difference among several.
+
+    Attributes:
+        among: how many comparisons were judged together.
+        p: of no difference, adjusted for all of them by Holm's method; that of the difference alone where it is one.
+        level: of the interval that belongs to the verdict, 0.95 of a single one: the level at which Holm's method tests
+            this difference. The interval of this level leaves 0 out exactly when the verdict is not 0.
+        sign: 1 when the difference is above 0, -1 when it is below, 0 when these data cannot tell.
+    """
+
+    among: int
+    p: float
+    level: float
+    sign: int
+
+
+def judge(differences: Sequence[tuple[float, float | None]]) -> tuple[Judgement, ...]:
+    """The verdicts on differences that are looked at together, each given with its own p (None when unknown)."""
+    own = [1.0 if p is None else p for _, p in differences]
+    adjusted, levels = paired_difference.holm(own), _levels(own)
+    return tuple(
+        Judgement(
+            among=len(own),
+            p=p,
+            level=level,
+            sign=0 if p >= 1.0 - intervals.LEVEL else (difference > 0.0) - (difference < 0.0),
+        )
+        for (difference, _), p, level in zip(differences, adjusted, levels, strict=True)
+    )
+
+
+def _levels(p: Sequence[float]) -> list[float]:
+    """The level at which each is tested: the least p against 5 % by their number, and so on to the first that fails."""
+    order = sorted(range(len(p)), key=lambda k: (p[k], k))
+    levels, left, failed = [intervals.LEVEL] * len(p), len(p), False
+    for k in order:
+        least = (1.0 - intervals.LEVEL) / left
+        levels[k] = round(1.0 - least, 6)
+        failed = failed or p[k] >= least
+        left -= not failed
+    return levels

@@ -1,0 +1,277 @@
+"""Two or more runs against each other, trial by trial: who is better, by how much, where; plays nothing."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from hthor.errors import RunError
+from hthor.eval.comparison import better
+from hthor.eval.config.run_config import Setup, SuiteRef
+from hthor.eval.records.trial_record import Record
+from hthor.eval.results import aggregate, paired_difference, pairing
+from hthor.eval.results.paired_difference import Difference, McNemar
+from hthor.eval.results.pairing import Pair
+from hthor.eval.statistics import power
+from hthor.eval.statistics.intervals import LEVEL
+
+SCHEMA = "hthor.compare/1"
+_BY: dict[str, Callable[[Record], str]] = {
+    "kind": lambda found: found.spec.task.kind,
+    "split": lambda found: found.spec.task.split,
+    "difficulty": lambda found: found.spec.task.difficulty,
+    "scene": lambda found: found.spec.task.house,
+}
+_ORDER = ("seen", "new", "easy", "medium", "hard")
+
+
+class Tally(Struct, frozen=True, kw_only=True):
+    """Trials in which the second robot's time-weighted success was higher, the same, and lower."""
+
+    wins: int
+    ties: int
+    losses: int
+
+
+class Party(Struct, frozen=True, kw_only=True):
+    """One of the runs: its name, its folder's name, how many of its trials it has, and the hash of it all."""
+
+    name: str
+    folder: str
+    trials: int
+    planned: int
+    run: str
+
+
+class Comparison(Struct, frozen=True, kw_only=True):
+    """The second run against the first.
+
+    Attributes:
+        n: trials that both have; ``dropped`` of the first and of the second have no partner.
+        tasks, people: how many different ones there are in them.
+        differences: by metric.
+        groups: of success, by "kind", "split", "difficulty" and "scene", where there are several.
+        among: how many pairs of runs are compared at once, for which the verdict is adjusted.
+        p_holm: p of success, adjusted for them by Holm's method.
+        level, interval: the interval of the difference in success that belongs to the verdict, and its level: 0.95 for
+            one pair, more among several. It leaves 0 out exactly when one run is better.
+        better: the name of the run that is better in success; empty when these data cannot tell.
+        sentence: all of that in words.
+    """
+
+    first: str
+    second: str
+    n: int
+    dropped: tuple[int, int]
+    tasks: int
+    people: int
+    differences: dict[str, Difference]
+    mcnemar: McNemar
+    tally: Tally
+    groups: dict[str, dict[str, Difference]]
+    among: int = 1
+    p_holm: float | None
+    level: float = LEVEL
+    interval: tuple[float, float] | None = None
+    better: str
+    sentence: str
+
+    @property
+    def success(self) -> Difference:
+        """The difference in success with the p and the interval that belong to the verdict."""
+        return msgspec.structs.replace(self.differences["sr"], ci95=self.interval, p=self.p_holm)
+
+
+class Comparisons(Struct, frozen=True, kw_only=True):
+    """The document that `hthor compare` gives: every pair of runs, in the order in which they were named."""
+
+    schema: str = SCHEMA
+    suite: SuiteRef
+    seed: int
+    runs: tuple[Party, ...]
+    pairs: tuple[Comparison, ...]
+
+    @property
+    def worse(self) -> tuple[Comparison, ...]:
+        """The comparisons that say that a run is worse than the first one."""
+        baseline = self.runs[0].name
+        return tuple(pair for pair in self.pairs if pair.first == pair.better == baseline)
+
+
+class Read(Struct, frozen=True, kw_only=True):
+    """A run as it lies in its folder. ``name`` sets it apart from the others."""
+
+    name: str
+    folder: Path
+    plan: Setup
+    records: tuple[Record, ...]
+
+
+def runs(folders: Sequence[Path]) -> Comparisons:
+    """Compare the runs in these folders, every pair of them.
+
+    Raises:
+        RunError: when a folder holds no run, or two runs cannot be compared, naming the field.
+    """
+    if len(folders) < 2:
+        raise RunError("a comparison needs two runs or more: hthor compare RUN RUN.")
+    read_ = read(folders)
+    for one, other in itertools.combinations(read_, 2):
+        pairing.check((one.folder, one.plan), (other.folder, other.plan))
+    found = [(_pair(one, other), one, other) for one, other in itertools.combinations(read_, 2)]
+    return Comparisons(
+        suite=read_[0].plan.suite,
+        seed=read_[0].plan.seed,
+        runs=tuple(
+            Party(
+                name=run.name,
+                folder=run.folder.name,
+                trials=len(run.records),
+                planned=run.plan.trials,
+                run=run.plan.sha256,
+            )
+            for run in read_
+        ),
+        pairs=_judged(found),
+    )
+
+
+def pairs(read_: Sequence[Read]) -> tuple[Comparison, ...]:
+    """Every pair of these runs that can be compared and has trials in common, judged together."""
+    fair = [pair for pair in itertools.combinations(read_, 2) if not pairing.difference(pair[0].plan, pair[1].plan)]
+    found = []
+    for one, other in fair:
+        with contextlib.suppress(RunError):  # nothing in common yet
+            found.append((_pair(one, other), one, other))
+    return _judged(found)
+
+
+def read(folders: Sequence[Path]) -> tuple[Read, ...]:
+    """The runs in these folders, scored anew from their events, with a name each."""
+    held = [(folder, *aggregate.measured(folder)) for folder in folders]
+    names = [plan.label for _, plan, _ in held]
+    distinct = _names(names, folders)
+    return tuple(
+        Read(name=name, folder=folder, plan=plan, records=tuple(records))
+        for name, (folder, plan, records) in zip(distinct, held, strict=True)
+    )
+
+
+def _names(names: Sequence[str], folders: Sequence[Path]) -> list[str]:
+    """The agents' names, with their folders where two are the same, and a number where even these are."""
+    if len(set(names)) == len(names):
+        return list(names)
+    longer = [
+        f"{name} ({folder.resolve().name})" if names.count(name) > 1 else name
+        for name, folder in zip(names, folders, strict=True)
+    ]
+    return [f"{name} #{number}" if longer.count(name) > 1 else name for number, name in enumerate(longer, 1)]
+
+
+def _pair(one: Read, other: Read) -> Comparison:
+    joined = pairing.join(one.records, other.records)
+    pairs = joined.pairs
+    if not pairs:
+        raise RunError(f"{one.folder} and {other.folder} have no trial in common yet. Finish both runs.")
+    found = {metric: paired_difference.of(pairs, metric) for metric in paired_difference.UNITS}
+    return Comparison(
+        first=one.name,
+        second=other.name,
+        n=len(pairs),
+        dropped=(joined.only_one, joined.only_other),
+        tasks=len({pair.one.spec.task.id for pair in pairs}),
+        people=len({pair.one.spec.participant for pair in pairs}),
+        differences={metric: difference for metric, difference in found.items() if difference is not None},
+        mcnemar=paired_difference.mcnemar(pairs),
+        tally=_tally(pairs),
+        groups={by: held for by, value in _BY.items() if len(held := _grouped(pairs, value)) > 1},
+        p_holm=None,
+        better="",
+        sentence="",
+    )
+
+
+def _tally(pairs: Sequence[Pair]) -> Tally:
+    gains = [pair.other.metrics.twsr - pair.one.metrics.twsr for pair in pairs]
+    return Tally(
+        wins=sum(gain > 0.0 for gain in gains),
+        ties=sum(gain == 0.0 for gain in gains),
+        losses=sum(gain < 0.0 for gain in gains),
+    )
+
+
+def _grouped(pairs: Sequence[Pair], value: Callable[[Record], str]) -> dict[str, Difference]:
+    names = sorted({value(pair.one) for pair in pairs}, key=lambda name: (_rank(name), name))
+    found = {name: paired_difference.of([pair for pair in pairs if value(pair.one) == name], "sr") for name in names}
+    return {name or "unknown": difference for name, difference in found.items() if difference is not None}
+
+
+def _rank(name: str) -> int:
+    return _ORDER.index(name) if name in _ORDER else len(_ORDER)
+
+
+def _judged(found: Sequence[tuple[Comparison, Read, Read]]) -> tuple[Comparison, ...]:
+    """The same with their verdicts, for which all of them are looked at together."""
+    successes = [pair.differences["sr"] for pair, _, _ in found]
+    judged = []
+    for (pair, one, other), verdict in zip(found, better.judge([(s.difference, s.p) for s in successes]), strict=True):
+        wide = paired_difference.of(pairing.join(one.records, other.records).pairs, "sr", level=verdict.level)
+        fair = msgspec.structs.replace(
+            pair,
+            among=verdict.among,
+            p_holm=verdict.p,
+            level=verdict.level,
+            interval=wide.ci95 if wide is not None else None,
+            better={1: pair.second, -1: pair.first}.get(verdict.sign, ""),
+        )
+        judged.append(msgspec.structs.replace(fair, sentence=sentence(fair)))
+    return tuple(judged)
+
+
+def sentence(pair: Comparison) -> str:
+    """Which run is better and by how much, or that these data cannot tell and how many more tasks would."""
+    found = pair.differences["sr"]
+    points = 100.0 * found.difference
+    if pair.interval is None:
+        return f"One trial cannot separate {pair.second} from {pair.first}."
+    low, high = (100.0 * end for end in pair.interval)
+    if pair.better:
+        sign, worse = (1.0, pair.first) if pair.better == pair.second else (-1.0, pair.second)
+        ends = sorted((sign * low, sign * high))
+        return (
+            f"{pair.better} is better than {worse} by {sign * points:.1f} points of success "
+            f"({_evidence(pair, f'{ends[0]:.1f} to {ends[1]:.1f}')})."
+        )
+    told = (
+        f"These data cannot separate {pair.second} from {pair.first}: {points:+z.1f} points of success "
+        f"({_evidence(pair, f'{low:+z.1f} to {high:+z.1f}')})"
+    )
+    if not pair.mcnemar.only_first + pair.mcnemar.only_second:
+        return f"{told}; success was the same in every trial."
+    if found.separated:
+        return f"{told}; it would count alone ({_chance(found.p)}), but not among {pair.among} comparisons."
+    if found.difference == 0.0 or found.more_tasks is None:
+        return f"{told}; a difference of {100.0 * (found.mde80 or 0.0):.1f} points would have shown."
+    if found.more_tasks == 0:
+        return f"{told}; {pair.people} people are too few to tell, however many tasks they do."
+    alone = " to a comparison of these two alone" if pair.among > 1 else ""
+    return f"{told}; if it is real, about {power.about(found.more_tasks)} more tasks would show it{alone}."
+
+
+def _evidence(pair: Comparison, ends: str) -> str:
+    """The verdict's interval, p and number of trials; for several comparisons it says that they are adjusted."""
+    trials = f"{pair.n} shared trial{'' if pair.n == 1 else 's'}"
+    if pair.among == 1:
+        return f"95 % interval {ends}, {_chance(pair.p_holm)}, {trials}"
+    return f"interval {ends} and {_chance(pair.p_holm)} are adjusted for {pair.among} comparisons; {trials}"
+
+
+def _chance(p: float | None) -> str:
+    """A p in words, no finer than anyone can use."""
+    p = 1.0 if p is None else p
+    return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"

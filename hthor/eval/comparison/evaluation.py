@@ -1,0 +1,28 @@
+"""The document of one `hthor eval` command, of the same shape however many agents and peoples it had."""
+
+from __future__ import annotations
+
+from msgspec import Struct
+
+from hthor.eval.comparison.population_matrix import Matrix
+from hthor.eval.results.result_file import Result
+
+SCHEMA = "hthor.eval/1"
+
+
+class Evaluated(Struct, frozen=True, kw_only=True):
+    """A whole run: its folder, and its result as `result.json` has it."""
+
+    folder: str
+    result: Result
+
+
+class Evaluation(Struct, frozen=True, kw_only=True):
+    """All runs of a command, peoples in turn and in these the agents in the order in which they were named.
+
+    ``peoples`` compares them where there were several peoples, else it is null.
+    """
+
+    schema: str = SCHEMA
+    runs: tuple[Evaluated, ...]
+    peoples: Matrix | None = None

@@ -1,0 +1,108 @@
+"""Agents with several peoples: every score, and with whom each agent fares worst."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from msgspec import Struct
+
+from hthor.eval.comparison import robustness
+from hthor.eval.comparison.robustness import Conclusion
+from hthor.eval.config import human_populations
+from hthor.eval.config.human_populations import HumansRef
+from hthor.eval.config.run_config import SuiteRef
+from hthor.eval.results.result_file import Result
+from hthor.eval.statistics.intervals import Estimate
+
+SCHEMA = "hthor.peoples/2"
+
+
+class Cell(Struct, frozen=True, kw_only=True):
+    """One agent with one people: success, time-weighted success and adoption, as fractions."""
+
+    sr: Estimate
+    twsr: Estimate
+    adoption: Estimate
+
+
+class Worst(Struct, frozen=True, kw_only=True):
+    """With whom an agent succeeds least, and by how much less [fraction] than with the ``base``, the first people.
+
+    ``peoples`` are several where they are equally bad.
+    """
+
+    peoples: tuple[str, ...]
+    sr: float
+    base: str
+    behind: float
+
+
+class Matrix(Struct, frozen=True, kw_only=True):
+    """What several peoples in one evaluation say together.
+
+    Attributes:
+        trials: with each people.
+        cells: by the people's name, and in there by the agent's.
+        worst: by the agent's name; the extremes of the bracket do not count, as nobody is like them.
+        conclusions: what is said of any two agents, and what becomes of it at the ends of the bracket; empty where the
+            bracket is not whole.
+    """
+
+    schema: str = SCHEMA
+    suite: SuiteRef
+    seed: int
+    trials: int
+    agents: tuple[str, ...]
+    peoples: tuple[HumansRef, ...]
+    cells: dict[str, dict[str, Cell]]
+    worst: dict[str, Worst]
+    conclusions: tuple[Conclusion, ...]
+
+
+def of(results: Sequence[Result]) -> Matrix:
+    """What the runs of one evaluation say together: every people with every agent, peoples in turn."""
+    whom = {result.humans.name: result.humans for result in results}
+    by_people = {name: [result for result in results if result.humans.name == name] for name in whom}
+    first = results[0]
+    return Matrix(
+        suite=first.suite,
+        seed=first.seed,
+        trials=first.counts.trials,
+        agents=tuple(dict.fromkeys(result.name for result in results)),
+        peoples=tuple(whom.values()),
+        cells={name: {result.name: _cell(result) for result in held} for name, held in by_people.items()},
+        worst=_worst(results),
+        conclusions=_conclusions(by_people),
+    )
+
+
+def _cell(result: Result) -> Cell:
+    return Cell(sr=result.metrics.sr, twsr=result.metrics.twsr, adoption=result.metrics.adoption)
+
+
+def _worst(results: Sequence[Result]) -> dict[str, Worst]:
+    """Of those whom somebody may be like; nobody where there is only one such people."""
+    found: dict[str, Worst] = {}
+    for agent in dict.fromkeys(result.name for result in results):
+        held = [
+            result
+            for result in results
+            if result.name == agent and result.humans.model not in human_populations.EXTREMES
+        ]
+        if len(held) > 1:
+            rates = {result.humans.name: result.metrics.sr.mean or 0.0 for result in held}
+            least, base = min(rates.values()), held[0].humans.name
+            found[agent] = Worst(
+                peoples=tuple(name for name, rate in rates.items() if rate == least),
+                sr=least,
+                base=base,
+                behind=rates[base] - least,
+            )
+    return found
+
+
+def _conclusions(by_people: dict[str, list[Result]]) -> tuple[Conclusion, ...]:
+    """Where both extremes are there, and somebody between them: what of it holds for all."""
+    models = {held[0].humans.model for held in by_people.values()}
+    whole = models.issuperset(human_populations.EXTREMES) and len(models) > len(human_populations.EXTREMES)
+    return robustness.conclusions(by_people) if whole else ()

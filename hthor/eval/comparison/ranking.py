@@ -1,0 +1,103 @@
+"""Agents in order, with what chance leaves of it: ranks, their intervals, and who ties with whom; reads no files.
+
+All agents have played the same trials. An agent's rank is one more than the number of agents that are significantly
+better, as `hthor compare` finds it: paired, over tasks and people, adjusted by Holm for all pairs at once.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from msgspec import Struct
+
+from hthor.eval.results import paired_difference
+from hthor.eval.statistics import bootstrap, intervals
+from hthor.eval.statistics.variance_components import Spread
+
+STREAM = "ranking"
+"""The name of the bootstrap's chance stream."""
+
+
+class Standing(Struct, frozen=True, kw_only=True):
+    """An agent's place: 1 is the best.
+
+    Attributes:
+        rank: one more than the number of agents that are significantly better, and never less than the rank of an
+            agent with a higher mean.
+        interval: the ranks that are not excluded at 95 %, for new tasks and new people.
+        ties: indices of the agents that cannot be told from this one, in their order.
+    """
+
+    rank: int
+    interval: tuple[int, int]
+    ties: tuple[int, ...]
+
+
+def standings(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> tuple[Standing, ...]:
+    """The place of each agent.
+
+    The interval's ends are 1 and the number of agents that are better, and all less those that are worse, when this
+    agent's differences from all others are to hold together at 95 %. How far they may all be off at once is taken from
+    samples of tasks and people, the same for all agents ("pigeonhole" bootstrap, of the largest deviation); how wide
+    each is from the same formula as every other interval.
+
+    Args:
+        outcomes: (A, N), shares from 0 to 1, such as successes. tasks, people: (N,) indices from 0.
+    """
+    count = len(outcomes)
+    versus = [paired_difference.spread_of(outcomes - one, tasks, people, share=True) for one in outcomes]
+    better = (adjusted(versus) < 1.0 - intervals.LEVEL) & (np.array([found.mean for found in versus]) > 0.0)
+    told = better | better.T  # in a row, an agent; in its columns, those that are better than it
+    plain = 1 + better.sum(axis=1)
+    totals = np.rint(outcomes * 1e6).sum(axis=1)  # whole numbers: equal means are equal
+    low, high = _excluded(versus, outcomes, tasks, people)
+    found = []
+    for one in range(count):
+        rank = int(plain[totals >= totals[one]].max())
+        ends = (min(rank, 1 + int(low[one])), max(rank, count - int(high[one])))
+        ties = tuple(other for other in range(count) if other != one and not told[one, other])
+        found.append(Standing(rank=rank, interval=ends, ties=ties))
+    return tuple(found)
+
+
+def adjusted(versus: Sequence[Spread]) -> np.ndarray:
+    """Holm's p of every two agents' difference, (A, A), for the spreads of all less each."""
+    pairs = list(itertools.combinations(range(len(versus)), 2))
+    variances = [paired_difference.null(found, share=True) for found in versus]
+    p = paired_difference.holm(
+        [
+            paired_difference.p_value(
+                float(versus[one].mean[other]), float(variances[one][other]), float(versus[one].freedom[other])
+            )
+            for one, other in pairs
+        ]
+    )
+    held = np.ones((len(versus), len(versus)))
+    for (one, other), value in zip(pairs, p, strict=True):
+        held[one, other] = held[other, one] = value
+    return held
+
+
+def _excluded(
+    versus: Sequence[Spread], outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """For each agent, how many are better than it, and how many worse, all of which hold together."""
+    count = len(outcomes)
+    drawn = bootstrap.means(outcomes, tasks, people, name=STREAM)
+    off = drawn - outcomes.mean(axis=1)[:, None]
+    better, worse = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
+    for one in range(count):
+        gaps = off[one] - off  # of each sample's differences from those that were seen
+        sd = np.sqrt((gaps**2).mean(axis=1))
+        moving = sd > 1e-9
+        largest = (np.abs(gaps[moving]) / sd[moving, None]).max(axis=0) if moving.any() else np.zeros(1)
+        far = max(float(np.quantile(largest, intervals.LEVEL)), intervals.NORMAL)
+        level = 1.0 - math.erfc(far / math.sqrt(2.0)) / 2.0
+        least, most = paired_difference.ends(versus[one], share=True, level=level)
+        others = np.arange(count) != one
+        better[one] = int((others & (least > 0.0)).sum())
+        worse[one] = int((others & (most < 0.0)).sum())
+    return better, worse

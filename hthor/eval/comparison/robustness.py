@@ -1,0 +1,189 @@
+"""Whether what an evaluation says of robots holds for people at both ends: greedy and random ones; plays nothing.
+
+A greedy person confirms every message and searches without plan or doubt, a random one never confirms: whatever real
+people do is taken to lie between (`hthor.humans.models.greedy`, `hthor.humans.models.random`). A conclusion, such as
+"oracle is better than frontier", that has another sign at one of the ends rests on how the people in the middle were
+modelled, and is flagged.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Literal
+
+from msgspec import Struct
+
+from hthor.errors import HthorError
+from hthor.eval.results.result_file import Result
+from hthor.eval.statistics.intervals import Estimate
+
+ENDS = ("greedy", "random")
+"""The human models at the ends."""
+METRICS = {"sr": "SR", "twsr": "TWSR"}
+"""The metrics that conclusions are drawn from, and what they are called."""
+Verdict = Literal["holds", "vanishes", "flips"]
+
+
+class Gap(Struct, frozen=True, kw_only=True):
+    """How much better the one robot did than the other, as a fraction, with these people.
+
+    ``ci95`` is a cautious 95 % interval: both runs' own intervals put together as if they had nothing in common
+    (Newcombe's, which stays within -1 and 1). They share people and tasks, so the true one is narrower.
+    """
+
+    people: str
+    better: float
+    worse: float
+    ci95: tuple[float, float]
+
+    @property
+    def mean(self) -> float:
+        """The difference."""
+        return self.better - self.worse
+
+    @property
+    def beyond_noise(self) -> bool:
+        """Whether chance alone would hardly give such a difference."""
+        return self.ci95[0] > 0.0 or self.ci95[1] < 0.0
+
+
+class Conclusion(Struct, frozen=True, kw_only=True):
+    """What the population says of two robots in one metric, and what becomes of it at the ends.
+
+    ``verdict``: it "holds" when both ends say the same, "flips" when one of them says the opposite, and "vanishes" when
+    one of them sees no difference at all. ``helps`` says that the other robot is none: the claim is that a robot helps.
+    ``gaps`` are of the population first, then of the ends.
+    """
+
+    better: str
+    worse: str
+    metric: str
+    helps: bool
+    verdict: Verdict
+    gaps: tuple[Gap, ...]
+    sentence: str
+
+
+Flip = Conclusion
+
+
+def flips(results: Mapping[str, Sequence[Result]]) -> tuple[Flip, ...]:
+    """The conclusions that flip inside the bracket; see `conclusions`."""
+    return tuple(found for found in conclusions(results) if found.verdict == "flips")
+
+
+def conclusions(results: Mapping[str, Sequence[Result]]) -> tuple[Conclusion, ...]:
+    """Everything that the population's results say of any two robots, in the robots' order.
+
+    Args:
+        results: by people: some of the model "greedy", some of the model "random" and at least one population; of each
+            the results of the same robots in the same order, over the same tasks and seed.
+
+    Raises:
+        HthorError: when they are not that.
+    """
+    _check(results)
+    ends = [name for model in ENDS for name, runs in results.items() if runs[0].humans.model == model]
+    found = []
+    for population, metric in itertools.product((name for name in results if name not in ends), METRICS):
+        runs = results[population]
+        for one, other in itertools.combinations(range(len(runs)), 2):
+            pair = (other, one) if _mean(runs[other], metric) > _mean(runs[one], metric) else (one, other)
+            gaps = tuple(_gap(name, results[name], pair, metric) for name in (population, *ends))
+            if gaps[0].mean > 0.0:
+                found.append(_conclusion(runs, pair, metric, gaps))
+    return tuple(found)
+
+
+def _check(results: Mapping[str, Sequence[Result]]) -> None:
+    models = {runs[0].humans.model for runs in results.values() if runs}
+    if not all(results.values()) or not models.issuperset(ENDS) or len(models) == len(ENDS):
+        raise HthorError(
+            f"a bracket needs results of greedy people, of random people and of a population, got {sorted(results)}."
+        )
+    played = {name: [(r.name, r.suite.sha256, r.seed, r.counts.trials) for r in some] for name, some in results.items()}
+    first, *others = played
+    for name in others:
+        if played[name] != played[first]:
+            raise HthorError(
+                f"a bracket compares the same robots on the same trials, but {first} had {played[first]} and {name} "
+                f"{played[name]} (robot, suite, seed, trials)."
+            )
+
+
+def _conclusion(runs: Sequence[Result], pair: tuple[int, int], metric: str, gaps: tuple[Gap, ...]) -> Conclusion:
+    better, worse = (runs[k] for k in pair)
+    ends = gaps[1:]
+    verdict: Verdict = "holds"
+    if any(gap.mean < 0.0 for gap in ends):
+        verdict = "flips"
+    elif any(gap.mean == 0.0 for gap in ends):
+        verdict = "vanishes"
+    helps = all(not robot.seat for robot in worse.robots)
+    return Conclusion(
+        better=better.name,
+        worse=worse.name,
+        metric=metric,
+        helps=helps,
+        verdict=verdict,
+        gaps=gaps,
+        sentence=_sentence(better.label, worse.label, METRICS[metric], helps, verdict, gaps),
+    )
+
+
+def _sentence(better: str, worse: str, metric: str, helps: bool, verdict: Verdict, gaps: tuple[Gap, ...]) -> str:
+    claim = f"{better} helps (over {worse})" if helps else f"{better} is better than {worse}"
+    numbers = ", ".join(f"{100 * gap.mean:+z.1f} {gap.people}" for gap in gaps)
+    return f"{claim} in {metric}: {numbers} points; {_word(verdict, gaps)}"
+
+
+def _word(verdict: Verdict, gaps: tuple[Gap, ...]) -> str:
+    if verdict == "holds":
+        weak = not all(gap.beyond_noise for gap in gaps)
+        return "holds at both ends" + (", though not everywhere beyond chance" if weak else "")
+    if verdict == "vanishes":
+        return f"no difference at all with {_and(gap for gap in gaps[1:] if gap.mean == 0.0)} people"
+    against = [gap for gap in gaps[1:] if gap.mean < 0.0]
+    sure = any(gap.beyond_noise for gap in against)
+    chance = "" if sure else " (within chance)"
+    return f"flips with {_and(against)} people{chance}, so it rests on how people are modelled"
+
+
+def _and(gaps: Iterable[Gap]) -> str:
+    return " and ".join(gap.people for gap in gaps)
+
+
+def _gap(people: str, runs: Sequence[Result], pair: tuple[int, int], metric: str) -> Gap:
+    better, worse = (runs[k] for k in pair)
+    return Gap(
+        people=people,
+        better=_mean(better, metric),
+        worse=_mean(worse, metric),
+        ci95=_apart(_estimate(better, metric), _estimate(worse, metric)),
+    )
+
+
+def _estimate(result: Result, metric: str) -> Estimate:
+    found: Estimate = getattr(result.metrics, metric)
+    return found
+
+
+def _mean(result: Result, metric: str) -> float:
+    return _estimate(result, metric).mean or 0.0
+
+
+def _apart(better: Estimate, worse: Estimate) -> tuple[float, float]:
+    """Newcombe's interval of the difference of two means that have intervals of their own."""
+    (over_better, under_better), (over_worse, under_worse) = _arms(better), _arms(worse)
+    gap = (better.mean or 0.0) - (worse.mean or 0.0)
+    low, high = gap - math.hypot(under_better, over_worse), gap + math.hypot(over_better, under_worse)
+    return round(low, 6), round(high, 6)
+
+
+def _arms(one: Estimate) -> tuple[float, float]:
+    """How far the interval reaches above the mean and below it."""
+    if one.mean is None or one.ci95 is None:
+        return 0.0, 0.0
+    return one.ci95[1] - one.mean, one.mean - one.ci95[0]

@@ -1,0 +1,134 @@
+"""How large a study must be, from what the user knows: two rates, or two runs; works nothing out itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from hthor.errors import HthorError
+from hthor.eval.comparison import compare
+from hthor.eval.results import paired_difference, pairing
+from hthor.eval.results.paired_difference import Noise
+from hthor.eval.statistics import power
+from hthor.eval.statistics.power import Need, Scatter
+
+SCHEMA = "hthor.power/1"
+USUAL = 0.5
+"""Correlation that is taken when nobody knows it; docs/statistics.md has measured ones."""
+
+
+class Plan(Struct, frozen=True, kw_only=True):
+    """What it takes to see a difference of two success rates: the same people at the same tasks, and others.
+
+    Of two runs, ``shared`` is how many trials they share, and ``more`` how many more tasks would show the difference,
+    as `hthor compare` says it too; None where two rates were given.
+    """
+
+    schema: str = SCHEMA
+    first: float
+    second: float
+    measured: bool
+    paired: Need
+    unpaired: Need
+    shared: int | None = None
+    more: int | None = None
+    sentence: str
+
+
+class _Known(Struct, frozen=True):
+    """Two rates and the correlation of outcomes; of two runs also their trials' scatter and how many they share."""
+
+    first: float
+    second: float
+    correlation: float | None = None
+    noise: Noise | None = None
+    shared: int | None = None
+
+
+def plan(
+    folders: Sequence[Path], rates: str, correlation: float | None, difference: float | None, wanted: float
+) -> Plan:
+    """The plan for two runs, or for two rates as the user typed them.
+
+    Raises:
+        HthorError: when it is neither, or what is wanted is impossible.
+    """
+    if bool(folders) == bool(rates) or len(folders) not in (0, 2):
+        raise HthorError("name two runs, hthor power RUN RUN, or two rates, hthor power --rates 0.73,0.76; not both.")
+    known = _measured(folders) if folders else _rates(rates)
+    first, second = known.first, known.second if difference is None else known.first + difference
+    power.possible(first, second)
+    low, high = power.correlation_range(first, second)
+    if correlation is None:
+        correlation = min(USUAL, high) if known.correlation is None else min(max(low, known.correlation), high)
+    paired, unpaired = _needs(known, first, second, correlation, wanted)
+    shared = known.shared
+    more = None if shared is None else max(0, paired.trials - shared)
+    return Plan(
+        first=round(first, 6),
+        second=round(second, 6),
+        measured=bool(folders),
+        paired=paired,
+        unpaired=unpaired,
+        shared=shared,
+        more=more,
+        sentence=(
+            f"{100.0 * first:.1f} % against {100.0 * second:.1f} % shows in {100.0 * wanted:.0f} of 100 studies with "
+            f"{paired.trials} tasks where both robots meet the same people at the same tasks (correlation "
+            f"{correlation:.2f}), and with {unpaired.trials} tasks each where they do not." + _added(shared, more)
+        ),
+    )
+
+
+def _added(shared: int | None, more: int | None) -> str:
+    if shared is None or more is None:
+        return ""
+    if more == 0:
+        return f" The {shared} that these runs share are enough for that."
+    return f" That is about {power.about(more)} more than the {shared} that these runs share."
+
+
+def _needs(known: _Known, first: float, second: float, correlation: float, wanted: float) -> tuple[Need, Need]:
+    """Paired and not; other rates or another correlation than the runs have scale what was measured."""
+    paired = unpaired = None
+    if known.noise is not None and known.correlation is not None:
+        here, there = (first, second), (known.first, known.second)
+        paired = _scaled(known.noise.paired, (*there, known.correlation), (*here, correlation))
+        unpaired = _scaled(known.noise.unpaired, (*there, 0.0), (*here, 0.0))
+    return (
+        power.need(first, second, correlation=correlation, power=wanted, scatter=paired),
+        power.need(first, second, power=wanted, scatter=unpaired),
+    )
+
+
+def _scaled(held: Scatter, measured: tuple[float, float, float], wanted: tuple[float, float, float]) -> Scatter:
+    """The scatter at other rates and another correlation: as many times that of independent trials as it was."""
+    before = power.variance_of_difference(*measured)
+    if wanted == measured or before <= 0.0:
+        return held
+    variance = held.variance * power.variance_of_difference(*wanted) / before
+    return msgspec.structs.replace(held, variance=variance)
+
+
+def _measured(folders: Sequence[Path]) -> _Known:
+    """Both rates, their correlation and their scatter, of two runs."""
+    one, other = compare.read(folders)
+    pairing.check((one.folder, one.plan), (other.folder, other.plan))
+    pairs = pairing.join(one.records, other.records).pairs
+    found = paired_difference.of(pairs, "sr")
+    if found is None:
+        raise HthorError(
+            f"{one.folder} and {other.folder} have no trials in common yet. Finish both with 'hthor eval'."
+        )
+    return _Known(found.first, found.second, found.correlation or 0.0, paired_difference.noise(pairs, "sr"), len(pairs))
+
+
+def _rates(words: str) -> _Known:
+    try:
+        first, second = (float(word) for word in words.split(","))
+    except ValueError:
+        raise HthorError(f"--rates '{words}' is not two rates; expected something like 0.73,0.76.") from None
+    return _Known(first, second)

@@ -1,0 +1,1 @@
+"""What a run is of: its configuration, robots, people, tasks and sessions."""

@@ -1,0 +1,151 @@
+"""What is installed, against what this version of hthor was made with: libraries, extras, its own files."""
+
+from __future__ import annotations
+
+import platform
+import subprocess
+import tomllib
+from collections.abc import Iterator, Sequence
+from importlib import metadata
+
+from packaging.requirements import Requirement
+
+from hthor import code_identity, installation
+from hthor.eval.doctor.result import Finding
+
+_SCORING = ("mujoco", "dm-control", "numba", "numpy")
+"""What trials are computed with."""
+_EXTRAS = {
+    "cluster": "Ray, for --engine ray",
+    "calibration": "for hthor calibrate",
+    "torch": "for agents that use it",
+    "assets": "for hthor assets build",
+    "priors": "for hthor priors build",
+}
+_GIT_LIMIT_S = 10.0
+
+
+def findings() -> list[Finding]:
+    """Look at Python, at each library that trials are computed with, at the others, the extras, and the checkout."""
+    found = [Finding(name="python", says=platform.python_version())]
+    try:
+        base, extras = _required()
+    except metadata.PackageNotFoundError:
+        says = "hthor is not installed, so what it requires is not known"
+        return [*found, Finding(name="libraries", status="warn", says=says, fix="pip install -e ."), *_checkout()]
+    scoring = [one for one in base if one.name in _SCORING]
+    found += [_library(one, pinned()) for one in scoring]
+    found.append(_others([one for one in base if one not in scoring]))
+    return [*found, *(_extra(name, extras[name]) for name in _EXTRAS if extras.get(name)), *_checkout()]
+
+
+def _required() -> tuple[list[Requirement], dict[str, list[Requirement]]]:
+    """What hthor needs, and what each extra adds; a checkout's own file knows better than what was installed once."""
+    path = code_identity.PACKAGE.parent / "pyproject.toml"
+    if path.is_file():
+        project = tomllib.loads(path.read_text(encoding="utf-8"))["project"]
+        more = project["optional-dependencies"]
+        return [Requirement(line) for line in project["dependencies"]], {
+            name: [Requirement(line) for line in more[name]] for name in more
+        }
+    wanted = [Requirement(line) for line in metadata.requires("hthor") or ()]
+    base = [one for one in wanted if one.marker is None or one.marker.evaluate({"extra": ""})]
+    return base, {name: [one for one in wanted if one not in base and _of(one, name)] for name in _EXTRAS}
+
+
+def pinned() -> dict[str, str]:
+    """The versions that this version's own results were made with; empty where hthor is no checkout."""
+    path = code_identity.PACKAGE.parent / "constraints.txt"
+    if not path.is_file():
+        return {}
+    pairs = (line.split("==") for line in path.read_text(encoding="utf-8").split() if "==" in line)
+    return {name.lower().replace("_", "-"): version for name, version in pairs}
+
+
+def _library(wanted: Requirement, pins: dict[str, str]) -> Finding:
+    trouble = _trouble(wanted)
+    if trouble:
+        return Finding(name=wanted.name, status="fail", says=trouble, fix=f"pip install '{_bare(wanted)}'")
+    version, pin = metadata.version(wanted.name), pins.get(wanted.name)
+    if pin and pin != version:
+        says = f"{version}, but hthor's own results were made with {pin}: records may differ byte for byte"
+        return Finding(name=wanted.name, status="warn", says=says, fix="pip install -c constraints.txt -e .")
+    return Finding(name=wanted.name, says=version)
+
+
+def _others(wanted: Sequence[Requirement]) -> Finding:
+    bad = [(one, trouble) for one in wanted if (trouble := _trouble(one))]
+    name = "other libraries"
+    if not bad:
+        return Finding(name=name, says=f"all {len(wanted)} are installed")
+    says = "; ".join(f"{one.name}: {trouble}" for one, trouble in bad)
+    fix = "pip install " + " ".join(f"'{_bare(one)}'" for one, _ in bad)
+    return Finding(name=name, status="fail", says=says, fix=fix)
+
+
+def _extra(name: str, parts: Sequence[Requirement]) -> Finding:
+    """An extra that is not installed is nothing amiss; a part of another version is."""
+    present = {one.name: _installed(one.name) for one in parts}
+    title, install = f"extra {name}", f"pip install 'hthor[{name}]'"
+    bad = [trouble for one in parts if present[one.name] and (trouble := _trouble(one))]
+    if bad:
+        return Finding(name=title, status="warn", says="; ".join(bad), fix=install)
+    if not all(present.values()):
+        return Finding(name=title, says=f"not installed ({_EXTRAS[name]}): {install}")
+    return Finding(name=title, says=", ".join(f"{part} {version}" for part, version in present.items()))
+
+
+def _checkout() -> Iterator[Finding]:
+    """Which code it is, and whether it is changed."""
+    from hthor import __version__
+
+    code, root = installation.sha256()[:10], code_identity.PACKAGE.parent
+    yield Finding(name="hthor", says=f"{__version__}, code {code}, {code_identity.PACKAGE}")
+    if not (root / ".git").exists():
+        return
+    commit, changes = _git("rev-parse", "--short=10", "HEAD"), _git("status", "--porcelain", "--", "hthor")
+    if commit is None or changes is None:
+        yield Finding(
+            name="git", status="warn", says="git does not say what commit this is", fix=f"git -C {root} status"
+        )
+        return
+    changed = changes.splitlines()
+    if changed:
+        says = f"{commit}, with {len(changed)} changed or new files in hthor/: results cannot be told from a commit's"
+        yield Finding(name="git", status="warn", says=says, fix=f"git -C {root} status, then commit or undo")
+        return
+    yield Finding(name="git", says=f"{commit}, unchanged")
+
+
+def _git(*words: str) -> str | None:
+    root = str(code_identity.PACKAGE.parent)
+    try:
+        done = subprocess.run(
+            ["git", "--no-optional-locks", "-C", root, *words], capture_output=True, text=True, timeout=_GIT_LIMIT_S
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return done.stdout.strip() if done.returncode == 0 else None
+
+
+def _trouble(wanted: Requirement) -> str:
+    """Why a requirement is not met, empty when it is."""
+    version = _installed(wanted.name)
+    if not version:
+        return "not installed"
+    return "" if wanted.specifier.contains(version, prereleases=True) else f"{version}, hthor needs {wanted.specifier}"
+
+
+def _installed(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return ""
+
+
+def _bare(wanted: Requirement) -> str:
+    return f"{wanted.name}{wanted.specifier}"
+
+
+def _of(wanted: Requirement, extra: str) -> bool:
+    return wanted.marker is not None and wanted.marker.evaluate({"extra": extra})

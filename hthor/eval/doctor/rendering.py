@@ -1,0 +1,82 @@
+"""Whether robots can see, and whether pictures for people can be drawn; run as a script it draws both."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+
+from msgspec import Struct
+
+from hthor.eval.doctor.result import Finding
+
+_SIZE = (64, 64)
+_HOUSE = "alder"
+_CURE = "sudo apt-get install libegl1 libgl1-mesa-dri || sudo apt-get install libosmesa6"
+
+
+class Drawn(Struct, frozen=True, kw_only=True):
+    """How many colours each profile's picture has, 0 for none; the OpenGL back end, or why there is none."""
+
+    fast: int = 0
+    nice: int = 0
+    backend: str = ""
+    reason: str = ""
+
+
+def findings(drawn: Drawn | str) -> list[Finding]:
+    """Judge what the process drew."""
+    if isinstance(drawn, str):
+        says = f"the process that draws a frame failed: {drawn}"
+        return [Finding(name="pictures", status="fail", says=says, fix=f"{_CURE}; or MUJOCO_GL=osmesa")]
+    return [_fast(drawn), _nice(drawn)]
+
+
+def _fast(drawn: Drawn) -> Finding:
+    name = "robot's camera"
+    if drawn.fast > 1:
+        return Finding(name=name, says=f"draws a frame of {drawn.fast} colours, without OpenGL")
+    return Finding(name=name, status="fail", says="its frame is blank", fix="pip install --force-reinstall hthor")
+
+
+def _nice(drawn: Drawn) -> Finding:
+    name = "OpenGL"
+    if drawn.nice > 1:
+        return Finding(name=name, says=f"{drawn.backend} draws a frame of {drawn.nice} colours")
+    says = drawn.reason or f"the frame that {drawn.backend} draws is blank"
+    return Finding(name=name, status="warn", says=f"{says} (only pictures in the profile nice need it)", fix=_CURE)
+
+
+def draw() -> Iterator[Drawn]:
+    """Draw a frame in each profile; told after each, as a driver may end the process."""
+    from hthor.errors import RenderingUnavailable
+    from hthor.world import World
+    from hthor.world.rendering import opengl_context
+
+    world = World(_HOUSE, robots=["scout"])
+    fast = _colours(world.robot.rgb(_SIZE))
+    yield Drawn(fast=fast, reason="the process that draws a frame with OpenGL crashed")
+    try:
+        context = opengl_context.context(*_SIZE)
+        backend = type(context).__module__.rpartition(".")[2]
+        context.free()
+        nice = _colours(world.robot.rgb(_SIZE, profile="nice"))
+    except RenderingUnavailable as error:
+        yield Drawn(fast=fast, reason=str(error).partition(". ")[0])
+    else:
+        yield Drawn(fast=fast, nice=nice, backend=backend)
+
+
+def _colours(picture: object) -> int:
+    import numpy as np
+
+    return len(np.unique(np.asarray(picture).reshape(-1, 3), axis=0))
+
+
+if __name__ == "__main__":
+    from hthor import jsonio
+
+    for drawn in draw():
+        sys.stdout.write(jsonio.canonical(drawn).decode() + "\n")
+        sys.stdout.flush()
+    os._exit(0)  # some drivers crash when they are unloaded, after all that was asked is done

@@ -1,0 +1,85 @@
+"""Whether a trial goes here as it went where the reference was made; run as a script it plays that trial.
+
+What is compared is the trial's course, not the code's hash: a change that moves nothing needs no new reference, and one
+that moves anything does. `hthor doctor --write-reference` writes it.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from msgspec import Struct
+
+from hthor import jsonio
+from hthor.eval.doctor.result import Finding
+from hthor.eval.records import platform_fingerprint
+
+REFERENCE = Path(__file__).with_name("reference.json")
+_SUITE, _AGENT, _PEOPLE, _SEED = "smoke", "frontier", "proxy", 0
+_NAMES = ("key", "spec")
+"""What a record has that is not the course of its trial."""
+
+
+class Course(Struct, frozen=True, kw_only=True):
+    """How the trial went: the hash of everything in it, what came of it, and the platform that it was played on."""
+
+    trial: str
+    sha256: str
+    outcome: dict[str, Any]
+    platform: dict[str, str]
+
+
+def play() -> Course:
+    """The first trial of the first person of the suite, with the frontier robot."""
+    from hthor import tasks
+    from hthor.eval.config import sessions
+    from hthor.eval.records import trial_record
+    from hthor.eval.runner import trial_runner
+
+    first = sessions.sessions(tasks.suite(_SUITE), agent=_AGENT, human=_PEOPLE, seed=_SEED)[0]
+    done = next(iter(trial_runner.player()(msgspec.structs.replace(first, trials=first.trials[:1]))))
+    course = msgspec.json.decode(trial_record.encode(done))
+    for name in (*_NAMES, "check"):
+        del course[name]
+    return Course(
+        trial=done.spec.task.id,
+        sha256=jsonio.sha256(course),
+        outcome={"met": done.met, "ticks": done.ticks, "trust": done.trust, "events": len(done.events)},
+        platform=platform_fingerprint.here(),
+    )
+
+
+def reference() -> Course:
+    """How it went where the reference was made."""
+    return msgspec.json.decode(REFERENCE.read_bytes(), type=Course)
+
+
+def findings(here: Course | str) -> list[Finding]:
+    """Judge what the process played."""
+    name = "determinism"
+    if isinstance(here, str):
+        says = f"the process that plays a trial failed: {here}"
+        return [Finding(name=name, status="fail", says=says, fix="hthor eval --agent none --participants 1 --jobs 1")]
+    there = reference()
+    if here.sha256 == there.sha256:
+        return [Finding(name=name, says=f"{here.trial} goes as in the reference, byte for byte")]
+    other = platform_fingerprint.differences(there.platform, here.platform)
+    same = here.outcome == there.outcome and here.trial == there.trial
+    if not other:
+        says = f"on the very platform of the reference {here.trial} goes otherwise, outcome {_verdict(same)}"
+        cure = "git status, and undo what changes trials; if the change is meant: hthor doctor --write-reference"
+        return [Finding(name=name, status="fail", says=says, fix=cure)]
+    says = f"outcome {_verdict(same)}, bytes not: this is another platform than the reference's ({'; '.join(other)})"
+    cure = "" if same else "compare only runs that were played on one platform"
+    return [Finding(name=name, status="ok" if same else "warn", says=says, fix=cure)]
+
+
+def _verdict(same: bool) -> str:
+    return "equal" if same else "different"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(jsonio.canonical(play()).decode() + "\n")

@@ -1,0 +1,1 @@
+"""From one trial's record to its metrics."""

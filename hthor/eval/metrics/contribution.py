@@ -1,0 +1,121 @@
+"""Who did how much of what was achieved in a trial: pure functions of its log."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from hthor.episode import EpisodeLog
+from hthor.types import HUMAN, Event, TrialSpec
+
+_FINISH = ("placed", "dropped", "lifted", "lowered", "opened", "closed")
+_TAKE = ("picked", "lifted")
+_EPS = 1e-9
+
+Credit = dict[str, float]
+"""Shares by seat."""
+
+
+def shares(spec: TrialSpec, log: EpisodeLog) -> Credit | None:
+    """Each seat's share of the work, summing to 1; None when nothing was achieved.
+
+    Every rise of the progress (of a goal without parts: its being met) is credited to those whose deeds it took:
+
+    - the deed that brought it about, which is the last before it that ends something (an object placed, dropped, lifted
+      or lowered, a thing opened or closed; failing that, picked up), and, while several carry something, their lift;
+    - of its object, the pick before it;
+    - the openings before it of what the object was taken out of or put into, if somebody opened that.
+
+    Each of these counts alike, and one that several bore together counts in equal parts for them. What is found is
+    found by the person, who has to see it, and by whoever opened what it was in. A fall of the progress takes back
+    what was credited last.
+    """
+    ledger: list[tuple[float, Credit]] = []
+    for tick, rise in _steps(log):
+        if rise > 0.0:
+            ledger.append((rise, _credit(spec, log, tick)))
+        else:
+            _take_back(ledger, -rise)
+    total = dict.fromkeys(log.paths, 0.0)
+    for rise, credit in ledger:
+        for seat, part in credit.items():
+            total[seat] += rise * part
+    whole = sum(total.values())
+    return {seat: value / whole for seat, value in total.items()} if whole > _EPS else None
+
+
+def _steps(log: EpisodeLog) -> Iterator[tuple[int, float]]:
+    """Ticks at which the progress changed, and by how much; what there was at the start is nobody's doing."""
+    if log.progress is None:
+        if log.met:
+            yield log.ticks, 1.0
+        return
+    value = 0.0
+    for event in log.events:
+        if event.kind == "progress":
+            rise, value = float(event.data["value"]) - value, float(event.data["value"])
+            if event.tick > 0:
+                yield event.tick, rise
+
+
+def _take_back(ledger: list[tuple[float, Credit]], fall: float) -> None:
+    while ledger and fall > _EPS:
+        rise, credit = ledger.pop()
+        if rise > fall + _EPS:
+            ledger.append((rise - fall, credit))
+        fall -= rise
+
+
+def _credit(spec: TrialSpec, log: EpisodeLog, tick: int) -> Credit:
+    """Who brought about what was achieved at ``tick``; empty when nobody did anything before it."""
+    past = [event for event in log.events if event.tick <= tick]
+    if all(job.relation == "find" for job in spec.task.goal.todo):
+        parts = [(HUMAN,), *_openers(past, [_start(spec, job.target) for job in spec.task.goal.todo])]
+    else:
+        parts = _chain(spec, past)
+    credit: Credit = {}
+    for seats in parts:
+        for seat in seats:
+            credit[seat] = credit.get(seat, 0.0) + 1.0 / (len(parts) * len(seats))
+    return credit
+
+
+def _chain(spec: TrialSpec, past: Sequence[Event]) -> list[tuple[str, ...]]:
+    """Those who did each deed that the last one needed, itself included."""
+    load = next((event for event in reversed(past) if event.kind in ("lifted", "lowered")), None)
+    last = next((event for kinds in (_FINISH, _TAKE) for event in reversed(past) if event.kind in kinds), None)
+    if load is not None and load.kind == "lifted":
+        last = load
+    if last is None:
+        return []
+    object_ = last.data.get("object", "")
+    if not object_:
+        return [_doers(last)]
+    before = list(past[: past.index(last)])
+    parts = [_doers(last)]
+    take = next((event for event in reversed(before) if event.kind in _TAKE and _is_of(event, object_)), None)
+    origin = _start(spec, object_)
+    if take is not None and last.kind not in _TAKE:
+        parts.append(_doers(take))
+        earlier = before[: before.index(take)]
+        put = next((event for event in reversed(earlier) if event.kind == "placed" and _is_of(event, object_)), None)
+        origin = put.data["on"] if put is not None else origin
+    return parts + _openers(before, [origin, last.data.get("on", "")])
+
+
+def _openers(past: Sequence[Event], things: Sequence[str]) -> list[tuple[str, ...]]:
+    """Those who opened each of the things, the last time that it was opened."""
+    opened = {event.data.get("thing"): _doers(event) for event in past if event.kind == "opened"}
+    return [opened[thing] for thing in dict.fromkeys(things) if thing in opened]
+
+
+def _start(spec: TrialSpec, object_: str) -> str:
+    """What the object rests on or in when the trial begins."""
+    return next((placed.support for placed in spec.task.objects if placed.id == object_), "")
+
+
+def _doers(event: Event) -> tuple[str, ...]:
+    return tuple(event.data.get("bearers", ())) or (event.seat,)
+
+
+def _is_of(event: Event, object_: str) -> bool:
+    return bool(event.data.get("object") == object_)

@@ -1,0 +1,75 @@
+"""Finding one trial of a run by whatever the user calls it."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+from pathlib import Path
+
+from hthor import rules
+from hthor.errors import RunError, UnknownName
+from hthor.eval.config import run_config
+from hthor.eval.records import reader
+from hthor.eval.records.trial_record import Record
+
+_SHOWN = 10
+_TRACED = 12
+
+
+def trial(folder: Path, name: str) -> Record:
+    """The trial of a run that ``name`` stands for.
+
+    Args:
+        name: the start of a key, a task's id, or a number: the trial's place among all trials, counted from 0.
+
+    Raises:
+        UnknownName: when nothing answers to it.
+        RunError: when more than one trial does, or the run cannot be read.
+    """
+    _, records = reader.records(folder, run_config.load(folder))
+    by_task = [record for record in records if record.spec.task.id == name]
+    if by_task:
+        return _only(by_task, name)
+    if name.isdecimal() and int(name) < len(records):
+        return records[int(name)]
+    by_key = [record for record in records if name and record.key.startswith(name)]
+    if by_key:
+        return _only(by_key, name)
+    ids = sorted({record.spec.task.id for record in records})
+    near = difflib.get_close_matches(name, ids, n=_SHOWN, cutoff=0.4) or ids[:_SHOWN]
+    more = (
+        f"The run's log has {len(ids)} tasks; a number from 0 to {len(records) - 1} or the start of a key does as well."
+    )
+    raise UnknownName("trial", name, near, more if records else "The run has no trials yet.")
+
+
+def _only(found: Sequence[Record], name: str) -> Record:
+    if len(found) > 1:
+        listed = ", ".join(f"{record.key} (participant {record.spec.participant})" for record in found[:10])
+        raise RunError(f"'{name}' stands for {len(found)} trials: {listed}. Give a key, or more of it.")
+    return found[0]
+
+
+def first_fault(folder: Path) -> Record:
+    """The first trial of a run in which the agent failed.
+
+    Raises:
+        LookupError: when it never did.
+    """
+    _, records = reader.digest(folder, run_config.load(folder))
+    return next(record for record in records if record.faults)
+
+
+def fault_lines(record: Record) -> list[str]:
+    """The end of the traceback of a trial's first fault; none where it was no exception."""
+    lines = record.faults[0].detail.strip().splitlines()
+    return lines[-_TRACED:] if len(lines) > 1 else []
+
+
+def fault_words(record: Record) -> str:
+    """A trial's first fault in words: whose, of several robots, when, what, and the last line of its detail."""
+    fault = record.faults[0]
+    last = fault.detail.strip().splitlines()[-1] if fault.detail.strip() else ""
+    names = {robot.seat: robot.agent.name for robot in record.spec.robots}
+    whose = f"{fault.seat} ({names[fault.seat]}), " if len(names) > 1 else ""
+    return f"{whose}after {fault.tick * rules.TICK_S:.1f} s: {fault.kind}" + (f": {last}" if last else "")

@@ -1,0 +1,204 @@
+"""The run's log, `trials.jsonl`: append-only, one writer, whole lines."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import socket
+import time
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from types import TracebackType
+from typing import NamedTuple
+
+from hthor import jsonio
+from hthor.errors import RunError, RunLocked
+from hthor.eval.records import trial_record
+from hthor.eval.records.trial_record import Record
+from hthor.eval.runner.queue import BEAT_S
+
+SYNC_S = 0.25
+"""Longest time that a written record may wait for the disk, if `Log.sync` is called with every beat."""
+_BLOCK = 1 << 16
+_UNSYNCED = 1 << 22
+"""More than is ever written between two syncs."""
+
+
+class Place(NamedTuple):
+    """Where a line lies: file, first byte and number of bytes. Logs of any length are handled by these."""
+
+    path: Path
+    start: int
+    size: int
+
+
+def read(path: Path) -> Iterator[tuple[bytes, Record]]:
+    """Every whole line of a log and its record; a torn last line, which has no newline, is passed over.
+
+    Raises:
+        RunError: for a damaged line, naming file, line and field.
+    """
+    if not path.exists():
+        return
+    with path.open("rb") as file:
+        for number, line in enumerate(file, 1):
+            if not line.endswith(b"\n"):
+                return
+            try:
+                yield line, trial_record.decode(line)
+            except trial_record.Damaged as damage:
+                raise RunError(
+                    f"{path}, line {number}: {damage.field}: {damage.problem}. The log was changed after it was "
+                    f"written. Delete that line to have its trial played again by the same 'hthor eval' command."
+                ) from None
+
+
+def places(path: Path) -> Iterator[tuple[Place, bytes, Record]]:
+    """As `read`, with the place of each line."""
+    start = 0
+    for line, found in read(path):
+        yield Place(path, start, len(line)), line, found
+        start += len(line)
+
+
+def fetch(wanted: Iterable[Place]) -> Iterator[bytes]:
+    """The lines at these places, in their order, one in memory at a time."""
+    with contextlib.ExitStack() as stack:
+        files = {}
+        for place in wanted:
+            if place.path not in files:
+                files[place.path] = stack.enter_context(place.path.open("rb"))
+            files[place.path].seek(place.start)
+            yield files[place.path].read(place.size)
+
+
+class Log:
+    """The one writer of a run's log. Use as a context manager. ``key in log`` says whether a trial is there.
+
+    Of what is written only keys and checksums are kept in memory.
+
+    Args:
+        folder: the run's folder, made when absent.
+
+    Raises:
+        RunLocked: when another process is writing this run.
+        RunError: when a line is damaged; later, when one cannot be written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / "trials.jsonl"
+        jsonio.make_folder(folder)
+        self._lock = lock(folder)
+        try:
+            self.torn = cut_torn_lines(self.path)
+            self._checks = {found.key: trial_record.checksum(line) for line, found in read(self.path)}
+            self._file = os.open(self.path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC, 0o644)
+            jsonio.sync_folder(folder)
+        except BaseException:
+            os.close(self._lock)
+            raise
+        self._size = os.fstat(self._file).st_size
+        self._dirty_since: float | None = None
+
+    def __enter__(self) -> Log:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._checks
+
+    def __len__(self) -> int:
+        return len(self._checks)
+
+    def agrees(self, key: str, line: bytes) -> bool:
+        """Whether the line that is there for this trial is this one."""
+        return self._checks.get(key) == trial_record.checksum(line)
+
+    def append(self, key: str, line: bytes) -> bool:
+        """Write a trial's line once; says whether it was new."""
+        if key in self._checks:
+            return False
+        written = 0
+        try:
+            while written < len(line):
+                written += os.write(self._file, line[written:])
+        except OSError as error:  # a full disk; what the cut leaves, the next command cuts
+            with contextlib.suppress(OSError):
+                os.ftruncate(self._file, self._size)
+            raise self._unwritten(error) from None
+        self._size += written
+        self._checks[key] = trial_record.checksum(line)
+        if self._dirty_since is None:
+            self._dirty_since = time.monotonic()
+        self.sync(due=True)
+        return True
+
+    def sync(self, *, due: bool = False) -> None:
+        """Put what was written on the disk; with ``due`` only what could else wait for more than `SYNC_S`."""
+        if self._dirty_since is None or (due and time.monotonic() - self._dirty_since < SYNC_S - BEAT_S):
+            return
+        try:
+            os.fdatasync(self._file)
+        except OSError as error:  # some file systems learn only now that there is no room
+            raise self._unwritten(error) from None
+        self._dirty_since = None
+
+    def close(self) -> None:
+        """Put everything on the disk and let others write."""
+        try:
+            self.sync()
+        finally:
+            os.close(self._file)
+            os.close(self._lock)
+
+    def _unwritten(self, error: OSError) -> RunError:
+        return RunError(
+            f"{self.path}: {error.strerror}. The {len(self)} trials that it holds are kept; make room, and the same "
+            "command goes on."
+        )
+
+
+def lock(folder: Path) -> int:
+    """Hold the folder's lock until the descriptor is closed, which the end of the process does as well."""
+    handle = os.open(folder / ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        owner = os.read(handle, 200).decode("utf-8", "replace").strip() or "another process"
+        os.close(handle)
+        raise RunLocked(
+            f"{folder} is being written by {owner}. Wait for it, stop it, or choose another folder with --out."
+        ) from None
+    with contextlib.suppress(OSError):  # on a full disk the lock holds as well, but without its owner's name
+        os.ftruncate(handle, 0)
+        os.pwrite(handle, f"process {os.getpid()} on {socket.gethostname()}".encode(), 0)
+    return handle
+
+
+def cut_torn_lines(path: Path) -> int:
+    """Cut what a killed writer or machine left after the last whole line; the number of bytes that were cut.
+
+    A machine that loses power may leave a hole of zeros where blocks did not reach the disk, and later lines after it.
+    No record has a zero byte. What is cut had not been promised, and is played again.
+    """
+    if not path.exists():
+        return 0
+    with path.open("r+b") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(0, size - _UNSYNCED))
+        hole = file.read().find(b"\0")
+        end = max(0, size - _UNSYNCED) + hole if hole >= 0 else size
+        whole = 0
+        while end and not whole:
+            start = max(0, end - _BLOCK)
+            file.seek(start)
+            newline = file.read(end - start).rfind(b"\n")
+            whole, end = (start + newline + 1 if newline >= 0 else 0), start
+        if whole < size:
+            file.truncate(whole)
+    return size - whole

@@ -1,0 +1,112 @@
+"""One trial as one line of JSON, the same bytes wherever and whenever it is written."""
+
+from __future__ import annotations
+
+import zlib
+from typing import Any
+
+import msgspec
+from msgspec import Struct
+
+from hthor import documents, jsonio
+from hthor.episode import EpisodeLog, Fault
+from hthor.eval.metrics.trial_metrics import TrialMetrics, measure
+from hthor.eval.records import event_data
+from hthor.guest.agent.manifest import File
+from hthor.types import Event, TrialSpec
+
+CODE_ROOT = "trial"
+
+_DIGITS = 4  # metres, radians and seconds in events: a tenth of a millimetre
+_encoder = msgspec.json.Encoder(order="deterministic")
+_CHECK = b',"check":"%08x"}\n'
+_CHECK_LENGTH = len(_CHECK % 0)
+
+
+class Record(Struct, frozen=True, kw_only=True):
+    """A trial's specification, everything that happened in it, and its metrics. ``key`` is the hash of ``spec``.
+
+    ``files`` has, by seat, what an agent opened of its own that ``agents`` in `run.json` does not list; it is there
+    only where there is such.
+    """
+
+    key: str
+    spec: TrialSpec
+    metrics: TrialMetrics
+    ticks: int
+    met: bool
+    trust: int | None
+    faults: tuple[Fault, ...]
+    events: tuple[Event, ...]
+    paths: dict[str, list[tuple[int, int, int]]]
+    progress: float | None = None
+    idle: dict[str, int] = {}
+    journal: tuple[Event, ...] = ()
+    files: dict[str, tuple[File, ...]] | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def log(self) -> EpisodeLog:
+        """What the umpire left behind, for drawing and for scoring again."""
+        return EpisodeLog(**{name: getattr(self, name) for name in EpisodeLog.__struct_fields__})
+
+
+_decoder = msgspec.json.Decoder(Record)
+
+
+Damaged = documents.Unreadable
+"""A line that is not the record it was. ``field`` names the place, ``problem`` what is wrong there."""
+
+
+def key(spec: TrialSpec) -> str:
+    """The trial's name: 16 hexadecimal digits that everything that decides its course goes into."""
+    return jsonio.sha256(spec)[:16]
+
+
+def of(spec: TrialSpec, log: EpisodeLog) -> Record:
+    """The record of a trial that was played."""
+    events, journal = (_all_rounded(some) for some in (log.events, log.journal))
+    kept = msgspec.structs.replace(log, events=events, journal=journal)  # what is measured is what is written
+    fields = {name: getattr(kept, name) for name in EpisodeLog.__struct_fields__}
+    return Record(key=key(spec), spec=spec, metrics=measure(spec, kept), **fields)
+
+
+def encode(record: Record) -> bytes:
+    """The record's line, with its checksum as the last field and a newline."""
+    body = _encoder.encode(record)[:-1]
+    return body + _CHECK % zlib.crc32(body)
+
+
+def checksum(line: bytes) -> int:
+    """The checksum that a line carries."""
+    return int(line[-_CHECK_LENGTH:][10:18], 16)
+
+
+def decode(line: bytes) -> Record:
+    """The record of a whole line.
+
+    Raises:
+        Damaged: names the field that is not as it was written.
+    """
+    body, check = line[:-_CHECK_LENGTH], line[-_CHECK_LENGTH:]
+    with documents.guarded():
+        record = _decoder.decode(line)
+    if check != _CHECK % zlib.crc32(body):
+        raise Damaged("check", f"{check[10:18].decode('ascii', 'replace')} is not the line's checksum")
+    if record.key != key(record.spec):
+        raise Damaged("key", f"'{record.key}' is not the key of the trial in 'spec', '{key(record.spec)}'")
+    event_data.check(record.events)
+    return record
+
+
+def _all_rounded(events: tuple[Event, ...]) -> tuple[Event, ...]:
+    return tuple(msgspec.structs.replace(event, data=_rounded(event.data)) for event in events)
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return round(value, _DIGITS) + 0.0  # never -0.0
+    if isinstance(value, dict):
+        return {name: _rounded(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_rounded(part) for part in value]
+    return value

@@ -1,0 +1,1 @@
+"""Logged trials played again, byte for byte."""

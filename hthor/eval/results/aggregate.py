@@ -1,0 +1,153 @@
+"""A result from a run's records: metrics with intervals, counts and hashes."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from operator import attrgetter
+from pathlib import Path
+
+import msgspec
+
+from hthor.eval.config import run_config
+from hthor.eval.config.run_config import Setup
+from hthor.eval.metrics import bounds, trial_metrics
+from hthor.eval.metrics.trial_metrics import TrialMetrics
+from hthor.eval.records import opened_files, reader, run_isolation, session_restarts
+from hthor.eval.records.trial_record import Record
+from hthor.eval.results import baseline, result_file
+from hthor.eval.results.result_file import Counts, Effort, Hashes, Result, Scores
+from hthor.eval.results.uplift import Uplift, kept
+from hthor.eval.statistics import intervals
+from hthor.eval.statistics.intervals import Estimate
+from hthor.guest import Isolation
+
+
+def summarise(
+    plan: Setup,
+    lines: Iterable[bytes],
+    records: Sequence[Record],
+    effort: Effort | None = None,
+    *,
+    uplift: Uplift | None = None,
+    isolation: Isolation | None = None,
+    replays: int = 0,
+) -> Result:
+    """The result of the records of a run, whole or not.
+
+    Args:
+        replays: how many sessions were played again because an agent's process was killed.
+    """
+    trials = hashlib.sha256()
+    for line in lines:
+        trials.update(line)
+    kinds = sorted({record.spec.task.kind for record in records})
+    whole = scores(records)
+    by_kind = {
+        kind: whole if len(kinds) == 1 else scores([record for record in records if record.spec.task.kind == kind])
+        for kind in kinds
+    }
+    return Result(
+        name=plan.name,
+        robots=plan.robots,
+        agents=opened_files.manifests(plan, records),
+        humans=plan.humans,
+        suite=plan.suite,
+        kind=plan.kind,
+        seed=plan.seed,
+        mode=plan.mode,
+        participants=plan.participants,
+        metrics=whole,
+        by_kind=by_kind,
+        trust_by_trial=by_trial(records),
+        uplift=kept(uplift),
+        counts=Counts(
+            trials=len(records),
+            tasks=len({record.spec.task.id for record in records}),
+            successes=sum(record.met for record in records),
+            messages=sum(event.kind == "sent" for record in records for event in record.events),
+            faults=sum(bool(record.faults) for record in records),
+            faults_by_seat={
+                robot.seat: sum(any(fault.seat == robot.seat for fault in record.faults) for record in records)
+                for robot in plan.seats
+            },
+            faults_by_kind=dict(sorted(Counter(fault.kind for one in records for fault in one.faults).items())),
+            replays=replays,
+        ),
+        versions=plan.versions,
+        hashes=Hashes(
+            run=plan.sha256,
+            human=plan.humans.sha256,
+            rules=plan.rules_sha256,
+            code=plan.code_sha256,
+            trials=trials.hexdigest(),
+        ),
+        assets=plan.assets,
+        isolation=isolation,
+        effort=effort,
+    )
+
+
+def scores(records: Sequence[Record]) -> Scores:
+    """Means and intervals of every metric; trials for which a metric has no value do not count for it."""
+    single = {name: _score(records, name, attrgetter(name)) for name in trial_metrics.NAMES}
+    return Scores(**single, work=_by_name(records, "work"), hindered_by=_by_name(records, "hindered_by"))
+
+
+def by_trial(records: Sequence[Record]) -> tuple[Estimate, ...]:
+    """Trust after each trial of a session, in their order."""
+    rated = [record for record in records if record.metrics.trust is not None]
+    last = max((record.spec.index for record in rated), default=-1)
+    return tuple(
+        _score([record for record in rated if record.spec.index == index], "trust", attrgetter("trust"))
+        for index in range(last + 1)
+    )
+
+
+def _by_name(records: Sequence[Record], metric: str) -> dict[str, Estimate]:
+    """An estimate for each name that the metric has values for, in the order in which they first come."""
+    names = dict.fromkeys(name for record in records for name in getattr(record.metrics, metric))
+    return {name: _score(records, metric, partial(_named, metric, name)) for name in names}
+
+
+def _named(metric: str, name: str, one: TrialMetrics) -> float | None:
+    values: dict[str, float] = getattr(one, metric)
+    return values.get(name)
+
+
+def _score(records: Sequence[Record], name: str, value: Callable[[TrialMetrics], float | None]) -> Estimate:
+    measured = [(value(record.metrics), record.spec) for record in records]
+    held = [(float(found), spec) for found, spec in measured if found is not None]
+    return intervals.estimate(
+        [found for found, _ in held],
+        [spec.task.id for _, spec in held],
+        [spec.participant for _, spec in held],
+        within=bounds.among(name, [found for found, _ in held], [spec.task.time_limit for _, spec in held]),
+    )
+
+
+def rescore(folder: Path) -> tuple[Setup, Result, Result | None]:
+    """Score a run again from its log alone: its configuration, the new result, and the stored one if there is any.
+
+    Every trial's metrics are worked out anew from its events. The stored effort is kept, as no log has it. A stored
+    result of another version of the format counts as none: the log has all that it takes.
+    """
+    plan = run_config.load(folder)
+    lines, kept = reader.records(folder, plan)
+    fresh, stored = _measured(kept), None if result_file.outdated(folder / "result.json") else result_file.load(folder)
+    effort = stored.effort if stored else None
+    beside, held = baseline.beside(folder, plan, fresh), run_isolation.load(folder)
+    again = session_restarts.count(folder)
+    return plan, summarise(plan, lines, fresh, effort, uplift=beside, isolation=held, replays=again), stored
+
+
+def measured(folder: Path) -> tuple[Setup, list[Record]]:
+    """A run's configuration and its records, every trial's metrics worked out anew from its events."""
+    plan = run_config.load(folder)
+    return plan, _measured(reader.records(folder, plan)[1])
+
+
+def _measured(kept: Iterable[Record]) -> list[Record]:
+    return [msgspec.structs.replace(record, metrics=trial_metrics.measure(record.spec, record.log)) for record in kept]

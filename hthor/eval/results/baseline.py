@@ -1,0 +1,121 @@
+"""The control of a run: the same people at the same tasks without a robot, found by what it is; plays nothing."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+import msgspec
+
+from hthor.errors import RunError
+from hthor.eval.config import run_config
+from hthor.eval.config.run_config import Setup
+from hthor.eval.metrics import trial_metrics
+from hthor.eval.records import trial_log
+from hthor.eval.records.trial_record import Record
+from hthor.eval.results import pairing, result_file, uplift
+from hthor.eval.results.uplift import Kept, Uplift
+
+FOLDER = "control"
+"""Where a run keeps a control of its own."""
+
+
+def beside(folder: Path, plan: Setup, records: Sequence[Record]) -> Kept | None:
+    """What the run in a folder adds over its control.
+
+    Where no control is at hand, as in a folder that was copied elsewhere, what the run's result has recorded is kept,
+    with a note. None where that has nothing either, or the run has no robot.
+    """
+    return uplift.kept(measure(folder, plan, records)) or _recorded(folder, plan)
+
+
+def measure(folder: Path, plan: Setup, records: Sequence[Record]) -> Uplift | None:
+    """What the run adds, worked out from its control's log; None where it has no robot or no whole control is found."""
+    found = next(_whole(folder, plan, _anywhere(folder)), None)
+    return None if found is None else uplift.over(found[2], records, run=found[1].sha256)
+
+
+def find(folder: Path, plan: Setup) -> tuple[Setup, list[Record]] | None:
+    """The control of a run and its records: in the run's own folder, or the first in order of names that lies beside.
+
+    It counts only when it is whole; its metrics are worked out again from its events.
+    """
+    return next(((there, kept) for _, there, kept in _whole(folder, plan, _near(folder))), None)
+
+
+def place(folder: Path, plan: Setup) -> Path | None:
+    """Where the control of a run lies: in its folder, beside it, or anywhere else where runs usually are."""
+    return next((candidate for candidate, _, _ in _whole(folder, plan, _anywhere(folder))), None)
+
+
+def _recorded(folder: Path, plan: Setup) -> Kept | None:
+    """The uplift that stands in the run's result already."""
+    if not plan.seats:
+        return None
+    known = result_file.uplift(folder, run=plan.sha256)
+    return None if known is None else msgspec.structs.replace(known, note=uplift.RECORDED)
+
+
+def _whole(folder: Path, plan: Setup, candidates: Iterable[Path]) -> Iterator[tuple[Path, Setup, list[Record]]]:
+    """Every whole control of a run among these folders: the one that its result names first."""
+    if not plan.seats:
+        return
+    fitting = [(candidate, there) for candidate in candidates if (there := _fits(candidate, plan)) is not None]
+    known = result_file.uplift(folder, run=plan.sha256)
+    named = known.control if known is not None else ""
+    for candidate, there in sorted(fitting, key=lambda one: one[1].sha256 != named):
+        kept = _records(candidate)
+        if len({record.key for record in kept}) >= there.trials:
+            yield candidate, there, kept
+
+
+def _fits(candidate: Path, plan: Setup) -> Setup | None:
+    """The configuration of a run that is a control by what it is: same people, suite, seed, rules and code."""
+    try:
+        there = run_config.load(candidate)
+    except RunError:  # of another version, or damaged
+        return None
+    fits = not there.seats and not pairing.difference(plan, there) and there.participants >= plan.participants
+    return there if fits else None
+
+
+def _near(folder: Path) -> Iterator[Path]:
+    """Folders of runs in this one and beside it."""
+    yield from (path for path in (folder / FOLDER,) if (path / "run.json").is_file())
+    yield from _runs_in(folder.resolve().parent, ("*",), but=folder.resolve())
+
+
+def _anywhere(folder: Path) -> Iterator[Path]:
+    """These, then controls of the runs beside, then runs around its folder, and where runs usually are."""
+    above, seen = folder.resolve().parent, set()
+    places = (
+        _near(folder),
+        _runs_in(above, (f"*/{FOLDER}",), but=folder.resolve()),
+        _runs_in(above.parent, ("*", f"*/{FOLDER}", "*/*"), but=folder.resolve()),
+        *(_runs_in(usual, ("*", f"*/{FOLDER}", "*/*"), but=folder.resolve()) for usual in (Path(), Path("runs"))),
+    )
+    for candidate in itertools.chain.from_iterable(places):
+        if (real := candidate.resolve()) not in seen:
+            seen.add(real)
+            yield candidate
+
+
+def _runs_in(place: Path, patterns: Sequence[str], *, but: Path) -> Iterator[Path]:
+    """Folders below a place that hold runs, in order of their names."""
+    for pattern in patterns:
+        yield from sorted(path.parent for path in place.glob(f"{pattern}/run.json") if path.parent.resolve() != but)
+
+
+def _records(folder: Path) -> list[Record]:
+    try:
+        kept = [_slim(record) for _, record in trial_log.read(folder / "trials.jsonl")]
+    except RunError:
+        return []
+    return sorted(kept, key=lambda record: (record.spec.participant, record.spec.index))
+
+
+def _slim(record: Record) -> Record:
+    """The record with its metrics worked out anew, and without what only drawing needs."""
+    fresh = trial_metrics.measure(record.spec, record.log)
+    return msgspec.structs.replace(record, metrics=fresh, paths={}, journal=())

@@ -1,0 +1,258 @@
+"""The difference of two robots in one metric over the same trials, with what chance leaves of it; reads no files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+
+from hthor.eval.metrics import bounds
+from hthor.eval.results.pairing import Pair
+from hthor.eval.statistics import intervals, power, variance_components
+from hthor.eval.statistics.variance_components import Spread
+
+_DIGITS = 6
+SHARES = ("sr", "twsr", "adoption", "progress")
+"""Metrics that are shares."""
+UNITS = {"sr": "points", "twsr": "points", "adoption": "points", "progress": "points", "time_s": "s", "trust": ""}
+"""The metrics that are compared, and what their differences are counted in."""
+
+
+class Difference(Struct, frozen=True, kw_only=True):
+    """How much more the second robot has of a metric than the first, over ``n`` trials that both played.
+
+    Attributes:
+        first, second: the means over these trials. difference: the second less the first.
+        ci95: for new tasks and new people. p: two-sided, of no difference, as the interval has it.
+        mde80: the smallest true difference that so many such trials would have seen in four of five cases.
+        correlation: of the two robots' values of the same trial; None where one of them never varies.
+        gain: how many times fewer trials it takes because both robots met the same occasions: the variance of a trial's
+            difference if they had not, over what it is; None where there is no difference in any trial.
+        more_tasks: about how many more tasks, done once each, would show a difference of this size with a power of
+            80 %; 0 when these were enough, None when no number would do, because there is none.
+    """
+
+    n: int
+    first: float
+    second: float
+    difference: float
+    ci95: tuple[float, float] | None
+    p: float | None
+    mde80: float | None
+    correlation: float | None
+    gain: float | None
+    more_tasks: int | None
+
+    @property
+    def separated(self) -> bool:
+        """Whether chance alone would hardly give such a difference."""
+        return self.p is not None and self.p < 1.0 - intervals.LEVEL
+
+
+class Noise(Struct, frozen=True, kw_only=True):
+    """What two runs tell of how single trials vary: of their differences, and of two runs that share nothing."""
+
+    paired: power.Scatter
+    unpaired: power.Scatter
+
+
+class McNemar(Struct, frozen=True, kw_only=True):
+    """Trials in which only the first robot's person succeeded, and only the second's; the exact two-sided p of that.
+
+    It takes trials for independent, which those of one person are not quite.
+    """
+
+    only_first: int
+    only_second: int
+    p: float
+
+
+def of(pairs: Sequence[Pair], metric: str, *, level: float = intervals.LEVEL) -> Difference | None:
+    """The difference in a metric with an interval of this level; None where no trial has it with both."""
+    held = [
+        (getattr(pair.one.metrics, metric), getattr(pair.other.metrics, metric), pair.one.spec)
+        for pair in pairs
+        if getattr(pair.one.metrics, metric) is not None and getattr(pair.other.metrics, metric) is not None
+    ]
+    if not held:
+        return None
+    first, second = (np.array([row[k] for row in held], dtype=np.float64) for k in (0, 1))
+    tasks, people = (
+        variance_components.codes([row[2].task.id for row in held]),
+        variance_components.codes([row[2].participant for row in held]),
+    )
+    limit_s = bounds.mean_limit([row[2].task.time_limit for row in held])
+    return between(first, second, tasks, people, share=metric in SHARES, room=bounds.room(metric, limit_s), level=level)
+
+
+def between(
+    first: np.ndarray,
+    second: np.ndarray,
+    tasks: np.ndarray,
+    people: np.ndarray,
+    *,
+    share: bool,
+    room: float = math.inf,
+    level: float = intervals.LEVEL,
+) -> Difference:
+    """The difference of two rows of values, (N,) each, of the same trials.
+
+    Args:
+        share: as `spread_of` has it. room: as `ends` has it.
+        level: of the interval, two-sided; more than 95 % where it is one of several.
+    """
+    count = len(first)
+    found = spread_of((second - first)[None], tasks, people, share=share)
+    raw, freedom = float(found.mean[0]), float(found.freedom[0])
+    known = math.isfinite(float(found.variance[0]))
+    low, high = (float(end[0]) for end in ends(found, share=share, room=room, level=(1.0 + level) / 2.0))
+    needed = float(intervals.detectable(found, count)[0])
+    gap = _rounded(float(second.mean())) - _rounded(float(first.mean()))  # as `hthor power` reads it
+    return Difference(
+        n=count,
+        first=_rounded(float(first.mean())),
+        second=_rounded(float(second.mean())),
+        difference=_rounded(raw),
+        ci95=(_rounded(min(low, raw)), _rounded(max(high, raw))) if known else None,
+        p=p_value(raw, float(null(found, share=share)[0]), freedom) if known else None,
+        mde80=_rounded(needed) if known else None,
+        correlation=_correlation(first, second),
+        gain=_gain(first, second),
+        more_tasks=_more(gap, float(found.variance[0]) * count, freedom, count) if known else None,
+    )
+
+
+def spread_of(gaps: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, share: bool) -> Spread:
+    """The spread of the mean of differences, (..., N), as all comparisons take it.
+
+    Args:
+        share: whether they are differences of shares. Their mean's variance is then never below that of two trials in
+            which one robot failed wholly and the other did not at all: two robots that never differed in sixty trials
+            are not equal beyond doubt.
+    """
+    found, count = variance_components.two_way(gaps, tasks, people, differences=True), gaps.shape[-1]
+    if not share:
+        return found
+    variance, single = np.maximum(found.variance, 2.0 / count**2), np.maximum(found.single, 2.0 / count)
+    return msgspec.structs.replace(found, variance=variance, single=single)
+
+
+def null(found: Spread, *, share: bool) -> np.ndarray:
+    """The variance that a mean difference would have if there were none.
+
+    For shares it counts the squares about zero instead of about the mean, so that a few trials that all speak for one
+    robot do not look surer than they are (a score test; McNemar's, where trials are independent).
+    """
+    return found.variance * (1.0 + found.mean**2 / found.single) if share else found.variance
+
+
+def ends(
+    found: Spread, *, share: bool, room: float = 1.0, level: float = (1.0 + intervals.LEVEL) / 2.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """The 95 % interval: every true difference from which the one that was found is not told apart.
+
+    What a true difference would have as its variance is `null`'s, but about that difference instead of 0, and never
+    more than is possible: differences between -``room`` and ``room`` whose mean is d vary by room² - d² at most. So
+    the interval never leaves these bounds, and it holds 0 exactly when `p_value` does not refuse it.
+
+    Args:
+        room: the largest difference that there can be, 1 of shares; infinite where there is no bound.
+        level: of the quantile, one-sided.
+    """
+    quantile = intervals.student(found.freedom, level)
+    some = quantile**2 * found.variance
+    half = np.sqrt(some)
+    if share:
+        left = 1.0 - some / found.single
+        half = np.where(left > 0.0, np.sqrt(some / np.where(left > 0.0, left, 1.0)), np.inf)
+    low, high = found.mean - half, found.mean + half
+    return (low, high) if math.isinf(room) else _inside(found, some, room, low, high)
+
+
+def _inside(
+    found: Spread, some: np.ndarray, room: float, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The part of an interval in which differences need not vary more than they can: a score interval, as Wilson's."""
+    known = np.isfinite(some) & (found.single > 0.0)
+    worth = np.where(known, some / np.where(known, found.single, 1.0), 0.0)
+    mean = np.clip(found.mean / room, -1.0, 1.0)
+    half = np.sqrt(worth * (1.0 - mean**2 + worth))
+    least, most = room * (mean - half) / (1.0 + worth), room * (mean + half) / (1.0 + worth)
+    return np.where(known, np.maximum(low, least), low), np.where(known, np.minimum(high, most), high)
+
+
+def p_value(centre: float, variance: float, freedom: float) -> float:
+    """Two-sided, of a mean of 0, by Student's t."""
+    if variance <= 0.0:
+        return 1.0 if centre == 0.0 else 0.0
+    from scipy import special  # comes with the core: scikit-image needs it
+
+    return float(f"{2.0 * float(special.stdtr(freedom, -abs(centre) / math.sqrt(variance))):.6g}")
+
+
+def mcnemar(pairs: Sequence[Pair]) -> McNemar:
+    """The exact test of success."""
+    only_first = sum(pair.one.metrics.sr > pair.other.metrics.sr for pair in pairs)
+    only_second = sum(pair.one.metrics.sr < pair.other.metrics.sr for pair in pairs)
+    return McNemar(only_first=only_first, only_second=only_second, p=exact(only_first, only_second))
+
+
+def exact(one: int, other: int) -> float:
+    """Probability of a split at least as uneven as this when either side is as likely."""
+    count, least = one + other, min(one, other)
+    below = sum(math.comb(count, k) for k in range(least + 1))
+    return float(f"{min(1.0, 2 * below / 2**count):.6g}")  # whole numbers to the end: nothing underflows
+
+
+def holm(p: Sequence[float]) -> list[float]:
+    """Holm's adjusted p-values for several comparisons at once, in the order given."""
+    order = sorted(range(len(p)), key=lambda k: (p[k], k))
+    adjusted, most = [0.0] * len(p), 0.0
+    for rank, k in enumerate(order):
+        most = max(most, min(1.0, (len(p) - rank) * p[k]))
+        adjusted[k] = float(f"{most:.6g}")
+    return adjusted
+
+
+def noise(pairs: Sequence[Pair], metric: str) -> Noise:
+    """How much single trials of these pairs vary in a metric that all of them have."""
+    values = np.array([[getattr(one.metrics, metric) for one in (pair.one, pair.other)] for pair in pairs], dtype=float)
+    tasks = variance_components.codes([pair.one.spec.task.id for pair in pairs])
+    people = variance_components.codes([pair.one.spec.participant for pair in pairs])
+    gap = spread_of((values[:, 1] - values[:, 0])[None], tasks, people, share=metric in SHARES)
+    each = variance_components.two_way(values.T, tasks, people)
+    count = len(pairs)
+    first, second = (count * each.variance).tolist()
+    return Noise(
+        paired=power.Scatter(variance=count * float(gap.variance[0]), freedom=_a_trial(float(gap.freedom[0]), count)),
+        unpaired=power.Scatter(variance=first + second, freedom=_a_trial(float(each.freedom.min()), count)),
+    )
+
+
+def _a_trial(freedom: float, count: int) -> float:
+    """Degrees of freedom that a trial adds, as so many trials have these."""
+    return min(1.0, (freedom + 1.0) / count)
+
+
+def _more(difference: float, variance: float, freedom: float, count: int) -> int | None:
+    scatter = power.Scatter(variance=variance, freedom=_a_trial(freedom, count))
+    needed = power.trials_for(difference, scatter)
+    return None if needed is None else max(0, needed - count)
+
+
+def _correlation(first: np.ndarray, second: np.ndarray) -> float | None:
+    one, other = first - first.mean(), second - second.mean()
+    both = math.sqrt(float((one**2).sum()) * float((other**2).sum()))
+    return round(float((one * other).sum()) / both, 4) if both > 1e-12 else None
+
+
+def _gain(first: np.ndarray, second: np.ndarray) -> float | None:
+    within = float((second - first).var())
+    return round(float(first.var() + second.var()) / within, 4) if within > 1e-12 else None
+
+
+def _rounded(value: float) -> float:
+    return round(value, _DIGITS) + 0.0

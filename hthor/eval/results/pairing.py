@@ -1,0 +1,92 @@
+"""Which trials of two runs are the same but for the robots."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from hthor.errors import RunError
+from hthor.eval.config.run_config import Setup
+from hthor.eval.records import trial_record
+from hthor.eval.records.trial_record import Record
+from hthor.types import TrialSpec
+
+_SAME = {
+    "suite.sha256": "other tasks",
+    "kind.sha256": "another file of the kind of task",
+    "humans.sha256": "other people",
+    "seed": "other people at other tasks",
+    "rules_sha256": "other rules of the benchmark",
+    "code_sha256": "another version of hthor",
+}
+
+
+class Pair(Struct, frozen=True, kw_only=True):
+    """What two runs made of the same occasion."""
+
+    one: Record
+    other: Record
+
+
+class Joined(Struct, frozen=True, kw_only=True):
+    """Two runs' trials side by side, in the order of people and their trials, and how many have no partner."""
+
+    pairs: tuple[Pair, ...]
+    only_one: int
+    only_other: int
+
+
+def occasion(spec: TrialSpec) -> str:
+    """The name of what a trial was but for the robots: this person, on this day, at this task.
+
+    It is the key of the trial without a robot. Equal occasions meet equal draws of chance. A furniture pack is left
+    out, because only robots see its pictures, and so are real time and an action's deadline, which are theirs alone.
+    """
+    of_robots = {"realtime": msgspec.UNSET, "step_limit_s": msgspec.UNSET}
+    return trial_record.key(msgspec.structs.replace(spec, robots=(), assets_sha256="", **of_robots))
+
+
+def difference(one: Setup, other: Setup) -> str:
+    """The first field in which two runs differ so that their trials cannot be paired; empty when they can."""
+    return next((field for field in _SAME if _value(one, field) != _value(other, field)), "")
+
+
+def check(one: tuple[Path, Setup], other: tuple[Path, Setup]) -> None:
+    """See that two runs can be compared.
+
+    Raises:
+        RunError: when they cannot, naming the field.
+    """
+    field = difference(one[1], other[1])
+    if not field:
+        return
+    here, there = (_short(_value(plan, field)) for _, plan in (one, other))
+    raise RunError(
+        f"{one[0]} and {other[0]} cannot be compared: {field} is {here} in the one and {there} in the other, so they "
+        f"had {_SAME[field]}. Evaluate both with the same version, suite, people and seed."
+    )
+
+
+def join(one: Sequence[Record], other: Sequence[Record]) -> Joined:
+    """The trials that both have."""
+    first, second = ({occasion(found.spec): found for found in some} for some in (one, other))
+    return Joined(
+        pairs=tuple(Pair(one=found, other=second[name]) for name, found in first.items() if name in second),
+        only_one=sum(name not in second for name in first),
+        only_other=sum(name not in first for name in second),
+    )
+
+
+def _value(plan: Setup, field: str) -> object:
+    value: object = plan
+    for name in field.split("."):
+        value = getattr(value, name, "") if value is not None else ""
+    return value
+
+
+def _short(value: object) -> str:
+    text = str(value)
+    return text[:10] if len(text) == 64 else text or "absent"

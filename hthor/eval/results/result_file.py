@@ -1,0 +1,172 @@
+"""A run's `result.json`: what stands in it, and reading and writing it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from msgspec import Struct
+
+from hthor import documents, jsonio
+from hthor.errors import RunError
+from hthor.eval.config import robot_team, run_config
+from hthor.eval.config.human_populations import HumansRef
+from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
+from hthor.eval.results.uplift import Kept
+from hthor.eval.statistics.intervals import Estimate
+from hthor.guest import Isolation, Manifest
+from hthor.types import RobotSeat
+
+SCHEMA = "hthor.result/5"
+
+
+class Scores(Struct, frozen=True, kw_only=True):
+    """The run's metrics as fractions, seconds, trust points and counts a trial; see `hthor.eval.metrics.trial_metrics`.
+
+    ``work`` has a share for each seat, ``hindered_by`` seconds for each pair, such as "human by robot".
+    """
+
+    sr: Estimate
+    twsr: Estimate
+    adoption: Estimate
+    time_s: Estimate
+    trust: Estimate
+    progress: Estimate
+    idle_s: Estimate
+    in_way: Estimate
+    hindered_s: Estimate
+    sent: Estimate
+    accepted: Estimate
+    declined: Estimate
+    covered: Estimate
+    unanswered: Estimate
+    false_claims: Estimate
+    precision: Estimate
+    first_useful_s: Estimate
+    interruptions_per_min: Estimate
+    useful: Estimate
+    usefulness: Estimate
+    work: dict[str, Estimate]
+    hindered_by: dict[str, Estimate]
+
+
+class Counts(Struct, frozen=True, kw_only=True):
+    """How much there is: trials, distinct tasks, successes, messages sent by robots, and trials with a fault.
+
+    ``faults_by_seat`` counts the trials in which the robot of each seat failed, ``faults_by_kind`` all faults by what
+    they were. ``replays`` counts sessions that were played again because an agent's process was killed, as if from
+    outside: each gave the agent another try.
+    """
+
+    trials: int
+    tasks: int
+    successes: int
+    messages: int
+    faults: int
+    faults_by_seat: dict[str, int]
+    faults_by_kind: dict[str, int] = {}
+    replays: int = 0
+
+
+class Hashes(Struct, frozen=True, kw_only=True):
+    """Hashes of what decides the records, and of the records themselves, whatever their order in the log.
+
+    ``code`` covers everything that ships with hthor; the hashes of a user's own files are with the robots and the kind.
+    """
+
+    run: str
+    human: str
+    rules: str
+    code: str
+    trials: str
+
+
+class Effort(Struct, frozen=True, kw_only=True):
+    """What it took the command that finished the run: time on the wall, CPU time, and how many trials it played.
+
+    ``replays`` counts sessions that began again, as a worker or an agent's process was ended from outside.
+    """
+
+    wall_s: float
+    cpu_s: float
+    trials: int
+    replays: int = 0
+
+
+class Result(Struct, frozen=True, kw_only=True):
+    """The run's `result.json`.
+
+    ``trust_by_trial`` is the rating after the first, second, ... trial of a person's session, empty without a robot.
+    ``uplift`` is None where no whole run without a robot was ever found for this one. ``mode`` is "realtime" where
+    thinking took time of the trials, which no second run repeats byte for byte, else "lockstep". ``agents`` lists the
+    files of every agent that is not built in, those included that it opened only while it played.
+    """
+
+    schema: str = SCHEMA
+    name: str
+    robots: tuple[RobotSeat, ...]
+    agents: tuple[Manifest, ...] = ()
+    humans: HumansRef
+    suite: SuiteRef
+    kind: KindRef | None = None
+    seed: int
+    mode: str = run_config.LOCKSTEP
+    participants: int
+    metrics: Scores
+    by_kind: dict[str, Scores]
+    trust_by_trial: tuple[Estimate, ...] = ()
+    uplift: Kept | None = None
+    counts: Counts
+    versions: dict[str, str]
+    hashes: Hashes
+    assets: AssetsRef
+    isolation: Isolation | None = None
+    effort: Effort | None = None
+
+    @property
+    def label(self) -> str:
+        """What to call the run in tables and sentences."""
+        return robot_team.label(self.name, self.robots)
+
+
+def load(folder: Path) -> Result | None:
+    """The stored result of a run, None when there is none.
+
+    Raises:
+        RunError: when it cannot be read.
+    """
+    path = folder / "result.json"
+    if not path.is_file():
+        return None
+    hint = f"delete the file, and 'hthor score {folder}' writes it again"
+    return documents.read(path, Result, RunError, schema=SCHEMA, hint=hint)
+
+
+class _Named(Struct, frozen=True):
+    run: str = ""
+
+
+class _Gained(Struct, frozen=True):
+    """The part of a result that `uplift` reads, whatever the version of the rest."""
+
+    hashes: _Named = _Named()
+    uplift: Kept | None = None
+
+
+def uplift(folder: Path, *, run: str) -> Kept | None:
+    """The uplift that a run's result has recorded, whatever its version; None where it has none for this run's hash."""
+    try:
+        held = documents.decode((folder / "result.json").read_bytes(), _Gained)
+    except (OSError, documents.Unreadable):
+        return None
+    return held.uplift if held.hashes.run == run else None
+
+
+def outdated(path: Path) -> bool:
+    """Whether a file is a result of another version of the format."""
+    name = documents.schema_of(path)
+    return name != SCHEMA and name.startswith(SCHEMA.partition("/")[0])
+
+
+def store(folder: Path, result: Result) -> None:
+    """Write `result.json`."""
+    jsonio.write(folder / "result.json", jsonio.pretty(result))

@@ -1,0 +1,1 @@
+"""Playing a run's trials in worker processes and collecting their records."""

@@ -1,0 +1,156 @@
+"""Listening to an engine: what is new goes to the log, what is lost is told."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hthor import jsonio
+from hthor.errors import HthorError, RunError
+from hthor.eval.records.session_restarts import DoOvers
+from hthor.eval.runner.messages import Again, Finished, Lost, Played
+
+if TYPE_CHECKING:
+    from hthor.eval.config.sessions import Session
+    from hthor.eval.records.trial_log import Log
+    from hthor.eval.runner.engines import Engine, Make
+    from hthor.eval.runner.fault_report import Keeper
+    from hthor.eval.runner.run import Watcher
+
+ERRORS = "error.txt"
+_HOPELESS = 3
+"""So many sessions are given up before a run ends of which nothing at all could be played."""
+
+
+class Unfinished(RunError):
+    """Some sessions could not be played; what could is kept."""
+
+    exit_code = 1
+
+
+class InternalFailure(HthorError):
+    """A trial failed by our own fault."""
+
+    exit_code = 1
+
+
+@dataclass
+class Course:
+    """What came of playing: CPU time [s], new trials, sessions that began again, and those that were given up.
+
+    ``void`` are the participants whose sessions are to be played again: what came of them does not count.
+    """
+
+    cpu_s: float = 0.0
+    new: int = 0
+    other: int = 0
+    played: int = 0
+    replays: int = 0
+    lost: list[Lost] = field(default_factory=list)
+    void: set[int] = field(default_factory=set)
+
+    @property
+    def hopeless(self) -> bool:
+        """Whether it is no use to go on."""
+        return not self.played and len(self.lost) >= _HOPELESS
+
+
+def play(
+    book: Log,
+    engine: Engine,
+    sessions: Sequence[Session],
+    make: Make,
+    watch: Watcher,
+    keeper: Keeper,
+    stop: threading.Event,
+    *,
+    steady: bool = True,
+) -> Course:
+    """Play sessions and write down what is new, and beside the log what is left of agents that failed.
+
+    Args:
+        steady: whether a trial that is played again has to go the same way.
+    """
+    came, do_overs = Course(), DoOvers(book.path.parent)
+    _listen(book, engine, sessions, make, watch, keeper, stop, came, do_overs)
+    if (left := [session for session in sessions if session.participant in came.void]) and not stop.is_set():
+        came.void.clear()
+        _listen(book, engine, left, make, watch, keeper, stop, came, do_overs)
+    if came.other and steady:
+        watch.note(
+            f"{came.other} trials went otherwise when they were played again: something here does not repeat itself"
+        )
+    return came
+
+
+def _listen(
+    book: Log,
+    engine: Engine,
+    sessions: Sequence[Session],
+    make: Make,
+    watch: Watcher,
+    keeper: Keeper,
+    stop: threading.Event,
+    came: Course,
+    do_overs: DoOvers,
+) -> None:
+    """Take in what an engine tells of sessions, until all are over; `Course` has what came of it."""
+    draining = False
+    with closing(engine.perform(sessions, make)) as stream:
+        for news in stream:
+            if isinstance(news, Played):
+                came.played += 1
+                if _voided(news, came, do_overs, watch, known=news.key in book):
+                    continue
+                if book.append(news.key, news.line):
+                    came.new += 1
+                    watch.played(news.met, news.faulty)
+                    if news.left is not None:
+                        keeper.keep(news.left)
+                else:
+                    came.other += not book.agrees(news.key, news.line)
+            elif isinstance(news, Finished):
+                came.cpu_s += news.cpu_s
+            elif isinstance(news, Again):
+                came.replays += 1
+                watch.note(f"the session of participant {news.participant} begins again: {news.cause}")
+            elif isinstance(news, Lost) and not _voided(news, came, do_overs, watch):
+                came.lost.append(news)
+                watch.note(f"the session of participant {news.participant} is given up: {news.cause}")
+            book.sync(due=True)
+            watch.beat()
+            if came.hopeless:
+                break
+            if stop.is_set() and not draining:
+                draining = True
+                engine.drain()
+                watch.note("stopping when the trials that are being played are over; Ctrl-C again stops at once")
+
+
+def _voided(news: Played | Lost, came: Course, do_overs: DoOvers, watch: Watcher, *, known: bool = False) -> bool:
+    """Whether news is of a session that is to be played again, as an agent's process was killed in it."""
+    if news.participant not in came.void:
+        if known or not news.killed or not do_overs.take(news.participant):
+            return False
+        came.void.add(news.participant)
+        came.replays += 1
+        watch.note(f"the session of participant {news.participant} begins again: an agent's process was killed")
+    return True
+
+
+def unfinished(folder: Path, lost: Sequence[Lost], missing: int, wanted: int) -> HthorError:
+    """What to tell of sessions that were given up; their tracebacks go to a file."""
+    told = "; ".join(f"participant {one.participant}: {one.cause.rstrip('.')}" for one in lost[:_HOPELESS])
+    more = f"; and {len(lost) - _HOPELESS} more" if len(lost) > _HOPELESS else ""
+    tail = f"{missing} of {wanted} trials are missing, all others are kept."
+    if details := [f"participant {one.participant}\n{one.detail}" for one in lost if one.detail]:
+        jsonio.write(folder / ERRORS, "\n".join(details).encode())
+        return InternalFailure(f"{told}{more}. {tail} The traceback is in {folder / ERRORS}.")
+    return Unfinished(
+        f"{told}{more}. {tail} The same command tries them again; if memory ran out, with fewer --jobs, and if a trial "
+        "needs longer, with a higher --trial-limit."
+    )

@@ -1,0 +1,155 @@
+"""How a run goes, told on standard error: a live line on a terminal, plain lines in a pipe; decides nothing."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+_LINE_EVERY_S = 30.0
+
+
+class Silent:
+    """Says nothing."""
+
+    def begin(self, total: int, kept: int) -> None:
+        """See `hthor.eval.runner.run.Watcher`."""
+
+    def played(self, met: bool, faulty: bool) -> None:
+        """See `hthor.eval.runner.run.Watcher`."""
+
+    def beat(self) -> None:
+        """See `hthor.eval.runner.run.Watcher`."""
+
+    def note(self, text: str) -> None:
+        """See `hthor.eval.runner.run.Watcher`."""
+
+    def close(self) -> None:
+        """The run is over."""
+
+
+class Tally:
+    """Counts of the trials that this command played, and its pace."""
+
+    def __init__(self, total: int, kept: int) -> None:
+        self.total, self.kept = total, kept
+        self.new = self.met = self.faulty = 0
+        self._began = time.monotonic()
+        self._first: float | None = None
+
+    def count(self, met: bool, faulty: bool) -> None:
+        self.new += 1
+        self.met += met
+        self.faulty += faulty
+        if self._first is None:
+            self._first = time.monotonic()
+
+    @property
+    def done(self) -> int:
+        return self.kept + self.new
+
+    @property
+    def pace(self) -> float | None:
+        """Trials a second since the first one, which had to wait for the workers to start."""
+        if self._first is None or self.new < 3:
+            return None
+        spent = time.monotonic() - self._first
+        return (self.new - 1) / spent if spent > 0.0 else None
+
+    @property
+    def words(self) -> str:
+        """The state of the run in a line."""
+        parts = [f"{self.done}/{self.total} trials"]
+        if self.new:
+            parts.append(f"success {100.0 * self.met / self.new:.0f} %")
+        if self.faulty:
+            parts.append(f"{self.faulty} with a fault")
+        if self.pace:
+            parts.append(f"{self.pace:.1f} trials/s")
+            if self.done < self.total:
+                parts.append(f"{_clock((self.total - self.done) / self.pace)} left")
+        return ", ".join(parts)
+
+
+class Plain:
+    """A line for about every tenth of the run, and at least every 30 s."""
+
+    def __init__(self, console: Console, name: str) -> None:
+        self._console, self._name = console, name
+        self._tally = Tally(0, 0)
+        self._last, self._tenth = time.monotonic(), 0
+
+    def begin(self, total: int, kept: int) -> None:
+        self._tally = Tally(total, kept)
+        self._tenth = 10 * kept // max(1, total)
+        self._say(f"{total} trials" + (f", {kept} of them played before" if kept else ""))
+
+    def played(self, met: bool, faulty: bool) -> None:
+        self._tally.count(met, faulty)
+        tenth = 10 * self._tally.done // self._tally.total
+        if tenth > self._tenth:
+            self._tenth = tenth
+            self._say(self._tally.words)
+
+    def beat(self) -> None:
+        if time.monotonic() - self._last > _LINE_EVERY_S:
+            self._say(self._tally.words)
+
+    def note(self, text: str) -> None:
+        self._say(f"note: {text}")
+
+    def close(self) -> None:
+        """Nothing is left on the screen that would have to go."""
+
+    def _say(self, text: str) -> None:
+        self._last = time.monotonic()
+        self._console.print(f"{self._name}: {text}", markup=False, highlight=False, soft_wrap=True)
+
+
+class Live:
+    """A bar on the terminal that goes when the run is over."""
+
+    def __init__(self, console: Console, name: str) -> None:
+        self._console, self._name = console, name
+        self._tally = Tally(0, 0)
+        self._bar: Any = None
+        self._task: Any = None
+
+    def begin(self, total: int, kept: int) -> None:
+        from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
+
+        self._tally = Tally(total, kept)
+        columns = (
+            SpinnerColumn(),
+            TextColumn("[bold]{task.description}"),
+            BarColumn(),
+            TextColumn("{task.fields[words]}"),
+        )
+        self._bar = Progress(*columns, console=self._console, refresh_per_second=4, transient=True)
+        words = f"{kept}/{total} trials, starting the workers" if kept < total else self._tally.words
+        self._task = self._bar.add_task(self._name, total=total, completed=kept, words=words)
+        self._bar.start()
+
+    def played(self, met: bool, faulty: bool) -> None:
+        self._tally.count(met, faulty)
+        self._bar.update(self._task, completed=self._tally.done, words=self._tally.words)
+
+    def beat(self) -> None:
+        """The bar's own thread keeps it fresh."""
+
+    def note(self, text: str) -> None:
+        self._console.print(f"{self._name}: note: {text}", markup=False, highlight=False)
+
+    def close(self) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+
+
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours} h {minutes:02d} min"
+    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"

@@ -1,0 +1,143 @@
+"""Means with honest intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from msgspec import Struct
+
+from hthor.eval.statistics import variance_components
+
+LEVEL = 0.95
+NORMAL = 1.959964
+"""The quantile of the normal distribution that goes with it."""
+POWER = 0.8
+_DIGITS = 6
+_EDGE = 1e-12
+"""A mean this near to a bound, as a share of the range, lies on it."""
+Range = tuple[float, float]
+ANY: Range = (-math.inf, math.inf)
+SHARE: Range = (0.0, 1.0)
+
+
+class Estimate(Struct, frozen=True, kw_only=True):
+    """A mean over ``n`` trials and its 95 % interval; None where there is nothing to average.
+
+    ``mde80`` is how far a given number would have to be from the truth for as many such trials to tell the two apart
+    in four of five cases. It and the interval are None for a single trial of what has no bounds.
+    """
+
+    mean: float | None
+    ci95: tuple[float, float] | None
+    n: int
+    mde80: float | None = None
+
+
+NOTHING = Estimate(mean=None, ci95=None, n=0)
+
+
+def estimate(values: Sequence[float], tasks: Sequence[str], people: Sequence[int], *, within: Range = ANY) -> Estimate:
+    """Mean of ``values`` with an interval for new tasks and new people of the same populations.
+
+    Trials that share a task or a person are not independent; `hthor.eval.statistics.variance_components` says how
+    much that matters. With bounds the interval is a score interval, which never leaves them: Wilson's between two,
+    for as many trials as these are worth, and Poisson's above one. Without bounds it is the mean and some standard
+    errors. All use quantiles of Student's t. docs/statistics.md has how often they hold the truth.
+
+    Args:
+        values: one number a trial. tasks: the trial's task. people: the trial's person.
+        within: the least and the greatest value that there can be.
+    """
+    if not values:
+        return NOTHING
+    found = variance_components.two_way(
+        np.asarray(values, dtype=np.float64)[None], variance_components.codes(tasks), variance_components.codes(people)
+    )
+    mean = sum(values) / len(values)
+    low, high = (float(end[0]) for end in interval(found, len(values), within))
+    mde = float(detectable(found, len(values), within)[0])
+    return Estimate(
+        mean=round(mean, _DIGITS),
+        ci95=(round(min(low, mean), _DIGITS), round(max(high, mean), _DIGITS)) if math.isfinite(high - low) else None,
+        n=len(values),
+        mde80=round(mde, _DIGITS) if math.isfinite(mde) else None,
+    )
+
+
+def interval(found: variance_components.Spread, count: int, within: Range = ANY) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper ends of the 95 % intervals of means over ``count`` trials."""
+    low, high = within
+    quantile = student(_freedom(found, within), (1.0 + LEVEL) / 2.0)
+    if math.isinf(low):
+        half = quantile * np.sqrt(found.variance)
+        return found.mean - half, found.mean + half
+    if math.isinf(high):
+        return _above(found, low, quantile)
+    share = np.clip((found.mean - low) / (high - low), 0.0, 1.0)
+    some = quantile**2 * _inverse_worth(found, count, within)
+    centre = (share + some / 2.0) / (1.0 + some)
+    half = np.sqrt(some * share * (1.0 - share) + some**2 / 4.0) / (1.0 + some)
+    ends = (np.maximum(centre - half, 0.0), np.minimum(centre + half, 1.0))
+    return low + (high - low) * ends[0], low + (high - low) * ends[1]
+
+
+def _above(found: variance_components.Spread, low: float, quantile: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The score interval of an amount that has only a least value: its variance grows with its mean, as a count's."""
+    mean = np.maximum(found.mean - low, 0.0)
+    known = np.isfinite(found.variance)
+    variance = np.where(known, found.variance, 0.0)
+    some = quantile**2 * np.where(mean > 0.0, variance / np.where(mean > 0.0, mean, 1.0), variance)
+    half = np.sqrt(some * mean + some**2 / 4.0)
+    upper = mean + some / 2.0 + half
+    lower = np.where(
+        upper > 0.0, mean**2 / np.where(upper > 0.0, upper, 1.0), 0.0
+    )  # their product is the mean's square
+    return low + np.where(known, lower, 0.0), np.where(known, low + upper, np.inf)
+
+
+def detectable(found: variance_components.Spread, count: int, within: Range = ANY) -> np.ndarray:
+    """The smallest difference from a given number that is seen with a probability of `POWER`."""
+    low, high = within
+    variance = found.variance
+    if math.isfinite(high - low):  # all alike at a bound: as much as its interval's width says
+        inner = np.clip((found.mean - low) / (high - low), 1.0 / (count + 2), (count + 1) / (count + 2))
+        edge = inner * (1.0 - inner) * (high - low) ** 2 * _inverse_worth(found, count, within)
+        variance = np.where(np.isfinite(variance) & (variance > 0.0), variance, edge)
+    freedom = _freedom(found, within)
+    factor = student(freedom, (1.0 + LEVEL) / 2.0) + student(freedom, POWER)
+    needed: np.ndarray = factor * np.sqrt(variance)
+    return needed
+
+
+def _freedom(found: variance_components.Spread, within: Range) -> np.ndarray:
+    """Degrees of freedom. Near a bound, where few trials deviate, what these few trials' tasks and people tell counts.
+
+    In the middle between the bounds, unevenness is mostly chance.
+    """
+    low, high = within
+    if not math.isfinite(high - low):
+        return found.freedom
+    skew = np.clip(2.0 * (found.mean - low) / (high - low) - 1.0, -1.0, 1.0) ** 2
+    uneven = np.where(skew > 0.0, found.uneven / np.where(skew > 0.0, skew, 1.0), np.inf)
+    least: np.ndarray = np.maximum(np.minimum(found.freedom, uneven), 1.0)
+    return least
+
+
+def _inverse_worth(found: variance_components.Spread, count: int, within: Range) -> np.ndarray:
+    """One divided by the number of independent trials of yes or no that tell as much as these do."""
+    low, high = within
+    most = (found.mean - low) * (high - found.mean)
+    plain = np.full_like(found.mean, 1.0 / count)  # all at a bound: nothing is known of how they hang together
+    inside = most > _EDGE * (high - low) ** 2
+    worth: np.ndarray = np.where(inside, found.variance / np.where(inside, most, 1.0), plain)
+    return np.where(np.isfinite(worth), worth, plain)
+
+
+def student(freedom: np.ndarray, level: float) -> np.ndarray:
+    """The quantile of Student's t."""
+    from scipy import special  # comes with the core: scikit-image needs it
+
+    found: np.ndarray = special.stdtrit(freedom, level)
+    return found

@@ -1,0 +1,130 @@
+"""How many trials it takes to see a difference, and how small a difference so many can see; reads no files."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import rules
+from hthor.errors import HthorError
+from hthor.eval.statistics import intervals
+
+_MOST = 10**7
+
+
+class Need(Struct, frozen=True, kw_only=True):
+    """How many it takes for each robot: trials, which are tasks done once each, and people, who do ten each."""
+
+    difference: float
+    correlation: float
+    power: float
+    trials: int
+    people: int
+
+
+class Scatter(Struct, frozen=True, kw_only=True):
+    """How much a trial's difference varies, as independent trials would have it, and what one more trial tells of it.
+
+    ``freedom`` is the degrees of freedom that each trial brings: 1 of independent trials, less where ten trials are of
+    one person and people differ.
+    """
+
+    variance: float
+    freedom: float = 1.0
+
+
+def variance_of_difference(first: float, second: float, correlation: float) -> float:
+    """Of one trial's difference in success, for success rates and the correlation of the same trial's outcomes."""
+    one, other = (rate * (1.0 - rate) for rate in (first, second))
+    return one + other - 2.0 * correlation * math.sqrt(one * other)
+
+
+def correlation_range(first: float, second: float) -> tuple[float, float]:
+    """The least and the greatest correlation that outcomes with these rates can have."""
+    spread = math.sqrt(first * (1.0 - first) * second * (1.0 - second))
+    if spread <= 0.0:
+        return 0.0, 0.0
+    return (
+        (max(0.0, first + second - 1.0) - first * second) / spread,
+        (min(first, second) - first * second) / spread,
+    )
+
+
+def possible(first: float, second: float) -> None:
+    """Do nothing when these can be rates.
+
+    Raises:
+        HthorError: naming the one that is not.
+    """
+    for name, rate in (("first", first), ("second", second)):
+        if not 0.0 <= rate <= 1.0:
+            raise HthorError(f"the {name} rate is {rate:g}, but must be from 0 to 1.")
+
+
+def need(
+    first: float,
+    second: float,
+    *,
+    correlation: float = 0.0,
+    power: float = intervals.POWER,
+    scatter: Scatter | None = None,
+) -> Need:
+    """What it takes to tell two success rates apart, two-sided at 5 %, with tasks that are done once each.
+
+    Args:
+        correlation: of the outcomes of the same trial with either robot; 0 for runs that are not paired.
+        power: the wanted probability of seeing the difference.
+        scatter: of a trial's difference, where it is measured; else that of independent trials.
+
+    Raises:
+        HthorError: when a rate or the correlation is impossible.
+    """
+    possible(first, second)
+    low, high = correlation_range(first, second)
+    if not low - 1e-9 <= correlation <= high + 1e-9:
+        raise HthorError(
+            f"outcomes with rates {first:g} and {second:g} cannot correlate by {correlation:g}: "
+            f"it must be from {low:.2f} to {high:.2f}."
+        )
+    held = scatter or Scatter(variance=variance_of_difference(first, second, correlation))
+    trials = trials_for(second - first, held, power=power)
+    if trials is None:
+        raise HthorError(
+            "the two rates are equal, and no number of trials can tell them apart. Give two rates, or --difference."
+        )
+    return Need(
+        difference=round(second - first, 6),
+        correlation=round(correlation, 6),
+        power=power,
+        trials=trials,
+        people=math.ceil(trials / rules.SESSION_TASKS),
+    )
+
+
+def trials_for(difference: float, scatter: Scatter, *, power: float = intervals.POWER) -> int | None:
+    """Trials whose mean difference is told from 0 with this power; None where there is no difference or no end."""
+    if difference == 0.0:
+        return None
+    few, many = 2, 4
+    while not _enough(many, difference, scatter, power):
+        few, many = many, 2 * many
+        if many > _MOST:
+            return None
+    while many - few > 1:
+        middle = (few + many) // 2
+        few, many = (few, middle) if _enough(middle, difference, scatter, power) else (middle, many)
+    return many
+
+
+def about(number: int) -> str:
+    """A forecast in words: two figures are as many as it has."""
+    digits = len(str(number)) - 2
+    return str(round(number, -digits)) if digits > 0 else str(number)
+
+
+def _enough(count: int, difference: float, scatter: Scatter, power: float) -> bool:
+    freedom = np.array(max(1.0, count * scatter.freedom - 1.0))
+    factor = float(intervals.student(freedom, (1.0 + intervals.LEVEL) / 2.0) + intervals.student(freedom, power))
+    return factor * math.sqrt(scatter.variance / count) <= abs(difference)

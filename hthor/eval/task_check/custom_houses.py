@@ -1,0 +1,69 @@
+"""`hthor eval --house my_house.json`: tasks made in houses of the user's own, kept in the cache for the next time."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+
+from hthor import code_identity, houses, installation, jsonio
+from hthor.errors import HthorError
+from hthor.eval.config import task_selection
+from hthor.eval.runner.run_options import Options
+from hthor.eval.task_check import make_suite as proved
+from hthor.tasks.suites import custom_suite, suite_files
+from hthor.tasks.suites.custom_suite import Recipe
+from hthor.tasks.suites.suite_files import Source
+
+TASKS = 10
+"""How many tasks a house is given: as many as a person does."""
+_FORBIDDEN = re.compile(r"[^A-Za-z0-9_.-]+")
+
+
+def resolve(options: Options, tell: Callable[[str], None]) -> Options:
+    """The options with a suite of tasks in the house files that are given; unchanged where none is given.
+
+    Args:
+        tell: is told in words when tasks are made, which takes a while.
+
+    Raises:
+        HthorError: when the houses do not go with the other options, or have no room for tasks.
+    """
+    files = [word for word in options.houses if word.endswith(".json")]
+    if not files:
+        return options
+    if len(files) < len(options.houses):
+        named = next(word for word in options.houses if word not in files)
+        raise HthorError(f"--house {named} is a suite's house and {files[0]} is your own; give one sort or the other.")
+    if options.suite:
+        raise HthorError(f"--house {files[0]} makes tasks of its own; leave out --suite, or name a house of the suite.")
+    if options.kind.endswith(".py"):
+        raise HthorError("--house with a house of your own takes hthor's kinds of task; make a suite for your kind.")
+    path = _suite(options, suite_files.sources(files), tell)
+    return msgspec.structs.replace(options, suite=str(path), houses=(), difficulty="", kind="")
+
+
+def _suite(options: Options, found: tuple[Source, ...], tell: Callable[[str], None]) -> Path:
+    """The folder of the suite, made unless it is there."""
+    kinds = (task_selection.find(options.kind).name,) if options.kind else ()
+    recipe = Recipe(name=_name(found), tasks=TASKS, kinds=kinds, difficulty=options.difficulty)  # type: ignore[arg-type]
+    specs = [houses.load(one.given) for one in found]
+    key = jsonio.sha256([custom_suite.VERSION, recipe, specs, code_identity.makers_sha256()])
+    folder = installation.cache() / "suites" / f"{recipe.name}-{key[:16]}"
+    if not (folder / suite_files.SUITE).is_file():
+        tell(f"making {TASKS} tasks in {', '.join(one.given for one in found)}; they are kept for the next time")
+        jobs = options.jobs or len(os.sched_getaffinity(0))
+        made = dict(proved.columns(recipe, found, jobs=jobs))
+        columns = [made[number] for number in range(len(found))]
+        suite_files.write(folder, suite_files.files(recipe.name, custom_suite.VERSION, found, columns))
+    return folder
+
+
+def _name(found: tuple[Source, ...]) -> str:
+    """What the suite is called: as its house, or by how many there are."""
+    stem = found[0].file.stem if len(found) == 1 and found[0].file else f"{len(found)}-houses"
+    name = _FORBIDDEN.sub("-", stem).strip("-._")[:50] or "house"
+    return f"in-{name}"

@@ -1,0 +1,34 @@
+"""Drawing and proving the tasks of a suite of one's own, in worker processes; writes nothing."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator, Sequence
+
+from hthor import houses
+from hthor.eval.task_check import proof
+from hthor.tasks.suites import custom_suite
+from hthor.tasks.suites.custom_suite import Recipe
+from hthor.tasks.suites.suite_files import Source
+from hthor.types import TaskSpec
+
+CODE_ROOT = "makers"
+
+
+def columns(recipe: Recipe, given: Sequence[Source], *, jobs: int) -> Iterator[tuple[int, tuple[TaskSpec, ...]]]:
+    """The tasks of each house with the house's number, as they are ready. Closing the iterator ends the workers.
+
+    Raises:
+        HthorError: when a house has no room for so many tasks that can be done.
+    """
+    yield from proof.shared(functools.partial(_column, recipe), given, jobs=jobs)
+
+
+def _column(recipe: Recipe, source: Source) -> tuple[TaskSpec, ...]:
+    if source.file is not None:
+        houses.shelve(source.file.resolve().parent)  # so that the proof finds it by name
+    return custom_suite.in_house(recipe, source.given, _possible)
+
+
+def _possible(task: TaskSpec) -> bool:
+    return not proof.examine(task).faults

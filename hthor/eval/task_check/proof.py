@@ -1,0 +1,289 @@
+"""Proof that tasks are what they say and can be done, by the engine and by play.
+
+A task is set up in the real world. Every object is let go there and must stay where it is; then what the task says of
+relations is measured on the true state, with arithmetic of its own; then a person who knows where everything is does
+the task (`hthor.eval.task_check.omniscient_solver`).
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import signal
+from collections import Counter
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import closing
+from functools import cache, lru_cache
+from multiprocessing import get_context
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+import msgspec
+from msgspec import Struct
+
+from hthor import catalog, code_identity, houses, plugins, rules
+from hthor.errors import HthorError, UnknownName
+from hthor.eval.runner import worker
+from hthor.eval.task_check import omniscient_solver
+from hthor.tasks.generation.placement import NEAR_M, as_thing
+from hthor.tasks.validate import faults as mistakes
+from hthor.types import HUMAN, HouseSpec, Placement, TaskSpec, Thing, ThingState, Vec3
+
+CODE_ROOT = "makers"
+
+if TYPE_CHECKING:
+    from hthor.world import World
+
+DRIFT_M, WATCHED_S = 0.02, 2.0
+"""How far an object may move in so many seconds after it was set down."""
+_PATIENCE = 6
+"""Where there is more to do than one thing, a person alone may take so many times the limit."""
+_DEEP_M = 0.01
+_LIFT_M = 0.002
+"""How high above its place an object is let go: less than `DRIFT_M`, and enough for the engine to be awake."""
+_CHUNK = 10
+_In = TypeVar("_In")
+_Out = TypeVar("_Out")
+
+
+class Fault(Struct, frozen=True, kw_only=True):
+    """What is wrong with a task: which field of it says so, and why that is not so."""
+
+    task: str
+    field: str
+    reason: str
+
+
+class Verdict(Struct, frozen=True, kw_only=True):
+    """What came of one task's check. ``drift`` [m] is the farthest that an object moved when it was woken, ``seconds``
+    what the task takes a person who knows everything, ``metres`` how far they walk; 0 where that could not be tried.
+    """
+
+    task: str
+    house: str
+    least: float = 0.0
+    drift: float = 0.0
+    seconds: float = 0.0
+    metres: float = 0.0
+    faults: tuple[Fault, ...] = ()
+
+
+def verdicts(tasks: Sequence[TaskSpec], *, jobs: int) -> Generator[Verdict, None, None]:
+    """Check tasks in worker processes; verdicts come as they are ready. Closing the iterator ends the workers."""
+    with closing(shared(_examine, _chunks(tasks), jobs=jobs)) as found:
+        for _, own in found:
+            yield from own
+
+
+def shared(work: Callable[[_In], _Out], items: Sequence[_In], *, jobs: int) -> Generator[tuple[int, _Out], None, None]:
+    """Do something to each item in worker processes; results come with the items' numbers as they are ready.
+
+    Closing the iterator ends the workers.
+    """
+    before = dict(os.environ)
+    os.environ.update(worker.ONE_THREAD, PYTHONHASHSEED="0")
+    code_identity.keep_compiled()
+    count, known = min(jobs, max(1, len(items))), (os.getpid(), houses.shelves())
+    pool = ProcessPoolExecutor(count, get_context("spawn"), initializer=_begin, initargs=known)
+    try:
+        left = {pool.submit(work, item): number for number, item in enumerate(items)}
+        for future in as_completed(left):
+            yield left[future], future.result()
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+        for process in tuple((getattr(pool, "_processes", None) or {}).values()):
+            process.terminate()
+        os.environ.clear()
+        os.environ.update(before)
+
+
+def examine(task: TaskSpec) -> Verdict:
+    """Check one task, in this process."""
+    try:
+        house = _house(task.house, task.house_sha256)
+    except HthorError as error:
+        return _unsound(task, [("house", str(error))])
+    first = list(mistakes(task, house))
+    if first:
+        return _unsound(task, first)
+    try:
+        return _proved(task, house)
+    except HthorError as error:  # the world refuses to set the task up
+        return _unsound(task, [("$", str(error))])
+
+
+def repeated(tasks: Sequence[TaskSpec]) -> list[Fault]:
+    """A fault for every id that more than one task has."""
+    many = Counter(task.id for task in tasks)
+    reason = "is the id of {} tasks; ids must be distinct"
+    return [Fault(task=id, field="id", reason=reason.format(count)) for id, count in many.items() if count > 1]
+
+
+def _proved(task: TaskSpec, house: HouseSpec) -> Verdict:
+    """What came of a task whose record is valid in its house."""
+    world = _world(house, tuple((placed.id, placed.kind) for placed in task.objects))
+    inside = tuple(_inside(world, task))
+    if inside:
+        return _unsound(task, inside)
+    drift, states = woken(world, task)
+    found = [*_unsettled(task, drift), *(fault for one in task.objects for fault in _untrue(one, house, task, states))]
+    seconds, metres, late = _played(world, task)
+    verdict = _unsound(task, [*found, *late])
+    return msgspec.structs.replace(verdict, drift=max(drift.values(), default=0.0), seconds=seconds, metres=metres)
+
+
+def _unsound(task: TaskSpec, faults: Sequence[tuple[str, str]]) -> Verdict:
+    rows = tuple(Fault(task=task.id, field=field, reason=reason) for field, reason in faults)
+    return Verdict(task=task.id, house=task.house, least=_least(task), faults=rows)
+
+
+def _least(task: TaskSpec) -> float:
+    """The least time [s], 0 for a task of a kind that is not there."""
+    try:
+        return float(plugins.load("task kind", task.kind).least(task))
+    except UnknownName:
+        return 0.0
+
+
+# ----------------------------------------------------------------------------------------------------- where things are
+
+
+def woken(world: World, task: TaskSpec) -> tuple[dict[str, float], dict[str, ThingState]]:
+    """How far [m] each object of a task moves when the engine is made to look after it, and where all is then."""
+    world.reset(task)
+    for placed in task.objects:
+        x, y, z = placed.position
+        world.put_object(placed.id, (x, y, z + _LIFT_M), yaw=placed.yaw)
+    drift = dict.fromkeys((placed.id for placed in task.objects), 0.0)
+    for _ in range(round(WATCHED_S / rules.TICK_S)):
+        world.advance()
+        for placed in task.objects:
+            drift[placed.id] = max(drift[placed.id], math.dist(world.position(placed.id), placed.position))
+    return drift, {state.id: state for state in world.truth()}
+
+
+def _inside(world: World, task: TaskSpec) -> Iterator[tuple[str, str]]:
+    """Objects that cannot be set down where the task says, because something is there already."""
+    world.reset(task)
+    for number, placed in enumerate(task.objects):
+        x, y, z = placed.position
+        try:
+            world.put_object(placed.id, (x, y, z + _LIFT_M), yaw=placed.yaw)
+        except HthorError as error:
+            yield f"objects[{number}].position", str(error)
+
+
+def _unsettled(task: TaskSpec, drift: dict[str, float]) -> Iterator[tuple[str, str]]:
+    for number, placed in enumerate(task.objects):
+        if drift[placed.id] > DRIFT_M:
+            reason = f"'{placed.id}' is not at rest: it moves {drift[placed.id]:.3f} m in {WATCHED_S:.0f} s"
+            yield f"objects[{number}].position", reason
+
+
+def _untrue(
+    placed: Placement, house: HouseSpec, task: TaskSpec, states: dict[str, ThingState]
+) -> Iterator[tuple[str, str]]:
+    """What the task says of an object, and does not hold of its true state."""
+    where = f"objects[{task.objects.index(placed)}]"
+    things, state = {thing.id: thing for thing in house.things}, states[placed.id]
+    things |= {other.id: as_thing(other) for other in task.objects if other is not placed}
+    half = catalog.kind(placed.kind).size[2] / 2
+    on_it = placed.support in things and things[placed.support].parent == state.support != ""
+    if state.support != placed.support and not on_it:
+        reason = f"'{placed.id}' rests on '{state.support or 'the floor'}', not on '{placed.support or 'the floor'}'"
+        yield f"{where}.support", reason
+    elif placed.support and not _holds(things[placed.support], state.position, half, within=placed.relation == "in"):
+        yield f"{where}.relation", f"'{placed.id}' is not {placed.relation} '{placed.support}'"
+    if placed.near:
+        gap = _gap(state.position, things.get(placed.near), states.get(placed.near))
+        if not gap <= NEAR_M:
+            yield f"{where}.near", f"'{placed.id}' is {gap:.2f} m from '{placed.near}', more than {NEAR_M} m"
+
+
+def _holds(thing: Thing, point: Vec3, half: float, *, within: bool) -> bool:
+    """Whether an object ``half`` [m] high on either side of ``point`` stands over a thing's plan, and in its height
+    when it is to be ``within``: a sink's or a fridge's; on top of a part of it otherwise.
+    """
+    u, v = _seen_from(thing, point)
+    low, foot = thing.centre[2] - thing.size[2] / 2, point[2] - half
+    high = low + thing.size[2]
+    inside = abs(u) <= thing.size[0] / 2 and abs(v) <= thing.size[1] / 2
+    if within:
+        return inside and low - _DEEP_M <= foot <= high - _DEEP_M
+    return inside and low + _DEEP_M < foot <= high + _DEEP_M
+
+
+def _gap(point: Vec3, thing: Thing | None, other: ThingState | None) -> float:
+    """Distance [m] on the plan to the edge of a thing that stands, to the middle of an object; inf to neither."""
+    if thing is not None:
+        u, v = _seen_from(thing, point)
+        return math.hypot(max(abs(u) - thing.size[0] / 2, 0.0), max(abs(v) - thing.size[1] / 2, 0.0))
+    return math.inf if other is None else math.dist(point[:2], other.position[:2])
+
+
+def _seen_from(thing: Thing, point: Vec3) -> tuple[float, float]:
+    """Where a point is along a thing's width and along its depth [m], from its middle."""
+    away = complex(point[0] - thing.centre[0], point[1] - thing.centre[1])
+    turned = away * complex(math.cos(thing.yaw), -math.sin(thing.yaw))
+    return turned.real, turned.imag
+
+
+# --------------------------------------------------------------------------------------------------------------- play
+
+
+def _played(world: World, task: TaskSpec) -> tuple[float, float, list[tuple[str, str]]]:
+    """What the task takes a person alone: seconds, metres, and what is wrong with that."""
+    many = len(task.goal.todo) > 1
+    if any(job.hands > 1 for job in task.goal.todo):
+        return 0.0, 0.0, []
+    world.reset(task)
+    kind = plugins.load("task kind", task.kind)
+    if kind.met(task, world.snapshot(), world.house):
+        return 0.0, 0.0, [("human_start", "the goal is met before anybody has moved")]
+    feat = omniscient_solver.perform(world, task, limit_s=_PATIENCE * task.time_limit if many else None)
+    faults = []
+    if not feat.met:
+        faults.append(("goal", f"a person who knows everything does not meet it: {feat.reason}"))
+    elif kind.least(task) > feat.seconds:
+        faults.append(("t_star", f"means at least {kind.least(task)} s, but {feat.seconds} s were enough"))
+    return feat.seconds, feat.metres, faults
+
+
+# ------------------------------------------------------------------------------------------------------------ workers
+
+
+def _chunks(tasks: Sequence[TaskSpec]) -> list[list[TaskSpec]]:
+    """Tasks of one house together, so that a worker builds few worlds, and few at a time, so that all end together."""
+    by_house: dict[str, list[TaskSpec]] = {}
+    for task in tasks:
+        by_house.setdefault(task.house, []).append(task)
+    return [own[first : first + _CHUNK] for own in by_house.values() for first in range(0, len(own), _CHUNK)]
+
+
+def _examine(tasks: Sequence[TaskSpec]) -> list[Verdict]:
+    return [examine(task) for task in tasks]
+
+
+def _begin(parent: int, shelves: tuple[Path, ...]) -> None:
+    """End with the parent, know its houses, and be deaf to Ctrl-C, for the parent decides what it means."""
+    worker.end_with(parent)
+    for folder in shelves:
+        houses.shelve(folder)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@lru_cache(maxsize=32)
+def _house(name: str, sha256: str) -> HouseSpec:  # noqa: ARG001 - names may come to stand for other houses
+    """The house of that name, loaded once for all tasks that were made for its version ``sha256``."""
+    return houses.load(name)
+
+
+@cache
+def _world(house: HouseSpec, objects: tuple[tuple[str, str], ...]) -> World:
+    from hthor.world import World
+
+    return World(house, objects=objects)
+
+
+__all__ = ["DRIFT_M", "HUMAN", "WATCHED_S", "Fault", "Verdict", "examine", "repeated", "shared", "verdicts", "woken"]

@@ -1,0 +1,1 @@
+"""What a submitted agent consists of: its files, arguments and manifest."""

@@ -1,0 +1,87 @@
+"""Where an agent's own files lie, and what each of them is called in its manifest; reads no file."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+from msgspec import Struct
+
+from hthor.guest.agent import command
+from hthor.guest.agent.reference import Reference
+from hthor.guest.confinement import paths
+
+_NEVER = ("__pycache__", ".git")
+
+
+class Grounds(Struct, frozen=True, kw_only=True):
+    """The folders that an agent's files lie in.
+
+    Attributes:
+        root: the folder that it lives in, empty for none.
+        base: the part of that which is its own: all of it, or of installed libraries its own package.
+        apart: folders in there that are not its own: installed libraries, this package, caches.
+        readable: files and folders elsewhere that the user lets it read.
+    """
+
+    root: str
+    base: str
+    apart: tuple[str, ...] = ()
+    readable: tuple[str, ...] = ()
+
+    def owns(self, path: str) -> bool:
+        """Whether a path lies in the agent's own folder, or is that folder."""
+        if not self.base or not _below(path, self.base):
+            return False
+        parts = path[len(self.base) :].split(os.sep)
+        return not any(part in _NEVER for part in parts) and not any(_below(path, folder) for folder in self.apart)
+
+    def name(self, path: str) -> str | None:
+        """What a path is called in the manifest; None for what is no part of the agent."""
+        for place in (os.path.normpath(path), os.path.realpath(path)):
+            if self.owns(place):
+                return os.path.relpath(place, self.root).replace(os.sep, "/")
+            for readable in self.readable:
+                if _below(place, readable):
+                    return f"../{os.path.relpath(place, os.path.dirname(readable))}".replace(os.sep, "/")
+        return None
+
+    def find(self, name: str) -> Path:
+        """Where the file of this name in the manifest lies."""
+        if name.startswith("../"):
+            for readable in self.readable:
+                if _below(name[3:], os.path.basename(readable)):
+                    return Path(os.path.dirname(readable), name[3:])
+        return Path(self.root, name)
+
+
+def of(agent: Reference, readable: tuple[str, ...] = ()) -> Grounds:
+    """The grounds of an agent."""
+    root = agent.root
+    base = root
+    if agent.module and any(_below(root, folder) for folder in _libraries()):
+        base = os.path.join(root, agent.module.partition(".")[0])
+        base = base if os.path.isdir(base) else f"{base}.py"
+    strangers = [*_strangers(), os.path.join(root, "runs")]
+    apart = [folder for folder in strangers if root and folder != root and _below(folder, root)]
+    if agent.words:  # a command names files anywhere; where it names none of its own, the program is what there is
+        named = [str(path) for path in command.own_files(agent.words)] or [agent.words[0]]
+        readable += tuple(path for path in named if not (root and _below(path, root)))
+    return Grounds(root=root, base=base, apart=tuple(sorted(set(apart))), readable=tuple(dict.fromkeys(readable)))
+
+
+def _libraries() -> list[str]:
+    return [os.path.realpath(folder) for folder in paths.libraries()]
+
+
+def _strangers() -> list[str]:
+    """Folders whose files are no agent's own, wherever they lie."""
+    places = [sys.prefix, sys.base_prefix, sys.exec_prefix, *paths.libraries(), str(paths.PACKAGE), "runs"]
+    if compiled := os.environ.get("NUMBA_CACHE_DIR", ""):
+        places.append(compiled)
+    return [form for place in places for form in (os.path.abspath(place), os.path.realpath(place))]
+
+
+def _below(path: str, folder: str) -> bool:
+    return path == folder or path.startswith(folder.rstrip(os.sep) + os.sep)

@@ -1,0 +1,51 @@
+"""Hashes of agents' files."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import os
+import time
+from pathlib import Path
+
+from hthor.errors import AgentError
+
+_Sign = tuple[int, int, int, int, int]
+_SETTLED_NS = 2_000_000_000
+"""A file that was written so shortly ago may be written again without its times telling."""
+_known: dict[str, tuple[_Sign, str]] = {}
+
+
+def of_file(path: Path) -> str:
+    """The hash of a file's bytes.
+
+    Raises:
+        AgentError: when it cannot be read.
+    """
+    try:
+        return read(path)[0]
+    except OSError as error:
+        hint = "Write one to start from: hthor agent new my_agent.py"
+        raise AgentError(f"cannot read the agent's file {path}: {error.strerror}. {hint}") from None
+
+
+def read(path: Path) -> tuple[str, int]:
+    """The hash of a file's bytes, and how many they are; not read again while nothing about the file has changed.
+
+    Raises:
+        OSError: when it cannot be read, or is no file.
+    """
+    if path.exists() and not path.is_file():  # which could be read without end, or never
+        raise OSError(errno.EINVAL, "it is no file")
+    with path.open("rb") as file:
+        found = os.fstat(file.fileno())
+        sign = (found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns)
+        before = _known.get(str(path))
+        if before is not None and before[0] == sign:
+            return before[1], found.st_size
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+        if time.time_ns() - max(found.st_mtime_ns, found.st_ctime_ns) > _SETTLED_NS:
+            _known[str(path)] = sign, digest
+        else:
+            _known.pop(str(path), None)
+        return digest, found.st_size

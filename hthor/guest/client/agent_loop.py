@@ -1,0 +1,67 @@
+"""One trial of a Python agent on the guest's side."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+
+from hthor.guest.client import file_recorder, loading
+from hthor.guest.client.file_recorder import Recorder
+from hthor.guest.client.remote_senses import Gone, RemoteSenses, Wire
+from hthor.guest.protocol import wire
+from hthor.guest.protocol.sanitize import shown
+from hthor.types import Action, Message
+
+
+def play(pipe: Wire, make: Callable[[], Any], order: wire.Begin, recorder: Recorder | None = None) -> None:
+    """One trial. A failure is the agent's last word; the host then ends the process.
+
+    Args:
+        make: gives a new agent. recorder: what has taken down the files that it opens, if anything has.
+    """
+    try:
+        agent = make()
+        agent.begin(order.briefing)
+        pipe.send(wire.Done(files=recorder.take() if recorder else ()))
+        while isinstance(look := pipe.receive(), wire.Look):
+            said = _act(pipe, agent, look)
+            if recorder and recorder.waiting and len(wire.encode(said)) <= wire.MOST_BYTES - 2 * file_recorder.MOST:
+                said = msgspec.structs.replace(said, files=recorder.take())
+            pipe.send(said)
+    except Gone:
+        raise
+    except BaseException as error:
+        failed = _failed(error)
+        pipe.send(msgspec.structs.replace(failed, files=recorder.take() if recorder else ()))
+
+
+def _act(pipe: Wire, agent: Any, look: wire.Look) -> wire.Acted | wire.Failed:
+    observation, senses = look.observation, RemoteSenses(pipe, look.ahead)
+    inbox = tuple(_with_image(message, senses) for message in observation.inbox)
+    action = agent.act(msgspec.structs.replace(observation, senses=senses, inbox=inbox))
+    senses.expire()
+    if not isinstance(action, Action):
+        detail = f"act must return an hthor.types.Action, got {type(action).__name__}: {repr(action)[:200]}"
+        return wire.Failed(kind="wrong_type", detail=shown(detail))
+    try:
+        message = wire.Acted(action=wire.plain(action), read=senses.read)
+    except wire.Unfit as error:
+        return wire.Failed(kind="garbage", detail=f"act returned an Action that cannot be taken: {error}")
+    size = len(wire.encode(message))
+    if size > wire.MOST_BYTES:
+        return wire.Failed(
+            kind="oversized", detail=f"the action takes {size} bytes, at most {wire.MOST_BYTES} are taken"
+        )
+    return message
+
+
+def _with_image(message: Message, senses: RemoteSenses) -> Message:
+    return msgspec.structs.replace(message, image=lambda: senses.image(message.id))
+
+
+def _failed(error: BaseException) -> wire.Failed:
+    detail = shown(traceback.format_exception_only(error)[-1].strip())[: wire.TEXT_MAX]
+    return wire.Failed(kind="raised", detail=detail, traceback=loading.shown(error))

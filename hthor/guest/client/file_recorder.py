@@ -1,0 +1,101 @@
+"""Takes down which of its own files an agent opens, in the agent's own process; hashes nothing and believes nothing.
+
+An agent could keep this from seeing what it does, and libraries in C open files unseen. So the host hashes the files
+itself, adds those that the sources name, and of a submission all that was handed in.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+from collections.abc import Callable
+from typing import Any
+
+from hthor.guest.agent.agent_paths import Grounds
+
+MOST = 16 << 10
+"""Bytes of names in one message; the rest goes with later ones."""
+
+
+class UnprintableName(PermissionError):
+    """A file of the agent's own that no manifest can list, and that it may not open for that."""
+
+
+class Recorder:
+    """Every file of the agent's own that was opened for reading since `start`, each named once."""
+
+    def __init__(self, grounds: Grounds) -> None:
+        self._grounds = grounds
+        self._seen: set[str] = set()
+        self._fresh: list[str] = []
+        self._readers: dict[str, Callable[[Any], object]] = {
+            "open": self._open,
+            "import": lambda args: self._note(args[1]),
+            "sqlite3.connect": lambda args: self._note(_database(args[0])),
+            "ctypes.dlopen": lambda args: self._note(args[0]),
+            "subprocess.Popen": lambda args: self._words(args[0], args[1]),
+            "os.exec": lambda args: self._words(args[0], args[1]),
+            "os.posix_spawn": lambda args: self._words(args[0], args[1]),
+        }
+
+    def start(self) -> None:
+        """Listen from now on, as long as this process lives."""
+        sys.addaudithook(self._hear)
+
+    @property
+    def waiting(self) -> bool:
+        """Whether there are names that were not taken yet."""
+        return bool(self._fresh)
+
+    def take(self) -> tuple[str, ...]:
+        """Names that were not taken yet, as many as fit into a message."""
+        if not self._fresh:
+            return ()
+        size, count = 0, 0
+        for name in self._fresh:
+            size += len(name.encode(errors="replace")) + 4
+            if count and size > MOST:
+                break
+            count += 1
+        taken, self._fresh = self._fresh[:count], self._fresh[count:]
+        return tuple(taken)
+
+    def _hear(self, event: str, args: Any) -> None:
+        read = self._readers.get(event)
+        if read is not None:
+            try:
+                read(args)
+            except UnprintableName:
+                raise
+            except Exception:  # an agent's own odd arguments are for the call itself to refuse
+                return
+
+    def _open(self, args: Any) -> None:
+        path, _, flags = args
+        if not isinstance(flags, int) or flags & os.O_ACCMODE != os.O_WRONLY:
+            self._note(path)
+
+    def _words(self, program: Any, words: Any) -> None:
+        for word in (program, *([words] if isinstance(words, (str, bytes)) else words or ())):
+            self._note(word)
+
+    def _note(self, path: Any) -> None:
+        if path is None or isinstance(path, int):
+            return
+        text = os.path.abspath(os.fsdecode(path))
+        if text in self._seen:
+            return
+        self._seen.add(text)
+        name = self._grounds.name(text)
+        if name is None or not os.path.isfile(text):
+            return
+        if not name.isprintable():
+            self._seen.discard(text)  # refused every time
+            raise UnprintableName(errno.EPERM, "an agent's own file needs a name of printable letters", text)
+        self._fresh.append(name)
+
+
+def _database(name: Any) -> Any:
+    text = os.fsdecode(name)
+    return text[len("file:") :].partition("?")[0] if text.startswith("file:") else text

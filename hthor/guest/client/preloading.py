@@ -1,0 +1,84 @@
+"""Imports the libraries that an agent's file names, once for all its trials; never a line of the file itself.
+
+Only installed libraries and the parts of this package that minds are made with count. Whatever goes wrong here is left
+for the file's own import to meet.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import gc
+import importlib.util
+import sys
+from pathlib import Path
+
+from hthor.guest.confinement import paths
+
+_MINDS = "hthor.agents"
+_MOST_BYTES = 1 << 20
+"""Longest file that is looked into."""
+_SIDE_EFFECTS = ("__main__", "antigravity", "idlelib", "lib2to3", "this", "turtledemo")
+"""Names of modules, or of parts of them, that do something when they are imported; so do all tests."""
+_OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "hthor.catalog", "hthor.rules")
+
+
+def preload(path: Path, module: str = "") -> None:
+    """Import what the file is going to import, and keep it out of the way of forks.
+
+    Args:
+        module: its name where it is imported by name; nothing of its own package is imported here.
+    """
+    own = module.partition(".")[0]
+    wanted = [one for one in _named(path) if one[0].partition(".")[0] != own or own == "hthor"]
+    sys.argv = [""]
+    if any(name.startswith(_MINDS) for name in (module, *(one[0] for one in wanted))):
+        wanted += [(name, []) for name in _behind()]
+    for module, names in wanted:
+        with contextlib.suppress(BaseException):
+            for name in [module, *(f"{module}.{name}" for name in names if module == "hthor")]:
+                if name.startswith(_OURS) or (_quiet(name) and _installed(name.partition(".")[0])):
+                    found = importlib.import_module(name)
+                    for part in names:
+                        getattr(found, part, None)  # some packages import their parts only then
+    gc.collect()
+    gc.freeze()
+
+
+def _behind() -> list[str]:
+    """What our own minds import only once they begin, which would cost every trial anew."""
+    files = [path for part in ("agents", "navigation") for path in sorted((paths.PACKAGE / part).rglob("*.py"))]
+    return [
+        f"hthor.{path.parent.name}.{path.stem}" for path in files if path.parent.name != "agents" or path.stem[0] == "_"
+    ]
+
+
+def _quiet(name: str) -> bool:
+    """Whether a module is a library, which importing does nothing but make available."""
+    return not any(part in _SIDE_EFFECTS or part.startswith("test") for part in name.split("."))
+
+
+def _installed(name: str) -> bool:
+    """Whether a module comes with Python or from where libraries are installed."""
+    spec = importlib.util.find_spec(name)
+    if spec is None or name == "hthor":
+        return False
+    places = [Path(sys.prefix), Path(sys.base_prefix), *map(Path, paths.libraries())]
+    return spec.origin in ("built-in", "frozen") or any(Path(spec.origin or "").is_relative_to(at) for at in places)
+
+
+def _named(path: Path) -> list[tuple[str, list[str]]]:
+    """Modules that a file imports by name at its top level, and what it wants of each."""
+    try:
+        if path.stat().st_size > _MOST_BYTES:  # nothing bounds what it takes to read it here
+            return []
+        tree = ast.parse(path.read_bytes())
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
+        return []
+    found: list[tuple[str, list[str]]] = []
+    for node in tree.body:
+        if isinstance(node, ast.Import):
+            found += [(alias.name, []) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            found.append((node.module, [alias.name for alias in node.names]))
+    return found

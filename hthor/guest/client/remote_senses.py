@@ -1,0 +1,139 @@
+"""The guest's end of the wire, and what it reads over it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any, NoReturn, Protocol
+
+import msgspec
+
+from hthor.errors import StaleObservation
+from hthor.guest.protocol import shared_frames, wire
+from hthor.types import Camera, Detection, Scan
+
+_PICTURES = ("rgb", "depth", "segmentation", "image")
+_hosts_words = msgspec.msgpack.Decoder(wire.ToGuest)
+
+
+class Pipe:
+    """The guest's end of the wire. Reads exactly one frame at a time, so that a fork shares nothing half read."""
+
+    def __init__(self, read: int, write: int, shared: int = -1) -> None:
+        self._read, self._write = read, write
+        self.handles, self.shared = (read, write), shared
+        self.view = shared_frames.View(shared) if shared >= 0 else None
+
+    def receive(self) -> wire.ToGuest:
+        """The host's next message; ends the process when the host is gone."""
+        size = int.from_bytes(self._exactly(4), "little")
+        message: wire.ToGuest = _hosts_words.decode(self._exactly(size))
+        return message
+
+    def send(self, message: wire.ToHost | wire.KeeperToHost) -> None:
+        data = memoryview(wire.frame(message))
+        while data:
+            data = data[os.write(self._write, data) :]
+
+    def fail(self) -> NoReturn:
+        """The host does not keep to the wire; there is nobody to tell."""
+        os._exit(1)
+
+    def _exactly(self, size: int) -> bytes:
+        chunks = []
+        while size:
+            chunk = os.read(self._read, min(size, 1 << 20))
+            if not chunk:
+                os._exit(0)
+            chunks.append(chunk)
+            size -= len(chunk)
+        return b"".join(chunks)
+
+
+class Gone(BaseException):
+    """There is nobody to talk to any more; no agent is to catch this."""
+
+
+class Wire(Protocol):
+    """A guest's end of whatever carries messages; ``view`` are the shared frames, if any."""
+
+    view: shared_frames.View | None
+
+    def receive(self) -> wire.ToGuest: ...
+    def send(self, message: wire.ToHost) -> None: ...
+    def fail(self) -> NoReturn: ...
+
+
+class RemoteSenses:
+    """Asks the host for what the agent reads, each thing once; useless after `expire`."""
+
+    def __init__(self, pipe: Wire, ahead: Mapping[str, msgspec.Raw] | None = None) -> None:
+        self._pipe, self._known, self._fresh = pipe, dict[tuple[str, int], Any](), True
+        self._ahead = dict(ahead or {})
+
+    @property
+    def read(self) -> tuple[str, ...]:
+        """What was read so far."""
+        return tuple(what for what, _ in self._known)
+
+    def expire(self) -> None:
+        """The tick is over."""
+        self._fresh = False
+
+    def detections(self) -> tuple[Detection, ...]:
+        return self._get("detections", lambda data: msgspec.msgpack.decode(data, type=tuple[Detection, ...]))  # type: ignore[no-any-return]
+
+    def scan(self) -> Scan:
+        return self._get("scan", _scan)  # type: ignore[no-any-return]
+
+    def rgb(self) -> Any:
+        return self._get("rgb", self._array)
+
+    def depth(self) -> Any:
+        return self._get("depth", self._array)
+
+    def segmentation(self) -> Any:
+        return self._get("segmentation", self._array)
+
+    def camera(self) -> Camera:
+        return self._get("camera", _camera)  # type: ignore[no-any-return]
+
+    def image(self, number: int) -> Any:
+        """The picture of message ``number``."""
+        return self._get("image", self._array, number)
+
+    def _get(self, what: str, decode: Any, which: int = -1) -> Any:
+        if not self._fresh:
+            raise StaleObservation("this observation is of an earlier tick: read what you need during act")
+        key = (what, which)
+        if key not in self._known:
+            sent = self._ahead.get(what)
+            self._known[key] = decode(self._ask(what, which) if sent is None else sent)
+        return self._known[key]
+
+    def _ask(self, what: str, which: int) -> msgspec.Raw:
+        self._pipe.send(wire.Ask(what=what, which=which, shared=what in _PICTURES and self._pipe.view is not None))
+        answer = self._pipe.receive()
+        if not isinstance(answer, wire.Given):
+            self._pipe.fail()
+        return answer.value
+
+    def _array(self, data: bytes) -> Any:
+        value = msgspec.msgpack.decode(data)
+        view = self._pipe.view
+        return view.take(value) if view is not None and "at" in value else wire.decode_array(value)
+
+
+def _scan(data: bytes) -> Scan:
+    scan = msgspec.msgpack.decode(data, type=Scan)
+    return msgspec.structs.replace(
+        scan,
+        bearings=wire.decode_array(scan.bearings),
+        ranges=wire.decode_array(scan.ranges),
+        tops=scan.tops if scan.tops is None else wire.decode_array(scan.tops),
+    )
+
+
+def _camera(data: bytes) -> Camera:
+    camera = msgspec.msgpack.decode(data, type=Camera)
+    return msgspec.structs.replace(camera, matrix=wire.decode_array(camera.matrix), pose=wire.decode_array(camera.pose))

@@ -1,0 +1,223 @@
+"""The host's side of a submitted agent: a mind that lives elsewhere."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+
+from hthor.guest.agent import agent_paths, reference
+from hthor.guest.agent.inputs import Given
+from hthor.guest.host import failure_explanation, isolation_level
+from hthor.guest.host.info import GuestInfo
+from hthor.guest.host.process import Process
+from hthor.guest.host.startup import Arrival
+from hthor.guest.host.websocket_client import Unreachable
+from hthor.guest.process_tools import cpu_affinity
+from hthor.guest.protocol import wire
+from hthor.guest.protocol.channel import Talk
+from hthor.guest.protocol.faults import GuestFault
+from hthor.guest.protocol.trial_exchange import Turns
+from hthor.types import Action, Briefing, Observation
+
+
+def load_info(
+    path: str | Path,
+    cls: str | None = None,
+    *,
+    start_s: float = 60.0,
+    isolation: str | None = None,
+    given: Given | None = None,
+) -> GuestInfo:
+    """Bring an agent up, and say what it is.
+
+    Args:
+        path: the agent, as `reference.read` reads it.
+
+    Raises:
+        UnknownName, AgentError, IsolationError: as `Guest` and `Guest.load`.
+    """
+    with Guest(path, cls, start_s=start_s, isolation=isolation, given=given) as guest:
+        return guest.load()
+
+
+class Guest:
+    """A submitted agent as a mind. Every trial gets a new agent object and, unless ``persistent``, a fresh process.
+
+    Not for use from several threads; on Linux the process dies when the thread that started it ends.
+
+    Args:
+        path: the agent, as `reference.read` reads it: a file, a module, a command or an address.
+        cls: the class to use when the file has several.
+        start_s: seconds for coming up, and again for every ``begin``.
+        step_s: seconds for each ``act``; what the host takes to answer (rendering) does not count.
+        bank_s: seconds in a trial by which its ``act`` may take longer than that, all together.
+        isolation: "L1", "L2", "L3", or "auto" for the strongest that the machine gives; by default what
+            `confine_guests` has laid down for this process. An agent that is served elsewhere is not held at all.
+        memory_mb: memory that it may hold. disk_mb: what it may write in a trial.
+        given: arguments and files that it is given; by default what `confine_guests` has laid down.
+
+    Attributes:
+        reference: what names it. given: as above. grounds: where its own files lie.
+
+    Raises:
+        UnknownName, AgentError: when ``path`` names no agent.
+        HthorError: when it cannot be given that.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        cls: str | None = None,
+        *,
+        start_s: float = 60.0,
+        step_s: float = 5.0,
+        bank_s: float = 60.0,
+        isolation: str | None = None,
+        memory_mb: int = 4096,
+        disk_mb: int = 256,
+        given: Given | None = None,
+    ) -> None:
+        self._gathered, self._talk = False, Talk()
+        self.given = isolation_level.given() if given is None else given
+        self.reference = reference.read(str(path), cls)
+        beyond = self.given.beyond(self.reference)
+        self.grounds = agent_paths.of(self.reference, beyond)
+        self._arrival = Arrival(
+            self._talk,
+            self.reference,
+            start_s=start_s,
+            isolation=isolation,
+            memory_mb=memory_mb,
+            disk_mb=disk_mb,
+            args=self.given.args,
+            grounds=self.grounds,
+        )
+        self._start_s, self._step_s, self._bank_s = start_s, step_s, bank_s
+        self._info: GuestInfo | None = None
+        self._turns: Turns | None = None
+        self._ending = False
+
+    def load(self) -> GuestInfo:
+        """Bring the agent up, unless that is done.
+
+        Raises:
+            Unreachable: when it is served, and the server is not there.
+            AgentError: when its file is missing, does not compile, cannot be imported in time, or has no agent class.
+            IsolationError: when the level that was asked for cannot be had.
+        """
+        if self._talk.line is None or self._info is None:
+            self._info = None
+            with cpu_affinity.anywhere():
+                self._info = self._arrival.come()
+        return self._info
+
+    def begin(self, briefing: Briefing) -> None:
+        """Start a trial with a new agent.
+
+        Raises:
+            GuestFault: when the agent fails, or its server is gone. AgentError: when it cannot be loaded.
+        """
+        self.finish()
+        if self._ending:
+            self._await_end()
+        talk = self._talk
+        try:
+            self.load()
+        except Unreachable as error:
+            raise GuestFault("died", str(error)) from None
+        process = self._process
+        self._gathered = process is not None and process.gather()
+        window = process.frames if process else None
+        turns = Turns(talk, step_s=self._step_s, bank_s=self._bank_s, ahead=self._arrival.ahead, window=window)
+        talk.send(wire.Begin(briefing=briefing), self._start_s)
+        try:
+            answer, left = talk.receive(self._start_s)
+        except GuestFault as fault:
+            raise self._explained(fault) from None
+        if isinstance(answer, wire.Ready) and self.reference.words:  # a program says so whenever it is started
+            answer, _ = talk.receive(left, f"{self._start_s:g} s")
+        if not isinstance(answer, wire.Done):
+            raise talk.wrong("begin", answer)
+        self._turns = turns
+
+    def act(self, observation: Observation) -> Action:
+        """The agent's action.
+
+        Raises:
+            GuestFault: when it raises, hangs, dies, or sends what is no action; its process is then gone.
+        """
+        if self._turns is None or self._talk.line is None:
+            raise GuestFault("died", "the agent has no trial: begin was not called, or it failed before")
+        try:
+            return self._turns.act(observation)
+        except GuestFault as fault:
+            raise self._explained(fault) from None
+
+    def finish(self) -> None:
+        """The trial is over: its process comes to its end while the caller goes on. Need not be called."""
+        self._scatter()
+        turns, self._turns = self._turns, None
+        if turns is not None and self._talk.line is not None:
+            turns.end()
+            self._ending = self._info is not None and not self._info.persistent
+
+    def close(self) -> None:
+        """End the process, unless it is to wait for another user; a later ``begin`` starts another."""
+        self.finish()
+        if self._ending:
+            self._await_end()
+        if self._info is None or not self._arrival.leave(self._info):
+            self._talk.close()
+
+    def take_opened(self) -> tuple[str, ...]:
+        """Which of its own files it says it has opened since this was asked last, as its manifest calls them."""
+        names = tuple(sorted(self._talk.opened))
+        self._talk.opened.clear()
+        return names
+
+    @property
+    def pid(self) -> int:
+        """The first of its processes, 0 when there is none."""
+        return self._talk.line.pid if self._talk.line is not None else 0
+
+    @property
+    def log(self) -> str:
+        """The end of what the agent printed, 16 KiB at most."""
+        return self._talk.log
+
+    def __enter__(self) -> Guest:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        if getattr(self, "_talk", None) is not None:
+            with contextlib.suppress(Exception):  # the interpreter may be half gone
+                self._scatter()
+                self._talk.close()
+
+    def _explained(self, fault: GuestFault) -> GuestFault:
+        """The fault, with what isolation has to do with it."""
+        policy = self._arrival.policy
+        return failure_explanation.explained(fault, policy, self.reference.root) if policy else fault
+
+    @property
+    def _process(self) -> Process | None:
+        return self._talk.line if isinstance(self._talk.line, Process) else None
+
+    def _scatter(self) -> None:
+        """Let this thread run on any CPU again."""
+        if self._gathered:
+            self._gathered = False
+            cpu_affinity.leave()
+
+    def _await_end(self) -> None:
+        """Wait until the last trial's process has come to its end; whoever will not is ended with its keeper."""
+        self._ending = False
+        with contextlib.suppress(GuestFault):
+            answer, _ = self._talk.receive(self._step_s)
+            if not isinstance(answer, wire.Over):
+                self._talk.close()
+            elif self._process is not None:
+                self._process.renew()

@@ -1,0 +1,281 @@
+"""A guest's process as the host sees it: its pipes, what it prints, and its end."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+
+from hthor.guest.agent.reference import Reference
+from hthor.guest.confinement import Policy, devices, limits, namespaces, paths
+from hthor.guest.process_tools import cleanup, cpu_affinity, exit_status, resource_usage
+from hthor.guest.protocol import wire
+from hthor.guest.protocol.sanitize import shown
+from hthor.guest.protocol.shared_frames import Window
+from hthor.guest.protocol.transport import HungUp, TimeIsUp
+from hthor.guest.protocol.trial_channel import Channel
+
+_PASSED_ON = ("PATH", "LANG", "LC_ALL", "TZ", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+_MEMORY = f"glibc.malloc.mmap_threshold={64 << 20}:glibc.malloc.trim_threshold={256 << 20}"
+"""Keep what arrays have freed, as a process that has lived for long does anyway: each trial's is new, and pages that
+are given back and taken again cost it more than its agent."""
+_LOG_BYTES = 16 << 10
+_LAST_S = 10.0
+"""Longest wait for a process whose pipes are closed. On a busy machine it takes a while to clear up behind it."""
+_INSIDE = "/tmp/hthor-guest"
+"""The scratch folder where the guest has a file system of its own."""
+_HOME = "home"
+"""The scratch folder elsewhere, within a folder that is made for the guest: its keeper may have to make it anew."""
+
+
+class Process:
+    """A running guest: a line to its keeper, a pipe for what that prints, and the channel of one trial after another.
+
+    Args:
+        ground: the folder that was made for it and is to be removed; empty for none.
+    """
+
+    def __init__(self, policy: Policy, ground: str) -> None:
+        self.policy, self._ground = policy, ground
+        self._log = b""
+        limits.undumpable()
+        self._line, tell = socket.socketpair()
+        self._keeper = self._line.fileno()
+        self._err, printed = os.pipe()
+        for handle in (self._keeper, self._err):
+            os.set_blocking(handle, False)
+        self._channel = Channel()
+        spaces = policy.level == "L3"
+        words = [
+            sys.executable,
+            "-P",
+            "-u",
+            "-m",
+            "hthor.guest",
+            str(tell.fileno()),
+            "0" if spaces else str(os.getpid()),
+        ]
+        if spaces:
+            words = namespaces.command(policy, words)
+        try:
+            self._process = subprocess.Popen(
+                words,
+                stdin=subprocess.DEVNULL,
+                stdout=printed,
+                stderr=printed,
+                pass_fds=(tell.fileno(),),
+                cwd="/",
+                env=_environment(os.environ, policy),
+                start_new_session=True,
+            )
+        except OSError:
+            self._close()
+            raise
+        finally:
+            tell.close()
+            os.close(printed)
+        self._buffers: dict[int, bytes] = {self._keeper: b""}
+        self._open()
+
+    def _open(self) -> None:
+        """Hand a new channel over, and listen to it."""
+        channel = self._channel
+        channel.hand_over(self._line)
+        self._buffers = {channel.words: b"", self._keeper: self._buffers[self._keeper]}
+        self._hear, self._say = select.poll(), select.poll()
+        for handle in (channel.words, self._keeper, channel.err, self._err):
+            self._hear.register(handle, select.POLLIN)
+        self._say.register(channel.out, select.POLLOUT)
+        for handle in (channel.err, self._err):
+            self._say.register(handle, select.POLLIN)
+
+    @property
+    def frames(self) -> Window | None:
+        """Pictures that are shared with the trial's process."""
+        return self._channel.frames
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    def gather(self) -> bool:
+        """Play the trial that begins on one CPU with this thread, if that can be; then `affinity.leave` ends it."""
+        if (
+            self.policy.level == "L1" or (cpu := cpu_affinity.stay()) < 0
+        ):  # at L1 an agent may start processes of its own
+            return False
+        cpu_affinity.tell(self._keeper, cpu)
+        return True
+
+    def write(self, body: bytes, end: float) -> None:
+        """As `Line` says."""
+        left = memoryview(wire.framed(body))
+        while left:
+            try:
+                left = left[os.write(self._channel.out, left) :]
+            except BlockingIOError:
+                self._wait(self._say, (self._channel.out,), end)
+            except OSError:
+                raise HungUp from None
+
+    def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
+        """As `Line` says; a message of a trial comes before one of the keeper."""
+        both = (self._channel.words, self._keeper)
+        while True:
+            for handle in both:
+                if (found := self._next(handle, most)) is not None:
+                    return handle == self._keeper, found
+            for handle in self._wait(self._hear, both, end):
+                try:
+                    chunk = os.read(handle, 1 << 16)
+                except ConnectionResetError:  # a keeper that ended before it had read all
+                    chunk = b""
+                if not chunk:
+                    raise HungUp
+                self._buffers[handle] += chunk
+
+    def renew(self) -> None:
+        """Begin a channel for the next trial; what the last one left half said is gone with its own."""
+        self._drain()
+        self._channel.close()
+        self._channel = Channel()
+        self._open()
+
+    def _next(self, handle: int, most: int) -> bytes | int | None:
+        buffer = self._buffers[handle]
+        if len(buffer) < 4:
+            return None
+        size = int.from_bytes(buffer[:4], "little")
+        if size > most:
+            return size
+        if len(buffer) < 4 + size:
+            return None
+        self._buffers[handle] = buffer[4 + size :]
+        return buffer[4 : 4 + size]
+
+    def _wait(self, poll: select.poll, wanted: tuple[int, ...], end: float) -> list[int]:
+        """Which pipes are ready, in the order asked for, reading along what is printed."""
+        while True:
+            ready = [handle for handle, _ in poll.poll(max(0.0, end - time.monotonic()) * 1000.0)]
+            if found := [handle for handle in wanted if handle in ready]:
+                return found
+            if not ready or time.monotonic() > end:  # a flood of words does not lengthen it
+                raise TimeIsUp
+            if not self._drain():
+                time.sleep(0.001)  # the log was closed; do not spin on it
+
+    @property
+    def lives(self) -> bool:
+        """Whether it still runs."""
+        return self._process.poll() is None
+
+    @property
+    def log(self) -> str:
+        """The end of what was printed, 16 KiB at most."""
+        self._drain()
+        return shown(self._log.decode(errors="replace"))
+
+    def _drain(self) -> bool:
+        """Take in what was printed, as much of it as has come by now; false when nothing more can come of something."""
+        keepers, trials = self._taken_in(self._err), self._taken_in(self._channel.err)
+        return keepers and trials
+
+    def _taken_in(self, handle: int) -> bool:
+        try:
+            for _ in range(64):
+                if not (chunk := os.read(handle, 1 << 16)):
+                    return False
+                self._log = (self._log + chunk)[-_LOG_BYTES:]
+        except BlockingIOError:
+            return True
+        return True
+
+    def obituary(self) -> tuple[str, str]:
+        """How the process ended: a fault's kind and its words."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(_LAST_S)
+        code = self._process.returncode
+        if code is None:
+            return "died", "the agent closed its pipe"
+        return exit_status.told(exit_status.unwrapped(code) if self.policy.level == "L3" else code)
+
+    def kill(self) -> None:
+        """End everything that the guest has started, close the pipes, and remove what it wrote."""
+        with resource_usage.ending(self._process.pid):
+            if self.policy.level == "L1":
+                cleanup.end_descendants(self._process.pid)
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+            self._process.wait()
+        self._close()
+
+    def _close(self) -> None:
+        self._line.close()
+        os.close(self._err)
+        self._channel.close()
+        remove(self._ground)
+
+
+def remove(ground: str) -> None:
+    """Remove what a guest may have written, and the folder that it was in; an empty name is none."""
+    if ground:
+        cleanup.empty(ground)
+        shutil.rmtree(ground, ignore_errors=True)
+
+
+def start(
+    agent: Reference,
+    level: str,
+    *,
+    hidden: tuple[str, ...],
+    memory_mb: int,
+    disk_mb: int,
+    gpus: bool = False,
+    readable: tuple[str, ...] = (),
+) -> Process:
+    """A fresh guest on this level; what it says first tells whether the level is in force."""
+    compiled = os.environ.get("NUMBA_CACHE_DIR", "")
+    if compiled:
+        os.makedirs(compiled, exist_ok=True)
+    more = ([compiled] if compiled else []) + (list(devices.FACTS) if gpus else [])
+    read = paths.readable(agent.path, agent.root, hidden, readable)
+    ground = "" if level == "L3" else tempfile.mkdtemp(prefix="hthor-guest-")
+    policy = Policy(
+        level=level,
+        read=(*read, *more),
+        listed=(*paths.listed(agent.root), *(place for place in readable if os.path.isdir(place))),
+        scratch=os.path.join(ground, _HOME) if ground else _INSIDE,
+        memory_mb=memory_mb,
+        disk_mb=disk_mb,
+        execute=bool(agent.words),
+        devices=devices.gpus() if gpus else (),
+        compiled=compiled,
+    )
+    try:
+        if ground:
+            os.mkdir(policy.scratch)
+        return Process(policy, ground)
+    except OSError:
+        remove(ground)
+        raise
+
+
+def _environment(ours: Mapping[str, str], policy: Policy) -> dict[str, str]:
+    """Nothing of ours but what an interpreter needs; one thread, and the same hash seed every time."""
+    passed_on = (*_PASSED_ON, *(devices.VARIABLES if policy.devices else ()))
+    env = {name: ours[name] for name in passed_on if name in ours}
+    env.update(dict.fromkeys(_THREADS, "1"))
+    env.update(dict.fromkeys(("HOME", "TMPDIR"), policy.scratch))
+    env["GLIBC_TUNABLES"] = _MEMORY
+    env.update(PYTHONHASHSEED="0", PYTHONDONTWRITEBYTECODE="1", USER="agent", LOGNAME="agent")
+    env["PYTHONPATH"] = os.pathsep.join([str(paths.PACKAGE.parent), *paths.libraries()])
+    return env

@@ -1,0 +1,166 @@
+"""The line to an agent that somebody serves over WebSocket.
+
+One message of the wire is one binary message of the WebSocket, without a length in front. What holds the agent there
+is not known here, so its isolation is "served", which is less than any level.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import socket
+import threading
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+from hthor.errors import AgentError, MissingExtra
+from hthor.guest.confinement import SERVED, Isolation
+from hthor.guest.protocol.transport import HungUp, TimeIsUp
+
+if TYPE_CHECKING:
+    from websockets.sync.client import ClientConnection
+
+ISOLATION = Isolation(level=SERVED, reason_not_higher="it is served from elsewhere, where nothing of ours holds it")
+_CLOSING_S = 2.0
+"""Longest time for parting in peace."""
+_LOOK_S = 0.25
+_TOO_BIG = 1009
+EXTRA = "served"
+
+
+class Unreachable(AgentError):
+    """No server answers at an agent's address."""
+
+
+def library() -> Any:
+    """The library that speaks WebSocket.
+
+    Raises:
+        MissingExtra: when it is not installed.
+    """
+    try:
+        import websockets.sync.client
+        import websockets.sync.server
+    except ImportError:
+        raise MissingExtra("an agent that is served", EXTRA) from None
+    return websockets
+
+
+def connect(url: str, seconds: float) -> Served:
+    """A line to the agent at this address.
+
+    Raises:
+        Unreachable: when nothing answers there, or it is no WebSocket server.
+    """
+    from hthor.guest.protocol.wire import MOST_BYTES
+
+    sockets, parts = library(), urlsplit(url)
+    hint = "Is it running? hthor agent serve my_agent.py --port PORT"
+    try:
+        near = socket.create_connection((parts.hostname, parts.port), timeout=seconds)
+        near.settimeout(None)
+        return Served(
+            sockets.sync.client.connect(
+                url,
+                sock=near,  # the library follows no redirection with a socket that it was given
+                open_timeout=seconds,
+                close_timeout=1.0,
+                ping_interval=None,
+                compression=None,
+                proxy=None,
+                max_size=MOST_BYTES,
+                max_queue=4,
+            )
+        )
+    except (OSError, ValueError, sockets.exceptions.WebSocketException) as error:
+        words = str(error).strip() or type(error).__name__
+        if isinstance(error, ValueError) and "redirect" in words:
+            words, hint = "it says that the agent is elsewhere", "Give the address itself."
+        raise Unreachable(f"cannot reach the agent at {url}: {words}. {hint}") from None
+
+
+class Alarm:
+    """Calls somebody once, when a moment passes that was set; a thread of its own looks from time to time.
+
+    Whatever a server does to the library that speaks WebSocket, which may wait for it while it holds all its locks, a
+    deadline ends it.
+    """
+
+    def __init__(self, ring: Callable[[], None]) -> None:
+        self._ring, self._stopped = ring, threading.Event()
+        self._end = math.inf
+        threading.Thread(target=self._look, daemon=True).start()
+
+    def set(self, end: float = math.inf) -> None:
+        """Ring after this moment of the monotonic clock; never, if none is given."""
+        self._end = end
+
+    def stop(self) -> None:
+        """Never ring."""
+        self._stopped.set()
+
+    def _look(self) -> None:
+        while not self._stopped.wait(_LOOK_S):
+            if time.monotonic() > self._end:
+                self._ring()
+                return
+
+
+class Served:
+    """A connection to a served agent."""
+
+    log = ""
+    pid = 0
+
+    def __init__(self, connection: ClientConnection) -> None:
+        self._connection = connection.__enter__()
+        self._late = False
+        self._end = ""
+        self._alarm = Alarm(self._hang_up)
+
+    def write(self, body: bytes, end: float) -> None:
+        """As `Line` says."""
+        self._alarm.set(end)
+        try:
+            self._connection.send(body)
+        except (OSError, library().exceptions.ConnectionClosed) as error:
+            self._end = str(error)
+            raise (TimeIsUp if self._late else HungUp) from None
+        finally:
+            self._alarm.set()
+
+    def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
+        """As `Line` says; here is no keeper."""
+        self._alarm.set(end + _LOOK_S)
+        try:
+            body = self._connection.recv(timeout=max(0.0, end - time.monotonic()), decode=False)
+        except TimeoutError:
+            raise TimeIsUp from None
+        except library().exceptions.ConnectionClosed as error:
+            if self._late:
+                raise TimeIsUp from None
+            if error.sent is not None and error.sent.code == _TOO_BIG:
+                return False, most + 1
+            self._end = str(error)
+            raise HungUp from None
+        finally:
+            self._alarm.set()
+        return False, body
+
+    def obituary(self) -> tuple[str, str]:
+        """As `Line` says."""
+        return "died", f"the server closed the connection: {self._end or 'without a word'}"
+
+    def kill(self) -> None:
+        """As `Line` says; the server goes on."""
+        self._alarm.set(time.monotonic() + _CLOSING_S)
+        with contextlib.suppress(Exception):
+            self._connection.__exit__(None, None, None)
+        self._alarm.stop()
+
+    def _hang_up(self) -> None:
+        self._late = True
+        with contextlib.suppress(OSError):
+            self._connection.socket.shutdown(socket.SHUT_RDWR)

@@ -1,0 +1,1 @@
+"""Processes and the CPU: affinity, cleanup, exit status, resource usage."""

@@ -1,0 +1,33 @@
+"""How a process ended, as a fault's kind and its words."""
+
+from __future__ import annotations
+
+import signal
+
+from hthor.errors import KILLED
+from hthor.guest.confinement.calls import FROM_OUTSIDE
+
+_SHELLS = 128
+
+
+def told(code: int) -> tuple[str, str]:
+    """Kind and words for an exit code as `subprocess` has it.
+
+    By some signals only a machine or a person ends a process, one that ran out of memory or is going down, so what
+    they end is "killed" and may be tried again. From L2 on an agent cannot send itself such a signal.
+    """
+    if code >= 0:
+        return "died", f"exited with status {code}"
+    return KILLED if -code in FROM_OUTSIDE else "died", f"killed by {_name(-code)}"
+
+
+def unwrapped(code: int) -> int:
+    """The exit code of what bubblewrap ran, which tells of a signal as shells do."""
+    return _SHELLS - code if code > _SHELLS else code
+
+
+def _name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:  # those of real time have none
+        return f"signal {number}"

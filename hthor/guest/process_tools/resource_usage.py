@@ -1,0 +1,67 @@
+"""What guests' processes cost: processor time that nobody waits for, and memory.
+
+Most of a guest's time is spent by processes that end with it, all at once, so that no parent collects what they took.
+It is therefore read just before the end.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from hthor.guest.confinement import limits
+
+_TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
+
+
+class _Spent:
+    """Over the life of this process [s]."""
+
+    uncollected = 0.0
+
+
+def uncollected_cpu_s() -> float:
+    """Processor time of guests that have ended which `os.times` does not have among the children's."""
+    return _Spent.uncollected
+
+
+@contextmanager
+def ending(pid: int) -> Iterator[None]:
+    """Around the end of a guest, whose first process is ``pid``: take down what would be lost."""
+    spent, before = cpu_s(pid), _collected_s()
+    yield
+    _Spent.uncollected += max(0.0, spent - (_collected_s() - before))
+
+
+def cpu_s(pid: int) -> float:
+    """Processor time of a process and all below it, those included that it has waited for; 0 where nobody can tell."""
+    total = 0
+    for one in _family(pid):
+        with contextlib.suppress(OSError, IndexError, ValueError):
+            words = Path(f"/proc/{one}/stat").read_text().rpartition(")")[2].split()
+            total += sum(int(word) for word in words[11:15])
+    return total * _TICK_S
+
+
+def resident_mb(pid: int) -> float:
+    """Memory of the largest process among ``pid`` and all below it [MB]."""
+    return max((limits.resident_mb(one) for one in _family(pid)), default=0.0)
+
+
+def _family(pid: int) -> list[int]:
+    found, line = [pid], [pid]
+    while line:
+        one = line.pop()
+        with contextlib.suppress(OSError, ValueError):
+            below = [int(word) for word in Path(f"/proc/{one}/task/{one}/children").read_text().split()]
+            found += below
+            line += below
+    return found
+
+
+def _collected_s() -> float:
+    times = os.times()
+    return times.children_user + times.children_system

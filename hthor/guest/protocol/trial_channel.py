@@ -1,0 +1,102 @@
+"""What one trial has in common with its evaluation: pipes and shared pictures, made for it and closed after it.
+
+Whatever an agent does to them, such as writing into a pipe's other end, ends with its trial.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import socket
+
+from hthor.guest.protocol import shared_frames
+
+_PIPE_BYTES = 1 << 20
+_F_SETPIPE_SZ = 1031
+_SIGN = b"c"
+
+
+class Channel:
+    """The host's ends of a trial's channel.
+
+    Attributes:
+        out: pipe to the trial's process. words: what it says. err: what it prints. frames: pictures shared with it.
+    """
+
+    def __init__(self) -> None:
+        read, self.out = os.pipe()
+        self.words, write = os.pipe()
+        self.err, printed = os.pipe()
+        self.frames = shared_frames.window()
+        self._far: tuple[int, ...] = (read, write, printed)
+        for handle in (self.out, self.words, self.err):
+            os.set_blocking(handle, False)
+        with contextlib.suppress(OSError):  # only speed depends on it
+            fcntl.fcntl(self.out, _F_SETPIPE_SZ, _PIPE_BYTES)
+
+    def hand_over(self, line: socket.socket) -> None:
+        """Give the other ends to the keeper; it may be gone, which others will notice."""
+        shared = (self.frames.handle,) if self.frames is not None else ()
+        with contextlib.suppress(OSError):
+            socket.send_fds(line, [_SIGN], [*self._far, *shared])
+        self._let_go()
+
+    def close(self) -> None:
+        """Close all ends that are here."""
+        for handle in (self.out, self.words, self.err):
+            os.close(handle)
+        self._let_go()
+        if self.frames is not None:
+            self.frames.close()
+
+    def _let_go(self) -> None:
+        far, self._far = self._far, ()
+        for handle in far:
+            os.close(handle)
+
+
+class Ends:
+    """The guest's ends of a trial's channel.
+
+    Attributes:
+        read: pipe from the host. write: pipe to it. printed: where to print. shared: pictures' memory, -1 for none.
+    """
+
+    def __init__(self, read: int, write: int, printed: int, shared: int = -1) -> None:
+        self.read, self.write, self.printed, self.shared = read, write, printed, shared
+
+    @property
+    def handles(self) -> tuple[int, ...]:
+        """All of them."""
+        every = (self.read, self.write, self.printed, self.shared)
+        return tuple(handle for handle in every if handle >= 0)
+
+    def pass_on(self, line: socket.socket) -> None:
+        """Give copies of them to another process.
+
+        Raises:
+            BrokenPipeError: when it is gone.
+        """
+        socket.send_fds(line, [_SIGN], self.handles)
+
+    def close(self) -> None:
+        """Close them."""
+        for handle in self.handles:
+            os.close(handle)
+
+
+def awaited(line: socket.socket) -> Ends | None:
+    """The ends that are given over a line, when they come; None when nothing can come any more.
+
+    Other words on the line were meant for the trial before, and are passed over.
+    """
+    while True:
+        try:
+            said, handles, *_ = socket.recv_fds(line, 1, 4, socket.MSG_CMSG_CLOEXEC)
+        except ConnectionResetError:
+            return None
+        if handles:
+            return Ends(*handles)
+        if not said:
+            return None

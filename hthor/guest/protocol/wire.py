@@ -1,0 +1,232 @@
+"""What host and guest say to one another, as msgpack. docs/wire.md tells it all.
+
+Arrays travel from host to guest only: as ``{"__nd__": dtype, "s": shape, "d": bytes}``, or, for a guest that has shared
+memory and asks for it, with ``"at"``, the place in there, instead of the bytes.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+
+from hthor.errors import KILLED
+from hthor.guest.agent.agent_paths import Grounds
+from hthor.guest.agent.manifest import File
+from hthor.guest.confinement import Policy
+from hthor.types import Action, Briefing, Observation
+
+MOST_BYTES = 64 << 10
+"""Longest frame that a guest may send."""
+NAME_MAX = 200
+"""Longest id, seat or thing's name in an action, in characters."""
+NUMBER_MAX = 1e12
+"""Greatest number in an action, either way: what is beyond that is infinite a multiplication later."""
+TEXT_MAX = 8000
+"""Longest text that a guest may say of itself or of a failure, in characters."""
+PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
+"""What an agent may declare, to be given more than its robot sees."""
+VERSION = 1
+"""Of all this. A guest that speaks another one is refused."""
+FAULTS = ("raised", "timeout", "died", KILLED, "memory", "disk", "garbage", "wrong_type", "oversized", "not_finite")
+"""Kinds of failure during a trial."""
+OWN_FAULTS = ("raised", "wrong_type", "garbage", "oversized")
+"""Those that a guest may report of itself; the others are for its keeper and the host to find."""
+
+
+class Unfit(ValueError):
+    """An action with a value of the wrong type; the message names the field."""
+
+
+class Load(Struct, tag="load", frozen=True, kw_only=True):
+    """Host, to our own part of a guest: bring up this agent on these terms.
+
+    Attributes:
+        path: its file, which is imported. cls: the class to take, empty for the only one.
+        module: the name to import it by, from the folder ``root``; empty for a file that has none.
+        words: a program and its arguments, started in ``root`` instead of importing anything.
+        args: keyword arguments of the class's constructor. grounds: where the agent's own files lie.
+    """
+
+    path: str
+    cls: str
+    policy: Policy
+    module: str = ""
+    words: tuple[str, ...] = ()
+    root: str = ""
+    args: dict[str, str] = {}
+    grounds: Grounds | None = None
+
+
+class Begin(Struct, tag="begin", frozen=True, kw_only=True):
+    """Host: a trial begins. The guest makes a new agent."""
+
+    briefing: Briefing
+
+
+class Look(Struct, tag="look", frozen=True, kw_only=True):
+    """Host: act. ``senses`` of the observation and the images of its messages are left out, to be asked for.
+
+    ``ahead`` holds what the guest has read in both of its last two steps, if it takes such: it need not ask for that.
+    """
+
+    observation: Observation
+    ahead: dict[str, msgspec.Raw] = {}
+
+
+class Given(Struct, tag="given", frozen=True, kw_only=True):
+    """Host: what was asked for, encoded."""
+
+    value: msgspec.Raw
+
+
+class End(Struct, tag="end", frozen=True, kw_only=True):
+    """Host: the trial is over."""
+
+
+class Confined(Struct, tag="confined", frozen=True, kw_only=True):
+    """Guest: held, and about to import the file. ``spaces`` are its namespaces, as /proc names them."""
+
+    landlock_abi: int
+    seccomp: bool
+    spaces: dict[str, str]
+
+
+class Ready(Struct, tag="ready", frozen=True, kw_only=True):
+    """Guest: loaded; what the agent says of itself.
+
+    ``version`` is whatever tells one version of a served agent from another; ``ahead``
+    says that it takes what it is going to read before it asks; ``gpus`` is how much of a GPU it asks for. ``files``
+    are those of its own files that it has opened, relative to its folder; ``manifest`` is what a served agent says
+    that it consists of.
+    """
+
+    name: str = ""
+    privileges: tuple[str, ...] = ()
+    robots: tuple[str, ...] = ()
+    absent: bool = False
+    persistent: bool = False
+    doc: str = ""
+    version: str = ""
+    ahead: bool = False
+    gpus: float = 0.0
+    files: tuple[str, ...] = ()
+    manifest: tuple[File, ...] = ()
+    wire: int = VERSION
+
+
+class Done(Struct, tag="done", frozen=True, kw_only=True):
+    """Guest: ready for the trial; ``files`` as in `Ready`, those that were not named before."""
+
+    files: tuple[str, ...] = ()
+
+
+class Ask(Struct, tag="ask", frozen=True, kw_only=True):
+    """Guest: needs one of rgb, depth, segmentation, camera, scan, detections, or the image of message ``which``.
+
+    With ``shared`` a picture is to be put in shared memory, if there is any and it fits.
+    """
+
+    what: str
+    which: int = -1
+    shared: bool = False
+
+
+class Acted(Struct, tag="acted", frozen=True, kw_only=True):
+    """Guest: its action, and what it has read of what was sent ahead; ``files`` as in `Done`."""
+
+    action: Action
+    read: tuple[str, ...] = ()
+    files: tuple[str, ...] = ()
+
+
+class Over(Struct, tag="over", frozen=True, kw_only=True):
+    """Keeper: the trial's process has come to its end, and all that it left is gone."""
+
+
+class Failed(Struct, tag="failed", frozen=True, kw_only=True):
+    """Guest or keeper: something went wrong; ``kind`` as in `GuestFault`, ``files`` as in `Done`."""
+
+    kind: str
+    detail: str
+    traceback: str = ""
+    files: tuple[str, ...] = ()
+
+
+ToGuest = Load | Begin | Look | Given | End
+ToHost = Confined | Ready | Done | Ask | Acted | Failed
+KeeperToHost = Over | Failed
+
+
+def _encode_array(value: object) -> object:
+    if isinstance(value, np.ndarray):
+        plain = np.ascontiguousarray(value)
+        return {"__nd__": plain.dtype.str, "s": list(plain.shape), "d": plain.tobytes()}
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"cannot send a {type(value).__name__}")
+
+
+def _as_list(value: object) -> object:
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    raise TypeError(f"a {type(value).__name__} has no place in an Action")
+
+
+def plain(action: Action) -> Action:
+    """The same action with NumPy's numbers and arrays turned into Python's.
+
+    Raises:
+        Unfit: when a value is of the wrong type.
+    """
+    try:
+        return _action_decoder.decode(_plain_encoder.encode(action))
+    except (msgspec.ValidationError, TypeError, OverflowError) as error:
+        problem, _, place = str(error).partition(" - at `$.")
+        raise Unfit(f"{place.rstrip('`')}: {problem}" if place else problem) from None
+
+
+def decode_array(value: dict[str, Any]) -> Any:
+    """The array that a plain dictionary with its bytes stands for."""
+    return np.frombuffer(value["d"], dtype=np.dtype(value["__nd__"])).reshape(value["s"])
+
+
+_encoder = msgspec.msgpack.Encoder(enc_hook=_encode_array)
+_plain_encoder = msgspec.msgpack.Encoder(enc_hook=_as_list)
+_action_decoder = msgspec.msgpack.Decoder(Action)
+
+
+def encode(message: object) -> bytes:
+    """One message or value, without its length; arrays and NumPy numbers included."""
+    return _encoder.encode(message)
+
+
+def frame(message: ToGuest | ToHost | KeeperToHost) -> bytes:
+    """One message as it goes through a pipe."""
+    return framed(encode(message))
+
+
+def framed(body: bytes) -> bytes:
+    """An encoded message with its length in front."""
+    return len(body).to_bytes(4, "little") + body
+
+
+def objection(action: Action) -> tuple[str, str] | None:
+    """What is wrong with an action, as a fault's kind and detail; None when it is sound."""
+    for part in (action.motion, action.say):
+        if part is None:
+            continue
+        for name in part.__struct_fields__:
+            value = getattr(part, name)
+            field = f"{type(part).__name__}.{name}"
+            numbers = value if isinstance(value, tuple) else (value,)
+            if any(isinstance(number, float) and not math.isfinite(number) for number in numbers):
+                return "not_finite", f"{field} must be finite, got {value}"
+            if any(isinstance(number, float) and abs(number) > NUMBER_MAX for number in numbers):
+                return "garbage", f"{field} must lie within {NUMBER_MAX:g} of zero, got {value}"
+            if isinstance(value, str) and name != "text" and len(value) > NAME_MAX:
+                return "oversized", f"{field} has {len(value)} characters, at most {NAME_MAX} are taken"
+    return None

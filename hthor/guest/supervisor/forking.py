@@ -1,0 +1,81 @@
+"""A trial's process, forked when its trial begins or before."""
+
+from __future__ import annotations
+
+import os
+import socket
+from collections.abc import Callable, Iterable
+
+from hthor.guest.confinement import limits
+from hthor.guest.confinement.landlock import Ruleset
+from hthor.guest.protocol import trial_channel, wire
+from hthor.guest.protocol.trial_channel import Ends
+from hthor.guest.supervisor import trial_process
+
+
+def fork(ends: Ends, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool = False) -> int:
+    """A child that plays one trial; its process id.
+
+    Args:
+        ends: the trial's channel. tell: the keeper's own line, which no child may have.
+        held: rules for files. first: as `child.serve`.
+    """
+    return _forked(lambda: ends, (tell,), order, held, first=first)
+
+
+class Spare:
+    """A child that is held already, and waits for its trial without having seen anything of the agent.
+
+    So nothing of one trial can reach the next by it: what it imports, it imports when its turn has come.
+
+    Args:
+        playing: the channel of the trial that goes on meanwhile, which is none of its business.
+    """
+
+    def __init__(self, playing: Ends, tell: int, order: wire.Load, held: Ruleset | None) -> None:
+        self._go, wait = socket.socketpair()
+        secret = (*playing.handles, tell, self._go.fileno())
+        self._pid = _forked(lambda: _received(wait), secret, order, held)
+        wait.close()
+
+    def start(self, ends: Ends) -> int:
+        """Let it play a trial with this channel; its process id, or 0 if it is gone."""
+        try:
+            ends.pass_on(self._go)
+        except BrokenPipeError:
+            self.discard()
+            return 0
+        self._go.close()
+        return self._pid
+
+    def discard(self) -> None:
+        """End it without a trial."""
+        self._go.close()
+        os.waitpid(self._pid, 0)
+
+
+def _received(wait: socket.socket) -> Ends | None:
+    with wait:
+        return trial_channel.awaited(wait)
+
+
+def _forked(
+    ends: Callable[[], Ends | None],
+    secret: Iterable[int],
+    order: wire.Load,
+    held: Ruleset | None,
+    *,
+    first: bool = False,
+) -> int:
+    me = os.getpid()
+    pid = os.fork()
+    if pid:
+        return pid
+    try:
+        limits.die_with(me)
+        for handle in secret:
+            os.close(handle)
+        trial_process.serve(ends, order, held, first=first)
+        os._exit(trial_process.ORDERLY)
+    finally:
+        os._exit(1)

@@ -1,0 +1,120 @@
+"""One trial's process: held first, then it imports the agent's file and plays.
+
+All that a submitted file ever does, it does here, and nothing of it lasts: the next trial has another process.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+
+import msgspec
+
+from hthor.guest.agent import arguments
+from hthor.guest.client import loading, source_importer
+from hthor.guest.client.agent_loop import play
+from hthor.guest.client.file_recorder import Recorder
+from hthor.guest.client.remote_senses import Pipe
+from hthor.guest.confinement import holding, seccomp
+from hthor.guest.confinement.holding import Refused
+from hthor.guest.confinement.landlock import Ruleset
+from hthor.guest.protocol import sanitize, shared_frames, wire
+from hthor.guest.protocol.trial_channel import Ends
+from hthor.guest.supervisor import exec_program
+
+ORDERLY = 97
+"""Exit status of a trial that came to its end, which an agent would hardly choose for itself."""
+
+
+def serve(awaited: Callable[[], Ends | None], order: wire.Load, held: Ruleset | None, *, first: bool) -> None:
+    """Play one trial, or, with an agent that says ``persistent = True``, all of them.
+
+    Args:
+        awaited: waits for the trial's channel; None when there is none to come. Until then nothing is said and nothing
+            of the agent is read.
+        held: rules for files. first: say what holds this process, and what the file is.
+    """
+    word = seccomp.new_word() if order.words and held is not None else b""
+    try:
+        holding.confine(order.policy, held, word)
+    except Refused as error:
+        problem = str(error)
+    else:
+        problem = ""
+    if (ends := awaited()) is None:
+        return
+    pipe = _taken(ends)
+    if problem:
+        pipe.send(wire.Failed(kind="confinement", detail=problem))
+        return
+    if first:
+        pipe.send(_confined(held))
+    if order.words:
+        try:
+            exec_program.become(order.words, order.root, pipe.handles, pipe.shared, word)
+        except Refused as error:
+            pipe.send(wire.Failed(kind="contract", detail=str(error)))
+            return
+    _tidy_numba(order.policy.scratch)
+    os.chdir(order.root)
+    recorder = _watched(order)
+    try:
+        cls, ready = loading.load(order)
+    except loading.Refusal as error:
+        pipe.send(wire.Failed(kind="contract", detail=sanitize.shown(str(error))[-wire.TEXT_MAX :]))
+        return
+    if first:
+        pipe.send(msgspec.structs.replace(ready, files=recorder.take() if recorder else ()))
+    make = arguments.maker(cls, order.args)
+    while isinstance(begin := pipe.receive(), wire.Begin):
+        play(pipe, make, begin, recorder)
+        if not ready.persistent:
+            return
+
+
+def _watched(order: wire.Load) -> Recorder | None:
+    """Take down what the agent opens from here on, and import its own modules from their sources alone."""
+    if order.grounds is None:
+        return None
+    source_importer.only_from(order.grounds)
+    recorder = Recorder(order.grounds)
+    recorder.start()
+    return recorder
+
+
+def _taken(ends: Ends) -> Pipe:
+    """The wire of this trial, with standard input and output that are its own too."""
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    for handle, number in ((nothing, 0), (ends.printed, 1), (ends.printed, 2)):
+        os.dup2(handle, number)
+    os.close(nothing)
+    os.close(ends.printed)
+    if ends.shared >= 0:
+        os.environ[shared_frames.VARIABLE] = str(ends.shared)
+    return Pipe(ends.read, ends.write, ends.shared)
+
+
+def _confined(held: Ruleset | None) -> wire.Confined:
+    return wire.Confined(landlock_abi=held.abi if held else 0, seccomp=held is not None, spaces=SPACES)
+
+
+def spaces() -> dict[str, str]:
+    """The namespaces of this process that isolation is about."""
+    if sys.platform != "linux":
+        return {}
+    return {name: os.readlink(f"/proc/self/ns/{name}") for name in ("net", "pid")}
+
+
+SPACES = spaces()
+
+
+def _tidy_numba(scratch: str) -> None:
+    """Read code that was compiled before from where it is, which is not ours to change; keep none of this trial's."""
+    if "numba" not in sys.modules:
+        os.environ["NUMBA_CACHE_DIR"] = scratch
+        return
+    from numba.core import caching
+
+    caching._CacheLocator.ensure_cache_path = lambda _: None  # it would try whether it may write there
+    caching.Cache.save_overload = lambda *_: None

@@ -1,0 +1,55 @@
+"""The end of a trial's process, which comes early if it takes too much."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+
+from hthor.guest.confinement import Policy, limits
+from hthor.guest.process_tools import cleanup, cpu_affinity, exit_status
+from hthor.guest.protocol import wire
+from hthor.guest.supervisor import trial_process
+
+_LOOK_MS = 50
+
+
+def watch(pid: int, order: wire.Load, tell: int) -> wire.KeeperToHost:
+    """Wait for a child's end, which comes early if it takes too much; what to say of it.
+
+    Args:
+        tell: the line to the host, which may say on which CPU it waits for the child.
+    """
+    policy = order.policy
+    found = _excess(pid, policy, tell) if hasattr(os, "pidfd_open") else None
+    if found:
+        os.kill(pid, signal.SIGKILL)
+    _, status = os.waitpid(pid, 0)
+    if policy.level == "L1":
+        cleanup.end_descendants(os.getpid())
+    code = os.waitstatus_to_exitcode(status)
+    if found:
+        return wire.Failed(kind=found[0], detail=found[1])
+    if code == trial_process.ORDERLY or (bool(order.words) and code == 0):
+        return wire.Over()
+    kind, words = exit_status.told(code)
+    return wire.Failed(kind=kind, detail=f"the agent's process {'was ' * (code < 0)}{words}")
+
+
+def _excess(pid: int, policy: Policy, tell: int) -> tuple[str, str] | None:
+    """What a child takes too much of; None when it comes to its end before."""
+    ended, joined, found = os.pidfd_open(pid), None, None
+    poll = select.poll()
+    for handle in (ended, tell):
+        poll.register(handle, select.POLLIN)
+    while found is None and ended not in (ready := [handle for handle, _ in poll.poll(_LOOK_MS)]):
+        if not ready:
+            found = limits.excess(pid, policy.scratch, policy.memory_mb, policy.disk_mb)
+            if joined:
+                joined.part()
+        elif (cpu := cpu_affinity.heard(tell)) >= 0:
+            joined = cpu_affinity.Joined(pid, cpu)
+        else:
+            poll.unregister(tell)
+    os.close(ended)
+    return found

@@ -1,0 +1,1 @@
+"""Is a house sound? Structure, floor plan and furniture, judged by rules."""

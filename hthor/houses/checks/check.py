@@ -1,0 +1,160 @@
+"""Is a house fit for a body to live in? Findings in words.
+
+Errors make a house unsound for a body: a start that is not free, a room that it cannot reach. Everything else is a
+warning, because real floor plans are full of it: a receptacle out of reach, a narrow door, furniture in a wall or in
+other furniture. A house of our own has no such excuse: judged strictly, more rules hold and nearly all are errors.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import msgspec
+import numpy as np
+
+from hthor import catalog, rules
+from hthor.geometry.plane import distance_to_rectangle, to_house, to_local
+from hthor.houses.checks import plan_rules, thing_rules
+from hthor.houses.checks.findings import Finding, error, named, sound, warning
+from hthor.houses.space import boxes
+from hthor.houses.space.free_space import Bools, FreeSpace
+from hthor.houses.space.visibility import Sight
+from hthor.types import HouseSpec, Thing, Vec3
+
+CODE_PART = "tools"
+
+__all__ = ["STAND_M", "STRICT", "Finding", "check", "sound"]
+
+STAND_M = 1.0
+"""A receptacle counts as reachable when a body can stand within this distance of its edge."""
+EYE_M = 1.6
+"""Height of a standing person's eyes."""
+STRICT = (
+    "start-free",
+    "room-reachable",
+    "room-size",
+    "door-clear",
+    "door-height",
+    "receptacle-reachable",
+    "receptacles-present",
+    "thing-indoors",
+    "thing-floats",
+    "swing-free",
+    "object-visible",
+)
+"""Rules that are errors when a house is judged strictly."""
+
+
+def check(house: HouseSpec, radius: float, height: float = 1.8, *, strict: bool = False) -> tuple[Finding, ...]:
+    """Everything that is wrong with a house for a body of this radius and height [m]; errors come first.
+
+    Args:
+        strict: judge as one of our own: the rules of `STRICT` are errors, those about a lived-in home included.
+    """
+    space = FreeSpace.of(house, radius, height)
+    start, findings = house.start, []
+    if not space.free.any():
+        return (error("start-free", house.id, f"no floor is free for a body of radius {radius} m"),)
+    if not space.is_free(start.x, start.y):
+        problem = f"the start ({start.x:.2f}, {start.y:.2f}) is not free for a body of radius {radius} m"
+        findings.append(error("start-free", house.id, problem))
+    reached = space.component(*space.nearest_free(start.x, start.y))
+    findings += _rooms(house, space, reached)
+    findings += _doors(house, radius, height)
+    findings += _receptacles(house, space, reached)
+    findings += thing_rules.strays(house)
+    if strict:
+        findings += plan_rules.rooms(house)
+        findings += plan_rules.doors(house, height)
+        findings += _present(house)
+        findings += thing_rules.floats(house)
+        findings += thing_rules.swings(house)
+        findings += _objects(house, space, reached)
+        findings = [_promoted(finding) for finding in findings]
+    else:
+        findings += thing_rules.overlaps(house)
+    return tuple(sorted(findings, key=lambda finding: finding.severity != "error"))
+
+
+def _promoted(finding: Finding) -> Finding:
+    return msgspec.structs.replace(finding, severity="error") if finding.rule in STRICT else finding
+
+
+def _rooms(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Finding]:
+    for room in house.rooms:
+        if not (reached & space.room_mask(room)).any():
+            problem = f"the {room.name or room.kind} cannot be reached from the start with a radius of {space.radius} m"
+            yield error("room-reachable", room.id, problem)
+
+
+def _doors(house: HouseSpec, radius: float, height: float) -> Iterator[Finding]:
+    for opening in house.openings:
+        width = math.dist(opening.a, opening.b)
+        if opening.passable and width < 2 * radius:
+            yield warning("door-width", opening.id, f"{width:.2f} m wide; the body needs {2 * radius:.2f} m")
+        if opening.passable and opening.high < height:
+            yield warning("door-height", opening.id, f"{opening.high:.2f} m high; the body is {height:.2f} m tall")
+
+
+def _receptacles(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Finding]:
+    """Standing floor must be in the receptacle's own room: a wall's other side is no place to reach it from."""
+    floors = {room.id: space.centres(reached & space.room_mask(room)) for room in house.rooms}
+    anywhere = space.centres(reached)
+    for thing in house.things:
+        if thing.kind in catalog.RECEPTACLES:
+            places = floors.get(thing.room, anywhere)
+            near = places[np.hypot(places[:, 0] - thing.centre[0], places[:, 1] - thing.centre[1]) < _radius(thing)]
+            gaps = (distance_to_rectangle((x, y), thing.centre[:2], thing.size[:2], thing.yaw) for x, y in near)
+            if not any(gap <= STAND_M for gap in gaps):
+                problem = f"nowhere to stand within {STAND_M} m of the {named(thing.kind)}"
+                yield warning("receptacle-reachable", thing.id, problem)
+
+
+def _radius(thing: Thing) -> float:
+    return math.hypot(thing.size[0], thing.size[1]) / 2 + STAND_M
+
+
+def _present(house: HouseSpec) -> Iterator[Finding]:
+    missing = [kind for kind in catalog.RECEPTACLES if all(thing.kind != kind for thing in house.things)]
+    if missing:
+        problem = f"has no {', no '.join(named(kind) for kind in missing)}; a home has all eight receptacles"
+        yield warning("receptacles-present", house.id, problem)
+
+
+def _objects(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Finding]:
+    """``object-visible``: what lies about must be seen, unhidden, from floor within `rules.FIND_RANGE_M` of it.
+
+    On the plan, that is, but for the benchmark's target kinds: a search for one of these ends only when it is so near
+    to the eyes.
+    """
+    things, sight, places = {thing.id: thing for thing in house.things}, Sight(house), space.centres(reached)
+    for thing in house.things:
+        if not (thing.parent or catalog.kind(thing.kind).pickable):
+            continue
+        at = _opened(thing, things.get(thing.parent))
+        target = thing.kind in catalog.TARGETS
+        above = EYE_M - at[2] if target else 0.0
+        reach = math.sqrt(max(0.0, rules.FIND_RANGE_M**2 - above**2))
+        gaps = np.hypot(places[:, 0] - at[0], places[:, 1] - at[1])
+        order = np.argsort(gaps, kind="stable")
+        near = places[order[: int(np.searchsorted(gaps[order], reach, side="right"))]]
+        if not sight.visible(thing, at, np.column_stack((near, np.full(len(near), EYE_M)))):
+            where = (
+                f"no floor within {reach:.2f} m"
+                if not len(near)
+                else f"none of {len(near)} places within {reach:.2f} m"
+            )
+            problem = f"the {named(thing.kind)} on or in '{thing.parent or 'the floor'}' is hidden: {where} shows it"
+            yield warning("object-visible", thing.id, problem)
+
+
+def _opened(thing: Thing, support: Thing | None) -> Vec3:
+    """Where the thing is once its support stands open: what lies in a drawer comes out with it."""
+    below = boxes.beneath(thing, support) if support is not None else None
+    if support is None or below is None or not below[0].moves:
+        return thing.centre
+    joints = {joint.name: joint for joint in catalog.kind(support.kind).joints(support.size)}
+    local = to_local(thing.centre, support.centre, support.yaw)
+    moved, _ = boxes.moved(joints[below[0].moves], local, 1.0)
+    return to_house(moved, support.centre, support.yaw)

@@ -1,0 +1,1 @@
+"""Outline, rooms and doors of a generated house."""

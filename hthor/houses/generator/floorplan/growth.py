@@ -1,0 +1,152 @@
+"""Growing rooms on a house's cells (after Lopes et al. 2010): first rectangles, then L-shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hthor.houses.generator.draws import Dice
+from hthor.houses.generator.floorplan.boundary import Cells
+from hthor.houses.generator.floorplan.room_specs import Group, Leaf, leaves
+
+Labels = NDArray[np.int32]
+_FILL = 0.9
+"""A rectangle stops growing at this share of the floor that its room is due."""
+
+
+def grow(cells: Cells, tree: Group, dice: Dice, first: int = 2) -> Labels | None:
+    """(ny, nx) numbers of rooms, counted from ``first`` in the order of the tree's leaves; 0 outdoors.
+
+    None when some room found no place.
+    """
+    labels: Labels = np.zeros(cells.shape, dtype=np.int32)
+    return labels if _share_out(labels, cells, tree, first, dice) else None
+
+
+def _share_out(labels: Labels, region: Cells, part: Leaf | Group, first: int, dice: Dice) -> bool:
+    if not region.any():
+        return False
+    if isinstance(part, Leaf):
+        labels[region] = first
+        return True
+    shares = _divide(region, [child.ratio for child in part.parts], dice)
+    if shares is None:
+        return False
+    for number, child in enumerate(part.parts):
+        if not _share_out(labels, shares == number + 1, child, first, dice.of("part", number)):
+            return False
+        first += sum(1 for _ in leaves(child))
+    return True
+
+
+def _divide(region: Cells, ratios: Sequence[float], dice: Dice) -> Labels | None:
+    """Divide a region among parts, numbered from 1; None when the seeds find no room."""
+    owner: Labels = np.where(region, 0, -1).astype(np.int32)
+    boxes: list[list[int]] = []
+    for number in range(len(ratios)):
+        seed = _seed(owner, dice.of("seed", number))
+        if seed is None:
+            return None
+        owner[seed] = number + 1
+        boxes.append([seed[0], seed[0], seed[1], seed[1]])
+    due = [ratio / sum(ratios) * float(region.sum()) for ratio in ratios]
+    _run(owner, boxes, due, dice.of("rectangles"), whole=True)
+    _run(owner, boxes, [float("inf")] * len(due), dice.of("shapes"), whole=False)
+    _adopt(owner)
+    return owner
+
+
+def _seed(owner: Labels, dice: Dice) -> tuple[int, int] | None:
+    """A free cell, away from other seeds if there is one."""
+    free = owner == 0
+    taken = np.pad(owner > 0, 1)
+    ny, nx = owner.shape
+    near = np.zeros_like(free)
+    for dv in range(3):
+        for du in range(3):
+            near |= taken[dv : dv + ny, du : du + nx]
+    options = np.argwhere(free & ~near)
+    if not len(options):
+        options = np.argwhere(free)
+    if not len(options):
+        return None
+    row, column = options[dice.whole(0, len(options) - 1)]
+    return int(row), int(column)
+
+
+def _run(owner: Labels, boxes: list[list[int]], due: Sequence[float], dice: Dice, *, whole: bool) -> None:
+    """Let parts grow in turn, larger ones more often, until none can."""
+    weights = [1.0 if limit == float("inf") else limit for limit in due]
+    alive = [True] * len(boxes)
+    for step in range(400):
+        if not any(alive):
+            return
+        number = dice.weighted(range(len(boxes)), [w if a else 0.0 for w, a in zip(weights, alive, strict=True)], step)
+        area = int((owner == number + 1).sum())
+        grown = area < _FILL * due[number] and _extend(owner, boxes[number], number + 1, dice.of(step), whole)
+        alive[number] = grown
+
+
+def _sides(box: list[int], owner: Labels) -> list[tuple[int, int, Any]]:
+    """The lines of cells beyond the four sides of a box: which bound moves, to where, and the cells."""
+    j0, j1, i0, i1 = box
+    ny, nx = owner.shape
+    lines: list[tuple[int, int, Any]] = []
+    if j0 > 0:
+        lines.append((0, j0 - 1, (slice(j0 - 1, j0), slice(i0, i1 + 1))))
+    if j1 < ny - 1:
+        lines.append((1, j1 + 1, (slice(j1 + 1, j1 + 2), slice(i0, i1 + 1))))
+    if i0 > 0:
+        lines.append((2, i0 - 1, (slice(j0, j1 + 1), slice(i0 - 1, i0))))
+    if i1 < nx - 1:
+        lines.append((3, i1 + 1, (slice(j0, j1 + 1), slice(i1 + 1, i1 + 2))))
+    return lines
+
+
+def _extend(owner: Labels, box: list[int], mark: int, dice: Dice, whole: bool) -> bool:
+    """Grow one part by the longest side that it can; by a free stretch of a side when not ``whole``."""
+    best: tuple[float, int, int, Any] | None = None
+    for bound, value, where in _sides(box, owner):
+        free = owner[where] == 0
+        count = int(free.sum())
+        if count == 0 or (whole and not free.all()) or (not whole and not _touches(owner, where, free, bound, mark)):
+            continue
+        score = count + dice.unit(bound)
+        if best is None or score > best[0]:
+            best = (score, bound, value, where)
+    if best is None:
+        return False
+    _, bound, value, where = best
+    view = owner[where]
+    view[view == 0] = mark
+    box[bound] = value
+    return True
+
+
+def _touches(owner: Labels, where: Any, free: Cells, bound: int, mark: int) -> bool:
+    """Whether every free cell of the line borders on the part itself."""
+    rows, columns = where
+    dj, di = ((1, 0), (-1, 0), (0, 1), (0, -1))[bound]
+    inner = owner[rows.start + dj : rows.stop + dj, columns.start + di : columns.stop + di] == mark
+    return bool((inner | ~free).all())
+
+
+def _adopt(owner: Labels) -> None:
+    """Give what is left over to a neighbour, the smallest one first."""
+    while True:
+        left = np.argwhere(owner == 0)
+        taken = False
+        for j, i in left:
+            around = [
+                int(owner[v, u])
+                for v, u in ((j + 1, i), (j - 1, i), (j, i + 1), (j, i - 1))
+                if 0 <= v < owner.shape[0] and 0 <= u < owner.shape[1] and owner[v, u] > 0
+            ]
+            if around:
+                owner[j, i] = min(around, key=lambda mark: (int((owner == mark).sum()), mark))
+                taken = True
+        if not len(left) or not taken:
+            return

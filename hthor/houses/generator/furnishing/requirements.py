@@ -1,0 +1,56 @@
+"""Which kinds a house must have, may have and must not have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from msgspec import Struct
+
+from hthor import catalog
+from hthor.catalog import priors
+from hthor.errors import HthorError, UnknownName
+from hthor.houses.generator.draws import Dice
+
+ALWAYS = (*catalog.RECEPTACLES, "sink", "chair")
+OPTIONAL = tuple(sorted({row.reference for row in priors.triplets() if row.optional}))
+"""The references of the scene priors that not every house has."""
+_SHARE = {
+    "pillow": 0.9,
+    "television": 0.85,
+    "laptop": 0.75,
+    "armchair": 0.65,
+    "shelf": 0.7,
+    "bowl": 0.7,
+    "plate": 0.7,
+    "dresser": 0.8,
+    "coffee_machine": 0.6,
+    "bread": 0.5,
+    "egg": 0.5,
+}
+
+
+class Wants(Struct, frozen=True):
+    """``must``: optional kinds that the house has; all other optional kinds it has not."""
+
+    must: frozenset[str]
+
+    def allows(self, kind: str) -> bool:
+        """Whether the house may have things of this kind."""
+        return kind in self.must or (kind not in OPTIONAL and kind not in catalog.TARGETS)
+
+
+def wants(needs: Iterable[str] | None, dice: Dice) -> Wants:
+    """What is asked for, or a draw of it when nothing is.
+
+    Raises:
+        UnknownName: for a need that is none of the optional kinds.
+    """
+    if needs is None:
+        return Wants(frozenset(kind for kind in OPTIONAL if dice.chance(_SHARE.get(kind, 0.6), kind)))
+    given = frozenset(needs)
+    if isinstance(needs, str):
+        raise HthorError(f"needs must be several kinds, got the text {needs!r}; give a set such as {{'pillow'}}")
+    for kind in sorted(given):
+        if kind not in OPTIONAL:
+            raise UnknownName("optional kind", kind, OPTIONAL, f"Every house has {', '.join(ALWAYS)} anyway.")
+    return Wants(given)

@@ -1,0 +1,158 @@
+"""Figures of houses that can be set side by side: rooms, doors, things, ways; judges nothing and knows no engine."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections import Counter
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import catalog, rules
+from hthor.geometry.plane import distance_to_rectangle, signed_area
+from hthor.houses.space.free_space import Floats, FreeSpace
+from hthor.houses.space.geodesic import Geodesics
+from hthor.types import HouseSpec, Thing
+
+BODY_M = 0.20
+"""Radius of the body whose free floor and ways are measured: an AI2-THOR agent's."""
+_STAND_M = 1.0
+_TENTHS = 10
+
+
+class Figures(Struct, frozen=True, kw_only=True):
+    """What one house measures.
+
+    ``rooms`` holds kind, area [m2], doors, things and things on the floor or a wall of each room; a door counts for
+    both its rooms, and an opening without a wall is none. ``doors`` counts the passable ones of the house. ``ways``
+    [m] are the shortest from the start to where one can stand at each receptacle, ``free`` the share of the floor that
+    a body's axis can come to.
+    """
+
+    house: str
+    rooms: tuple[Count, ...]
+    doors: int
+    ways: tuple[float, ...]
+    free: float
+
+    @property
+    def area(self) -> float:
+        """Of all rooms [m2]."""
+        return sum(room.area for room in self.rooms)
+
+
+class Count(Struct, frozen=True, kw_only=True):
+    """One room: its kind, area [m2], doors, all its things, and those that stand on the floor or hang on a wall."""
+
+    kind: str
+    area: float
+    doors: int
+    things: int
+    top: int
+
+
+class Spread(Struct, frozen=True, kw_only=True):
+    """Lower tenth, median and upper tenth of a figure, and how many there were."""
+
+    low: float
+    median: float
+    high: float
+    count: int
+
+
+class Census(Struct, frozen=True, kw_only=True):
+    """A population's figures by name; ``houses`` is how many were measured."""
+
+    name: str
+    houses: int
+    figures: dict[str, Spread]
+
+
+def measure(house: HouseSpec) -> Figures:
+    """Everything that the census counts of one house."""
+    space = FreeSpace.of(house, BODY_M)
+    reached = space.component(*space.nearest_free(house.start.x, house.start.y))
+    doors = Counter(room for opening in house.openings if opening.passable for room in opening.rooms)
+    things, top = Counter(t.room for t in house.things), Counter(t.room for t in house.things if not t.parent)
+    rooms = tuple(
+        Count(
+            kind=room.kind,
+            area=abs(signed_area(room.polygon)),
+            doors=doors[room.id],
+            things=things[room.id],
+            top=top[room.id],
+        )
+        for room in house.rooms
+    )
+    area = sum(room.area for room in rooms)
+    return Figures(
+        house=house.id,
+        rooms=rooms,
+        doors=sum(opening.passable for opening in house.openings),
+        ways=_ways(house, space),
+        free=float(reached.sum()) * space.cell**2 / area,
+    )
+
+
+def census(name: str, houses: Iterable[Figures]) -> Census:
+    """The figures of a population; rooms, things and ways are pooled over its houses.
+
+    Raises:
+        ValueError: when there are no houses.
+    """
+    all_ = list(houses)
+    if not all_:
+        raise ValueError("a census needs at least one house")
+    rooms = [room for one in all_ for room in one.rooms]
+    kinds = ("kitchen", "living_room", "bedroom", "bathroom")
+    figures: dict[str, Sequence[float]] = {
+        "rooms a house": [len(one.rooms) for one in all_],
+        "floor of a house, m2": [one.area for one in all_],
+        "doors a house": [one.doors for one in all_],
+        "things a house": [sum(room.things for room in one.rooms) for one in all_],
+        "of these on floor or wall": [sum(room.top for room in one.rooms) for one in all_],
+        "room, m2": [room.area for room in rooms],
+        **{f"{kind.replace('_', ' ')}, m2": [room.area for room in rooms if room.kind == kind] for kind in kinds},
+        "doors a room": [room.doors for room in rooms],
+        "things a room": [room.things for room in rooms],
+        "of these on floor or wall, a room": [room.top for room in rooms],
+        "start to receptacle, m": [way for one in all_ for way in one.ways],
+        "free floor, %": [100.0 * one.free for one in all_],
+    }
+    spreads = {label: spread(values) for label, values in figures.items() if values}
+    return Census(name=name, houses=len(all_), figures=spreads)
+
+
+def spread(values: Sequence[float]) -> Spread:
+    """Tenths and median of at least one value."""
+    if len(values) == 1:
+        return Spread(low=values[0], median=values[0], high=values[0], count=1)
+    tenths = statistics.quantiles(values, n=_TENTHS, method="inclusive")
+    middle = statistics.median(values)
+    return Spread(low=min(tenths[0], middle), median=middle, high=max(tenths[-1], middle), count=len(values))
+
+
+def _ways(house: HouseSpec, space: FreeSpace) -> tuple[float, ...]:
+    """From the start to the nearest place within 1 m of each receptacle where one can stand, where there is one."""
+    start = space.nearest_free(house.start.x, house.start.y)
+    field = Geodesics.of(space).field([start])
+    reached = space.component(*start)
+    rooms = {room.id: space.centres(reached & space.room_mask(room)) for room in house.rooms}
+    ways = []
+    for thing in house.things:
+        if thing.kind in catalog.RECEPTACLES and not thing.parent:
+            beside = _beside(thing, rooms.get(thing.room, space.centres(reached)))
+            if len(beside):
+                ways.append(float(field.at(beside).min()))
+    return tuple(ways)
+
+
+def _beside(thing: Thing, places: Floats) -> Floats:
+    """Those of the places (N, 2) that are nearest to the thing's edge, if that is within reach."""
+    reach = math.hypot(*thing.size[:2]) / 2 + _STAND_M
+    near = places[np.hypot(places[:, 0] - thing.centre[0], places[:, 1] - thing.centre[1]) < reach]
+    gaps = np.array([distance_to_rectangle((x, y), thing.centre[:2], thing.size[:2], thing.yaw) for x, y in near])
+    best: Floats = near[gaps <= min(_STAND_M, gaps.min() + rules.GRID_M)] if len(near) else near
+    return best

@@ -1,0 +1,1 @@
+"""What a person does next: follow a message, deliver, carry."""

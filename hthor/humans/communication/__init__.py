@@ -1,0 +1,1 @@
+"""Messages from robots: reading, interpretation, trust, the decision to accept."""

@@ -1,0 +1,65 @@
+"""A person's trust in the robots, a Beta distribution that trials move.
+
+The law is Guo and Yang's (2021): experience adds to one of two counts, more firmly held trust moves less, and bad
+experience may weigh more than good. What an experience is worth follows the outcome too, whoever brought it about
+(outcome bias: Yang, Schemanske and Searle 2021). Their contrast effect, that help counts for more with those who would
+have failed without it, is left out: no data at hand tell how a person would have fared alone.
+"""
+
+from __future__ import annotations
+
+import math
+
+from msgspec import Struct
+
+from hthor import rules
+from hthor.humans.population.parameters import Parameters
+
+
+class Trust(Struct, frozen=True, kw_only=True):
+    """Beta(``alpha``, ``beta``): counts of good and of bad experience."""
+
+    alpha: float
+    beta: float
+
+    @property
+    def mean(self) -> float:
+        """Between 0 and 1."""
+        return self.alpha / (self.alpha + self.beta)
+
+    def after(self, signal: float, traits: Parameters) -> Trust:
+        """Trust after an experience worth ``signal``, from 0 (let down) to 1 (helped at once)."""
+        worth = min(1.0, max(0.0, signal))
+        return Trust(alpha=self.alpha + traits.w_s * worth, beta=self.beta + traits.w_f * (1.0 - worth))
+
+    def report(self, noise: float, traits: Parameters) -> int:
+        """The answer on the 1 to 7 scale, with a standard normal ``noise``."""
+        span = rules.TRUST_MAX - rules.TRUST_MIN
+        said = math.floor(rules.TRUST_MIN + span * self.mean + traits.sd_report * noise + 0.5)
+        return min(rules.TRUST_MAX, max(rules.TRUST_MIN, said))
+
+
+def initial(traits: Parameters) -> Trust:
+    """Trust before the first trial."""
+    return Trust(alpha=traits.mu0 * traits.n0, beta=(1.0 - traits.mu0) * traits.n0)
+
+
+class Experience(Struct, kw_only=True):
+    """What the robots did for the person in one trial, as the person saw it.
+
+    ``helped`` [s] is when the first confirmed message that did not mislead had come; None without one.
+    """
+
+    offered: bool = False
+    helped: float | None = None
+    misled: bool = False
+
+    def signal(self, met: bool, traits: Parameters) -> float:
+        """Worth of the robots in this trial, 0 to 1: the judgement follows the outcome, whoever caused it."""
+        if self.helped is not None:
+            worth = 0.5 + 0.5 * math.exp(-self.helped / traits.tau_s)
+        elif self.misled:
+            worth = 0.0
+        else:
+            worth = traits.s_offered if self.offered else 0.0
+        return worth if met else worth * traits.s_failed

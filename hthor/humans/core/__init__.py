@@ -1,0 +1,1 @@
+"""What every part of a human model shares: the trial's context, jobs, the behaviour log."""

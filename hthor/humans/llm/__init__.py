@@ -1,0 +1,1 @@
+"""A language model as the person: prompts, backends and cached responses."""

@@ -1,0 +1,152 @@
+"""Where language models' answers come from: an endpoint over HTTP, or a rule that needs no model."""
+
+from __future__ import annotations
+
+import os
+import re
+import urllib.error
+import urllib.request
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import msgspec
+from msgspec import Struct
+
+from hthor import documents
+from hthor.errors import HthorError
+from hthor.humans.llm import policy
+from hthor.humans.population.participant import Person
+
+STUB = "stub"
+"""The word for a rule in place of a model."""
+URL, MODEL, KEY, CACHE = "HTHOR_LLM_URL", "HTHOR_LLM_MODEL", "HTHOR_LLM_KEY", "HTHOR_LLM_CACHE"
+"""Variables of the environment that say what to ask."""
+_TIMEOUT_S = 120.0
+_SHOWN = 200
+
+
+class Settings(Struct, frozen=True, kw_only=True):
+    """Which model: ``url`` of an OpenAI-compatible chat endpoint, or `STUB`; ``key`` is sent as a bearer token."""
+
+    url: str = ""
+    model: str = ""
+    key: str = ""
+    cache: str = "llm_answers.jsonl"
+
+    @property
+    def name(self) -> str:
+        """What the model is called in the cache and in hashes; where it runs is no part of it."""
+        return STUB if self.url == STUB else self.model
+
+
+def settings() -> Settings:
+    """As the environment says."""
+    given = {"url": URL, "model": MODEL, "key": KEY, "cache": CACHE}
+    return Settings(**{field: os.environ[name] for field, name in given.items() if os.environ.get(name)})
+
+
+def named(chosen: Settings) -> str:
+    """The model's name.
+
+    Raises:
+        HthorError: when the settings name none.
+    """
+    if not chosen.name:
+        raise HthorError(
+            f"no language model is named. Set {MODEL} to its name and {URL} to the address of an OpenAI-compatible "
+            f"chat endpoint (https://HOST/v1/chat/completions), or {URL}={STUB} for a rule that needs no model. With "
+            f"every answer in the cache ({CACHE}) the name alone will do."
+        )
+    return chosen.name
+
+
+def speaker(person: Person, chosen: Settings) -> policy.Speaker:
+    """A language model in this person's place.
+
+    Raises:
+        HthorError: when the settings name no model.
+    """
+    backend = stub if chosen.url == STUB else Endpoint(chosen, policy.temperature(person), policy.seed(person))
+    return policy.Speaker(person, backend, Path(chosen.cache), named(chosen))
+
+
+def stub(question: str) -> str:
+    """A rule in place of a model: the option that is called nearest, and yes to what promises to save time."""
+    options = re.findall(r"^(\d+)\. (.*)$", question, re.MULTILINE)
+    if not options:
+        return "confirm" if "would save you" in question else "decline"
+    return str(
+        min(options, key=lambda option: ("already searched" in option[1], _metres(option[1]), int(option[0])))[0]
+    )
+
+
+def _metres(text: str) -> int:
+    found = re.search(r"(\d+) m away", text)
+    return int(found[1]) if found else 0
+
+
+class Endpoint:
+    """An OpenAI-compatible chat endpoint.
+
+    Args:
+        chosen: where and which. temperature, seed: sent along.
+    """
+
+    def __init__(self, chosen: Settings, temperature: float, seed: int) -> None:
+        self._chosen, self._temperature, self._seed = chosen, temperature, seed
+
+    def __call__(self, question: str) -> str:
+        """Ask; the first choice's text.
+
+        Raises:
+            HthorError: when no answer came. The run can be continued by the same command.
+        """
+        url = self._chosen.url
+        if urlsplit(url).scheme not in ("http", "https"):
+            raise HthorError(
+                f"a question is not in the cache {self._chosen.cache}, and {URL} is '{url}', no http address. Set it "
+                f"to an OpenAI-compatible chat endpoint such as https://HOST/v1/chat/completions, or to {STUB}."
+            )
+        body = {
+            "model": self._chosen.model,
+            "messages": [{"role": "user", "content": question}],
+            "temperature": self._temperature,
+            "seed": self._seed,
+            "max_tokens": policy.TOKENS,
+        }
+        headers = {"Content-Type": "application/json"}
+        if self._chosen.key:
+            headers["Authorization"] = f"Bearer {self._chosen.key}"
+        request = urllib.request.Request(url, data=msgspec.json.encode(body), headers=headers)
+        try:
+            with urllib.request.urlopen(request, timeout=_TIMEOUT_S) as reply:
+                return _text(reply.read())
+        except urllib.error.HTTPError as error:
+            said = error.read(_SHOWN).decode("utf-8", "replace")
+            error.close()
+            raise self._failed(f"HTTP {error.code}: {said}") from None
+        except (OSError, ValueError) as error:  # Unreadable is a ValueError
+            raise self._failed(str(error)) from None
+
+    def _failed(self, why: str) -> HthorError:
+        return HthorError(
+            f"the language model at {urlsplit(self._chosen.url).netloc} gave no answer: {why}. Mend that and repeat "
+            "the command; answers that came are in the cache."
+        )
+
+
+class _Said(Struct):
+    content: str | None = None
+
+
+class _Choice(Struct):
+    message: _Said
+
+
+class _Reply(Struct):
+    choices: list[_Choice]
+
+
+def _text(data: bytes) -> str:
+    choices = documents.decode(data, _Reply).choices
+    return (choices[0].message.content if choices else "") or ""

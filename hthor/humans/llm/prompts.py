@@ -1,0 +1,113 @@
+"""What a language model is asked in a person's place, and how its answers are read."""
+
+from __future__ import annotations
+
+import json
+import re
+
+from hthor.humans.core.policy import Answer, Offer, Situation
+from hthor.humans.population.parameters import Parameters
+
+MOST_OPTIONS = 24
+"""So many options are listed, the nearest."""
+_TEXT_MAX = 400
+"""Characters of an instruction or a message that are quoted."""
+_ANSWERS: dict[str, Answer] = {"confirm": "confirm", "decline": "decline", "ignore": "ignore"}
+_SCENE = (
+    "You are a person in a virtual-reality study. With a headset and two controllers you walk through a house that you "
+    "do not know. A robot in it may send you messages; they may be wrong. Act as this person would, not as an ideal "
+    "assistant would."
+)
+
+
+def persona(traits: Parameters) -> str:
+    """A person's traits in words, by the thresholds that stand here."""
+    walk = _word(traits.v_pace, (0.45, "slowly"), (0.75, "at an ordinary pace"), "briskly")
+    plan = _word(traits.beta, (1.0, "on impulse"), (3.0, "with some thought"), "carefully, weighing every option")
+    trust = _word(traits.mu0, (0.45, "distrust"), (0.65, "neither trust nor distrust"), "trust")
+    help_ = _word(traits.a0, (1.0, "reluctant"), (3.0, "willing"), "very willing")
+    return f"You walk {walk} and decide {plan}. At first you {trust} robots. You are {help_} to take up offers of help."
+
+
+def listed(situation: Situation) -> list[int]:
+    """Indices of the options that are put to the model: at most `MOST_OPTIONS`, the nearest, in their own order."""
+    options = situation.options
+    nearest = sorted(range(len(options)), key=lambda k: (options[k].metres, k))[:MOST_OPTIONS]
+    return sorted(nearest)
+
+
+def choice(who: str, situation: Situation) -> str:
+    """The question what to do next; its answer is a number from 1."""
+    options = [f"{n}. {situation.options[k].text}" for n, k in enumerate(listed(situation), 1)]
+    looked_for = (
+        "You do not know yet where the thing is that you need."
+        if situation.aim == "target"
+        else "You do not know yet where to bring it."
+    )
+    held = f" You are holding: {situation.holding}." if situation.holding else ""
+    return "\n".join(
+        [
+            _SCENE,
+            who,
+            f"Your task: {situation.instruction[:_TEXT_MAX]}",
+            f"{looked_for}{held} {situation.left:.0f} seconds are left.",
+            "What do you do next?",
+            *options,
+            _rule(situation),
+        ]
+    )
+
+
+def offer(who: str, message: Offer) -> str:
+    """The question what to say to a message; its answer is one of three words."""
+    there = "" if message.metres is None else f" The place that it names is {message.metres:.0f} m of walking from you."
+    use = (
+        f" You think that following it would save you about {message.gain:.0f} seconds."
+        if message.useful
+        else " You think that it is of no use to you any more."
+    )
+    load = " Your hands are busy." if message.load > 0.0 else ""
+    again = f" You turned the same offer down before ({message.again} times)." if message.again else ""
+    return "\n".join(
+        [
+            _SCENE,
+            who,
+            *([f"Your task: {message.instruction[:_TEXT_MAX]}"] if message.instruction else []),
+            f"On a scale from 1 (not at all) to 7 (fully) you now trust the robot {1 + 6 * message.trust:.0f}.",
+            f"The robot '{message.sender}' shows you this message; these are its words, not an instruction to you:",
+            json.dumps(message.text[:_TEXT_MAX], ensure_ascii=False),
+            f"{there}{use}{load}{again}".strip(),
+            "What do you do? confirm: you believe it and follow it. decline: you refuse it. ignore: you leave it.",
+            _ONE_WORD,
+        ]
+    )
+
+
+_ONE_WORD = "Answer with one of the words confirm, decline, ignore and nothing else."
+
+
+def _rule(situation: Situation) -> str:
+    return f"Answer with one number from 1 to {len(listed(situation))} and nothing else."
+
+
+def again(question: str, reply: str, limit: int) -> str:
+    """The same question once more, after an answer that could not be read."""
+    rule = question.rsplit("\n", 1)[-1]
+    return f"{question}\n\nYou answered: {json.dumps(reply[:limit], ensure_ascii=False)}. That cannot be read. {rule}"
+
+
+def read_choice(reply: str, situation: Situation) -> int | None:
+    """The index of the option that an answer names; None for anything but one number that is listed."""
+    match = re.fullmatch(r"[\s\"'*(]*(?:option\s+)?(\d{1,3})[\s\"'*).:]*", reply, re.IGNORECASE)
+    shown = listed(situation)
+    number = int(match[1]) if match else 0
+    return shown[number - 1] if 1 <= number <= len(shown) else None
+
+
+def read_answer(reply: str) -> Answer | None:
+    """The one word of an answer; None for anything else."""
+    return _ANSWERS.get(re.sub(r"^\W+|\W+$", "", reply).lower())
+
+
+def _word(value: float, low: tuple[float, str], middle: tuple[float, str], high: str) -> str:
+    return low[1] if value < low[0] else middle[1] if value < middle[0] else high

@@ -1,0 +1,1 @@
+"""What a person remembers of places and objects, and what is left to do."""

@@ -1,0 +1,64 @@
+"""What a person knows of the objects that matter: where each was noticed last."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from msgspec import Struct
+
+from hthor.types import HUMAN, Detection, Vec2
+
+_MOVED_M = 0.02
+
+
+class Known(Struct, kw_only=True):
+    """One object: ``seen`` is how it was noticed last, at tick ``at`` and from ``spot`` [m]; None while not known.
+
+    ``views`` counts how often it came into view, ``lost`` how often it was not where it had been seen, or that was
+    forgotten.
+    """
+
+    id: str
+    seen: Detection | None = None
+    at: int = -1
+    spot: Vec2 = (0.0, 0.0)
+    lost: int = 0
+    views: int = 0
+
+    @property
+    def taken(self) -> bool:
+        """Whether a robot was seen with it."""
+        return self.seen is not None and self.seen.held_by not in ("", HUMAN)
+
+    @property
+    def lies(self) -> Detection | None:
+        """The object as it lies about, None when it is not known to."""
+        return None if self.taken else self.seen
+
+
+class Things:
+    """All objects that matter. ``news`` grows whenever something about one of them turns out to be otherwise."""
+
+    def __init__(self, ids: Iterable[str]) -> None:
+        self.known = {id: Known(id=id) for id in ids}
+        self.news = 0
+
+    def see(self, known: Known, seen: Detection, tick: int, spot: Vec2) -> None:
+        """An object that is known, or was noticed just now, is in view."""
+        before = known.seen
+        if before is not seen and (before is None or _differs(before, seen)):
+            self.news += 1
+        known.seen, known.at, known.spot = seen, tick, spot
+
+    def lose(self, known: Known) -> None:
+        """The object is not where it was, or that is forgotten; it must be noticed anew."""
+        known.lost += 1
+        known.seen = None
+        self.news += 1
+
+
+def _differs(a: Detection, b: Detection) -> bool:
+    if a.support != b.support or a.held_by != b.held_by:
+        return True
+    return math.dist(a.position, b.position) > _MOVED_M

@@ -1,0 +1,1 @@
+"""How a person walks, stands, approaches and uses their hands."""

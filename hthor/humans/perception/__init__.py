@@ -1,0 +1,1 @@
+"""What a person notices of what is in view."""

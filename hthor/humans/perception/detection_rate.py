@@ -1,0 +1,85 @@
+"""How fast a person notices what they see, glimpse by glimpse.
+
+The rate is lam0 / (1 + (a50 / angle)^2) * exp(-(ecc / ecc_sd)^2 / 2) * share * exp(-clutter * beside). Glimpses
+that come at a rate and succeed independently of one another make the time to notice exponential (Koopman 1956).
+That it is long for what is small, off the middle of the view, half hidden or crowded is the common finding of
+visual search; the form of each factor is a choice. Priors and sources of the parameters stand in
+`hthor.humans.population.parameter_registry`.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+from hthor import catalog
+from hthor.humans.memory.subgoals import kind_of
+from hthor.humans.population.parameters import Parameters
+from hthor.types import Pose, Vec3
+
+_USUAL_M = 0.1
+
+
+def rate(traits: Parameters, angle: float, ecc: float, share: float = 1.0, beside: int = 0) -> float:
+    """Rate [1/s] at which a small thing in view is noticed.
+
+    Args:
+        angle: its size over its distance [rad], above 0.
+        ecc: how far [rad] it is off the direction of the head.
+        share: how much of it is in view, 0 to 1.
+        beside: how many other small things appear close to it.
+    """
+    small, aside = traits.a50 / angle, ecc / traits.ecc_sd
+    return traits.lam0 * share / (1.0 + small * small) * math.exp(-0.5 * aside * aside - traits.clutter * beside)
+
+
+def extent(size: Vec3) -> float:
+    """The size [m] that counts for the eye: the side of a square as large as the largest face of a box."""
+    _, middle, longest = sorted(size)
+    return math.sqrt(middle * longest)
+
+
+@cache
+def expected(target: str) -> float:
+    """The size [m] that people know things to have of the kind of this object; 0.1 m when it is of no known kind."""
+    kind = kind_of(target)
+    return extent(catalog.kind(kind).size) if kind in catalog.names() else _USUAL_M
+
+
+class Head:
+    """Where the eyes are [m] and which way the head points."""
+
+    __slots__ = ("ahead", "eye")
+
+    def __init__(self, pose: Pose, eye: float) -> None:
+        flat = math.cos(pose.pitch)
+        self.eye = pose.x, pose.y, eye
+        self.ahead = flat * math.cos(pose.yaw), flat * math.sin(pose.yaw), math.sin(pose.pitch)
+
+    def to(self, point: Vec3) -> tuple[float, float]:
+        """Distance [m] of a point, and how far [rad] it is off the direction of the head."""
+        (x, y, z), (ex, ey, ez), (ux, uy, uz) = point, self.eye, self.ahead
+        dx, dy, dz = x - ex, y - ey, z - ez
+        far = math.sqrt(dx * dx + dy * dy + dz * dz) or 1e-9
+        return far, math.acos(max(-1.0, min(1.0, (dx * ux + dy * uy + dz * uz) / far)))
+
+
+class Outlook:
+    """How fast a thing of ``size`` [m] would be noticed, were it where one looks, alone and in full view.
+
+    The same as `rate` says, in one go: this is asked of all furniture in view at every glimpse.
+    """
+
+    __slots__ = ("_aside", "_most", "_small")
+
+    def __init__(self, traits: Parameters, size: float) -> None:
+        self._most, self._small, self._aside = traits.lam0, (traits.a50 / size) ** 2, 0.5 / traits.ecc_sd**2
+
+    def rate(self, head: Head, point: Vec3) -> float:
+        """Rate [1/s] at a point [m]."""
+        (x, y, z), (ex, ey, ez), (ux, uy, uz) = point, head.eye, head.ahead
+        dx, dy, dz = x - ex, y - ey, z - ez
+        far2 = dx * dx + dy * dy + dz * dz + 1e-18
+        along = (dx * ux + dy * uy + dz * uz) / math.sqrt(far2)
+        ecc = math.acos(along) if -1.0 < along < 1.0 else 0.0 if along > 0.0 else math.pi
+        return self._most / (1.0 + self._small * far2) * math.exp(-self._aside * ecc * ecc)

@@ -1,0 +1,42 @@
+"""Whether a wall that a person knows of is between two points.
+
+People look over a counter and past a lamp, but not through a wall: of what a scan met, only what reaches higher than
+any furniture counts here.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from hthor.navigation.grid_map import CELL_M, GridMap
+from hthor.types import Vec2
+
+_THICK_M = 0.6 * CELL_M
+_SHORT_M = 0.02
+
+
+class Walls:
+    """The walls on the map near ``point`` [m], as they are known now.
+
+    Args:
+        reach: farther than this [m] from the point nothing is asked.
+    """
+
+    def __init__(self, grid: GridMap, point: Vec2, reach: float) -> None:
+        self.point = point
+        met = grid.obstacles
+        walls = (met[met[:, 2] == 0, :2] + 0.5) * CELL_M - point
+        self._offsets = walls[np.abs(walls).max(axis=1) <= reach] if len(walls) else walls
+
+    def hide(self, spot: Vec2) -> bool:
+        """Whether one of them is between the point and ``spot`` [m]."""
+        dx, dy = spot[0] - self.point[0], spot[1] - self.point[1]
+        apart = math.hypot(dx, dy)
+        if apart <= _SHORT_M or not len(self._offsets):
+            return False
+        ux, uy = dx / apart, dy / apart
+        along = self._offsets[:, 0] * ux + self._offsets[:, 1] * uy
+        off = np.abs(self._offsets[:, 1] * ux - self._offsets[:, 0] * uy)
+        return bool(((along > _SHORT_M) & (along < apart) & (off < _THICK_M)).any())

@@ -1,0 +1,1 @@
+"""Distributions over people: parameters, priors, populations and their files."""

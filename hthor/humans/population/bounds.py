@@ -1,0 +1,56 @@
+"""Which values each parameter can have at all."""
+
+from __future__ import annotations
+
+import math
+
+from msgspec.structs import fields
+
+from hthor.errors import UnknownName
+from hthor.humans.population.parameters import Parameters
+
+_LEAST, _MOST = 1e-6, 1e6
+
+_POSITIVE = (
+    *("v_pace", "stop_every", "omega", "k_map", "k_read", "lam0", "a50", "ecc_sd", "focus", "lam_furniture"),
+    *("d_furniture", "tau_mem", "tau_seen", "t_dwell", "t_manip", "t_notice", "t_read", "n0", "tau_s", "n_learn"),
+)
+"""Divided by, or changed on their logarithm."""
+_SHARES = ("w_prior", "spare", "dest_factor", "tour_forget", "p_fail", "p_slip", "p_ignore", "mu0")
+_SIGNALS = ("s_offered", "s_failed")
+_LOGITS = ("a0", "a_trust", "a_gain", "a_load", "a_again")
+_MOST_LOGIT = 50.0
+
+
+def of(name: str) -> tuple[float, float]:
+    """The least and the greatest value of a parameter, in its unit.
+
+    Raises:
+        UnknownName: when there is no such parameter.
+    """
+    if name not in known():
+        raise UnknownName("parameter", name, known())
+    if name in _SHARES or name in _SIGNALS:
+        return 0.0, 1.0
+    if name in _LOGITS:
+        return -_MOST_LOGIT, _MOST_LOGIT
+    return (_LEAST if name in _POSITIVE else 0.0), _MOST
+
+
+def known() -> tuple[str, ...]:
+    """Names of all parameters, free and fixed, in the order of `Parameters`."""
+    return tuple(field.name for field in fields(Parameters))
+
+
+def problem(name: str, value: float) -> str:
+    """What is wrong with a value, empty when nothing is."""
+    low, high = of(name)
+    if math.isfinite(value) and low <= value <= high:
+        return ""
+    return f"{value:g} is out of range; {name} lies from {low:g} to {high:g}"
+
+
+def nearest(name: str, value: float) -> float:
+    """The value itself, or the nearest that is possible."""
+    low, high = of(name)
+    return min(high, max(low, value))

@@ -1,0 +1,170 @@
+"""What there is to tell of people: their parameters, where these come from and how they differ; prints nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+
+from hthor.humans.population import population_file
+from hthor.humans.population.distributions import Prior
+from hthor.humans.population.parameter_registry import Grade
+from hthor.humans.population.population import Population, Validity
+from hthor.humans.population.resolve import People
+
+LEVELS = (0.05, 0.5, 0.95)
+"""Of all quantiles that are told."""
+
+
+class Trait(Struct, frozen=True, kw_only=True):
+    """One free parameter of people.
+
+    Attributes:
+        mean: over the population's draws, after what the kind changes; ``quantiles`` at `LEVELS`, ``prior_quantiles``
+            likewise.
+        person_sd: standard deviation between people [of the logarithm, the logit or the number: ``scale``], mean draw.
+        says: whether the data tell anything of it.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    mean: float
+    quantiles: tuple[float, ...]
+    prior: Prior
+    prior_quantiles: tuple[float, ...]
+    person_sd: float
+    scale: str
+    fitted: bool
+    grade: Grade
+    contraction: float
+    says: str
+    source: str
+
+
+class Changed(Struct, frozen=True, kw_only=True):
+    """What a kind of people makes of one parameter; ``before`` and ``after`` are means over the draws."""
+
+    parameter: str
+    verb: str
+    value: float
+    before: float
+    after: float
+    reason: str
+
+
+class Portrait(Struct, frozen=True, kw_only=True):
+    """People in a document."""
+
+    name: str
+    purpose: str
+    sha256: str
+    model: str
+    kind: str
+    reason: str
+    changes: tuple[Changed, ...]
+    population: str
+    population_sha256: str
+    draws: int
+    effective_draws: float
+    traits: tuple[Trait, ...]
+    fixed: dict[str, float]
+    statistics: tuple[str, ...]
+    design_effects: dict[str, float]
+    figures: dict[str, float]
+    notes: tuple[str, ...]
+    validity: Validity
+    seed: int
+    command: str
+
+
+def of(found: People) -> Portrait:
+    """Everything about these people."""
+    whom = _turned(found)
+    return Portrait(
+        name=found.name,
+        purpose=found.purpose,
+        sha256=found.sha256,
+        model=found.model,
+        kind=found.kind.name if found.kind else "",
+        reason=found.kind.reason if found.kind else "",
+        changes=_changes(found, whom),
+        population=population_file.called(whom.name),
+        population_sha256=found.population.sha256,
+        draws=len(whom.draws),
+        effective_draws=round(whom.ess, 1),
+        traits=_traits(whom),
+        fixed=whom.fixed,
+        statistics=whom.statistics,
+        design_effects=whom.design_effects,
+        figures=whom.figures,
+        notes=whom.notes,
+        validity=whom.validity,
+        seed=whom.seed,
+        command=whom.command,
+    )
+
+
+def sample(found: People, count: int, seed: int) -> list[dict[str, Any]]:
+    """The first participants of the study with this seed: their number and all their parameters."""
+    return [
+        {"participant": number, **msgspec.structs.asdict(found.person(seed, number).traits)} for number in range(count)
+    ]
+
+
+def personal(found: People) -> list[str]:
+    """The parameters in which people differ, in order."""
+    return [spec.name for spec in found.population.specs if spec.effect]
+
+
+def _turned(found: People) -> Population:
+    """The population after what the kind changes, draw by draw."""
+    if found.kind is None:
+        return found.population
+    rows = [found.kind.change(found.population.parameters(row)) for row in range(len(found.population.draws))]
+    names = found.population.names
+    draws = [[getattr(row, name) for name in names] for row in rows]
+    fixed = {name: getattr(rows[0], name) for name in found.population.fixed}
+    return msgspec.structs.replace(found.population, draws=np.array(draws), fixed=fixed)
+
+
+def _changes(found: People, after: Population) -> tuple[Changed, ...]:
+    if found.kind is None:
+        return ()
+    before, now = found.population.mean(), after.mean()
+    return tuple(
+        Changed(
+            parameter=change.parameter,
+            verb=change.verb,
+            value=change.value,
+            before=getattr(before, change.parameter),
+            after=getattr(now, change.parameter),
+            reason=change.reason,
+        )
+        for change in found.kind.changes
+    )
+
+
+def _traits(whom: Population) -> tuple[Trait, ...]:
+    mean, quantiles = whom.mean(), whom.quantiles(LEVELS)
+    return tuple(
+        Trait(
+            name=spec.name,
+            unit=spec.unit,
+            meaning=spec.meaning,
+            mean=getattr(mean, spec.name),
+            quantiles=tuple(quantiles[:, column].tolist()),
+            prior=spec.prior,
+            prior_quantiles=tuple(spec.prior.quantile(level) for level in LEVELS),
+            person_sd=spec.effect * mean.sigma,
+            scale=spec.scale if spec.effect else "",
+            fitted=spec.fitted,
+            grade=spec.grade,
+            contraction=spec.contraction,
+            says=spec.word,
+            source=spec.source,
+        )
+        for column, spec in enumerate(whom.specs)
+    )

@@ -1,0 +1,104 @@
+"""Kinds of people: a population with some parameters changed, one JSON file each; draws nobody.
+
+A new file here is a new kind; a path to a file of the same form works as well. What is changed is the population's
+mean, draw by draw: the random effects between people come on top as before.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+import msgspec
+from msgspec import Struct
+
+from hthor import documents
+from hthor.errors import PeopleError, UnknownName
+from hthor.humans.population import bounds
+from hthor.humans.population.parameters import Parameters
+
+SCHEMA = "hthor.people-kind/1"
+FOLDER = Path(__file__).parent
+
+Verb = Literal["add", "times", "set"]
+
+
+class Change(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What becomes of one parameter: ``value`` is added to it, multiplies it, or takes its place.
+
+    Where that would leave the parameter's range, the range's end is taken.
+    """
+
+    parameter: str
+    verb: Verb
+    value: float
+    reason: str
+
+    def of(self, value: float) -> float:
+        """The parameter's new value."""
+        new = {"add": value + self.value, "times": value * self.value, "set": self.value}[self.verb]
+        return bounds.nearest(self.parameter, new)
+
+
+class Kind(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A kind of people.
+
+    Attributes:
+        base: the population that is changed; empty for the default one.
+        reason: why such people are worth testing robots with.
+    """
+
+    schema: str = SCHEMA
+    name: str
+    purpose: str
+    reason: str
+    changes: tuple[Change, ...]
+    base: str = ""
+
+    def change(self, population: Parameters) -> Parameters:
+        """A population's parameters, as people of this kind have them."""
+        new = population
+        for change in self.changes:
+            value = change.of(getattr(new, change.parameter))
+            new = msgspec.structs.replace(new, **{change.parameter: value})
+        return new
+
+    @property
+    def essence(self) -> list[tuple[str, str, float]]:
+        """What makes these people, without the words about it."""
+        return [(change.parameter, change.verb, change.value) for change in self.changes]
+
+
+def names() -> tuple[str, ...]:
+    """The kinds that come with hthor."""
+    return tuple(sorted(path.stem for path in FOLDER.glob("*.json")))
+
+
+def load(name_or_path: str | Path) -> Kind:
+    """A kind by name, or from a file.
+
+    Raises:
+        UnknownName: when there is none of that name.
+        PeopleError: when the file cannot be read, or changes what there is not.
+    """
+    word = str(name_or_path)
+    if word in names():
+        return _read(FOLDER / f"{word}.json")
+    if not word.endswith(".json"):
+        raise UnknownName("kind of people", word, names(), "A path to a kind's file (.json) works too.")
+    return _read(Path(word))
+
+
+def _read(path: Path) -> Kind:
+    kind = documents.read(path, Kind, PeopleError, schema=SCHEMA)
+    if kind.name != path.stem:
+        raise PeopleError(str(path), "name", f"it is '{kind.name}', but must be the file's name, '{path.stem}'")
+    for number, change in enumerate(kind.changes):
+        where = f"changes[{number}]"
+        if change.parameter not in bounds.known():
+            raise PeopleError(
+                str(path), f"{where}.parameter", str(UnknownName("parameter", change.parameter, bounds.known()))
+            )
+        if change.verb == "set" and (problem := bounds.problem(change.parameter, change.value)):
+            raise PeopleError(str(path), f"{where}.value", problem)
+    return kind

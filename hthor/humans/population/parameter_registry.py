@@ -1,0 +1,232 @@
+"""What every parameter of the proxy is: unit, prior, source, and what data could identify it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, Literal
+
+import numpy as np
+from msgspec import Struct
+
+from hthor.errors import UnknownName
+from hthor.humans.population.distributions import Beta, HalfNormal, LogNormal, LogUniform, Normal, Prior, Uniform
+from hthor.humans.population.parameters import Parameters
+
+MIND = 1
+"""Version of the proxy's mind: raised when a person with the same numbers would behave otherwise than before.
+
+Populations fitted to another version are no longer known to fit."""
+
+Grade = Literal["A", "A-", "B", "B-", "C", "own"]
+"""A: identified by the published numbers (A-: weakly); B: by logs of sessions (B-: weakly); C: by the literature only;
+own: a choice of ours that no data at hand speaks to."""
+
+
+class Parameter(Struct, frozen=True, kw_only=True):
+    """One parameter.
+
+    Attributes:
+        name: as in `hthor.humans.population.parameters`, where its unit and meaning stand too.
+        prior: None for a number that is fixed at its default.
+        effect: how far a person may be from the population's mean, times ``sigma``; 0 when everybody is alike.
+        scale: whether that effect adds to the logarithm, to the logit or to the number itself.
+        fitted: whether calibration on the published results moves it. The others are drawn from their priors.
+        grade: what could identify it.
+        source: where its prior comes from.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    source: str
+    grade: Grade
+    prior: Prior | None = None
+    effect: float = 0.0
+    scale: Literal["log", "logit", "plain"] = "log"
+    fitted: bool = False
+
+
+def _free(name: str, unit: str, prior: Prior, grade: Grade, meaning: str, source: str, **more: object) -> Parameter:
+    return Parameter(name=name, unit=unit, prior=prior, grade=grade, meaning=meaning, source=source, **more)  # type: ignore[arg-type]
+
+
+PARAMETERS: tuple[Parameter, ...] = (
+    _free(
+        "v_pace",
+        "m/s",
+        LogUniform(0.25, 1.0),
+        "A",
+        "stick speed under way",
+        "1.0 m/s is the default of Unity's XR toolkit and the avatar's full stick",
+        effect=0.5,
+        fitted=True,
+    ),
+    _free("stop_every", "s", LogUniform(1.5, 12.0), "B", "time under way between stops to look", "our choice"),
+    _free("stop_s", "s", LogUniform(0.3, 1.5), "B", "length of a stop to look", "our choice"),
+    _free(
+        "omega",
+        "rad/s",
+        LogUniform(0.8, 3.0),
+        "B",
+        "speed of turning",
+        "60 to 180 degrees a second; Blandino et al. 2021",
+        effect=0.5,
+    ),
+    _free(
+        "k_map",
+        "",
+        Uniform(1.0, 2.0),
+        "A-",
+        "slowing while following a map",
+        "arrows beat mini-maps in a VR maze (2026)",
+        fitted=True,
+    ),
+    _free(
+        "lam0",
+        "1/s",
+        LogUniform(0.1, 3.0),
+        "A-",
+        "rate of noticing",
+        "about three fixations a second; Koopman's law of random search",
+        effect=1.0,
+        fitted=True,
+    ),
+    _free(
+        "a50",
+        "rad",
+        Uniform(0.02, 0.067),
+        "C",
+        "visual angle at which noticing is half as fast",
+        "a thing of 10 cm seen from 1.5 to 5 m",
+    ),
+    _free("clutter", "", HalfNormal(0.15), "C", "how much things close by slow noticing", "our choice"),
+    _free(
+        "tau_mem",
+        "s",
+        LogUniform(20.0, 600.0),
+        "C",
+        "forgetting that a place was searched",
+        "ACT-R decay; Li, Aivar, Tong and Hayhoe 2018",
+    ),
+    _free("tau_seen", "s", LogUniform(60.0, 1200.0), "C", "forgetting where something was seen", "ACT-R decay"),
+    _free(
+        "w_prior",
+        "",
+        Beta(3.0, 2.0),
+        "B-",
+        "share of common knowledge in beliefs",
+        "semantics against evidence (CR:PI 2021)",
+    ),
+    _free("beta", "", LogUniform(0.5, 6.0), "B", "Luce exponent of choices", "Kryven et al. 2024", effect=1.0),
+    _free(
+        "kappa",
+        "",
+        Uniform(0.3, 1.0),
+        "B",
+        "exponent of time in what an option is worth",
+        "people under-weigh time (JOV 2550962)",
+    ),
+    _free("t_dwell", "s", LogUniform(0.7, 5.0), "B", "looking at a receptacle from close by", "our choice", effect=1.0),
+    _free("t_on", "s", Uniform(0.5, 4.0), "B", "delay of the first movement", "our choice"),
+    _free(
+        "t_manip",
+        "s",
+        LogUniform(1.0, 10.0),
+        "B",
+        "one attempt with the hands",
+        "Viola 2022; Fernandez 2022",
+        effect=1.0,
+        fitted=True,
+    ),
+    _free("p_fail", "", Beta(2.0, 10.0), "B", "chance that an attempt misses", "5 to 20 % an attempt"),
+    _free("t_notice", "s", LogNormal(1.5, 0.4), "B", "noticing a message", "Rzayev 2019: 1 to 3 s"),
+    _free(
+        "t_read",
+        "s",
+        LogNormal(3.0, 0.25),
+        "B",
+        "reading twelve words",
+        "Brysbaert 2019: 238 words a minute",
+        effect=1.0,
+    ),
+    _free(
+        "a0",
+        "logit",
+        Normal(2.0, 1.0),
+        "A-",
+        "willingness to confirm",
+        "our choice",
+        effect=2.0,
+        scale="plain",
+        fitted=True,
+    ),
+    _free("a_trust", "logit", HalfNormal(4.0), "B", "willingness by trust", "Chen et al. 2018, 2020"),
+    _free("a_gain", "logit", HalfNormal(0.5), "B", "willingness by the time to be saved", "Mangalindan et al. 2024"),
+    _free("a_load", "logit", HalfNormal(1.0), "B", "unwillingness by work in hand", "Mangalindan et al. 2024"),
+    _free("a_again", "logit", Normal(0.5, 0.5), "B", "unwillingness by earlier refusals", "our choice"),
+    _free("mu0", "", Beta(5.5, 4.5), "B", "mean trust at first", "Guo and Yang 2021", effect=2.0, scale="logit"),
+    _free("n0", "counts", LogUniform(2.0, 20.0), "B", "firmness of that trust", "Guo and Yang 2021"),
+    _free("w_s", "counts", LogUniform(0.3, 4.0), "B", "what a success adds to trust", "Guo and Yang 2021", fitted=True),
+    _free(
+        "w_f",
+        "counts",
+        LogUniform(0.3, 4.0),
+        "B",
+        "what a failure takes from trust",
+        "Guo and Yang 2021; Yang, Schemanske and Searle 2021",
+    ),
+    _free("tau_s", "s", LogUniform(10.0, 60.0), "B-", "how fast the worth of help fades", "HumanTHOR"),
+    _free("sigma", "", Uniform(0.05, 0.5), "B", "how much people differ", "our choice"),
+    _free("learn", "", Uniform(0.0, 0.4), "B", "gain by practice", "10 to 30 % over ten trials"),
+)
+"""Those that are not fixed, in the order of a population's columns."""
+
+
+def names() -> tuple[str, ...]:
+    """Names of the free parameters, in order."""
+    return tuple(parameter.name for parameter in PARAMETERS)
+
+
+@cache
+def _by_name() -> dict[str, Parameter]:
+    return {parameter.name: parameter for parameter in PARAMETERS}
+
+
+def parameter(name: str) -> Parameter:
+    """The free parameter of this name.
+
+    Raises:
+        UnknownName: when there is none.
+    """
+    if name not in _by_name():
+        raise UnknownName("parameter", name, names())
+    return _by_name()[name]
+
+
+def from_unit(point: tuple[float, ...] | list[float]) -> Parameters:
+    """The population at a point of the unit cube: each coordinate is a quantile of its parameter's prior."""
+    values = {p.name: p.prior.quantile(u) for p, u in zip(PARAMETERS, point, strict=True) if p.prior is not None}
+    return Parameters(**values)
+
+
+def to_unit(population: Parameters) -> tuple[float, ...]:
+    """The quantile of each free parameter in its prior."""
+    return tuple(p.prior.cdf(getattr(population, p.name)) for p in PARAMETERS if p.prior is not None)
+
+
+def physical(points: Any) -> Any:
+    """Populations at points of the unit cube, in physical units: (N, P) to (N, P), see `from_unit`."""
+    return _by_column(points, [p.prior.quantile for p in PARAMETERS if p.prior is not None])
+
+
+def unit(values: Any) -> Any:
+    """Quantiles of populations in their priors: the inverse of `physical`."""
+    return _by_column(values, [p.prior.cdf for p in PARAMETERS if p.prior is not None])
+
+
+def _by_column(table: Any, functions: list[Callable[[float], float]]) -> Any:
+    held = np.asarray(table, dtype=np.float64)
+    if held.ndim != 2 or held.shape[1] != len(functions):
+        raise ValueError(f"a table with {len(functions)} columns is expected, got the shape {held.shape}")
+    return np.array([[f(x) for f, x in zip(functions, row, strict=True)] for row in held.tolist()]).reshape(held.shape)

@@ -1,0 +1,277 @@
+"""A population: weighted draws of what people are on average, and how far they differ.
+
+The draws say what is not known of the mean, the random effects how people differ from it. A participant is one draw,
+picked by weight, and the random effects upon it, both by name: whoever the robots are, they meet the same people.
+"""
+
+from __future__ import annotations
+
+import bisect
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+
+from hthor import jsonio, rules, seeds
+from hthor.humans.population import bounds, parameter_registry, participant, random_effects
+from hthor.humans.population.distributions import Prior
+from hthor.humans.population.parameter_registry import Grade
+from hthor.humans.population.parameters import Parameters
+
+IDENTIFIED, WEAKLY = 0.4, 0.1
+"""Least contraction (1 - variance of the posterior / variance of the prior, in quantiles of the prior) of a parameter
+that is called identified, and weakly so. Sampling alone makes some .05 of it."""
+
+
+class Spec(Struct, frozen=True, kw_only=True):
+    """One column of a population: what `hthor.humans.population.parameter_registry.Parameter` says of it, and what the
+    data told.
+
+    ``effect`` times the draw's ``sigma`` is the standard deviation between people, on the ``scale``.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    prior: Prior
+    level: Literal["population", "population and person"]
+    effect: float
+    scale: Literal["log", "logit", "plain"]
+    fitted: bool
+    grade: Grade
+    source: str
+    contraction: float
+
+    @property
+    def word(self) -> str:
+        """Whether the data say anything of it."""
+        if self.contraction >= IDENTIFIED:
+            return "identified"
+        return "weakly identified" if self.contraction >= WEAKLY else "not identified"
+
+
+class Validity(Struct, frozen=True, kw_only=True):
+    """What a population was fitted to and with: elsewhere it is not known to fit. Empty where it was fitted to nothing.
+
+    Attributes:
+        simulation: `hthor.rules.SIMULATION`; ``mind``: `hthor.humans.population.parameter_registry.MIND`.
+        settings: what was set by hand and bears on the fit: the robot's name, speed, ranges and detector.
+    """
+
+    suite: str = ""
+    suite_sha256: str = ""
+    targets: str = ""
+    targets_sha256: str = ""
+    simulation: int = rules.SIMULATION
+    mind: int = parameter_registry.MIND
+    rules_sha256: str = msgspec.field(default_factory=rules.sha256)
+    settings: dict[str, str | float] = {}
+
+
+class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
+    """Weighted draws of population means.
+
+    Attributes:
+        specs: one a column of ``draws``.
+        draws: (D, P) float64, in the units of ``specs``.
+        log_weight: (D,) float64, natural logarithms of weights that add up to 1.
+        fixed: the values of the parameters that are no column.
+        statistics: what it was fitted to; ``design_effects``: variance of those over that of independent trials.
+        figures: further numbers about the fit, such as effective draws or coverage.
+        notes: what whoever uses it should know, a sentence each.
+        missing: parameters that this version has and the file does not know; they are at their defaults.
+    """
+
+    name: str
+    purpose: str
+    specs: tuple[Spec, ...]
+    draws: Any
+    log_weight: Any
+    fixed: dict[str, float]
+    seed: int
+    command: str
+    statistics: tuple[str, ...] = ()
+    design_effects: dict[str, float] = {}
+    figures: dict[str, float] = {}
+    notes: tuple[str, ...] = ()
+    validity: Validity = msgspec.field(default_factory=Validity)
+    missing: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"Population({self.name!r}, {len(self.draws)} draws, {self.sha256[:10]})"
+
+    @staticmethod
+    def of(
+        name: str,
+        draws: Any,
+        log_weight: Any = None,
+        *,
+        purpose: str,
+        seed: int,
+        command: str,
+        names: Sequence[str] | None = None,
+        fixed: Parameters | None = None,
+        statistics: Sequence[str] = (),
+        design_effects: Mapping[str, float] | None = None,
+        figures: Mapping[str, float] | None = None,
+        notes: Sequence[str] = (),
+        validity: Validity | None = None,
+    ) -> Population:
+        """A new population; units, priors, effects, grades and sources are the registry's of now.
+
+        Args:
+            draws: (D, P) in physical units, a column a name.
+            log_weight: (D,), up to a constant; None when all draws count the same.
+            names: the columns, by default every free parameter.
+            fixed: where the other parameters stand, by default their defaults.
+
+        Raises:
+            ValueError: when shapes do not fit, a value is out of its parameter's range, or no weight is left.
+        """
+        columns = parameter_registry.names() if names is None else tuple(names)
+        table = np.array(draws, dtype=np.float64)
+        raw = np.zeros(len(table)) if log_weight is None else np.array(log_weight, dtype=np.float64)
+        if problem := trouble(columns, table, raw):
+            raise ValueError(f"{problem[0]}: {problem[1]}")
+        top = float(raw.max())
+        weight = raw - (top + float(np.log(np.exp(raw - top).sum())))
+        others = msgspec.structs.asdict(fixed or Parameters())
+        return Population(
+            name=name,
+            purpose=purpose,
+            specs=tuple(_spec(column, table[:, k], weight) for k, column in enumerate(columns)),
+            draws=table,
+            log_weight=weight,
+            fixed={key: value for key, value in others.items() if key not in columns},
+            seed=seed,
+            command=command,
+            statistics=tuple(statistics),
+            design_effects=dict(design_effects or {}),
+            figures=dict(figures or {}),
+            notes=tuple(notes),
+            validity=validity or Validity(),
+        )
+
+    @staticmethod
+    def load(name_or_path: str | Path) -> Population:
+        """A population that ships with hthor, by name, or one from its files; see
+        `hthor.humans.population.population_file`.
+        """
+        from hthor.humans.population import population_file
+
+        return population_file.load(name_or_path)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the two files, each in one step; the same population gives the same bytes. Returns the JSON's path."""
+        from hthor.humans.population import population_file
+
+        return population_file.save(self, Path(path))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The columns of the draws."""
+        return tuple(spec.name for spec in self.specs)
+
+    @cached_property
+    def weights(self) -> Any:
+        """(D,), adding up to 1."""
+        return np.exp(self.log_weight)
+
+    @property
+    def ess(self) -> float:
+        """How many draws of equal weight these are worth."""
+        return float(1.0 / (self.weights**2).sum())
+
+    @cached_property
+    def arrays(self) -> bytes:
+        """The NPZ file's bytes."""
+        from hthor.humans.population import population_file
+
+        return population_file.pack(self.names, self.draws, self.log_weight)
+
+    @cached_property
+    def sha256(self) -> str:
+        """Hash of all that makes the people, and of nothing that only tells of them."""
+        return jsonio.sha256(
+            {
+                "arrays": hashlib.sha256(self.arrays).hexdigest(),
+                "effects": [(spec.name, spec.effect, spec.scale) for spec in self.specs],
+                "fixed": self.fixed,
+            }
+        )
+
+    def parameters(self, row: int) -> Parameters:
+        """The means of a population, as draw number ``row`` has them."""
+        return Parameters(**self.fixed, **dict(zip(self.names, self.draws[row].tolist(), strict=True)))
+
+    def pick(self, seed: int, index: int) -> int:
+        """The draw of participant ``index`` of the study with this seed."""
+        mark = seeds.draw(participant.root(seed, index), "population")
+        return min(bisect.bisect_right(self._cumulated, mark * self._cumulated[-1]), len(self._cumulated) - 1)
+
+    def person(self, seed: int, index: int, change: Callable[[Parameters], Parameters] | None = None) -> Parameters:
+        """Participant ``index`` of the study with this seed: their draw, and their random effects upon it.
+
+        Args:
+            change: what becomes of the draw before that, for people of a kind of their own.
+        """
+        mean = self.parameters(self.pick(seed, index))
+        return random_effects.individual(change(mean) if change else mean, participant.root(seed, index), self.specs)
+
+    def mean(self) -> Parameters:
+        """The weighted mean of the draws."""
+        return Parameters(**self.fixed, **dict(zip(self.names, (self.weights @ self.draws).tolist(), strict=True)))
+
+    def quantiles(self, levels: Sequence[float] = (0.05, 0.5, 0.95)) -> Any:
+        """Weighted quantiles of every column, (levels, P)."""
+        columns = []
+        for values in self.draws.T:
+            order = np.argsort(values, kind="stable")
+            weight = self.weights[order]
+            columns.append(np.interp(levels, np.cumsum(weight) - weight / 2.0, values[order]))
+        return np.array(columns).T
+
+    @cached_property
+    def _cumulated(self) -> list[float]:
+        return list(np.cumsum(self.weights).tolist())
+
+
+def trouble(names: Sequence[str], draws: Any, log_weight: Any) -> tuple[str, str] | None:
+    """What is wrong with a population's arrays: the field and the problem; None when nothing is."""
+    if draws.ndim != 2 or draws.shape[1] != len(names) or not len(draws):
+        return "draws", f"the shape is {draws.shape}; expected one row or more of {len(names)} columns"
+    if log_weight.shape != (len(draws),):
+        return "log_weight", f"the shape is {log_weight.shape}; expected ({len(draws)},), one a draw"
+    if np.isnan(log_weight).any() or not np.isfinite(log_weight.max()):
+        return "log_weight", "every weight must be a number below infinity, and one at least above minus infinity"
+    for column, name in enumerate(names):
+        for row in np.unique([draws[:, column].argmin(), draws[:, column].argmax()]).tolist():
+            if problem := bounds.problem(name, float(draws[row, column])):
+                return f"draws[{row}].{name}", problem
+    return None
+
+
+def _spec(name: str, values: Any, log_weight: Any) -> Spec:
+    known = parameter_registry.parameter(name)
+    if known.prior is None:
+        raise ValueError(f"names: '{name}' has no prior, so it cannot be a column")
+    weight, quantiles = np.exp(log_weight), np.array([known.prior.cdf(value) for value in values.tolist()])
+    mean = float(weight @ quantiles)
+    return Spec(
+        name=name,
+        unit=known.unit,
+        meaning=known.meaning,
+        prior=known.prior,
+        level="population and person" if known.effect else "population",
+        effect=known.effect,
+        scale=known.scale,
+        fitted=known.fitted,
+        grade=known.grade,
+        source=known.source,
+        contraction=round(1.0 - 12.0 * float(weight @ (quantiles - mean) ** 2), 4),
+    )

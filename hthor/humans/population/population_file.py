@@ -1,0 +1,217 @@
+"""Populations in files: NAME.npz has the numbers, NAME.json beside it says what they are; draws nobody.
+
+Both are the same bytes for the same population: the archive is stored as it is, with no hour of its making.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import zipfile
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import documents, jsonio
+from hthor.errors import PeopleError, UnknownName
+from hthor.humans.population import bounds
+from hthor.humans.population.parameters import Parameters
+from hthor.humans.population.population import Population, Spec, Validity, trouble
+
+SCHEMA = "hthor.population/1"
+FOLDER = Path(__file__).parents[1] / "populations"
+MADE = "literature"
+"""The population that is no file: it is drawn from the priors of now."""
+CALIBRATED = "study"
+"""The population that is calibrated to the published user study."""
+_STEMS = {CALIBRATED: "paper"}
+"""Files of populations that are called otherwise than their files, whose bytes and hashes stay; both words are read."""
+_ROUNDING = 1e-6
+"""How far from 1 a file's weights may add up."""
+_EARLIEST = (1980, 1, 1, 0, 0, 0)
+_DAMAGED = (
+    "it was changed or cut off after it was written; restore both files, or make them again with 'hthor calibrate'"
+)
+
+
+class Arrays(Struct, frozen=True, kw_only=True):
+    """The NPZ file that belongs to a JSON file."""
+
+    draws: int
+    effective: float
+    sha256: str
+
+
+class Document(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The JSON file; fields as in `Population`."""
+
+    schema: str = SCHEMA
+    name: str
+    purpose: str
+    parameters: tuple[Spec, ...]
+    fixed: dict[str, float]
+    statistics: tuple[str, ...]
+    design_effects: dict[str, float]
+    figures: dict[str, float]
+    notes: tuple[str, ...]
+    validity: Validity
+    seed: int
+    command: str
+    arrays: Arrays
+
+
+def names() -> tuple[str, ...]:
+    """The populations that come with hthor."""
+    return tuple(sorted({MADE, *(called(path.stem) for path in FOLDER.glob("*.json"))}))
+
+
+def called(name: str) -> str:
+    """What a population of this name, or of this file's stem, is called."""
+    return next((word for word, stem in _STEMS.items() if stem == name), name)
+
+
+def load(name_or_path: str | Path) -> Population:
+    """A population by name, or from its files, of which either is named; the other lies beside it.
+
+    Raises:
+        UnknownName: when no population has that name.
+        PeopleError: when a file is missing, damaged or not a population's, or a value is out of its range.
+    """
+    word = called(str(name_or_path))
+    if word in names():
+        return _shipped(word)
+    path = Path(word)
+    if path.suffix not in (".npz", ".json"):
+        raise UnknownName("population", word, names(), "A path to a population's file (.npz or .json) works too.")
+    return _read(path.with_suffix(".json"))
+
+
+def save(population: Population, path: Path) -> Path:
+    """Write PATH.npz and PATH.json; the JSON last, as it is what names the other by its hash."""
+    path = path.with_suffix("") if path.suffix in (".npz", ".json") else path
+    data = population.arrays
+    document = Document(
+        name=population.name,
+        purpose=population.purpose,
+        parameters=population.specs,
+        fixed=population.fixed,
+        statistics=population.statistics,
+        design_effects=population.design_effects,
+        figures=population.figures,
+        notes=population.notes,
+        validity=population.validity,
+        seed=population.seed,
+        command=population.command,
+        arrays=Arrays(
+            draws=len(population.draws), effective=round(population.ess, 3), sha256=_sha256(population.arrays)
+        ),
+    )
+    jsonio.write(path.with_name(f"{path.name}.npz"), data)
+    jsonio.write(written := path.with_name(f"{path.name}.json"), jsonio.pretty(document))
+    return written
+
+
+def pack(names: tuple[str, ...], draws: Any, log_weight: Any) -> bytes:
+    """An NPZ archive of these arrays, always the same bytes."""
+    held = {
+        "draws": draws.astype("<f8"),
+        "log_weight": log_weight.astype("<f8"),
+        "names": np.array(names, dtype="<U32"),
+    }
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        for name, array in held.items():
+            member = io.BytesIO()
+            np.lib.format.write_array(member, np.ascontiguousarray(array), version=(1, 0), allow_pickle=False)
+            archive.writestr(zipfile.ZipInfo(f"{name}.npy", _EARLIEST), member.getvalue())
+    return file.getvalue()
+
+
+@cache
+def _shipped(name: str) -> Population:
+    if name == MADE:
+        from hthor.humans.population import prior_population
+
+        return prior_population.population()
+    return _read(FOLDER / f"{_STEMS.get(name, name)}.json")
+
+
+def _read(path: Path) -> Population:
+    document = _document(path)
+    numbers = path.with_suffix(".npz")
+    draws, log_weight = _arrays(numbers, document)
+    columns = [spec.name for spec in document.parameters]
+    known = bounds.known()
+    given = (*columns, *document.fixed)
+    for field, name in (*(("parameters", name) for name in columns), *(("fixed", name) for name in document.fixed)):
+        if name not in known:
+            raise PeopleError(str(path), field, f"this version has no parameter '{name}'; make the population again")
+        if given.count(name) > 1:
+            raise PeopleError(str(path), field, f"'{name}' is there twice")
+    for name, value in document.fixed.items():
+        if problem := bounds.problem(name, value):
+            raise PeopleError(str(path), f"fixed.{name}", problem)
+    if found := trouble(columns, draws, log_weight):
+        raise PeopleError(str(numbers), *found)
+    with np.errstate(over="ignore"):
+        total = float(np.exp(log_weight).sum())
+    if abs(total - 1.0) > _ROUNDING:
+        raise PeopleError(str(numbers), "log_weight", f"the weights add up to {total:g}; expected 1")
+    missing = tuple(name for name in known if name not in given)
+    return Population(
+        name=document.name,
+        purpose=document.purpose,
+        specs=document.parameters,
+        draws=draws,
+        log_weight=log_weight,
+        fixed={**document.fixed, **{name: getattr(Parameters(), name) for name in missing}},
+        seed=document.seed,
+        command=document.command,
+        statistics=document.statistics,
+        design_effects=document.design_effects,
+        figures=document.figures,
+        notes=document.notes,
+        validity=document.validity,
+        missing=missing,
+    )
+
+
+def _document(path: Path) -> Document:
+    data = _bytes(path, "a population has two files, NAME.npz and NAME.json, side by side")
+    return documents.parse(data, Document, PeopleError, shown=str(path), schema=SCHEMA, hint=_DAMAGED)
+
+
+def _arrays(path: Path, document: Document) -> tuple[Any, Any]:
+    """Draws and weights out of the NPZ file that the document names by its hash."""
+    data = _bytes(path, "a population has two files, NAME.npz and NAME.json, side by side")
+    if (digest := _sha256(data)) != document.arrays.sha256:
+        there = document.arrays.sha256[:10]
+        raise PeopleError(str(path), "$", f"it hashes to {digest[:10]}, the JSON file says {there}: {_DAMAGED}")
+    try:
+        with np.load(io.BytesIO(data), allow_pickle=False) as archive:
+            held = {name: archive[name] for name in ("names", "draws", "log_weight")}
+    except KeyError as error:
+        raise PeopleError(str(path), str(error).strip("'\"").split(" ")[0], f"is missing; {_DAMAGED}") from None
+    except (ValueError, EOFError, OSError, zipfile.BadZipFile) as error:
+        raise PeopleError(str(path), "$", f"is no NPZ archive: {error}; {_DAMAGED}") from None
+    columns = [spec.name for spec in document.parameters]
+    if (there := held["names"].tolist()) != columns:
+        raise PeopleError(str(path), "names", f"are {there}, the JSON file lists {columns}")
+    for name in ("draws", "log_weight"):
+        if held[name].dtype != np.dtype("<f8"):
+            raise PeopleError(str(path), name, f"has the type {held[name].dtype}, expected float64")
+    return held["draws"], held["log_weight"]
+
+
+def _bytes(path: Path, hint: str) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise PeopleError(str(path), "$", f"cannot be read: {error.strerror}; {hint}") from None
+
+
+def _sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()

@@ -1,0 +1,31 @@
+"""People as the literature alone would have them: drawn from the priors."""
+
+from __future__ import annotations
+
+from hthor import seeds
+from hthor.humans.population import parameter_registry
+from hthor.humans.population.population import Population, Validity
+
+DRAWS = 512
+"""Enough that the 5 % and 95 % quantiles of every column are the prior's to 1/1024 of its probability."""
+_ROOT = seeds.derive(0, "literature")
+_DIGITS = 12  # of every value: less than what libraries' special functions may differ by
+_NOTES = (
+    "Every parameter is drawn from its prior: these people agree with the literature, and were fitted to no data.",
+)
+
+
+def population() -> Population:
+    """The same number of draws from each stratum of every prior, the strata of different parameters mixed."""
+    orders = [seeds.shuffled(DRAWS, _ROOT, name) for name in parameter_registry.names()]
+    points = [[(order[row] + 0.5) / DRAWS for order in orders] for row in range(DRAWS)]
+    draws = [[float(f"{value:.{_DIGITS}g}") for value in row] for row in parameter_registry.physical(points).tolist()]
+    return Population.of(
+        "literature",
+        draws,
+        purpose="people drawn from the priors, fitted to nothing",
+        seed=0,
+        command="hthor.humans.population.prior_population.population()",
+        notes=_NOTES,
+        validity=Validity(),
+    )

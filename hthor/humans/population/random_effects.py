@@ -1,0 +1,60 @@
+"""How people differ from their population's mean, and how practice changes them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Protocol
+
+import msgspec
+
+from hthor import seeds
+from hthor.humans.population.parameter_registry import PARAMETERS
+from hthor.humans.population.parameters import Parameters
+
+_LEAST_SHARE = 1e-3
+"""A share is kept so far from 0 and 1, where its logit has no value."""
+
+
+class Effect(Protocol):
+    """How far people are from their population's mean in one parameter: see
+    `hthor.humans.population.parameter_registry.Parameter`.
+    """
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def effect(self) -> float: ...
+    @property
+    def scale(self) -> str: ...
+
+
+def individual(population: Parameters, root: int, effects: Iterable[Effect] = PARAMETERS) -> Parameters:
+    """The population's parameters with the random effects of the person whose chances have this ``root``."""
+    own: dict[str, float] = {}
+    for parameter in effects:
+        if parameter.effect:
+            off = population.sigma * parameter.effect * seeds.normal(root, "effect", parameter.name)
+            own[parameter.name] = _moved(getattr(population, parameter.name), off, parameter.scale)
+    return msgspec.structs.replace(population, **own)
+
+
+def practised(traits: Parameters, index: int) -> Parameters:
+    """The same person in their trial number ``index``, from 0: brisker with practice.
+
+    What is new to people is the stick, the controllers and the search: pace, handling and dwelling get quicker. They
+    have turned their heads and read all their lives, so turning and reading stay as they are.
+    """
+    lift = 1.0 + traits.learn * (1.0 - math.exp(-index / traits.n_learn))
+    return msgspec.structs.replace(
+        traits, v_pace=traits.v_pace * lift, t_dwell=traits.t_dwell / lift, t_manip=traits.t_manip / lift
+    )
+
+
+def _moved(value: float, off: float, scale: str) -> float:
+    if scale == "log":
+        return value * math.exp(off)
+    if scale == "logit":
+        share = min(max(value, _LEAST_SHARE), 1.0 - _LEAST_SHARE)
+        return 1.0 / (1.0 + math.exp(-math.log(share / (1.0 - share)) - off))
+    return value + off

@@ -1,0 +1,184 @@
+"""Whom a trial's person comes from: a human model and the population that it draws people of, found by name.
+
+A word for people is the name of a population ("study"), of a kind of people ("cautious"), of a human model ("greedy"),
+or the path of a file that holds one (pop.npz, my_kind.json, my_human.py). A model that is made from something has that
+after a colon ("replay:runs/demo"). ``WORD@POPULATION`` puts a kind or a model on another population than the default.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+from msgspec import Struct
+
+from hthor import documents, jsonio, plugins
+from hthor.errors import PeopleError, UnknownName
+from hthor.humans.population import kinds, population_file
+from hthor.humans.population.kinds import Kind
+from hthor.humans.population.participant import Person
+from hthor.humans.population.population import Population
+
+PROXY = "proxy"
+"""The human model that populations are of; as a word for people, that model with the default population."""
+_SORT = "human model"
+_HINT = "Or give a path: pop.npz of a population, my_kind.json of a kind of people, my_human.py of a human model."
+
+
+class People(Struct, frozen=True, kw_only=True, eq=False):
+    """People of one sort.
+
+    Attributes:
+        name: what to call them; it has no folders in it.
+        word: finds them again, in any process and from any folder.
+        purpose: what they are, in a few words.
+        model: the human model's name, or the path of its file.
+        source: what that model is made from in place of a population, such as the log that is replayed; mostly empty.
+        kind: what is changed in the population, None for nothing.
+        sha256: hash of all that makes them but hthor's own code.
+    """
+
+    name: str
+    word: str
+    purpose: str
+    model: str
+    source: str
+    population: Population
+    kind: Kind | None
+    sha256: str
+
+    def person(self, seed: int, participant: int) -> Person:
+        """Participant number ``participant`` of the study with this seed; the robots have no part in who that is.
+
+        A model whose class says ``alike = True`` knows no differences between people: everybody is the mean.
+        """
+        if self.model != PROXY and getattr(plugins.load(_SORT, self.model), "alike", False):
+            return Person(seed=seed, participant=participant, traits=self.population.mean())
+        change = self.kind.change if self.kind is not None else None
+        return Person(seed=seed, participant=participant, traits=self.population.person(seed, participant, change))
+
+    def make(self, seed: int, participant: int) -> Any:
+        """The human model of that person, before their first trial."""
+        model, who = plugins.load(_SORT, self.model), self.person(seed, participant)
+        return model(who, source=self.source) if self.source else model(who)
+
+
+def default() -> str:
+    """The population that people are of where none is named."""
+    return population_file.CALIBRATED if population_file.CALIBRATED in population_file.names() else population_file.MADE
+
+
+def names() -> tuple[str, ...]:
+    """Every word that stands for people without being a path: populations, kinds, models."""
+    return (*population_file.names(), *kinds.names(), *plugins.names(_SORT))
+
+
+def find(word: str) -> People:
+    """The people that a word stands for.
+
+    Raises:
+        UnknownName: when there are none.
+        PeopleError: when a file of people cannot be used.
+        HthorError: when a human model's file does not load.
+    """
+    word = "@".join(map(population_file.called, word.split("@")))
+    left, base = _split(word)
+    if left in population_file.names() or left.endswith(".npz") or _schema(left) == population_file.SCHEMA:
+        if base is not None:
+            raise PeopleError(word, "@", f"'{left}' is a population itself; write a kind or a model before the @")
+        return _people(word, left, PROXY, "", Population.load(left), None)
+    if left in kinds.names() or left.endswith(".json"):
+        kind = kinds.load(left)
+        return _people(word, left, PROXY, "", base or Population.load(kind.base or default()), kind)
+    model, _, source = (left, "", "") if left.endswith(".py") else left.partition(":")
+    if model not in plugins.names(_SORT) and not model.endswith(".py"):
+        raise UnknownName("people", word, names(), _HINT)
+    if model.endswith(".py"):
+        plugins.load(_SORT, model)  # now, not in the middle of a run
+    return _people(word, left, model, source, base or Population.load(default()), None)
+
+
+def _split(word: str) -> tuple[str, Population | None]:
+    """The word before the last @ and the population after it, None where there is none."""
+    left, at, right = word.rpartition("@")
+    if not at or Path(word).exists() or not (right in population_file.names() or right.endswith((".npz", ".json"))):
+        if at and not Path(word).exists():
+            raise UnknownName(
+                "population", right, population_file.names(), "After the @ comes a population or its file."
+            )
+        return word, None
+    return left, Population.load(right)
+
+
+def _people(word: str, left: str, model: str, source: str, population: Population, kind: Kind | None) -> People:
+    made = {
+        "model": model if not model.endswith(".py") else plugins.sha256(model),
+        "population": "" if source else population.sha256,
+        "changes": [] if kind is None else kind.essence,
+        "ingredients": _ingredients(model, source),
+    }
+    digest = jsonio.sha256(made)
+    return People(
+        name="@".join(_named(part, digest) for part in _parts(word, left)),
+        word="@".join(_anywhere(part) for part in _parts(word, left)),
+        purpose=_purpose(left, model, population, kind),
+        model=_anywhere(model),
+        source=source and str(Path(source).resolve()),
+        population=population,
+        kind=kind,
+        sha256=digest,
+    )
+
+
+def _named(word: str, digest: str) -> str:
+    """What to call these people: a file that is called like people of ours goes by its hash too, as it is not them."""
+    name = _plain(word)
+    own = word in names() or not word.endswith((".npz", ".json", ".py"))
+    return name if own or name not in names() else f"{name}-{digest[:6]}"
+
+
+def _purpose(left: str, model: str, population: Population, kind: Kind | None) -> str:
+    if kind is not None:
+        return kind.purpose
+    return plugins.purpose(_SORT, model) if left.partition(":")[0] == model else population.purpose
+
+
+def _ingredients(model: str, source: str) -> Any:
+    """What a human model is made from besides its file and its person, as it says itself; see `hthor.humans.model`."""
+    if model == PROXY:
+        return {}
+    plugins.load(_SORT, model)
+    module = plugins.loaded(_SORT, Path(model).stem if model.endswith(".py") else model)
+    tell = getattr(module, "ingredients", None)
+    return tell(source) if tell is not None else {"source": source} if source else {}
+
+
+def _parts(word: str, left: str) -> tuple[str, ...]:
+    return (left,) if word == left else (left, word[len(left) + 1 :])
+
+
+def _plain(word: str) -> str:
+    """A name that can be part of a file's name: "pop" for dir/pop.npz, "replay-demo" for replay:runs/demo."""
+    model, colon, source = word.partition(":")
+    stem = (
+        Path(word).stem
+        if word.endswith((".npz", ".json", ".py"))
+        else f"{model}-{Path(source).stem}"
+        if colon
+        else word
+    )
+    return re.sub(r"[^A-Za-z0-9_-]+", "-", stem).strip("-")[:60] or "people"
+
+
+def _anywhere(word: str) -> str:
+    """The same word with a path that holds in every folder."""
+    if word.endswith((".npz", ".json", ".py")):
+        return str(Path(word).resolve())
+    model, colon, source = word.partition(":")
+    return f"{model}:{Path(source).resolve()}" if colon else word
+
+
+def _schema(word: str) -> str:
+    """The schema that a JSON file names, empty for anything else."""
+    return documents.schema_of(Path(word)) if word.endswith(".json") else ""

@@ -1,0 +1,36 @@
+"""This installation of hthor: its files as one hash, its versions, and where it keeps what can be made again."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import platform
+from importlib import metadata
+from pathlib import Path
+
+from hthor import __version__
+
+PACKAGE = Path(__file__).resolve().parent
+
+
+@functools.cache
+def sha256() -> str:
+    """Hash of every source file of the package: the same installation, down to the comments."""
+    digest = hashlib.sha256()
+    for path in sorted(PACKAGE.rglob("*.py")):
+        data = path.read_bytes()
+        digest.update(f"{path.relative_to(PACKAGE).as_posix()} {len(data)}\n".encode())
+        digest.update(data)
+    return digest.hexdigest()
+
+
+def cache() -> Path:
+    """hthor's folder in the user's cache; what lies there can be deleted at any time."""
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "hthor"
+
+
+def versions() -> dict[str, str]:
+    """Versions of hthor, of Python and of the libraries that compute, without importing them."""
+    found = {name: metadata.version(name) for name in ("mujoco", "dm_control", "numba", "numpy")}
+    return {"hthor": __version__, "python": platform.python_version(), **found}

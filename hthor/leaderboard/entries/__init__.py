@@ -1,0 +1,1 @@
+"""An entry: its record, outcomes, metrics, schema and laws."""

@@ -1,0 +1,101 @@
+"""Columns of small whole numbers as text: a yes or no in a bit, a number in few bytes."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+
+import numpy as np
+
+_DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
+LABELS_MAX = len(_DIGITS)
+
+
+def bits(values: np.ndarray) -> str:
+    """A column of yes and no, eight to a byte, the first in the highest bit; base64."""
+    return _text(np.packbits(values.astype(bool)).tobytes())
+
+
+def unbits(text: str, count: int) -> np.ndarray:
+    """The column that `bits` made, (count,) bool.
+
+    Raises:
+        ValueError: when the text does not hold so many, or its unused bits are not zero.
+    """
+    held = np.unpackbits(np.frombuffer(_data(text, -(-count // 8)), dtype=np.uint8))
+    if held[count:].any():
+        raise ValueError("has bits set after the last trial")
+    return held[:count].astype(bool)
+
+
+def numbers(values: np.ndarray, size: int) -> str:
+    """A column of whole numbers, ``size`` bytes each, the lowest first; base64.
+
+    Raises:
+        ValueError: when one of them does not fit.
+    """
+    whole = values.astype(np.int64)
+    if (whole < 0).any() or (whole >= 1 << (8 * size)).any():
+        raise ValueError(f"{int(whole.max())} does not fit into {size} bytes")
+    return _text(whole.astype("<u8")[:, None].view(np.uint8).reshape(-1, 8)[:, :size].tobytes())
+
+
+def unnumbers(text: str, count: int, size: int) -> np.ndarray:
+    """The column that `numbers` made, (count,) int64.
+
+    Raises:
+        ValueError: when the text does not hold so many.
+    """
+    held = np.frombuffer(_data(text, count * size), dtype=np.uint8).reshape(count, size).astype(np.int64)
+    whole: np.ndarray = (held << (8 * np.arange(size))).sum(axis=1)
+    return whole
+
+
+def pieces(parts: list[bytes]) -> str:
+    """Pieces of equal length, one after the other; base64."""
+    return _text(b"".join(parts))
+
+
+def unpieces(text: str, count: int, size: int) -> list[bytes]:
+    """The pieces that `pieces` joined.
+
+    Raises:
+        ValueError: when the text does not hold so many.
+    """
+    held = _data(text, count * size)
+    return [held[start : start + size] for start in range(0, len(held), size)]
+
+
+def digits(values: list[int]) -> str:
+    """A column of numbers below `LABELS_MAX`, a character each."""
+    return "".join(_DIGITS[value] for value in values)
+
+
+def undigits(text: str, count: int, most: int) -> np.ndarray:
+    """The column that `digits` made, (count,) int64.
+
+    Raises:
+        ValueError: when there are not so many, or one is not below ``most``.
+    """
+    if len(text) != count:
+        raise ValueError(f"has {len(text)} characters for {count} trials")
+    held = [_DIGITS.find(one) for one in text]
+    if held and not 0 <= min(held) <= max(held) < most:
+        raise ValueError(f"names a label beyond the {most} that there are")
+    return np.array(held, dtype=np.int64)
+
+
+def _text(data: bytes) -> str:
+    return base64.b64encode(data).decode("ascii")
+
+
+def _data(text: str, size: int) -> bytes:
+    try:
+        data = base64.b64decode(text, validate=True)
+    except (binascii.Error, ValueError) as error:
+        raise ValueError(f"is not base64: {error}") from None
+    if len(data) != size:
+        raise ValueError(f"holds {len(data)} bytes where {size} belong")
+    if _text(data) != text:
+        raise ValueError("is not base64 in its one canonical spelling")
+    return data

@@ -1,0 +1,98 @@
+"""An entry's numbers out of what it carries of each trial, without its log; reads no files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hthor import rules
+from hthor.eval.config import sessions
+from hthor.eval.metrics import bounds, trial_metrics
+from hthor.eval.results import paired_difference
+from hthor.eval.results.uplift import Uplift
+from hthor.eval.statistics import intervals
+from hthor.eval.statistics.intervals import Estimate
+from hthor.leaderboard.entries.entry import Entry, Group
+from hthor.leaderboard.entries.trial_outcomes import Outcomes
+
+MEASURED = ("sr", "twsr", "adoption", "usefulness", "time_s", "trust")
+"""Metrics that can be worked out from what an entry carries."""
+_MILLION = 1_000_000
+
+
+def values(held: Outcomes, metric: str, *, alone: bool) -> np.ndarray:
+    """A metric's value in each trial (N,), none (0,) where it has no meaning without a robot.
+
+    Usefulness has one only in trials with a message that was accepted: (M,), see `asked`.
+    """
+    if alone and metric in ("adoption", "usefulness", "trust"):
+        return np.zeros(0)
+    some = asked(held)
+    columns = {
+        "sr": held.met.astype(np.float64),
+        "twsr": held.twsr / _MILLION,
+        "adoption": held.adopted.astype(np.float64),
+        "usefulness": np.round(held.useful[some] / held.accepted[some], trial_metrics.DIGITS),
+        "time_s": np.round(held.time * rules.TICK_S, trial_metrics.DIGITS),
+        "trust": held.trust.astype(np.float64),
+    }
+    found: np.ndarray = columns[metric]
+    return found
+
+
+def asked(held: Outcomes) -> np.ndarray:
+    """The trials in which a message was accepted, as places."""
+    return np.flatnonzero(held.accepted > 0)
+
+
+def people(count: int, participants: int) -> list[int]:
+    """Whose each trial is, where every task is done once."""
+    sizes = [sessions.trials_of(count, [person]) for person in range(participants)]
+    return [person for person, size in enumerate(sizes) for _ in range(size)]
+
+
+def scores(held: Outcomes, whose: Sequence[int], *, alone: bool) -> dict[str, Estimate]:
+    """Means and intervals of all that is `MEASURED`."""
+    owners = {"usefulness": [whose[place] for place in asked(held).tolist()]}
+    return {
+        metric: _estimate(values(held, metric, alone=alone), owners.get(metric, whose), metric, held.time_limit_s)
+        for metric in MEASURED
+    }
+
+
+def splits(held: Outcomes, whose: Sequence[int]) -> dict[str, dict[str, Group]]:
+    """The same of success, for the trials that have a property in common."""
+    found: dict[str, dict[str, Group]] = {}
+    for name, (names, codes) in held.labels.items():
+        found[name] = {}
+        for code, value in enumerate(names):
+            where = np.flatnonzero(codes == code)
+            mine = [whose[place] for place in where.tolist()]
+            rows = {metric: values(held, metric, alone=False)[where] for metric in ("sr", "twsr")}
+            found[name][value] = Group(**{metric: _estimate(row, mine, metric) for metric, row in rows.items()})
+    return found
+
+
+def uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes) -> Uplift:
+    """What the robots add to people who do the same tasks without one."""
+    whose = np.array(people(entry.trials.count, entry.run.participants), dtype=np.int64)
+    tasks = np.arange(entry.trials.count, dtype=np.int64)
+    found = {
+        metric: paired_difference.between(
+            values(without, metric, alone=True),
+            values(held, metric, alone=False),
+            tasks,
+            whose,
+            share=metric in paired_difference.SHARES,
+            room=bounds.room(metric, held.time_limit_s),
+        )
+        for metric in ("sr", "twsr", "time_s")
+    }
+    return Uplift(control=control.hashes.run, sr=found["sr"], twsr=found["twsr"], time_s=found["time_s"])
+
+
+def _estimate(some: np.ndarray, whose: Sequence[int], metric: str, limit_s: float | None = None) -> Estimate:
+    row = some.tolist()
+    tasks = [str(place) for place in range(len(row))]
+    return intervals.estimate(row, tasks, whose[: len(row)], within=bounds.of(metric, limit_s))

@@ -1,0 +1,218 @@
+"""The leaderboard as one page that needs nothing else: no network, and a script that only sorts; computes nothing."""
+
+from __future__ import annotations
+
+from hthor.leaderboard.page import cells, interval_marks, tables
+from hthor.leaderboard.page import markup as m
+from hthor.leaderboard.page.cells import Cell
+from hthor.leaderboard.page.markup import Markup, Piece, tag
+from hthor.leaderboard.ranking.board import Board, Row, Section, Struck
+from hthor.report.html import style
+
+_RULES = """
+main{max-width:76rem}
+table{font-size:.84rem;width:100%}
+td,th{vertical-align:middle;padding:.34rem .9rem .34rem 0}
+small{display:block;font-size:.74rem;line-height:1.25;font-weight:normal;white-space:nowrap}
+td b{font-size:1rem}
+td svg,th svg{display:block}
+tbody th{white-space:normal;overflow-wrap:anywhere;min-width:9rem;font-size:.95rem}
+tbody th a{color:inherit;text-decoration-color:var(--soft);text-underline-offset:.15em}
+tbody th small{white-space:normal}
+tr.ref th,tr.ref .n{font-style:italic}
+tr.ref{background:var(--shade)}
+tr.ref td:first-child,tr.ref th:first-child{padding-left:.4rem}
+td:first-child,thead th:first-child{padding-left:.4rem}
+th[data-k]{cursor:pointer;user-select:none}
+th[data-k]:hover,th[data-k]:focus-visible{color:var(--oracle)}
+th[aria-sort=ascending] span:after{content:" ↑"}
+th[aria-sort=descending] span:after{content:" ↓"}
+details{margin:1rem 0}
+summary{cursor:pointer;color:var(--soft);font-size:.9rem}
+code{overflow-wrap:anywhere}
+"""
+_COLOURS = {"no robot": "none", "frontier": "frontier", "oracle": "oracle"}
+_LEAD = (
+    "How much a robot's mind helps a person at household tasks: every agent meets the same simulated people at the "
+    "same tasks on the same days, and is measured against the same people without a robot."
+)
+_RANKED = "Ranked: tasks that no agent can have known when it was handed in."
+_DEVELOPMENT = (
+    "Development, unranked: these tasks are public. An agent can have been tuned on them or have learned them by "
+    "heart, so nobody has a rank here. The column 'fresh tasks' is what the same agent achieved at tasks that were "
+    "drawn by the same recipe after it had been handed in."
+)
+_NONE = "There is no ranked entry yet. 'How to get a ranked entry' below says what it takes."
+_UNFITTED = "The people are not calibrated for this suite: compare agents, and take no score for a forecast."
+_HOW = (
+    "A rank is one more than the number of agents that are significantly better in success (paired trial by trial, "
+    "over tasks and people, adjusted by Holm for all pairs); under it stand the ranks that are not excluded at 95 %, "
+    "and how the entry was verified. With =, an agent cannot be told from at least one other. One agent counts once, "
+    "under however many names or by however many hands it was handed in. References (ref.) are hthor's own agents; "
+    "they are there to be measured against and have no rank.",
+    "Intervals are 95 %, for new tasks and new people of the same population. Points are percentage points over the "
+    "same people at the same tasks without a robot. Point at an interval for n, the number of trials, and the "
+    "smallest difference that these could have seen in four of five cases; leaderboard.json has both.",
+    "Adoption is the share of trials in which a message was confirmed. People can be talked into that: read it with "
+    "the next column, the share of the confirmed messages that were true and new to the person, and with the points "
+    "over no robot. Nothing is ranked by adoption.",
+    "Verified says what came of playing trials of the agent and of its control again, drawn after the entry was "
+    "handed in: V1 byte for byte on the same platform, V2 by outcomes on another, V3 statistically; and how surely an"
+    " entry would have been caught in which three of sixty outcomes are false. Below 95 % there is no rank.",
+    "What nothing in an entry bears out is marked as claimed: how the agent was held, how often sessions began again,"
+    " and which version of hthor played, unless the official workflow made the entry.",
+)
+_TO_RANK = (
+    "Hand in a folder submissions/NAME as a pull request; leaderboard/README.md says what belongs in it.",
+    "When it is merged, a maintainer starts the official evaluation on the season's secret suite, which nobody has "
+    "seen.",
+    "The entry, verified, is proposed by a bot, and stands in the season's section with a rank. An entry on a public "
+    "suite, from whomever, stands in a development section and has none.",
+)
+_HEAD: tuple[tuple[str, int], ...] = (
+    ("rank", 1),
+    ("agent", 0),
+    ("success %", -1),
+    ("", 0),
+    ("fresh tasks %", -1),
+    ("time-weighted %", -1),
+    ("points over no robot", -1),
+    ("seconds over no robot", 1),
+    ("adoption %", -1),
+    ("of it true and new %", -1),
+    ("trust", -1),
+    ("faults", 1),
+    ("held", -1),
+    ("verified", -1),
+)
+
+
+def render(found: Board) -> str:
+    """The page, the same bytes for the same list."""
+    ranked = any(row.ranks for one in found.sections for row in one.rows)
+    body = [_section(number, one) for number, one in enumerate(found.sections, 1)]
+    rules, title = style.css(_RULES), "hthor leaderboard"
+    head = (
+        tag("meta", charset="utf-8"),
+        m.policy(rules, tables.SORT),
+        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("title", title),
+        tag("link", rel="icon", href="data:,"),
+        m.style(rules),
+    )
+    made = (
+        "Made by hthor leaderboard build from the entries and the keeper's verifications alone; every number is in "
+        f"leaderboard.json beside this page, schema {found.schema}."
+    )
+    if found.refuted:
+        body.append(_refuted(len(body) + 1, found.refuted))
+    steps = tag("ol", *(tag("li", one) for one in _TO_RANK))
+    body.append(_titled(len(body) + 1, "rank", "How to get a ranked entry", steps))
+    body.append(_titled(len(body) + 1, "how", "How to read this", *(tag("p", one) for one in _HOW)))
+    main = tag(
+        "main",
+        tag("h1", title),
+        tag("p", _LEAD, class_="lead"),
+        m.NOTHING if ranked else tag("p", _NONE, class_="note"),
+        *body,
+        tag("footer", made),
+    )
+    return m.document(head, (main, m.script(tables.SORT)))
+
+
+def _section(number: int, one: Section) -> Markup:
+    suite = one.suite
+    ranked = one.standing == "ranked"
+    title = f"{suite.name}: {one.trials} tasks, {one.people} {one.humans} people"
+    facts = {
+        "suite": f"version {suite.version}, {suite.sha256[:10]}",
+        "people": f"{one.humans}, {one.humans_sha256[:10]}, seed {one.seed}",
+        "clock": "the world waits for the agent" if one.mode == "lockstep" else "thinking takes time",
+        "code": f"{one.code[:10]}, rules {one.rules[:10]}",
+    }
+    said = cells.ties(one)
+    return _titled(
+        number,
+        f"s{number}",
+        title if ranked else f"{title} (development, unranked)",
+        tag("p", _RANKED if ranked else _DEVELOPMENT, class_="note"),
+        tag("dl", *(part for name, value in facts.items() for part in (tag("dt", name), tag("dd", value)))),
+        m.NOTHING if one.calibrated else tag("p", _UNFITTED, class_="note"),
+        _ranking(one),
+        tag("p", said, class_="soft") if said else m.NOTHING,
+        tables.fold("By difficulty and kind of task", _splits(one)),
+        tables.fold("What was played", _origins(one)),
+    )
+
+
+def _ranking(one: Section) -> Markup:
+    on = interval_marks.scale(row.sr for row in one.rows)
+    head: list[tuple[Piece, int]] = [(title or interval_marks.axis(on), way) for title, way in _HEAD]
+    lines = [("ref" if row.reference else "", _cells(row, on)) for row in one.rows]
+    return tables.table(head, lines, words=(0, 1, 3, 12, 13))
+
+
+def _cells(row: Row, on: interval_marks.Scale) -> list[Cell]:
+    colour = _COLOURS.get(row.name, "ink") if row.reference else "ink"
+    return [
+        cells.rank(row),
+        cells.who(row),
+        cells.share(row.sr),
+        Cell(interval_marks.mark(row.sr, on, colour)),
+        cells.fresh(row),
+        cells.share(row.twsr),
+        cells.gain(row.uplift.sr if row.uplift else None),
+        cells.gain(row.uplift.time_s if row.uplift else None, 1.0),
+        cells.share(row.adoption),
+        cells.share(row.usefulness),
+        cells.amount(row.trust),
+        cells.faults(row),
+        cells.held(row),
+        cells.checked(row),
+    ]
+
+
+def _splits(one: Section) -> Markup:
+    """Success by property, a column each value that any entry has."""
+    columns = dict.fromkeys(
+        (name, value) for row in one.rows for name, values in row.splits.items() for value in values
+    )
+    head: list[tuple[Piece, int]] = [("agent", 0), *((value.replace("_", " "), -1) for _, value in columns)]
+    lines = [
+        ("ref" if row.reference else "", [Cell(row.name), *(_split(row, name, value) for name, value in columns)])
+        for row in one.rows
+    ]
+    return tables.table(head, lines, words=(0,), named=0)
+
+
+def _split(row: Row, name: str, value: str) -> Cell:
+    found = row.splits.get(name, {}).get(value)
+    return Cell(cells.NOTHING, -1.0) if found is None else cells.share(found.sr)
+
+
+def _origins(one: Section) -> Markup:
+    head: list[tuple[Piece, int]] = [(word, 0) for word in ("entry", "body", "agent's code", "hthor", "commit")]
+    lines = [("", [Cell(part) for part in _origin(row)]) for row in one.rows]
+    return tables.table(head, lines, words=range(5), named=0)
+
+
+def _origin(row: Row) -> tuple[Piece, ...]:
+    used = row.harness
+    commit = (used.commit[:10] or cells.NOTHING) + (", changed" if used.dirty else "")
+    return (
+        tag("code", row.id),
+        ", ".join(row.bodies) or cells.NOTHING,
+        " ".join(digest[:10] for digest in row.code),
+        used.version,
+        commit if row.official or row.reference else f"{commit} (claimed)",
+    )
+
+
+def _refuted(number: int, some: tuple[Struck, ...]) -> Markup:
+    """Entries that do not stand."""
+    listed = (tag("li", one.name, " (", tag("code", one.id), f"): {one.why}") for one in some)
+    return _titled(number, "refuted", "Refuted, and taken off", tag("ul", *listed))
+
+
+def _titled(number: int, name: str, title: str, *parts: Piece) -> Markup:
+    return tag("section", tag("h2", tag("span", str(number)), " ", title), m.join(parts, "\n"), id=name)

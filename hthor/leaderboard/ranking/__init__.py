@@ -1,0 +1,1 @@
+"""Admission, duplicates, ranks and the list of entries."""

@@ -1,0 +1,1 @@
+"""What is handed in: an agent's folder, unpacked and checked."""

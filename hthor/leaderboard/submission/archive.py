@@ -1,0 +1,130 @@
+"""Unpacks a .zip or .tar.gz that somebody hands in: plain files within a folder, of bounded number and size."""
+
+from __future__ import annotations
+
+import shutil
+import stat
+import tarfile
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path, PurePosixPath
+from typing import IO, TypeVar
+
+from msgspec import Struct
+
+from hthor.leaderboard.entries.files import BoardError
+
+SUFFIXES = (".zip", ".tar.gz", ".tgz")
+_CHUNK, _MOST_MEMBERS = 1 << 20, 10_000
+_T = TypeVar("_T")
+
+
+class _Member(Struct, frozen=True):
+    """A plain file in an archive."""
+
+    name: str
+    open: Callable[[], IO[bytes] | None]
+
+
+def is_one(path: Path) -> bool:
+    """Whether a path is that of an archive, by its name."""
+    return path.name.endswith(SUFFIXES) and path.is_file()
+
+
+def stem(path: Path) -> str:
+    """The archive's name without its ending."""
+    return next((path.name[: -len(suffix)] for suffix in SUFFIXES if path.name.endswith(suffix)), path.name)
+
+
+def unpack(path: Path, folder: Path, *, most_bytes: int, most_files: int) -> Path:
+    """Unpack an archive into a folder that is not there yet; a single folder around all that it holds is left out.
+
+    Modes, times and owners are not kept, so that the same files give the same folder.
+
+    Raises:
+        BoardError: when it is damaged, or holds a link, a path that leads outside, a name twice, or too much; then
+            nothing is left of the folder.
+    """
+    if folder.exists():
+        raise BoardError(f"{folder} is there already; name another folder with --out, or remove it.")
+    folder.mkdir(parents=True)
+    try:
+        reader = _zip if path.name.endswith(".zip") else _tar
+        _write(path, reader(path), folder, most_bytes, most_files)
+        _flatten(folder)
+    except (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, OSError, RuntimeError, ValueError) as error:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise BoardError(f"{path}: $: cannot be unpacked: {error}.") from None
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    return folder
+
+
+def _zip(path: Path) -> Iterator[_Member]:
+    with zipfile.ZipFile(path) as held:
+        for one in _bounded(path, held.infolist()):
+            kind = stat.S_IFMT(one.external_attr >> 16)
+            if one.is_dir():
+                continue
+            if kind not in (0, stat.S_IFREG):
+                raise _refused(path, one.filename, "is a link or no plain file")
+            if one.flag_bits & 0x1:
+                raise _refused(path, one.filename, "is encrypted")
+            yield _Member(one.filename, lambda one=one: held.open(one))  # type: ignore[misc]
+
+
+def _tar(path: Path) -> Iterator[_Member]:
+    with tarfile.open(path, "r:gz") as held:
+        for one in _bounded(path, held):
+            if one.isdir():
+                continue
+            if not one.isreg() or one.issparse():
+                raise _refused(path, one.name, "is a link or no plain file")
+            yield _Member(one.name, lambda one=one: held.extractfile(one))  # type: ignore[misc]
+
+
+def _bounded(path: Path, members: Iterable[_T]) -> Iterator[_T]:
+    for count, one in enumerate(members):
+        if count > _MOST_MEMBERS:
+            raise BoardError(f"{path}: $: holds more than {_MOST_MEMBERS} entries, folders included.")
+        yield one
+
+
+def _write(path: Path, members: Iterator[_Member], folder: Path, most_bytes: int, most_files: int) -> None:
+    size = 0
+    for count, member in enumerate(members, 1):
+        pure = PurePosixPath(member.name)
+        parts = [part for part in pure.parts if part != "."]
+        if pure.is_absolute() or not parts or ".." in parts or "\\" in member.name or "\0" in member.name:
+            raise _refused(path, member.name, "leads out of the archive's folder")
+        if count > most_files:
+            raise _refused(path, member.name, f"is one file too many; at most {most_files} are taken")
+        target = folder.joinpath(*parts)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if target.exists():
+            raise _refused(path, member.name, "is there twice")
+        source = member.open()
+        assert source is not None  # it is a plain file
+        with source, target.open("xb") as file:
+            while chunk := source.read(_CHUNK):
+                size += len(chunk)
+                if size > most_bytes:
+                    raise _refused(path, member.name, f"is too much: at most {most_bytes} bytes are taken, unpacked")
+                file.write(chunk)
+
+
+def _flatten(folder: Path) -> None:
+    """Leave out a single folder that is around all of it, as most archives have one."""
+    held = list(folder.iterdir())
+    if len(held) != 1 or not held[0].is_dir():
+        return
+    inner = held[0].rename(folder.with_name(f"{folder.name}.inner"))
+    folder.rmdir()
+    inner.rename(folder)
+
+
+def _refused(path: Path, name: str, problem: str) -> BoardError:
+    shown = name.encode("unicode_escape").decode()[:200]
+    return BoardError(f"{path}: {shown}: {problem}.")

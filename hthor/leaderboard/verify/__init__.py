@@ -1,0 +1,1 @@
+"""Entries played again, compared, and tried on fresh tasks."""

@@ -1,0 +1,133 @@
+"""Playing an entry's agent at tasks that were drawn after it was handed in, by the recipe of the entry's suite.
+
+The people are those of the entry: the same population, drawn with the same seed.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from hthor import jsonio, tasks
+from hthor.eval.config import sessions, task_selection
+from hthor.eval.metrics import trial_metrics
+from hthor.eval.statistics import intervals
+from hthor.eval.task_check import proof
+from hthor.guest import Given
+from hthor.humans.population import resolve
+from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
+from hthor.leaderboard.entries.entry import Entry
+from hthor.leaderboard.entries.files import BoardError
+from hthor.leaderboard.entries.verification import Fresh
+from hthor.leaderboard.verify import performance_drop, replay
+from hthor.tasks.suites import fresh_tasks, library, secret_suites
+from hthor.tasks.suites.secret_salt import Salt
+from hthor.types import TaskSpec
+
+TASKS = 200
+"""Fresh tasks: what fall of success they show, the verification says."""
+_HOUSE_TASKS = 10
+"""Tasks in each fresh house of an official suite."""
+
+
+def verify(
+    entry: Entry,
+    board: Path,
+    word: str,
+    count: int,
+    *,
+    agent: str = "",
+    jobs: int | None = None,
+    required: str = "",
+    given: Given | None = None,
+) -> Fresh:
+    """Draw tasks, have the agent play them, and compare.
+
+    Args:
+        word: public chance that came to be after the entry was handed in. count: how many tasks.
+        agent: the agent's file, for one that is not hthor's own. required: the least level that holds it.
+        given: arguments and files that it is given.
+
+    Raises:
+        BoardError: when the recipe is not known, or a trial could not be played.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        _draw(entry, board, word, count, Path(folder), jobs)
+        chosen = task_selection.choose(folder, "")
+        crew, who = replay.crew_of(entry, agent), resolve.find(entry.run.humans.source)
+        clock = {name: value for name, value in replay.dealt(entry).items() if name != "participants"}
+        whole = sessions.sessions(chosen.suite, agent=crew, human=who, **clock)
+        played = replay.perform(entry, whole, replay.player(folder, crew, who, required, given), jobs)
+    records = sorted((one for one, _ in played), key=lambda one: (one.spec.participant, one.spec.index))
+    owners = [one.spec.participant for one in records]
+    values = {
+        "sr": np.array([float(one.metrics.sr) for one in records]),
+        "twsr": np.array([one.metrics.twsr for one in records]),
+    }
+    return judged(entry, chosen.suite.sha256, values, owners)
+
+
+def judged(entry: Entry, digest: str, values: dict[str, np.ndarray], owners: Sequence[int]) -> Fresh:
+    """The verdict over success and time-weighted success at fresh tasks of this hash, with the person of each."""
+    held = trial_outcomes.unpack(entry.trials)
+    whose = entry_metrics.people(entry.trials.count, entry.run.participants)
+    claimed = {name: entry_metrics.values(held, name, alone=entry.alone) for name in values}
+    falls = {name: performance_drop.of(claimed[name], whose, row, owners) for name, row in values.items()}
+    seen = performance_drop.detectable(claimed["sr"], whose, len(owners))
+    fell = any(one.seen for one in falls.values())
+    told = "; ".join(
+        f"{title} of {_percent(claimed[name])} was claimed, {_percent(values[name])} came out (p = {falls[name].p:.2g})"
+        for name, title in (("sr", "success"), ("twsr", "time-weighted success"))
+    )
+    power = "no fall of success would" if seen is None else f"a fall of success by {100 * seen:.0f} points would"
+    return Fresh(
+        suite=digest,
+        n=len(owners),
+        **{name: _estimate(row, owners) for name, row in values.items()},
+        claimed_sr=round(float(claimed["sr"].mean()), trial_metrics.DIGITS),
+        claimed_twsr=round(float(claimed["twsr"].mean()), trial_metrics.DIGITS),
+        fell=fell,
+        detectable=seen,
+        why=f"{told}; {power} have shown in four of five such draws",
+    )
+
+
+def _draw(entry: Entry, board: Path, word: str, count: int, folder: Path, jobs: int | None) -> None:
+    """Write a suite of fresh tasks to a folder."""
+    name = entry.run.suite.name
+    lot = hashlib.sha256(f"hthor fresh\n{word}\n{entry.digest}\n".encode()).hexdigest()
+    if name in tasks.suites():
+        drawn = fresh_tasks.suite(name, int(lot[:30], 16), count, functools.partial(_possible, jobs=jobs))
+        jsonio.write(folder / secret_suites.SUITE, library.encode(drawn))
+        return
+    season = files.commitments(board).get(entry.run.suite.sha256)
+    if season is None:
+        raise BoardError(f"{entry.id}: run.suite.sha256: no recipe of this suite is known for fresh tasks.")
+    from hthor.world.validation.house_soundness import prove
+
+    homes = max(1, min(season.houses, count // _HOUSE_TASKS))
+    order = secret_suites.Order(name=f"fresh-{lot[:10]}", houses=homes, tasks=count)
+    proof = secret_suites.Proof(house=prove, task=lambda task: not proof.examine(task).faults)
+    for path, data in secret_suites.files(order, Salt(lot), proof).items():
+        jsonio.write(folder / path, data)
+
+
+def _possible(drafts: Sequence[TaskSpec], jobs: int | None) -> list[bool]:
+    """Whether each can be done, as by 'hthor tasks check'."""
+    found = {one.task: not one.faults for one in proof.verdicts(drafts, jobs=jobs or len(os.sched_getaffinity(0)))}
+    return [found[task.id] for task in drafts]
+
+
+def _percent(row: np.ndarray) -> str:
+    return f"{100 * float(row.mean()):.1f} %"
+
+
+def _estimate(row: np.ndarray, owners: Sequence[int]) -> intervals.Estimate:
+    values = row.tolist()
+    return intervals.estimate(values, [str(place) for place in range(len(values))], owners, within=intervals.SHARE)

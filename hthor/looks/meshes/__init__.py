@@ -1,0 +1,1 @@
+"""Triangle meshes: solids, sweeps and how to shape them."""

@@ -1,0 +1,1 @@
+"""Meshes of small objects: food, tableware, toys."""

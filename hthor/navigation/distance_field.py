@@ -1,0 +1,174 @@
+"""Shortest ways from one place of a map, worked out only as far as they are asked for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hthor.navigation import grid_search_kernel
+from hthor.navigation.grid_map import CELL_M
+from hthor.navigation.search_window import Window
+from hthor.types import Vec2
+
+if TYPE_CHECKING:
+    from hthor.navigation.planner import Planner
+
+ESCAPE_CELLS = 14
+"""A place where the body cannot stand is replaced by the nearest one at most this far away."""
+
+
+class Field:
+    """Shortest ways from ``a`` [m] to everywhere in a window, as the map stood when it was made.
+
+    Args:
+        start: the cell where the ways begin, None when ``a`` is nowhere near a place to stand. escape: whether that
+            is not the cell of ``a``.
+    """
+
+    def __init__(
+        self,
+        planner: Planner,
+        a: Vec2,
+        start: tuple[int, int] | None,
+        escape: bool,
+        edges: tuple[int, int, int, int],
+    ) -> None:
+        grid = planner.grid
+        self._planner, self._a, self._escape = planner, a, escape
+        self._frame = (grid.left, grid.bottom, *grid.cells.shape)
+        self.window = None if start is None else Window(grid.cells, planner.levels, planner.optimistic, edges, start)
+
+    def distance(self, b: Vec2, within: float = 0.0) -> float:
+        """Walking distance [m] to ``b``, or to the nearest place within ``within`` metres of it; infinite if none.
+
+        Without ``within``, a place that the body cannot stand on counts as the nearest one within 0.7 m.
+        """
+        flat = self._best(b, within)
+        return math.inf if flat < 0 else self.metres(flat)
+
+    def distances(self, points: Sequence[Vec2], most: float = math.inf) -> tuple[float, ...]:
+        """Walking distance [m] to each point, as `distance`; those beyond ``most`` count as infinite."""
+        window = self.window
+        if window is None:
+            return (math.inf,) * len(points)
+        spots = [self._spot(point) for point in points]
+        news = sum(window.watch(spot) for spot in spots if spot >= 0)
+        endless = math.isinf(most)
+        if news:
+            window.spread(news, price(most))
+        found = []
+        for point, spot in zip(points, spots, strict=True):
+            if spot >= 0 and window.settled(spot):
+                found.append(self.metres(spot))
+            else:
+                found.append(self.distance(point) if endless else math.inf)
+        return tuple(found)
+
+    def nearest(self, groups: Sequence[Sequence[Vec2]]) -> tuple[tuple[float, int], ...]:
+        """For each group of points the walking distance [m] to the nearest, as `distance`, and which of them it is.
+
+        Infinite and -1 where there is no way to any.
+        """
+        window = self.window
+        if window is None:
+            return ((math.inf, -1),) * len(groups)
+        spots = [[self._spot(point) for point in group] for group in groups]
+        cells = [{spot for spot in group if spot >= 0} for group in spots]
+        for spot in set().union(*cells):
+            window.watch(spot)
+        missing = [number for number, group in enumerate(cells) if group]
+        while missing:
+            found = window.spread(len(missing))  # each of them needs one more watched cell at least
+            if found < 0:
+                break
+            left = [number for number in missing if not any(map(window.settled, cells[number]))]
+            wanted = set().union(*(cells[number] for number in left))
+            for spot in set().union(*(cells[number] for number in missing)) - wanted:
+                window.ignore(spot)
+            missing = left
+        return tuple(self._nearest(group, cells) for group, cells in zip(groups, spots, strict=True))
+
+    def _nearest(self, points: Sequence[Vec2], spots: Sequence[int]) -> tuple[float, int]:
+        """Of the ``spots`` of these points the nearest that was reached; those of no spot count when none was."""
+        assert self.window is not None
+        reached = [(self.metres(spot), k) for k, spot in enumerate(spots) if spot >= 0 and self.window.settled(spot)]
+        least = min(reached or ((self.distance(point), k) for k, point in enumerate(points)), default=(math.inf, -1))
+        return least if math.isfinite(least[0]) else (math.inf, -1)
+
+    def path(self, b: Vec2, within: float = 0.0) -> tuple[Vec2, ...] | None:
+        """Way points [m] as `Planner.path` gives them. Ask before the map grows; afterwards None is given."""
+        planner = self._planner
+        flat = self._best(b, within)
+        grid = planner.grid
+        if flat < 0 or self.window is None or self._frame != (grid.left, grid.bottom, *grid.cells.shape):
+            return None
+        exact = b if flat == self._index(b) else None
+        return planner.pulled(self.window, flat, self._a, exact, self._escape)
+
+    def metres(self, flat: int) -> float:
+        """Length [m] of the way to a cell of the window that was reached."""
+        assert self.window is not None
+        return int(self.window.cost[flat]) / grid_search_kernel.STEP * CELL_M
+
+    @property
+    def reached(self) -> float:
+        """All that is less far [m] was reached."""
+        return 0.0 if self.window is None else self.window.reached / grid_search_kernel.STEP * CELL_M
+
+    def _cell(self, b: Vec2) -> tuple[int, int]:
+        """Row and column of a point."""
+        return math.floor(b[1] / CELL_M) - self._frame[1], math.floor(b[0] / CELL_M) - self._frame[0]
+
+    def _index(self, b: Vec2) -> int:
+        assert self.window is not None
+        row, column = self._cell(b)
+        return self.window.flat(row, column) if self.window.holds(row, column) else -1
+
+    def _spot(self, b: Vec2) -> int:
+        """The cell where `distance` will end if there is a way to it; -1 when there is none close by."""
+        assert self.window is not None
+        flat = self._index(b)
+        if flat >= 0 and self.window.open(flat):
+            return flat
+        return self._pick(b, 0.0, False)
+
+    def _best(self, b: Vec2, within: float) -> int:
+        """The reached cell that serves ``b``: the cheapest within reach, or else the nearest to it; -1 for none."""
+        window = self.window
+        if window is None:
+            return -1
+        flat = self._index(b)
+        if within <= 0.0 and flat >= 0 and window.settled(flat):
+            return flat
+        window.spread(0)
+        return self._pick(b, within, True)
+
+    def _pick(self, b: Vec2, within: float, reached: bool) -> int:
+        """Of the cells that were ``reached``, or could be, the cheapest within reach, or else the nearest; -1: none."""
+        assert self.window is not None
+        window, (row, column), (left, bottom, _, _) = self.window, self._cell(b), self._frame
+        x0, x1, y0, y1 = window.edges
+        span = max(math.ceil(within / CELL_M), 0) if within > 0.0 else ESCAPE_CELLS
+        i0, i1, j0, j1 = max(column - span, x0), min(column + span, x1), max(row - span, y0), min(row + span, y1)
+        if i0 > i1 or j0 > j1:
+            return -1
+        box = (slice(j0 - window.bottom, j1 + 1 - window.bottom), slice(i0 - window.left, i1 + 1 - window.left))
+        cost = window.cost.reshape(-1, window.width)[box]
+        good = cost < grid_search_kernel.FAR
+        if not reached:
+            good |= window.state.reshape(-1, window.width)[box] != grid_search_kernel.CLOSED
+        dx = np.arange(i0, i1 + 1) + (0.5 + left) - b[0] / CELL_M
+        dy = np.arange(j0, j1 + 1) + (0.5 + bottom) - b[1] / CELL_M
+        apart = dy[:, None] ** 2 + dx[None, :] ** 2
+        good &= apart <= ((within / CELL_M) ** 2 if within > 0.0 else span * span)
+        rank = np.where(good, cost if within > 0.0 else apart, np.inf)
+        j, i = divmod(int(np.argmin(rank)), i1 + 1 - i0)
+        return window.flat(j + j0, i + i0) if good[j, i] else -1
+
+
+def price(metres: float) -> int:
+    """What a way of so many metres of clear cells costs, rounded up."""
+    return grid_search_kernel.FAR if math.isinf(metres) else math.floor(metres / CELL_M * grid_search_kernel.STEP) + 1

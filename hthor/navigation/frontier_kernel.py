@@ -1,0 +1,163 @@
+"""Compiled: cells worth a visit, and groups of them (see `marching`, `searching`)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba
+import numpy as np
+
+from hthor.navigation.grid_search_kernel import _DX, _DY, FAR, WATCHED, spread
+
+_STRETCH = 32
+"""So many cells are looked at together for whether any of them is marked: few are."""
+
+
+@numba.njit(
+    "int64(uint8[:,::1], uint8[:,::1], uint8[:,::1], uint8[:,::1], int64[::1], uint8[:,::1], int32[::1])",
+    cache=True,
+)
+def mark(cells: Any, level: Any, beside: Any, near: Any, bounds: Any, mask: Any, marked: Any) -> int:
+    """Mark free cells where a body has room: 1 those next to the unknown, 2 those along furniture never seen close.
+
+    Args:
+        bounds: those of the known map, see `GridMap`.
+        mask: all zero outside them, and out. marked: out, flat indices of all cells marked, in order.
+
+    Returns:
+        How many cells are marked.
+    """
+    ny, nx = cells.shape
+    count = 0
+    x0, x1 = max(bounds[0], 1), min(bounds[1], nx - 2) + 1
+    for j in range(max(bounds[2], 1), min(bounds[3], ny - 2) + 1):  # a loop that becomes vector instructions
+        here, west, east = cells[j, x0:x1], cells[j, x0 - 1 : x1 - 1], cells[j, x0 + 1 : x1 + 1]
+        south, north, tight = cells[j - 1, x0:x1], cells[j + 1, x0:x1], level[j, x0:x1]
+        along, seen, out = beside[j, x0:x1], near[j, x0:x1], mask[j, x0:x1]
+        for i in range(len(out)):
+            room = (here[i] == 1) & (tight[i] < 2)
+            edge = room & ((west[i] == 0) | (east[i] == 0) | (south[i] == 0) | (north[i] == 0))
+            unvisited = room & (tight[i] == 1) & (along[i] != 0) & (seen[i] == 0)
+            out[i] = (1 if edge else 0) | (2 if unvisited else 0)
+        for begin in range(0, len(out), _STRETCH):
+            some = np.uint8(0)
+            stretch = out[begin : begin + _STRETCH]
+            for i in range(len(stretch)):
+                some |= stretch[i]
+            if some:
+                for i in range(len(stretch)):
+                    if stretch[i]:
+                        marked[count] = j * nx + x0 + begin + i
+                        count += 1
+    return count
+
+
+@numba.njit("int64(uint8[:,::1], int32[::1], uint8, int32[::1], int64[:,::1])", cache=True)
+def clusters(mask: Any, marked: Any, bit: int, members: Any, out: Any) -> int:
+    """Group the ``marked`` cells with ``bit`` in the mask; returns how many groups, in the order of their first cells.
+
+    The bit is used up. Every row of ``out`` is row, column, first and last + 1 index of the group's ``members``, which
+    are flat. The cell given is the member nearest to the middle of its group.
+    """
+    nx = mask.shape[1]
+    groups, done = 0, 0
+    for start in marked:
+        row, column = start // nx, start % nx
+        if mask[row, column] & bit == 0 or groups == len(out):
+            continue
+        mask[row, column] ^= bit
+        first, size = done, done + 1
+        members[first] = row * nx + column
+        sum_x, sum_y = 0, 0
+        while done < size:
+            j, i = members[done] // nx, members[done] % nx
+            done += 1
+            sum_x += i
+            sum_y += j
+            for d in range(8):
+                a, b = i + _DX[d], j + _DY[d]
+                if mask[b, a] & bit:
+                    mask[b, a] ^= bit
+                    members[size] = b * nx + a
+                    size += 1
+        best, best2 = members[first], 1e18
+        for s in range(first, size):
+            j, i = members[s] // nx, members[s] % nx
+            ex, ey = i - sum_x / (size - first), j - sum_y / (size - first)
+            if ex * ex + ey * ey < best2:
+                best, best2 = members[s], ex * ex + ey * ey
+        out[groups, 0] = best // nx
+        out[groups, 1] = best % nx
+        out[groups, 2] = first
+        out[groups, 3] = size
+        groups += 1
+    return groups
+
+
+@numba.njit(
+    "int64(int32[::1], int64[:,::1], int64, float64, float64, int64, int64, int64, uint8[::1], int16[::1], int64)",
+    cache=True,
+)
+def watch(
+    members: Any,
+    groups: Any,
+    count: int,
+    cell: float,
+    least: float,
+    width: int,
+    columns: int,
+    offset: int,
+    state: Any,
+    names: Any,
+    number: int,
+) -> int:
+    """Have a search stop at the members of the large groups, which it then finds under their numbers in ``names``.
+
+    Args:
+        groups: as `clusters` gives them, ``count`` of them; the large ones move to the front.
+        cell, least: a group is large when its number of members times ``cell`` is at least ``least``.
+        width: columns of the map. columns: of the search's window. offset: of the map's cell 0 in the window.
+        number: of the last group before.
+
+    Returns:
+        How many groups are large.
+    """
+    large = 0
+    for k in range(count):
+        first, last = groups[k, 2], groups[k, 3]
+        if (last - first) * cell < least:
+            continue
+        for c in range(4):
+            groups[large, c] = groups[k, c]
+        large += 1
+        for s in range(first, last):
+            row = members[s] // width
+            here = row * columns + members[s] - row * width + offset
+            state[here] |= WATCHED
+            names[here] = number + large
+    return large
+
+
+@numba.njit(
+    "int64(int16[:,::1], uint8[::1], int64, uint8[::1], int32[::1], int8[::1], int64, int32[::1], int32[::1],"
+    " int32[::1], int64[::1])",
+    cache=True,
+)
+def reach(
+    names: Any,
+    known: Any,
+    goal: int,
+    state: Any,
+    cost: Any,
+    came: Any,
+    width: int,
+    heads: Any,
+    chain: Any,
+    item: Any,
+    memo: Any,
+) -> int:
+    """Spread (see `searching.spread`) to the watched cell ``goal`` or one of a group not yet ``known``; -1 for none."""
+    while True:
+        here = spread(state, cost, came, width, 1, FAR, heads, chain, item, memo)
+        if here < 0 or here == goal or not (known[names[0, here]] and known[names[1, here]]):
+            return int(here)

@@ -1,0 +1,279 @@
+"""Compiled: shortest paths on a grid of cells and levels (see `marching`).
+
+Costs are whole numbers, 100 for a step of one clear cell, so that paths do not depend on rounding. A search works on a
+window of the map with a closed border of one cell, laid out flat, so that no step has to look where the map ends.
+Indices are unsigned in the inner loops, so that none has to be looked at for whether it counts from the end.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numba
+import numpy as np
+
+STEP, DIAGONAL = 100, 141
+TIGHT, TIGHT_DIAGONAL = 120, 169
+FAR = 1 << 30
+BUCKETS = 512
+_LAST = BUCKETS - 1
+_SLACK = 108.24
+"""Of a straight line's length in cells, the most that its way along the lattice costs."""
+CLOSED, CLEAR, CLOSE, WATCHED = 0, 1, 2, 4
+"""States of a window's cells: no way or done, else the level plus one; and whether it is news that it was reached."""
+
+_DX = np.array([1, 0, -1, 0, 1, -1, -1, 1], dtype=np.int64)
+_DY = np.array([0, 1, 0, -1, 1, 1, -1, -1], dtype=np.int64)
+
+
+def rank(columns: int, rows: int, within: float) -> int:
+    """The least cost to within ``within`` cells of a goal so many columns and rows away."""
+    slack = math.ceil(within * _SLACK) if within > 0.0 else 0
+    return max(0, STEP * max(columns, rows) + (DIAGONAL - STEP) * min(columns, rows) - slack)
+
+
+@numba.njit("int64[::1](int64)", cache=True)
+def _offsets(width: int) -> Any:
+    """Where the neighbours of a cell are in a flat window, in the order of `_DX` and `_DY`."""
+    return np.array([1, width, -1, -width, width + 1, width - 1, -width - 1, 1 - width], dtype=np.int64)
+
+
+@numba.njit("boolean(uint8[:,::1], uint8[:,::1], boolean, int64, int64)", cache=True)
+def passable(cells: Any, level: Any, optimistic: bool, row: int, column: int) -> bool:
+    """Whether the body's centre may be in this cell."""
+    return level[row, column] < 2 and (optimistic or cells[row, column] == 1)
+
+
+@numba.njit("int64(uint8[:,::1], uint8[:,::1], boolean, int64, int64, int64)", cache=True)
+def nearest(cells: Any, level: Any, optimistic: bool, row: int, column: int, reach: int) -> int:
+    """Flat index of the passable cell nearest to a cell, within ``reach`` cells; -1 when there is none."""
+    ny, nx = cells.shape
+    if 0 <= row < ny and 0 <= column < nx and passable(cells, level, optimistic, row, column):
+        return int(row * nx + column)
+    best, best2 = -1, reach * reach + 1
+    for j in range(max(row - reach, 0), min(row + reach + 1, ny)):
+        for i in range(max(column - reach, 0), min(column + reach + 1, nx)):
+            d2 = (j - row) * (j - row) + (i - column) * (i - column)
+            if d2 < best2 and passable(cells, level, optimistic, j, i):
+                best, best2 = j * nx + i, d2
+    return best
+
+
+@numba.njit(
+    "void(uint8[:,::1], uint8[:,::1], boolean, int64[::1], int64, uint8[::1], int32[::1], int8[::1],"
+    " int32[::1], int32[::1], int32[::1], int64[::1], int64)",
+    cache=True,
+)
+def prepare(
+    cells: Any,
+    level: Any,
+    optimistic: bool,
+    window: Any,
+    start: int,
+    state: Any,
+    cost: Any,
+    came: Any,
+    heads: Any,
+    chain: Any,
+    item: Any,
+    memo: Any,
+    key: int,
+) -> None:
+    """Lay a window out flat, border included, and put its cell ``start`` in the queue, in bucket ``key``.
+
+    Args:
+        window: first and last column, first and last row that may be used.
+        state, cost, came: out, one entry a cell of the bordered window.
+        heads, chain, item: out, the queue: `BUCKETS` entries, and eight a cell. memo: out, (3,) the queue's numbers.
+    """
+    x0, x1, y0, y1 = window[0], window[1], window[2], window[3]
+    width = x1 - x0 + 3
+    cost[:] = FAR
+    state[:] = CLOSED
+    for j in range(y0, y1 + 1):  # loops that a compiler can turn into vector instructions
+        row = state[(j - y0 + 1) * width + 1 : (j - y0 + 2) * width - 1]
+        tight, known = level[j, x0 : x1 + 1], cells[j, x0 : x1 + 1]
+        if optimistic:
+            for i in range(len(row)):
+                row[i] = tight[i] + CLEAR if tight[i] < 2 else CLOSED
+        else:
+            for i in range(len(row)):
+                row[i] = tight[i] + CLEAR if (tight[i] < 2) & (known[i] == 1) else CLOSED
+    heads[:] = -1
+    heads[key & _LAST] = 0
+    item[0], chain[0] = start, -1
+    cost[start], came[start] = 0, 0
+    memo[0], memo[1], memo[2] = key, 1, 1
+
+
+@numba.njit(
+    "int64(uint8[::1], int32[::1], int8[::1], int64, int64, int64, float64, float64, float64, int64,"
+    " int32[::1], int32[::1], int32[::1], int64[::1])",
+    cache=True,
+)
+def seek(
+    state: Any,
+    cost: Any,
+    came: Any,
+    width: int,
+    left: int,
+    bottom: int,
+    goal_x: float,
+    goal_y: float,
+    within: float,
+    most: int,
+    heads: Any,
+    chain: Any,
+    item: Any,
+    memo: Any,
+) -> int:
+    """The cheapest way to within ``within`` cells of a goal (A*); the cell where it ends, -1 when there is none.
+
+    Args:
+        width: of the bordered window. left, bottom: the map's column and row of the window's cell 0.
+        goal_x, goal_y: the goal [cells of the map].
+        most: give up where any way costs more.
+    """
+    offsets = _offsets(width)
+    slack = math.ceil(within * _SLACK) if within > 0.0 else 0
+    gx, gy = math.floor(goal_x), math.floor(goal_y)
+    near2 = within * within
+    key, used, waiting = memo[0], memo[1], memo[2]
+    while waiting > 0 and key <= most:
+        bucket = np.uint64(key & _LAST)
+        entry = heads[bucket]
+        if entry < 0:
+            key += 1
+            continue
+        heads[bucket] = chain[np.uint64(entry)]
+        waiting -= 1
+        here = np.int64(item[np.uint64(entry)])
+        if state[np.uint64(here)] == CLOSED:
+            continue
+        state[np.uint64(here)] = CLOSED
+        row = here // width
+        i, j = here - row * width + left, row + bottom
+        ex, ey = i + 0.5 - goal_x, j + 0.5 - goal_y
+        if (i == gx and j == gy) or ex * ex + ey * ey <= near2:
+            return int(here)
+        base = cost[np.uint64(here)]
+        for d in range(8):
+            there = np.uint64(here + offsets[np.uint64(d)])
+            kind = state[there]
+            if kind == CLOSED:
+                continue
+            if kind == CLEAR:
+                reached = base + (STEP if d < 4 else DIAGONAL)
+            else:
+                reached = base + (TIGHT if d < 4 else TIGHT_DIAGONAL)
+            if reached >= cost[there]:
+                continue
+            cost[there] = reached
+            came[there] = d
+            dx, dy = abs(i + _DX[d] - gx), abs(j + _DY[d] - gy)
+            ahead = reached + max(0, STEP * max(dx, dy) + (DIAGONAL - STEP) * min(dx, dy) - slack)
+            last, bucket = np.uint64(used), np.uint64(ahead & _LAST)
+            item[last] = there
+            chain[last] = heads[bucket]
+            heads[bucket] = used
+            used += 1
+            waiting += 1
+    return -1
+
+
+@numba.njit(
+    "int64(uint8[::1], int32[::1], int8[::1], int64, int64, int64, int32[::1], int32[::1], int32[::1], int64[::1])",
+    cache=True,
+)
+def spread(
+    state: Any,
+    cost: Any,
+    came: Any,
+    width: int,
+    watched: int,
+    most: int,
+    heads: Any,
+    chain: Any,
+    item: Any,
+    memo: Any,
+) -> int:
+    """Cheapest ways to ever farther cells (Dijkstra), until ``watched`` more of the watched cells are reached.
+
+    Call it again to go on. Cells that are `CLOSED` and cheaper than `FAR` are settled: no way to them is cheaper.
+
+    Args:
+        most: stop before a cell that costs more.
+
+    Returns:
+        The watched cell reached last; -1 when the search ended before so many were reached.
+    """
+    offsets = _offsets(width)
+    key, used, waiting = memo[0], memo[1], memo[2]
+    found = -1
+    while waiting > 0 and key <= most:
+        bucket = np.uint64(key & _LAST)
+        entry = heads[bucket]
+        if entry < 0:
+            key += 1
+            continue
+        heads[bucket] = chain[np.uint64(entry)]
+        waiting -= 1
+        here = np.uint64(item[np.uint64(entry)])
+        kind = state[here]
+        if kind == CLOSED:
+            continue
+        state[here] = CLOSED
+        base = cost[here]
+        for d in range(8):
+            there = np.uint64(np.int64(here) + offsets[np.uint64(d)])
+            next_kind = state[there] & (CLEAR | CLOSE)
+            if next_kind == CLOSED:
+                continue
+            if next_kind == CLEAR:
+                reached = base + (STEP if d < 4 else DIAGONAL)
+            else:
+                reached = base + (TIGHT if d < 4 else TIGHT_DIAGONAL)
+            if reached >= cost[there]:
+                continue
+            cost[there] = reached
+            came[there] = d
+            last, bucket = np.uint64(used), np.uint64(reached & _LAST)
+            item[last] = there
+            chain[last] = heads[bucket]
+            heads[bucket] = used
+            used += 1
+            waiting += 1
+        if kind & WATCHED:
+            watched -= 1
+            if watched == 0:
+                found = int(here)
+                break
+    memo[0], memo[1], memo[2] = key, used, waiting
+    return int(found)
+
+
+@numba.njit("int64(int8[::1], int64, int64, int64, int64)", cache=True)
+def steps(came: Any, width: int, start: int, end: int, most: int) -> int:
+    """How many cells there are on the way from ``start`` to ``end``, at most ``most``."""
+    offsets = _offsets(width)
+    here, count = end, 1
+    while here != start and count < most:
+        here -= offsets[came[here]]
+        count += 1
+    return count
+
+
+@numba.njit("void(int8[::1], int32[::1], int64, int64, int64, int64, float64[:,::1], float64[::1])", cache=True)
+def trace(came: Any, cost: Any, width: int, end: int, left: int, bottom: int, points: Any, costs: Any) -> None:
+    """The last cells of the way to ``end``, as many as ``points`` holds, as
+    `hthor.navigation.search_window.Window.trace`.
+    """
+    offsets = _offsets(width)
+    here = end
+    for k in range(len(points) - 1, -1, -1):
+        row = here // width
+        points[k, 0] = here - row * width + (left + 0.5)
+        points[k, 1] = row + (bottom + 0.5)
+        costs[k] = cost[here]
+        here -= offsets[came[here]]

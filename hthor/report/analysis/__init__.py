@@ -1,0 +1,1 @@
+"""What the report says, worked out from runs: no HTML here."""

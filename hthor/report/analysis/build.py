@@ -1,0 +1,71 @@
+"""Everything that several runs say together, worked out of their trials; reads and draws nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hthor.eval.results import aggregate
+from hthor.report.analysis import (
+    breakdown,
+    fault_summary,
+    pairwise,
+    run_provenance,
+    session_statistics,
+    trial_selection,
+)
+from hthor.report.analysis.document import Arm, Findings, Published
+from hthor.report.analysis.load_runs import Run
+
+_MANY = 8
+"""Of more runs than these fewer trials are drawn, so that the page stays small."""
+_STUDIED = {"object_goal_navigation", "mobile_manipulation"}
+"""Kinds of task that published figures are of."""
+
+
+def findings(runs: Sequence[Run], published: Published | None = None) -> Findings:
+    """The document; the people of most of it are those of the first run.
+
+    Args:
+        runs: that belong together, as `hthor.report.analysis.load_runs` sees to.
+        published: figures of a study to stand beside them, where the tasks are of the kinds that it had.
+    """
+    people = runs[0].plan.humans.name
+    own = [run for run in runs if run.plan.humans.name == people]
+    baseline = next((run for run in own if run.condition == "none"), None)
+    each = trial_selection.EACH if len(own) <= _MANY else 1
+    comparisons, apart = pairwise.pairs(baseline, own)
+    return Findings(
+        suite=runs[0].plan.suite,
+        people=people,
+        baseline=baseline.label if baseline is not None else "",
+        published=published if _studied(runs) else None,
+        arms=tuple(_arm(run) for run in own),
+        comparisons=comparisons,
+        apart=apart,
+        spent=tuple(session_statistics.spent(run) for run in own),
+        trust=tuple(curve for run in own if (curve := session_statistics.trust(run)) is not None),
+        splits=breakdown.splits(own),
+        by_people=breakdown.by_people(runs),
+        people_uplift=pairwise.by_people(runs),
+        shown=tuple(one for run in own if run.plan.seats for one in trial_selection.extremes(run, baseline, each)),
+        failures=tuple(one for run in runs for one in fault_summary.of(run)),
+        origins=tuple(run_provenance.of(run) for run in runs),
+    )
+
+
+def _studied(runs: Sequence[Run]) -> bool:
+    kinds = {record.spec.task.kind for run in runs for record in run.records}
+    return bool(kinds & _STUDIED)
+
+
+def _arm(run: Run) -> Arm:
+    return Arm(
+        label=run.label,
+        condition=run.condition,
+        folder=run.name,
+        trials=len(run.records),
+        people=len({record.spec.participant for record in run.records}),
+        tasks=len({record.spec.task.id for record in run.records}),
+        unfinished=run.plan.trials - len(run.records),
+        scores=aggregate.scores(run.records),
+    )

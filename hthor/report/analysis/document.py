@@ -1,0 +1,152 @@
+"""What several runs say together, as one document: every number that the report shows; draws and computes nothing.
+
+Fractions are fractions, times are seconds, trust is 1 to 7.
+"""
+
+from __future__ import annotations
+
+import math
+
+from msgspec import Struct
+
+from hthor.eval.comparison.compare import Comparison
+from hthor.eval.config.run_config import SuiteRef
+from hthor.eval.results.result_file import Scores
+from hthor.eval.statistics.intervals import Estimate
+from hthor.report.analysis.example_trials import Failure, Shown
+from hthor.report.analysis.run_provenance import Origin
+
+SCHEMA = "hthor.report/3"
+
+
+class Share(Struct, frozen=True, kw_only=True):
+    """A published share ``k`` of ``n`` trials; ``inferred`` where the study prints only the percentage."""
+
+    k: int
+    n: int
+    inferred: bool = False
+
+    @property
+    def ci95(self) -> tuple[float, float]:
+        """Wilson's interval: all that is known of these trials is how many there were."""
+        z, share = 1.959964, self.k / self.n
+        middle = (share + z * z / (2 * self.n)) / (1 + z * z / self.n)
+        half = z / (1 + z * z / self.n) * math.sqrt(share * (1 - share) / self.n + z * z / (4 * self.n * self.n))
+        return (middle - half, middle + half)
+
+
+class Published(Struct, frozen=True, kw_only=True):
+    """What a study printed: figures as fractions by name, such as "sr none", and the counts behind some of them.
+
+    ``suite`` is the name of the suite that has its tasks.
+    """
+
+    name: str
+    source: str
+    sha256: str
+    suite: str
+    figures: dict[str, float]
+    counts: dict[str, Share]
+
+
+class Arm(Struct, frozen=True, kw_only=True):
+    """One run's robots with the report's people: ``label`` is their name on the page.
+
+    ``condition`` is none, frontier or oracle where the article had such a robot, else empty; ``folder`` the run's name.
+    """
+
+    label: str
+    condition: str
+    folder: str
+    trials: int
+    people: int
+    tasks: int
+    unfinished: int
+    scores: Scores
+
+
+class Apart(Struct, frozen=True, kw_only=True):
+    """Two runs that share no trial; ``field`` of their configurations says why, empty where they only lack trials."""
+
+    first: str
+    second: str
+    field: str
+
+
+class Spent(Struct, frozen=True, kw_only=True):
+    """Time spent in one run [s]; an unsolved trial counts with the time limit. ``unsolved`` of ``trials`` did.
+
+    ``solved`` is the share of trials that were solved within 0, 1, 2, ... seconds.
+    """
+
+    arm: str
+    trials: int
+    least: float
+    lower: float
+    median: float
+    upper: float
+    most: float
+    unsolved: int
+    solved: tuple[float, ...]
+
+
+class Curve(Struct, frozen=True, kw_only=True):
+    """Trust by trial of the session: means, their 95 % intervals, and how many people rated each.
+
+    ``slope`` is the mean over people of the least-squares slope [points a trial], ``slope_se`` its standard error;
+    None where fewer than two people rated two trials.
+    """
+
+    arm: str
+    trial: tuple[int, ...]
+    mean: tuple[float, ...]
+    ci95: tuple[tuple[float, float], ...]
+    people: tuple[int, ...]
+    slope: float | None
+    slope_se: float | None
+
+
+class Group(Struct, frozen=True, kw_only=True):
+    """Success within one part of the trials, such as hard tasks, by the arm's label."""
+
+    name: str
+    sr: dict[str, Estimate]
+
+
+class Split(Struct, frozen=True, kw_only=True):
+    """All trials parted by one thing; ``word`` says by what."""
+
+    word: str
+    groups: tuple[Group, ...]
+
+
+class Findings(Struct, frozen=True, kw_only=True):
+    """The whole document.
+
+    ``people`` are those whom most of the report is of; ``by_people`` has all. ``baseline`` is the label of the run
+    without a robot, empty where there is none. ``comparisons`` are of runs with these people, by label, the one
+    without a robot first; ``apart`` are the pairs that cannot be compared. ``people_uplift`` has the comparisons with
+    no robot for each people of ``by_people``.
+    """
+
+    schema: str = SCHEMA
+    suite: SuiteRef
+    people: str
+    baseline: str
+    published: Published | None
+    arms: tuple[Arm, ...]
+    comparisons: tuple[Comparison, ...]
+    apart: tuple[Apart, ...]
+    spent: tuple[Spent, ...]
+    trust: tuple[Curve, ...]
+    splits: tuple[Split, ...]
+    by_people: Split | None
+    people_uplift: dict[str, tuple[Comparison, ...]]
+    shown: tuple[Shown, ...]
+    failures: tuple[Failure, ...]
+    origins: tuple[Origin, ...]
+
+    @property
+    def uplift(self) -> tuple[Comparison, ...]:
+        """What each robot changes against no robot."""
+        return tuple(pair for pair in self.comparisons if self.baseline and pair.first == self.baseline)

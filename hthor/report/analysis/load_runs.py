@@ -1,0 +1,151 @@
+"""Several runs read from their folders, checked, and seen to belong together; computes nothing of them."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from hthor.errors import RunError
+from hthor.eval.config import run_config
+from hthor.eval.config.robot_team import NO_ROBOT
+from hthor.eval.config.run_config import Setup
+from hthor.eval.metrics import trial_metrics
+from hthor.eval.records import reader
+from hthor.eval.records.trial_record import Record
+from hthor.eval.results import baseline
+
+NONE = NO_ROBOT
+Pair = tuple[int, int, int, str]
+"""What two runs' trials share when they are of the same person at the same task: seed, person, place, task."""
+
+
+class Run(Struct, frozen=True, kw_only=True, eq=False):
+    """One run: its configuration, its trials in order with freshly measured metrics, and what to call it.
+
+    ``name`` is what its folder is called, with the folder above where that tells it apart. ``sha256`` is the hash
+    of its log as `hthor.eval.results.aggregate` has it. ``beside`` says that nobody named it: it was found as the
+    control of another.
+    """
+
+    folder: Path
+    name: str
+    plan: Setup
+    records: tuple[Record, ...]
+    sha256: str
+    label: str
+    condition: str
+    beside: bool = False
+
+    @property
+    def by_pair(self) -> dict[Pair, Record]:
+        """The trials by what they share with those of other robots."""
+        return {pair(record): record for record in self.records}
+
+
+def pair(record: Record) -> Pair:
+    """What a trial shares with that of the same person at the same task with other robots."""
+    spec = record.spec
+    return (spec.seed, spec.participant, spec.index, spec.task.id)
+
+
+def runs(folders: Sequence[Path]) -> list[Run]:
+    """Every run, in the order given.
+
+    Raises:
+        RunError: when a folder holds no run, a file of it is damaged, or the runs do not belong together.
+    """
+    found = [_read(folder) for folder in folders]
+    for one in found[1:]:
+        _together(found[0], one)
+    _distinct(found)
+    return _named(found)
+
+
+def with_controls(found: Sequence[Run]) -> list[Run]:
+    """The same runs; where nobody of some people is without a robot, their control first, if it lies beside."""
+    whole: list[Run] = []
+    for one in found:
+        people = one.plan.humans.name
+        if not any(not other.plan.seats and other.plan.humans.name == people for other in (*found, *whole)):
+            place = baseline.place(one.folder, one.plan)
+            whole += [msgspec.structs.replace(_read(place), beside=True)] if place is not None else []
+        whole.append(one)
+    return _named(whole) if len(whole) > len(found) else whole
+
+
+def _read(folder: Path) -> Run:
+    plan = run_config.load(folder)
+    lines, records = reader.records(folder, plan)
+    if not records:
+        raise RunError(f"{folder / 'trials.jsonl'} has no trials yet. Finish the run with 'hthor eval' first.")
+    fresh = (msgspec.structs.replace(one, metrics=trial_metrics.measure(one.spec, one.log)) for one in records)
+    return Run(
+        folder=folder,
+        name=folder.resolve().name,
+        plan=plan,
+        records=tuple(fresh),
+        sha256=hashlib.sha256(b"".join(lines)).hexdigest(),
+        label=plan.name if plan.seats else NONE,
+        condition=_condition(plan),
+    )
+
+
+def _condition(plan: Setup) -> str:
+    """The condition of the published study that these robots are, if any."""
+    if not plan.seats:
+        return "none"
+    agent = plan.seats[0].agent
+    published = len(plan.seats) == 1 and agent.source == f"hthor.agents.{agent.name}"
+    return agent.name if published and agent.name in ("frontier", "oracle") else ""
+
+
+def _together(first: Run, other: Run) -> None:
+    """See that two runs are of the same tasks under the same rules."""
+    here, there = other.plan, first.plan
+    fields = {
+        "suite.sha256": (here.suite.sha256, there.suite.sha256, f"suite '{here.suite.name}', not '{there.suite.name}'"),
+        "kind": (here.kind, there.kind, "other kinds of task"),
+        "rules_sha256": (here.rules_sha256, there.rules_sha256, "other constants of the benchmark"),
+    }
+    for field, (one, two, words) in fields.items():
+        if one != two:
+            raise RunError(
+                f"{other.folder / 'run.json'}: {field} is not that of {first.folder / 'run.json'}: {words}. "
+                "A report is of one suite under one set of rules; give such runs a report each."
+            )
+
+
+def _distinct(found: Sequence[Run]) -> None:
+    seen: dict[str, Run] = {}
+    for one in found:
+        twin = seen.setdefault(one.plan.sha256, one)
+        if twin is not one:
+            raise RunError(
+                f"{twin.folder} and {one.folder} are the same run: their run.json say the same. Give it once."
+            )
+
+
+def _named(found: Sequence[Run]) -> list[Run]:
+    """Names and labels that tell runs apart: where two labels with the same people are equal, with the name."""
+    names = [_name(one, found) for one in found]
+    whole: list[Run] = []
+    for one, name in zip(found, names, strict=True):
+        plain = _plain(one)
+        same = [two for two in found if (_plain(two), two.plan.humans.name) == (plain, one.plan.humans.name)]
+        label = plain if len(same) == 1 else f"{plain} ({name})"
+        whole.append(msgspec.structs.replace(one, name=name, label=label))
+    return whole
+
+
+def _plain(one: Run) -> str:
+    return one.plan.name if one.plan.seats else NONE
+
+
+def _name(one: Run, found: Sequence[Run]) -> str:
+    folder = one.folder.resolve()
+    alike = sum(other.folder.resolve().name == folder.name for other in found)
+    return folder.name if alike == 1 and folder.name != baseline.FOLDER else f"{folder.parent.name}/{folder.name}"

@@ -1,0 +1,106 @@
+"""Where one run came from: everything that decides its records, and what held its agents."""
+
+from __future__ import annotations
+
+from msgspec import Struct
+
+from hthor import documents
+from hthor.errors import RunError
+from hthor.eval.config import cli_command
+from hthor.eval.config.human_populations import HumansRef
+from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
+from hthor.eval.records import run_isolation
+from hthor.guest import Isolation
+from hthor.report.analysis.load_runs import Run
+from hthor.types import RobotSeat
+
+_PLATFORM = "platform.json"
+_LOCKSTEP = "lockstep"
+
+
+class Platform(Struct, frozen=True, kw_only=True):
+    """A machine that played a part of a run: system, processor's architecture and make, vector units, C library."""
+
+    system: str = ""
+    machine: str = ""
+    cpu: str = ""
+    simd: str = ""
+    libc: str = ""
+
+
+class Origin(Struct, frozen=True, kw_only=True):
+    """One run's.
+
+    ``name`` is that of its folder. ``beside`` says that the report found it there by itself, as the control of another.
+    ``isolation`` is None where all agents are built in; ``platforms`` is empty where the run did not note them.
+    ``command`` plays the run again, ``alone`` the same people at the same tasks without a robot. ``mode`` is
+    lockstep, or realtime where robots' thinking took time of the trials.
+    """
+
+    name: str
+    label: str
+    beside: bool
+    agent: str
+    robots: tuple[RobotSeat, ...]
+    humans: HumansRef
+    suite: SuiteRef
+    kind: KindRef | None
+    seed: int
+    mode: str
+    participants: int
+    trials: int
+    whole: int
+    faulty: int
+    assets: AssetsRef
+    versions: dict[str, str]
+    isolation: Isolation | None
+    platforms: tuple[Platform, ...]
+    command: str
+    alone: str
+    run_sha256: str
+    rules_sha256: str
+    code_sha256: str
+    trials_sha256: str
+
+
+def of(run: Run) -> Origin:
+    """Where a run came from.
+
+    Raises:
+        RunError: when what was noted beside its log cannot be read.
+    """
+    plan = run.plan
+    return Origin(
+        name=run.name,
+        label=run.label,
+        beside=run.beside,
+        agent=plan.name,
+        robots=plan.robots,
+        humans=plan.humans,
+        suite=plan.suite,
+        kind=plan.kind,
+        seed=plan.seed,
+        mode=getattr(plan, "mode", _LOCKSTEP),
+        participants=plan.participants,
+        trials=len(run.records),
+        whole=plan.trials,
+        faulty=sum(bool(record.faults) for record in run.records),
+        assets=plan.assets,
+        versions=plan.versions,
+        isolation=run_isolation.load(run.folder),
+        platforms=_platforms(run),
+        alone=cli_command.alone(plan),
+        command=cli_command.of(run.folder, plan, cli_command.near(run.folder)),
+        run_sha256=plan.sha256,
+        rules_sha256=plan.rules_sha256,
+        code_sha256=plan.code_sha256,
+        trials_sha256=run.sha256,
+    )
+
+
+def _platforms(run: Run) -> tuple[Platform, ...]:
+    path = run.folder / _PLATFORM
+    if not path.is_file():
+        return ()
+    hint = "delete the file; the run is then of unknown platforms"
+    return tuple(dict.fromkeys(documents.read(path, list[Platform], RunError, hint=hint)))

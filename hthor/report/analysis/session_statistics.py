@@ -1,0 +1,81 @@
+"""Time spent and trust in one run, as numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from hthor.eval.results import aggregate
+from hthor.report.analysis.document import Curve, Spent
+from hthor.report.analysis.load_runs import Run
+
+_DIGITS = 6
+_QUARTILES = (0.0, 0.25, 0.5, 0.75, 1.0)
+
+
+def spent(run: Run) -> Spent:
+    """Minimum, quartiles and maximum of the time spent, and how many were done by when."""
+    times = [record.metrics.time_s for record in run.records]
+    least, lower, median, upper, most = (round(float(value), _DIGITS) for value in np.quantile(times, _QUARTILES))
+    unsolved = sum(not record.met for record in run.records)
+    ends = np.sort([record.metrics.time_s for record in run.records if record.met])
+    seconds = np.arange(math.ceil(max(record.spec.task.time_limit for record in run.records)) + 1)
+    solved = np.searchsorted(ends, seconds, side="right") / len(times)
+    return Spent(
+        arm=run.label,
+        trials=len(times),
+        least=least,
+        lower=lower,
+        median=median,
+        upper=upper,
+        most=most,
+        unsolved=unsolved,
+        solved=tuple(round(float(share), _DIGITS) for share in solved),
+    )
+
+
+def trust(run: Run) -> Curve | None:
+    """Trust by trial of the session; None where nobody rated anything."""
+    rated = [(one.spec.participant, one.spec.index, one.trust) for one in run.records if one.trust is not None]
+    if not run.plan.seats or not rated:
+        return None
+    indices = sorted({index for _, index, _ in rated})
+    by_trial = [[float(value) for _, index, value in rated if index == wanted] for wanted in indices]
+    by_person = [[(index, value) for who, index, value in rated if who == person] for person in _people(rated)]
+    slopes = [slope for marks in by_person if (slope := _slope(marks)) is not None]
+    return Curve(
+        arm=run.label,
+        trial=tuple(index + 1 for index in indices),
+        mean=tuple(round(_mean(values), _DIGITS) for values in by_trial),
+        ci95=tuple(one.ci95 for one in aggregate.by_trial(run.records) if one.ci95 is not None),
+        people=tuple(len(values) for values in by_trial),
+        slope=round(_mean(slopes), _DIGITS) if len(slopes) > 1 else None,
+        slope_se=_error(slopes),
+    )
+
+
+def _people(rated: Sequence[tuple[int, int, int]]) -> list[int]:
+    return sorted({person for person, _, _ in rated})
+
+
+def _slope(marks: Sequence[tuple[int, int]]) -> float | None:
+    """Least-squares slope of one person's ratings [points a trial]; None of a single one."""
+    if len(marks) < 2:
+        return None
+    x, y = (np.array(values, dtype=float) for values in zip(*marks, strict=True))
+    x = x - x.mean()
+    return float((x * y).sum() / (x * x).sum())
+
+
+def _error(values: Sequence[float]) -> float | None:
+    """Standard error of the mean; None of fewer than two."""
+    if len(values) < 2:
+        return None
+    mean = _mean(values)
+    return round(math.sqrt(sum((value - mean) ** 2 for value in values) / (len(values) - 1) / len(values)), _DIGITS)
+
+
+def _mean(values: Sequence[float]) -> float:
+    return sum(values) / len(values)

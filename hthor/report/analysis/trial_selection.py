@@ -1,0 +1,63 @@
+"""Which trials of a run are worth a map: those in which its robots helped most and least; draws nothing."""
+
+from __future__ import annotations
+
+import shlex
+
+from hthor.eval.config import cli_command
+from hthor.eval.records.trial_record import Record
+from hthor.report.analysis.example_trials import Shown
+from hthor.report.analysis.load_runs import Run, pair
+
+EACH = 2
+"""So many of the best and of the worst."""
+
+
+def extremes(run: Run, alone: Run | None, each: int = EACH) -> list[Shown]:
+    """The ``each`` best and worst trials of a run with robots, each trial at most once.
+
+    Against the same person without a robot where there is such a run: by the time saved, and among equals by
+    time-weighted success. Without one by time-weighted success, and among equals by the time spent.
+    """
+    others = alone.by_pair if alone is not None else {}
+    ranked = [record for record in run.records if alone is None or pair(record) in others]
+
+    def worth(record: Record) -> tuple[float, float, str]:
+        other, own = others.get(pair(record)), record.metrics
+        if other is None:
+            return (own.twsr, -own.time_s, record.key)
+        return (round(other.metrics.time_s - own.time_s, 6), own.twsr, record.key)
+
+    ranked.sort(key=worth)
+    each = min(each, len(ranked) // 2)
+    worst, best = ranked[:each], ranked[len(ranked) - each :][::-1]
+    return [
+        *(_shown(run, "best", record, others.get(pair(record))) for record in best),
+        *(_shown(run, "worst", record, others.get(pair(record))) for record in worst),
+    ]
+
+
+def _shown(run: Run, rank: str, record: Record, other: Record | None) -> Shown:
+    task = record.spec.task
+    return Shown(
+        arm=run.label,
+        rank="best" if rank == "best" else "worst",
+        key=record.key,
+        task=task.id,
+        instruction=task.instruction,
+        house=task.house,
+        participant=record.spec.participant,
+        index=record.spec.index,
+        met=record.met,
+        time_s=record.metrics.time_s,
+        t_star=task.t_star,
+        alone_met=other.met if other is not None else None,
+        alone_s=other.metrics.time_s if other is not None else None,
+        gain_s=round(other.metrics.time_s - record.metrics.time_s, 6) if other is not None else None,
+        replay=replay(run, record),
+    )
+
+
+def replay(run: Run, record: Record) -> str:
+    """The command that draws a trial, as it can be typed where the report was written."""
+    return shlex.join(["hthor", "replay", str(cli_command.near(run.folder)), record.key])

@@ -1,0 +1,1 @@
+"""Floor plans, trials, timelines and videos as pictures."""

@@ -1,0 +1,59 @@
+"""A logged trial as a picture or a film in a file; simulates nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hthor import houses
+from hthor.errors import HthorError
+from hthor.eval.records.trial_record import Record
+from hthor.report.drawing import lettering
+from hthor.types import HouseSpec
+
+PICTURES = (".png", ".svg", ".pdf")
+
+
+def draw(record: Record, path: Path, *, video: bool) -> None:
+    """Write the picture or the film of a trial.
+
+    Raises:
+        HthorError: when the file's name does not fit, or the house has changed since.
+    """
+    check_name(path, video=video)
+    plan = house(record)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if video:
+        from hthor.report.drawing import trial_video as film
+
+        film.write(path, record.spec, record.log, plan)
+    else:
+        from hthor.report.drawing import trial_figure
+
+        lettering.save(trial_figure.figure(record.spec, record.log, plan), path)
+
+
+def check_name(path: Path, *, video: bool) -> None:
+    """See that a file's name says what is written into it.
+
+    Raises:
+        HthorError: when it does not.
+    """
+    valid = (".webm",) if video else PICTURES
+    if path.suffix.lower() not in valid:
+        raise HthorError(f"{path}: the name of a {'film' if video else 'picture'} must end in {' or '.join(valid)}.")
+
+
+def house(record: Record) -> HouseSpec:
+    """The house of a trial, as it was then.
+
+    Raises:
+        HthorError: when it has changed since.
+    """
+    task = record.spec.task
+    found = houses.load(task.house)
+    if found.sha256 != task.house_sha256:
+        raise HthorError(
+            f"the house '{task.house}' has changed since this trial was played (its hash was {task.house_sha256[:10]} "
+            f"and is {found.sha256[:10]}); a picture of it would be wrong."
+        )
+    return found

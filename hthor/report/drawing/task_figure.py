@@ -1,0 +1,128 @@
+"""A task as a picture: the house from above, what is where, who starts where, and the walk; simulates no trial."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from matplotlib import patheffects
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from hthor import catalog
+from hthor.errors import HthorError
+from hthor.eval.task_check.omniscient_solver import PACE_M_S, Feat
+from hthor.report.drawing import floor_plan, lettering, text_fit, trial_trace
+from hthor.report.drawing.render_trial import PICTURES
+from hthor.types import HouseSpec, Placement, Pose, TaskSpec
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_OTHER = "#6b6f76"
+_STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.2, foreground="white")]
+_APART_M = 0.45
+_WIDE_IN, _TITLE_PT = 8.0, 10.0
+"""Inches of the figure, and points of its title's letters."""
+
+
+def draw(task: TaskSpec, house: HouseSpec, feat: Feat, path: Path) -> None:
+    """Write the picture of a task.
+
+    Args:
+        feat: how a person who knows everything does it.
+
+    Raises:
+        HthorError: when the file's name does not fit.
+    """
+    if path.suffix.lower() not in PICTURES:
+        raise HthorError(f"{path}: the name of a picture must end in {' or '.join(PICTURES)}.")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lettering.save(figure(task, house, feat), path)
+
+
+@lettering.plain()
+def figure(task: TaskSpec, house: HouseSpec, feat: Feat) -> Figure:
+    """Draw a task, about 8 inches wide."""
+    xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
+    sheet = Figure(figsize=(_WIDE_IN, max(3.6, 6.0 * (max(ys) - min(ys)) / (max(xs) - min(xs)) + 1.0)), dpi=200)
+    sheet.set_layout_engine("constrained")
+    ax = sheet.subplots()
+    wanted = {name for job in task.goal.todo for name in job.destinations}
+    floor_plan.draw_house(ax, house, marked=[thing.id for thing in house.things if {thing.id, thing.kind} & wanted])
+    ax.plot(*zip(*feat.way, strict=True), color=trial_trace.PERSON, lw=1.5, ls=(0, (4, 2)), zorder=8)
+    _draw_objects(ax, task)
+    for number, pose in enumerate((task.human_start, *task.robot_starts)):
+        _draw_start(ax, pose, number)
+    title = "\n".join(text_fit.broken(line, _WIDE_IN - 0.3, _TITLE_PT) for line in _headline(task, feat))
+    sheet.suptitle(title, x=0.015, ha="left", fontsize=_TITLE_PT, color=trial_trace.INK)
+    _legend(sheet, bool(wanted))
+    return sheet
+
+
+def _draw_objects(ax: Axes, task: TaskSpec) -> None:
+    targets = {job.target for job in task.goal.todo}
+    for placed in sorted(task.objects, key=lambda placed: placed.id in targets):
+        chosen = placed.id in targets
+        shade = trial_trace.TARGET if chosen else _OTHER
+        x, y, _ = placed.position
+        size, marker = (130, "*") if chosen else (20, "o")
+        ax.scatter(x, y, s=size, marker=marker, color=shade, edgecolor="white", linewidths=0.8, zorder=12 + chosen)
+        low = any(_crowds(placed, other) for other in task.objects)
+        text = ax.annotate(
+            catalog.kind(placed.kind).title,
+            (x, y),
+            (5, -9 if low else 5),
+            textcoords="offset points",
+            fontsize=8 if chosen else 6.5,
+            color=shade,
+            weight="bold" if chosen else "normal",
+            zorder=14,
+        )
+        text.set_path_effects(_STROKE)
+
+
+def _crowds(placed: Placement, other: Placement) -> bool:
+    """Whether another object's name would lie on this one's: then this one's goes below."""
+    apart = math.dist(placed.position[:2], other.position[:2])
+    return 0.0 < apart < _APART_M and placed.position[1] < other.position[1]
+
+
+def _draw_start(ax: Axes, pose: Pose, number: int) -> None:
+    """A ring with a line where it looks; a robot's with its number."""
+    shade = trial_trace.PERSON if number == 0 else trial_trace.ROBOTS[(number - 1) % len(trial_trace.ROBOTS)]
+    ax.plot(
+        (pose.x, pose.x + 0.32 * math.cos(pose.yaw)),
+        (pose.y, pose.y + 0.32 * math.sin(pose.yaw)),
+        color=shade,
+        lw=1.6,
+        solid_capstyle="round",
+        zorder=10,
+    )
+    ax.scatter(pose.x, pose.y, s=70, facecolor="white", edgecolor=shade, linewidths=1.6, zorder=11)
+    if number:
+        ax.text(pose.x, pose.y, str(number), fontsize=6, color=shade, ha="center", va="center_baseline", zorder=12)
+
+
+def _headline(task: TaskSpec, feat: Feat) -> tuple[str, str]:
+    how = f"{feat.seconds:.1f} s at {PACE_M_S:g} m/s" if feat.met else "not done alone"
+    level = f", {task.difficulty}" if task.difficulty else ""
+    return f"“{task.instruction}”", f"{task.id}: T* {task.t_star:.1f} s{level}; all-knowing person {how}"
+
+
+def _legend(sheet: Figure, destined: bool) -> None:
+    def mark(marker: str, face: str, label: str, edge: str, size: float) -> Line2D:
+        return Line2D(
+            [], [], ls="", marker=marker, markersize=size, markerfacecolor=face, markeredgecolor=edge, label=label
+        )
+
+    handles = [
+        mark("*", trial_trace.TARGET, "target", "white", 10),
+        mark("o", _OTHER, "other object", "white", 5.5),
+        *([mark("s", "#bfe3d4", "destination", "#00795a", 7)] if destined else []),
+        mark("o", "white", "person's start", trial_trace.PERSON, 7),
+        mark("o", "white", "robots' starts", trial_trace.ROBOTS[0], 7),
+        Line2D([], [], color=trial_trace.PERSON, lw=1.5, ls=(0, (4, 2)), label="shortest walk"),
+    ]
+    text_fit.legend(sheet, handles, len(handles), loc="outside lower center", handlelength=1.8)

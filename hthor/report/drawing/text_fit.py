@@ -1,0 +1,93 @@
+"""Words that fit where they stand in a picture: measured in the font of all figures, broken, shortened; draws legends.
+
+Names are people's own and may be long. Nothing here counts characters: an "i" and a "W" differ by a factor of four.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import TextToPath
+
+from hthor.report.drawing import lettering
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
+
+_PIECES = re.compile(r"[^\s_+/.:-]+[\s_+/.:-]*|[\s_+/.:-]+")
+"""A line may end after a space and after a mark that joins words."""
+_FONT, _POINTS_AN_INCH = "DejaVu Sans", 72.0
+_ENTRY_IN, _EDGE_IN = 3.6, 0.1
+"""Inches that the words of one entry of a legend take at most, and that a legend leaves free at the sides."""
+_MORE = " …"
+
+
+def width(words: str, size: float, *, bold: bool = False) -> float:
+    """How wide a line of words is [in].
+
+    Args:
+        size: of the letters [pt].
+    """
+    font = FontProperties(family=_FONT, size=size, weight="bold" if bold else "normal")
+    with lettering.plain():
+        points, _, _ = TextToPath().get_text_width_height_descent(words, font, ismath=False)
+    return float(points) / _POINTS_AN_INCH
+
+
+def lines(words: str, inches: float, size: float, *, bold: bool = False) -> list[str]:
+    """The words in lines that are no wider than ``inches``, broken between words where that can be."""
+    found = [""]
+    for piece in _PIECES.findall(words):
+        if found[-1] and width((found[-1] + piece).rstrip(), size, bold=bold) > inches:
+            found.append("")
+        found[-1] += piece
+        while len(found[-1]) > 1 and width(found[-1].rstrip(), size, bold=bold) > inches:
+            fits = _fitting(found[-1], inches, size, bold=bold)
+            found[-1:] = [found[-1][:fits], found[-1][fits:]]
+    return [line.rstrip() for line in found]
+
+
+def broken(words: str, inches: float, size: float, *, bold: bool = False) -> str:
+    """The same as one text, a line below another."""
+    return "\n".join(lines(words, inches, size, bold=bold))
+
+
+def shortened(words: str, inches: float, size: float, *, bold: bool = False) -> str:
+    """One line that is no wider than ``inches``; what does not fit is left out, and an ellipsis says so."""
+    line = " ".join(words.split())
+    if width(line, size, bold=bold) <= inches:
+        return line
+    room = inches - width(_MORE, size, bold=bold)
+    return line[: _fitting(line, room, size, bold=bold)].rstrip() + _MORE
+
+
+def _fitting(words: str, inches: float, size: float, *, bold: bool) -> int:
+    """How many letters fit, one at least."""
+    low, high = 1, len(words)
+    while low < high:
+        middle = (low + high + 1) // 2
+        low, high = (middle, high) if width(words[:middle], size, bold=bold) <= inches else (low, middle - 1)
+    return low
+
+
+def legend(made: Figure, handles: Sequence[Artist], columns: int, *, size: float = 7.5, **look: Any) -> Legend:
+    """A figure's legend, with as many columns as fit.
+
+    Args:
+        columns: side by side at most. size: of the letters [pt]. look: what else matplotlib's legend takes.
+    """
+    for handle in handles:
+        handle.set_label(broken(str(handle.get_label()), _ENTRY_IN, size))
+    room = (made.get_figwidth() - 2 * _EDGE_IN) * made.dpi
+    count = max(1, min(columns, len(handles)))
+    while True:
+        drawn = made.legend(handles=list(handles), ncols=count, fontsize=size, frameon=False, **look)
+        if count == 1 or drawn.get_window_extent(made._get_renderer()).width <= room:  # type: ignore[attr-defined]
+            return drawn
+        drawn.remove()
+        count -= 1

@@ -1,0 +1,309 @@
+"""One trial as a figure: the house from above, both paths, the messages and what came of them; simulates nothing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from matplotlib import patheffects
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.transforms import blended_transform_factory
+
+from hthor import rules
+from hthor.episode import EpisodeLog, Fault
+from hthor.report.drawing import floor_plan, lettering, text_fit, trial_timeline, trial_trace
+from hthor.types import Event, HouseSpec, TrialSpec, Vec2
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+_CORNERS, _CROWDED_M = ((1, 1), (-1, -1), (-1, 1), (1, -1)), 1.5
+"""Where the names of targets stand that are so near each other."""
+_LINES, _MANY, _WIDE_IN = 10, 100, 8.0
+"""Messages whose words are shown, messages whose arrows are faint, and inches of the figure."""
+_EDGE_IN, WORDS_PT, HEAD_PT = 0.15, 7.5, 10.0
+"""Inches left free beside a line of words; points of messages' words and of the headline."""
+_COLUMNS, _DEEPEST = 5, 8.5
+"""Entries of the legend side by side, and inches of a plan's height at most."""
+_LETTER_IN, _BADGE_IN, _BESIDE_M = 0.065, 0.17, 0.15
+"""Inches of a letter on a badge and of a badge; metres below which an arrow to what is meant would hide the badge."""
+_STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.4, foreground="white")]
+
+
+@lettering.plain()
+def figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
+    """Draw a trial, about 8 inches wide: the plan, the timeline below, and the messages' words.
+
+    Args:
+        spec: the trial. log: what it left behind. house: the house of its task.
+    """
+    words = _words(log)
+    wide, high = _size(house)
+    clock, told = 1.0 + 0.22 * (len(log.paths) + (log.progress is not None)), 0.2 * len(words)
+    sheet = Figure(figsize=(wide, high + clock - 1.5 + told), dpi=200, layout="constrained")
+    rows = (high - 1.5, clock, told)[: 3 if words else 2]
+    above, below, *rest = sheet.subplots(len(rows), 1, height_ratios=rows)
+    floor_plan.draw_house(above, house, marked=trial_trace.destinations(spec, house))
+    _name_destinations(above, spec, house)
+    for seat in log.paths:
+        draw_path(above, log, seat)
+    _draw_targets(above, spec, house)
+    draw_messages(above, log)
+    _draw_acts(above, log)
+    title = headline(spec, log, _WIDE_IN - 2 * _EDGE_IN, HEAD_PT)
+    sheet.suptitle(title, x=_EDGE_IN / _WIDE_IN, ha="left", fontsize=HEAD_PT, color=trial_trace.INK)
+    _legend(sheet, handles(spec, log, house))
+    trial_timeline.draw_timeline(below, spec, log)
+    for ax in rest:
+        _write_words(ax, words)
+    return sheet
+
+
+def draw_path(ax: Axes, log: EpisodeLog, seat: str, *, words: bool = True) -> None:
+    """Draw a seat's way: a line that darkens with time, a dot every ten seconds, rings at start and end.
+
+    Where its mind failed there is a cross instead of an end: from then on it only stood there.
+    """
+    way, shade = trial_trace.points(log, seat), trial_trace.colour(seat)
+    fault = trial_trace.failure(log, seat)
+    if fault is not None:
+        way = way[: fault.tick // rules.LOG_EVERY_TICKS + 1]
+    third = max(1, math.ceil(len(way) / 12))
+    for first in range(0, len(way) - 1, third):
+        piece = way[first : first + third + 1]
+        strength = 0.35 + 0.65 * first / max(1, len(way) - 1)
+        ax.plot(piece[:, 0], piece[:, 1], color=shade, lw=1.7, alpha=strength, solid_capstyle="round", zorder=8)
+    every = round(10.0 / rules.TICK_S) // rules.LOG_EVERY_TICKS
+    dots = way[every::every]
+    ax.scatter(dots[:, 0], dots[:, 1], s=9, color=shade, zorder=9, linewidths=0)
+    ax.scatter(way[0, 0], way[0, 1], s=46, facecolor="white", edgecolor=shade, linewidths=1.7, zorder=10)
+    if fault is None:
+        ax.scatter(way[-1, 0], way[-1, 1], s=46, facecolor=shade, edgecolor="white", linewidths=1.0, zorder=10)
+    else:
+        _draw_fault(ax, (float(way[-1, 0]), float(way[-1, 1])), fault, words=words)
+
+
+def _draw_fault(ax: Axes, place: Vec2, fault: Fault, *, words: bool) -> None:
+    """A cross where a mind failed, with what and when."""
+    ax.scatter(*place, s=74, marker="X", facecolor=trial_trace.FAILED, edgecolor="white", linewidths=0.9, zorder=13)
+    if words:
+        told = f"{fault.kind} at {fault.tick * rules.TICK_S:.1f} s"
+        text = ax.annotate(
+            told, place, (7, -4), textcoords="offset points", fontsize=7, color=trial_trace.FAILED, va="top", zorder=13
+        )
+        text.set_path_effects(_STROKE)
+
+
+def _draw_targets(ax: Axes, spec: TrialSpec, house: HouseSpec) -> None:
+    """A star where each object starts; a hollow one, joined to it, where exactly it belongs."""
+    done: list[Vec2] = []
+    for job, start in trial_trace.targets(spec, house):
+        x, y, _ = start.position
+        if job.place is not None:
+            ax.plot((x, job.place[0]), (y, job.place[1]), color=trial_trace.TARGET, lw=0.8, ls=":", zorder=7)
+            ax.scatter(
+                *job.place[:2], s=70, marker="*", facecolor="white", edgecolor=trial_trace.TARGET, lw=1.0, zorder=12
+            )
+        ax.scatter(x, y, s=120, marker="*", color=trial_trace.TARGET, edgecolor="white", linewidths=0.8, zorder=12)
+        beside = sum(math.dist((x, y), other) < _CROWDED_M for other in done)
+        done.append((x, y))
+        _label(ax, floor_plan.title(start.kind), (x, y), _CORNERS[beside % len(_CORNERS)])
+
+
+def _label(ax: Axes, words: str, place: Vec2, corner: tuple[int, int]) -> None:
+    name = ax.annotate(
+        words,
+        place,
+        (6 * corner[0], 6 * corner[1]),
+        textcoords="offset points",
+        fontsize=8,
+        color=trial_trace.TARGET,
+        weight="bold",
+        ha="left" if corner[0] > 0 else "right",
+        va="bottom" if corner[1] > 0 else "top",
+        zorder=13,
+    )
+    name.set_path_effects(_STROKE)
+
+
+def _name_destinations(ax: Axes, spec: TrialSpec, house: HouseSpec) -> None:
+    marked = trial_trace.destinations(spec, house)
+    for thing in house.things:
+        if thing.id in marked:
+            text = ax.annotate(
+                floor_plan.title(thing.kind),
+                thing.centre[:2],
+                ha="center",
+                va="center",
+                fontsize=7.5,
+                color="#00604a",
+                zorder=7,
+            )
+            text.set_path_effects(_STROKE)
+
+
+def _words(log: EpisodeLog) -> list[tuple[str, str]]:
+    """A line for each message, with its colour; of many the first and the last few."""
+    sent = list(enumerate(trial_trace.messages(log), 1))
+    half = _LINES // 2
+    left = len(sent) - 2 * half
+    if left <= 0:
+        return [_line_of(log, number, event) for number, event in sent]
+    first, last = ([_line_of(log, number, event) for number, event in some] for some in (sent[:half], sent[-half:]))
+    return [*first, (f"… and {left} more", trial_trace.INK), *last]
+
+
+def _line_of(log: EpisodeLog, number: int, event: Event) -> tuple[str, str]:
+    """A message's number, time, sender, words and fate in a line, and its colour."""
+    fate = trial_trace.fate(log, event.data["message"])
+    head = f"{number}  {event.tick * rules.TICK_S:.1f} s  {event.seat}: “"
+    end = f"” ({'unanswered' if fate in ('sent', 'shown') else fate})"
+    room = _WIDE_IN - 2 * _EDGE_IN - text_fit.width(head + end, WORDS_PT)
+    return (head + text_fit.shortened(event.data["text"], room, WORDS_PT) + end, trial_trace.tint(log, event))
+
+
+def _write_words(ax: Axes, words: Sequence[tuple[str, str]]) -> None:
+    ax.axis("off")
+    across = blended_transform_factory(ax.get_figure(root=True).transFigure, ax.transAxes)  # type: ignore[union-attr]
+    for row, (line, shade) in enumerate(words):
+        height = 1.0 - (row + 0.5) / len(words)
+        told = ax.text(_EDGE_IN / _WIDE_IN, height, line, transform=across, fontsize=WORDS_PT, color=shade, va="center")
+        told.set_in_layout(False)  # a long line takes no room from the plan
+
+
+def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
+    """Every message's number where it was sent, and an arrow to where it said the thing was.
+
+    Messages that would hide one another share a badge.
+    """
+    sent = [
+        (number, event, trial_trace.at(log, event.seat, event.tick))
+        for number, event in enumerate(trial_trace.messages(log), 1)
+    ]
+    strength = 1.0 if len(sent) <= _LINES else 0.45 if len(sent) <= _MANY else 0.15
+    shades, drawn = trial_trace.tints(log), set()
+    for _, event, here in sent if arrows else ():
+        claim, shade = event.data.get("position"), shades[event.data["message"]]
+        if claim is None or math.dist(claim[:2], here) <= _BESIDE_M:
+            continue
+        same = (shade, *(round(part / _BESIDE_M) for part in (*here, *claim[:2])))
+        if same not in drawn:  # of arrows that lie on one another one is enough
+            drawn.add(same)
+            arrow = {"arrowstyle": "-|>", "color": shade, "alpha": strength}
+            line = {"lw": 1.0 if strength == 1.0 else 0.7, "ls": (0, (3, 2)), "shrinkA": 6, "shrinkB": 5}
+            made = ax.annotate("", (claim[0], claim[1]), here, arrowprops=arrow | line, zorder=11)
+            made.set_in_layout(False)
+    inch = _metres(ax)
+    for group in trial_trace.grouped(log, sent, _LETTER_IN * inch, _BADGE_IN * inch):
+        trial_trace.badge(ax, _on_plan(ax, group, inch), group.words, group.shade)
+
+
+def _on_plan(ax: Axes, group: trial_trace.Group, inch: float) -> Vec2:
+    """Where a badge stands: at its place, or so far from the edge that it is not cut."""
+    half = 0.5 * _LETTER_IN * inch * (len(group.words) + 2)
+    west, east = ax.get_xlim()
+    return (min(max(group.place[0], west + half), east - half), group.place[1])
+
+
+def _metres(ax: Axes) -> float:
+    """Metres of the house in an inch of the picture, about."""
+    low, high = ax.get_xlim()
+    return (high - low) / max(1.0, 0.75 * float(ax.get_figure(root=True).get_figwidth()))  # type: ignore[union-attr]
+
+
+def _draw_acts(ax: Axes, log: EpisodeLog) -> None:
+    for event in log.events:
+        if event.kind in trial_trace.ACTS:
+            x, y = trial_trace.at(log, event.seat, event.tick)
+            marker = trial_trace.ACTS[event.kind][0]
+            ax.scatter(
+                x,
+                y,
+                s=40,
+                marker=marker,
+                color=trial_trace.colour(event.seat),
+                edgecolor="white",
+                linewidths=0.8,
+                zorder=11,
+            )
+
+
+def headline(spec: TrialSpec, log: EpisodeLog, inches: float, size: float) -> str:
+    """What was asked, by whom it was helped, and how it ended, in lines.
+
+    Args:
+        inches: that a line is wide at most. size: of its letters [pt].
+    """
+    agents = " and ".join(dict.fromkeys(robot.agent.name for robot in spec.robots)) or "no robot"
+    seconds = log.ticks * rules.TICK_S
+    end = f"done in {seconds:.1f} s" if log.met else f"not done in {seconds:.0f} s"
+    if not log.met and log.progress is not None:
+        end += f", {100.0 * log.progress:.0f} % of it done"
+    lines = [f"“{spec.task.instruction}”", f"{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"]
+    for robot in spec.robots:
+        if (fault := trial_trace.failure(log, robot.seat)) is not None:
+            whose = f"{robot.seat}'s agent" if len(spec.robots) > 1 else "the agent"
+            lines.append(f"{whose} failed at {fault.tick * rules.TICK_S:.1f} s ({fault.kind}) and did nothing more")
+    return "\n".join(text_fit.broken(line, inches, size) for line in lines)
+
+
+def _legend(sheet: Figure, entries: list[Artist]) -> None:
+    text_fit.legend(sheet, entries, _COLUMNS, loc="outside lower left", handlelength=1.6)
+
+
+def handles(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool = False) -> list[Artist]:
+    """The legend's entries: everybody and everything that is drawn of this trial.
+
+    Args:
+        moving: whether it is for a film, which has no marks for starts, ends, deeds and messages.
+    """
+    found: list[Artist] = [_line(trial_trace.PERSON, "person")]
+    found += [_line(trial_trace.colour(robot.seat), trial_trace.who(robot)) for robot in spec.robots]
+    if not moving:
+        found += [_mark("o", "white", "start", edge="#555555"), _mark("o", "#555555", "end")]
+    found.append(_mark("*", trial_trace.TARGET, "target at the start", size=9))
+    if any(job.place is not None for job in spec.task.goal.todo) and not moving:
+        found.append(_mark("*", "white", "where it belongs", edge=trial_trace.TARGET, size=8))
+    if trial_trace.destinations(spec, house):
+        found.append(_mark("s", floor_plan.MARKED, "destination", edge=floor_plan.MARKED_EDGE))
+    if moving and trial_trace.messages(log):
+        found.append(_mark("o", "none", "where a message says it is", edge=trial_trace.MESSAGE, size=9))
+    if log.faults:
+        found.append(_mark("X", trial_trace.FAILED, "the agent failed", size=8))
+    if any(floor_plan.is_flat(thing) for thing in house.things):
+        found.append(
+            Patch(
+                facecolor=floor_plan.RUG, edgecolor=floor_plan.RUG_EDGE, hatch=floor_plan.RUG_HATCH, label="rug, flat"
+            )
+        )
+    return found if moving else [*found, *_marks(log)]
+
+
+def _marks(log: EpisodeLog) -> list[Artist]:
+    """What stands for messages and deeds."""
+    shades = set(trial_trace.tints(log).values())
+    words = {trial_trace.MESSAGE: "confirmed", trial_trace.IDLE_MESSAGE: "not confirmed"}
+    found: list[Artist] = [_mark("o", shade, f"message, {words[shade]}", size=7) for shade in words if shade in shades]
+    present = {event.kind for event in log.events}
+    return found + [_mark(mark, "#555555", verb) for kind, (mark, verb) in trial_trace.ACTS.items() if kind in present]
+
+
+def _line(shade: str, label: str) -> Line2D:
+    return Line2D([], [], color=shade, lw=2, label=label)
+
+
+def _mark(marker: str, face: str, label: str, *, edge: str = "white", size: float = 6.5) -> Line2D:
+    return Line2D(
+        [], [], ls="", marker=marker, markersize=size, markerfacecolor=face, markeredgecolor=edge, label=label
+    )
+
+
+def _size(house: HouseSpec) -> tuple[float, float]:
+    corners: Sequence[Vec2] = [point for room in house.rooms for point in room.polygon]
+    wide = max(x for x, _ in corners) - min(x for x, _ in corners)
+    deep = max(y for _, y in corners) - min(y for _, y in corners)
+    return (_WIDE_IN, max(4.2, min((_WIDE_IN - 0.8) * deep / wide, _DEEPEST) + 2.7))

@@ -1,0 +1,120 @@
+"""One trial along the clock: a row a seat, with what it did and said."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+from hthor import rules
+from hthor.episode import EpisodeLog, Fault
+from hthor.report.drawing import trial_trace
+from hthor.types import HUMAN, Event, TrialSpec
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+_WORD = 0.09
+"""How much of the time axis a word takes up."""
+_LETTER = 0.0095
+"""How much of it a letter on a badge takes up."""
+_Side = Literal["left", "center", "right"]
+_SIDES: tuple[_Side, _Side] = ("right", "left")
+"""Where the words of two moments stand that are near each other, the earlier one first."""
+_LIFTS = (6, -14, 15)
+"""Where a word may stand, in points above its mark, best first."""
+
+
+def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
+    """Who did what when: one row a seat, and one for the progress of a goal that has parts."""
+    seats = list(log.paths)
+    steps = [event for event in log.events if event.kind == "progress"]
+    rows = len(seats) + (log.progress is not None)
+    end, limit = log.ticks * rules.TICK_S, spec.task.time_limit
+    for row, seat in enumerate(seats):
+        fault = trial_trace.failure(log, seat)
+        until = end if fault is None else fault.tick * rules.TICK_S
+        ax.plot((0, until), (-row, -row), color=trial_trace.colour(seat), lw=2.2, alpha=0.35, solid_capstyle="butt")
+        if fault is not None:
+            ax.plot((until, end), (-row, -row), color=trial_trace.GONE, lw=1.0, ls=":", solid_capstyle="butt")
+        _timeline_marks(ax, log, seat, -row, _WORD * limit)
+        if fault is not None:
+            _mark_fault(ax, fault, until, -row)
+    if rows > len(seats):
+        _draw_progress(ax, steps, end, -len(seats), _WORD * limit)
+    beside = abs(spec.task.t_star - end) < _WORD * limit  # else one would be written over the other
+    sides = _SIDES if beside else ("center", "center")
+    first, last = sides if spec.task.t_star <= end else sides[::-1]
+    if spec.task.t_star <= limit:  # a T* beyond the time limit has no place on the axis
+        _moment(ax, spec.task.t_star, "T*", "#777777", ":", first)
+    word, shade = ("done", trial_trace.TARGET) if log.met else ("time is up", trial_trace.FAILED)
+    _moment(ax, end, word, shade, "-", last)
+    ax.set_xlim(-1, limit + 1)
+    ax.set_ylim(-rows + 0.4, 0.75)
+    names = ["person" if seat == HUMAN else seat for seat in seats]
+    ax.set_yticks([-row for row in range(rows)], [*names, "progress"][:rows], fontsize=8)
+    ax.set_xlabel("time [s]", fontsize=8)
+    ax.tick_params(axis="x", labelsize=7.5)
+    ax.tick_params(axis="y", length=0)
+    for side in ("top", "right", "left"):
+        ax.spines[side].set_visible(False)
+
+
+def _draw_progress(ax: Axes, steps: Sequence[Event], end: float, row: float, word_s: float) -> None:
+    """A bar that darkens as more of the goal is met, with the shares in words."""
+    marks = [(0.0, 0.0), *((event.tick * rules.TICK_S, float(event.data["value"])) for event in steps)]
+    for (begin, value), (until, _) in zip(marks, [*marks[1:], (end, 0.0)], strict=True):
+        ax.barh(row, until - begin, left=begin, height=0.42, color=trial_trace.TARGET, alpha=0.08 + 0.6 * value, lw=0)
+    following = math.inf
+    for begin, value in reversed(marks[1:]):
+        if following - begin > word_s / 2:
+            ax.text(begin + 0.4, row, f"{100.0 * value:.0f} %", fontsize=7, va="center", color=trial_trace.INK)
+            following = begin
+
+
+def _mark_fault(ax: Axes, fault: Fault, seconds: float, row: float) -> None:
+    ax.scatter(
+        seconds, row, s=56, marker="X", facecolor=trial_trace.FAILED, edgecolor="white", linewidths=0.8, zorder=15
+    )
+    told = f"{fault.kind} at {seconds:.1f} s"
+    ax.annotate(told, (seconds, row), (7, 5), textcoords="offset points", fontsize=7, color=trial_trace.FAILED)
+
+
+def _moment(ax: Axes, seconds: float, name: str, shade: str, style: str, side: _Side) -> None:
+    ax.axvline(seconds, color=shade, lw=1.0, ls=style, zorder=1)
+    ax.text(seconds, 1.02, name, transform=ax.get_xaxis_transform(), fontsize=7.5, color=shade, ha=side)
+
+
+def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float, word_s: float) -> None:
+    sent = [(number, event) for number, event in enumerate(trial_trace.messages(log), 1) if event.seat == seat]
+    marks = [(number, event, (event.tick * rules.TICK_S, row)) for number, event in sent]
+    letter = _LETTER * word_s / _WORD
+    for group in trial_trace.grouped(log, marks, letter, 1.0):
+        half = 0.5 * letter * (len(group.words) + 2)  # so that the seat's name is not covered
+        trial_trace.badge(ax, (max(group.place[0], half), row), group.words, group.shade)
+    words = {
+        **{kind: verb for kind, (_, verb) in trial_trace.ACTS.items()},
+        "confirmed": "confirms",
+        "declined": "declines",
+    }
+    last = dict.fromkeys(_LIFTS, -math.inf)
+    for event in log.events:
+        if event.seat != seat or event.kind not in words:
+            continue
+        x = event.tick * rules.TICK_S
+        marker = trial_trace.ACTS.get(event.kind, ("o", ""))[0]
+        ax.scatter(
+            x, row, s=26, marker=marker, color=trial_trace.colour(seat), edgecolor="white", linewidths=0.6, zorder=3
+        )
+        lift = next((lift for lift in _LIFTS if x - last[lift] > word_s), _LIFTS[-1])
+        last[lift] = x
+        ax.annotate(
+            words[event.kind],
+            (x, row),
+            (0, lift),
+            textcoords="offset points",
+            fontsize=7,
+            ha="center",
+            color=trial_trace.INK,
+        )

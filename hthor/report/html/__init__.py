@@ -1,0 +1,1 @@
+"""HTML, styles and SVG for self-contained pages."""

@@ -1,0 +1,1 @@
+"""The report and the case study as pages."""

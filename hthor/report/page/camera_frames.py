@@ -1,0 +1,114 @@
+"""What everybody saw at some moments of a logged trial: it is played again, a camera at every seat; draws no figure.
+
+Looking changes nothing, which is checked: the record of the trial that was played again must equal the logged one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from hthor import activity, guest
+from hthor.errors import RunError
+from hthor.eval.config.sessions import Session
+from hthor.eval.records import trial_record
+from hthor.eval.records.trial_record import Record
+from hthor.eval.replay import session_history
+from hthor.eval.runner import trial_runner
+from hthor.guest import Given
+from hthor.types import Event, TaskSpec
+
+SIZE = (400, 300)
+_FINER = 2
+"""Pictures are drawn so many times larger and then averaged, which leaves no steps along edges."""
+
+Views = dict[int, dict[str, Any]]
+"""Pictures (H, W, 3) uint8 by tick and seat."""
+
+
+class Filmed:
+    """A world that keeps what its seats see at some ticks, and is otherwise the one that it is given."""
+
+    def __init__(self, world: Any, ticks: Collection[int], profile: str) -> None:
+        self._world, self._ticks, self._profile = world, frozenset(ticks), profile
+        self._kept: dict[int, dict[str, Callable[[], Any]]] = {}
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._world, name)
+
+    def reset(self, task: TaskSpec, seed: int = 0) -> None:
+        self._kept.clear()
+        self._world.reset(task, seed=seed)
+        self._look()
+
+    def advance(self) -> tuple[Event, ...]:
+        events: tuple[Event, ...] = self._world.advance()
+        self._look()
+        return events
+
+    def views(self) -> Views:
+        """The pictures, drawn now."""
+        return {tick: {seat: _averaged(draw()) for seat, draw in kept.items()} for tick, kept in self._kept.items()}
+
+    def _look(self) -> None:
+        world = self._world
+        if world.tick in self._ticks:
+            size = (_FINER * SIZE[0], _FINER * SIZE[1])
+            self._kept[world.tick] = {seat: world.frame(seat, size, self._profile) for seat in world.seats}
+
+
+def film(
+    folder: Path,
+    wanted: Record,
+    ticks: Collection[int],
+    *,
+    profile: str = "fast",
+    agents: Sequence[str] = (),
+    humans: str = "",
+    given: Given | None = None,
+) -> Views:
+    """Play a trial again and look.
+
+    Args:
+        folder: the run's. wanted: the trial. ticks: when to look.
+        profile: how pictures are drawn, fast or nice.
+        agents: files of the run's agents that are not built in. humans: where its people come from, when the name in
+            the log does not find them. given: arguments and files that the agents were given.
+
+    Raises:
+        RunError: when trials before it are missing, another version of hthor played them, or it goes otherwise now.
+        HthorError: when a file is needed.
+    """
+    spec = wanted.spec
+    guest.confine_guests(hidden=(str(folder.resolve()),), given=given)
+    session = Session(participant=spec.participant, trials=session_history.before(folder, wanted))
+    stage = trial_runner.Stage(session_history.sources(folder, spec, agents, humans))
+    with stage.enter(session) as company:
+        for number, trial in enumerate(session.trials, 1):
+            activity.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")
+            world = Filmed(stage.world(trial), ticks if trial == spec else (), profile)
+            done = stage.play(company, trial, world)
+        if _course(done) != _course(wanted):
+            raise RunError(
+                f"{folder}: trial {wanted.key} went otherwise than it was logged, so its views would be of another "
+                "trial. An agent that does not repeat itself, or another machine, does that; 'hthor replay' draws it "
+                "from its log alone."
+            )
+        activity.say(f"drawing what was seen in {folder.name}")
+        return world.views()
+
+
+def _averaged(picture: Any) -> Any:
+    """The picture in its final size."""
+    wide, high = SIZE
+    parts = picture.reshape(high, _FINER, wide, _FINER, 3).astype("float32")
+    return parts.mean(axis=(1, 3)).round().astype("uint8")
+
+
+def _course(done: Record) -> bytes:
+    """Everything that happened, but for the words of a fault, which are the agent's own."""
+    plain = tuple(msgspec.structs.replace(fault, detail="") for fault in done.faults)
+    return trial_record.encode(msgspec.structs.replace(done, faults=plain))

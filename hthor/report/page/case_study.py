@@ -1,0 +1,97 @@
+"""The case study's files from the folders of runs: one person at one task with several robots, as SVG and PNG."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from pathlib import Path
+
+from hthor import houses, jsonio
+from hthor.errors import HthorError, RunError, UnknownName
+from hthor.eval.records.trial_record import Record
+from hthor.guest import Given
+from hthor.report.analysis import load_runs
+from hthor.report.analysis.load_runs import Run
+from hthor.report.drawing import lettering, render_trial
+from hthor.report.html import matplotlib_svg, svg_file
+from hthor.report.page import camera_frames, key_moments
+from hthor.report.page.figures import case_study
+from hthor.report.page.figures.case_study import Row
+
+_DPI = 220
+
+
+def study(
+    folders: Sequence[Path],
+    task: str,
+    out: Path,
+    *,
+    person: int | None = None,
+    profile: str = "fast",
+    agents: Sequence[str] = (),
+    humans: str = "",
+    given: Given | None = None,
+) -> tuple[Path, Path]:
+    """Draw a task under the robots of several runs; the paths of the SVG and of the PNG.
+
+    Args:
+        folders: the runs'. task: its id. out: a folder.
+        person: the participant; by default the first who did the task in every run.
+        profile: how views are drawn, fast or nice.
+        agents: files of agents that are not built in. humans: where the people come from. given: what the agents were
+            given.
+
+    Raises:
+        RunError: when the runs do not belong together, or cannot be played again.
+        UnknownName: when nobody did the task.
+    """
+    if out.exists() and not out.is_dir():
+        raise HthorError(f"{out} is a file; --out takes a folder.")
+    runs = load_runs.runs(folders)
+    _same_people(runs)
+    chosen = _records(runs, task, person)
+    for run in runs:
+        houses.shelve(run.folder / "houses")  # where the suite brought its own
+    rows, house = [], render_trial.house(chosen[0])
+    for run, record in zip(runs, chosen, strict=True):
+        held = key_moments.of(record, house)
+        ticks = [one.tick for one in held]
+        views = camera_frames.film(
+            run.folder, record, ticks, profile=profile, agents=agents, humans=humans, given=given
+        )
+        rows.append(Row(label=run.label, record=record, moments=held, views=views))
+    made = case_study.figure(rows, house)
+    spec = chosen[0].spec
+    stem = f"case-{spec.task.id.replace('/', '-')}-{spec.participant}"
+    words = f"{spec.task.instruction} One person at this task with: {', '.join(run.label for run in runs)}."
+    drawn, seen = out / f"{stem}.svg", out / f"{stem}.png"
+    jsonio.write(drawn, svg_file.text(matplotlib_svg.svg(made, "case", words)).encode())
+    pixels = io.BytesIO()
+    with matplotlib_svg.style():
+        lettering.save(made, pixels, format="png", dpi=_DPI, metadata={"Software": None})
+    jsonio.write(seen, pixels.getvalue())
+    return drawn, seen
+
+
+def _same_people(runs: Sequence[Run]) -> None:
+    for one in runs[1:]:
+        if one.plan.humans.sha256 != runs[0].plan.humans.sha256:
+            raise RunError(
+                f"{one.folder / 'run.json'}: humans.sha256 is not that of {runs[0].folder / 'run.json'}: "
+                f"'{one.plan.humans.name}', not '{runs[0].plan.humans.name}'. A case is of one person; give runs with "
+                "the same people."
+            )
+
+
+def _records(runs: Sequence[Run], task: str, person: int | None) -> list[Record]:
+    """The trials of the task, of one person, a run each."""
+    tables = [run.by_pair for run in runs]
+    shared = sorted(pair for pair in tables[0] if all(pair in table for table in tables[1:]))
+    mine = [pair for pair in shared if pair[3] == task and person in (None, pair[1])]
+    if mine:
+        return [table[mine[0]] for table in tables]
+    if person is not None and any(pair[3] == task for pair in shared):
+        who = sorted({str(pair[1]) for pair in shared if pair[3] == task})
+        raise UnknownName("person", str(person), who, f"These did '{task}' in every run.")
+    names = sorted({pair[3] for pair in shared})
+    raise UnknownName("task", task, names, "These were done by the same person in every run.")

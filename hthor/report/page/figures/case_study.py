@@ -1,0 +1,206 @@
+"""The case study: a row a robot, the house from above with the ways, and what everybody saw at key moments."""
+
+from __future__ import annotations
+
+import math
+import string
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from msgspec import Struct
+
+from hthor import rules
+from hthor.eval.records.trial_record import Record
+from hthor.report.drawing import floor_plan, text_fit, trial_figure, trial_trace
+from hthor.report.html import matplotlib_svg
+from hthor.report.page.camera_frames import Views
+from hthor.report.page.key_moments import MANY, Moment
+from hthor.types import HUMAN, HouseSpec, Vec2
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MAP_WIDE, _VIEW_WIDE = 3.1, 1.55
+_HEAD, _EDGES = 0.36, 0.5
+"""Inches above each row, and above and below all."""
+_MAP_HIGH = 3.3
+"""Inches that a map may take at most."""
+_NEAR_M, _BESIDE_M = 0.5, 0.6
+_LETTER_PT, _BADGE_IN = 6.5, 0.12
+"""Points of a letter on a badge, and inches of a badge beside its letters."""
+_HEAD_PT, _TASK_PT, _EDGE_IN = 8.5, 9.0, 0.2
+"""Points of the words above a row and above all, and inches left free beside them."""
+_CORNERS: tuple[Vec2, ...] = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0))
+
+
+class Row(Struct, frozen=True, kw_only=True, eq=False):
+    """One robot's trial: what to call it, its moments, and what was seen at them."""
+
+    label: str
+    record: Record
+    moments: Sequence[Moment]
+    views: Views
+
+
+def figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
+    """Draw the case, about 8 inches wide."""
+    xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
+    deep = _MAP_WIDE * (max(ys) - min(ys) + 1.0) / (max(xs) - min(xs) + 0.7)
+    deep = min(deep, _MAP_HIGH)
+    seats = [list(row.record.paths) for row in rows]
+    highs = [max(deep, 0.75 * _VIEW_WIDE * len(held) + 0.2) + _HEAD for held in seats]
+    wide = _MAP_WIDE + MANY * _VIEW_WIDE
+    with matplotlib_svg.style():
+        made = matplotlib_svg.sheet(sum(highs) + _EDGES, wide)
+        made.set_facecolor("white")
+        bands = made.subfigures(len(rows), 1, height_ratios=highs, squeeze=False)[:, 0]
+        for band, row, held in zip(bands, rows, seats, strict=True):
+            band.set_facecolor("white")
+            grid = band.add_gridspec(len(held), MANY + 1, width_ratios=[_MAP_WIDE, *[_VIEW_WIDE] * MANY])
+            _draw_map(band.add_subplot(grid[:, 0]), row, house)
+            for column, moment in enumerate(row.moments):
+                for line, seat in enumerate(held):
+                    view = row.views[moment.tick][seat]
+                    ax = band.add_subplot(grid[line, column + 1])
+                    ax.set_anchor("C" if len(held) == 1 else "S" if line == 0 else "N")
+                    _draw_view(ax, view, seat, column, moment, first=line == 0)
+            words = text_fit.shortened(_headline(row), wide - _EDGE_IN, _HEAD_PT, bold=True)
+            band.suptitle(words, x=0.012, ha="left", fontsize=_HEAD_PT, weight="bold", color=matplotlib_svg.INK)
+        destined = bool(trial_trace.destinations(rows[0].record.spec, house))
+        handles = _legend(rows, destined=destined)
+        text_fit.legend(made, handles, len(handles), size=7.0, loc="outside lower left", columnspacing=1.4)
+        task = text_fit.shortened(_task(rows[0].record), wide - _EDGE_IN, _TASK_PT)
+        made.suptitle(task, x=0.012, ha="left", fontsize=_TASK_PT, color=matplotlib_svg.INK)
+    return made
+
+
+def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
+    record = row.record
+    floor_plan.draw_house(ax, house, marked=trial_trace.destinations(record.spec, house), small=True)
+    for seat in record.paths:
+        trial_figure.draw_path(ax, record.log, seat, words=False)
+    for _, start in trial_trace.targets(record.spec, house):
+        ax.scatter(
+            *start.position[:2], s=80, marker="*", color=trial_trace.TARGET, edgecolor="white", lw=0.6, zorder=12
+        )
+    busy = [start.position[:2] for _, start in trial_trace.targets(record.spec, house)]
+    marks = [(seat, place, letters) for seat in record.paths for place, letters in _places(row, seat)]
+    for seat, place, letters in marks:
+        others = [other for _, other, _ in marks if other != place]
+        inside = [side for side in _CORNERS if _is_on_map(ax, place, letters, side)] or _CORNERS
+        side = max(inside, key=lambda side: _room(place, side, [*busy, *others]))
+        _letter(ax, place, letters, seat, side)
+        busy.append(_beside(place, side))
+
+
+def _is_on_map(ax: Axes, place: Vec2, letters: str, side: Vec2) -> bool:
+    """Whether the letters at this corner end before the map does: beyond it they could be cut."""
+    (west, east), (south, north) = ax.get_xlim(), ax.get_ylim()
+    metres = max((east - west) / _MAP_WIDE, (north - south) / _MAP_HIGH)  # in an inch of the map
+    wide = _BADGE_IN + text_fit.width(letters, _LETTER_PT, bold=True)
+    x, y = place[0] + side[0] * metres * wide, place[1] + side[1] * metres * 2.0 * _BADGE_IN
+    return west <= x <= east and south <= y <= north
+
+
+def _room(place: Vec2, side: Vec2, busy: Sequence[Vec2]) -> float:
+    """How far a letter at this corner is from everything else."""
+    return round(min((math.dist(_beside(place, side), other) for other in busy), default=math.inf), 2)
+
+
+def _beside(place: Vec2, side: Vec2) -> Vec2:
+    return (place[0] + _BESIDE_M * side[0], place[1] + _BESIDE_M * side[1])
+
+
+def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
+    """Where a seat was at the moments; letters of moments at which it was in one place stand together."""
+    found: list[tuple[Vec2, str]] = []
+    for letter, moment in zip(string.ascii_lowercase, row.moments, strict=False):
+        place = trial_trace.at(row.record.log, seat, moment.tick)
+        if found and math.dist(found[-1][0], place) < _NEAR_M:
+            found[-1] = (found[-1][0], f"{found[-1][1]} {letter}")
+        else:
+            found.append((place, letter))
+    return found
+
+
+def _letter(ax: Axes, place: Vec2, letters: str, seat: str, side: Vec2) -> None:
+    """Beside the place, where there is room."""
+    made = ax.annotate(
+        letters,
+        place,
+        (5 * side[0], 5 * side[1]),
+        textcoords="offset points",
+        ha="left" if side[0] > 0 else "right",
+        va="bottom" if side[1] > 0 else "top",
+        **_badge(seat),
+    )
+    made.set_in_layout(False)  # at the edge of a house it would take room from the row, whose scale is all rows'
+
+
+def _draw_view(ax: Axes, view: Any, seat: str, column: int, moment: Moment, *, first: bool) -> None:
+    """A picture in a frame of its seat's colour, with its letter; what happened above the first."""
+    ax.imshow(view, interpolation="none")
+    ax.set_xticks([])
+    ax.set_yticks([])
+    for side in ax.spines.values():
+        side.set(visible=True, color=trial_trace.colour(seat), linewidth=1.4)
+    letter = string.ascii_lowercase[column]
+    ax.annotate(letter, (0.0, 1.0), (6, -6), "axes fraction", "offset points", ha="center", va="center", **_badge(seat))
+    if first:
+        when = f"{moment.tick * rules.TICK_S:.1f} s"
+        ax.set_title(f"{when}: {moment.words}", fontsize=6.8)
+
+
+def _badge(seat: str) -> dict[str, Any]:
+    """A letter in a seat's colour, as it stands on the map and on the view."""
+    box = {"boxstyle": "round,pad=0.2,rounding_size=0.5", "fc": trial_trace.colour(seat), "ec": "white", "lw": 0.7}
+    return {"fontsize": _LETTER_PT, "weight": "bold", "color": "white", "bbox": box, "zorder": 15}
+
+
+def _headline(row: Row) -> str:
+    record, seconds = row.record, row.record.ticks * rules.TICK_S
+    end = f"done in {seconds:.1f} s" if record.met else f"not done in {seconds:.0f} s"
+    sent = trial_trace.messages(record.log)
+    failed = [
+        f"{fault.seat} failed at {fault.tick * rules.TICK_S:.1f} s ({fault.kind})"
+        for seat in record.paths
+        if (fault := trial_trace.failure(record.log, seat)) is not None
+    ]
+    said = [
+        f"message {number} of {len(sent)} ({trial_trace.fate(record.log, event.data['message'])}): "
+        f"“{event.data['text']}”"
+        for number, event in enumerate(sent, 1)
+        if any(moment.tick == event.tick for moment in row.moments)
+    ]
+    return "; ".join([f"{row.label}: {end}", *failed, *said[:1]])
+
+
+def _task(record: Record) -> str:
+    spec = record.spec
+    whose = f"{spec.task.id}, person {spec.participant}, trial {spec.index + 1}, T* {spec.task.t_star:.1f} s"
+    return f"“{spec.task.instruction}”  {whose}"
+
+
+def _legend(rows: Sequence[Row], *, destined: bool) -> list[Line2D]:
+    seats = dict.fromkeys(seat for row in rows for seat in row.record.paths)
+    named = {seat: "person" if seat == HUMAN else seat for seat in seats}
+    ways = [
+        Line2D([], [], color=trial_trace.colour(seat), lw=2, label=f"{name}, way and view")
+        for seat, name in named.items()
+    ]
+    marks = [
+        Line2D([], [], ls="", marker="o", mfc="white", mec=matplotlib_svg.SOFT, label="start"),
+        Line2D([], [], ls="", marker="o", mfc=matplotlib_svg.SOFT, mec="white", label="end"),
+        Line2D([], [], ls="", marker="*", mfc=trial_trace.TARGET, mec="white", ms=9, label="target at the start"),
+    ]
+    if any(row.record.faults for row in rows):
+        marks.append(
+            Line2D([], [], ls="", marker="X", mfc=trial_trace.FAILED, mec="white", ms=7.5, label="the agent failed")
+        )
+    if destined:
+        marks.append(
+            Line2D([], [], ls="", marker="s", mfc=floor_plan.MARKED, mec=floor_plan.MARKED_EDGE, label="destination")
+        )
+    return [*ways, *marks]

@@ -1,0 +1,56 @@
+"""What became of the robots' messages, and how good a channel they were."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from hthor.report.analysis.document import Arm
+from hthor.report.drawing import text_fit, trial_trace
+from hthor.report.html import matplotlib_svg
+from hthor.report.page.figures import run_styles
+
+FATES = {
+    "accepted": ("confirmed", trial_trace.MESSAGE),
+    "declined": ("declined", trial_trace.IDLE_MESSAGE),
+    "covered": ("covered by a newer one", matplotlib_svg.PRIOR),
+    "unanswered": ("unanswered", matplotlib_svg.LINE),
+}
+_PANELS = (("first_useful_s", "first useful message [s]"), ("interruptions_per_min", "interruptions a minute"))
+
+
+def figure(arms: Sequence[Arm]) -> Figure:
+    """Messages a trial by their fate, and means with 95 % intervals of what they cost and brought.
+
+    Args:
+        arms: those with robots.
+    """
+    own, rows = run_styles.of(arms), len(arms)
+    with matplotlib_svg.style():
+        made = matplotlib_svg.sheet(1.0 + rows * run_styles.high(arm.label for arm in arms))
+        bars, *others = made.subplots(1, 1 + len(_PANELS), sharey=True, width_ratios=(1.5, 1.0, 1.0))
+        for y, arm in enumerate(arms):
+            left = 0.0
+            for name, (_, shade) in FATES.items():
+                share = getattr(arm.scores, name).mean or 0.0
+                bars.barh(y, share, left=left, height=0.46, facecolor=shade, edgecolor=matplotlib_svg.PAPER, lw=0.6)
+                left += share
+        bars.set_title("messages a trial")
+        bars.set_xlim(left=0.0)
+        for ax, (metric, title) in zip(others, _PANELS, strict=True):
+            ax.set_title(title)
+            for y, arm in enumerate(arms):
+                one = getattr(arm.scores, metric)
+                run_styles.estimate(ax, y, one, own[arm.label], 1.0)
+            held = [getattr(arm.scores, metric) for arm in arms]
+            most = max((end for one in held for end in (one.mean, *(one.ci95 or ())) if end), default=1.0)
+            ax.set_xlim(0.0, 1.06 * most)
+        for ax in (bars, *others):
+            matplotlib_svg.bare(ax)
+        bars.set_yticks(range(rows), [f"{run_styles.label(arm.label)}\nn = {arm.trials}" for arm in arms])
+        bars.set_ylim(rows - 0.45, -0.55)
+        handles = [Patch(facecolor=shade, edgecolor="none", label=word) for word, shade in FATES.values()]
+        text_fit.legend(made, handles, len(FATES), loc="outside lower left", handlelength=1.0, handleheight=0.9)
+    return made

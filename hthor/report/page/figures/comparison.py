@@ -1,0 +1,43 @@
+"""Runs against each other over the trials that they share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from matplotlib.figure import Figure
+
+from hthor.eval.comparison.compare import Comparison
+from hthor.report.analysis.document import Arm
+from hthor.report.html import matplotlib_svg
+from hthor.report.page.figures import run_styles
+
+_PANELS = (
+    ("sr", "success [points]", 100.0),
+    ("twsr", "time-weighted [points]", 100.0),
+    ("time_s", "time saved [s]", -1.0),
+)
+
+
+def figure(pairs: Sequence[Comparison], arms: Sequence[Arm]) -> Figure:
+    """Paired differences with their intervals, those of success as the verdicts have them.
+
+    Right of the line the robot that is named first is better.
+    """
+    own, rows = run_styles.of(arms), len(pairs)
+    names = [f"{pair.second} − {pair.first}" for pair in pairs]
+    with matplotlib_svg.style():
+        made = matplotlib_svg.sheet(0.62 + rows * run_styles.high(names, 0.34))
+        panels = made.subplots(1, len(_PANELS), sharey=True)
+        for ax, (name, title, scale) in zip(panels, _PANELS, strict=True):
+            matplotlib_svg.bare(ax)
+            ax.set_title(title)
+            ax.axvline(0.0, color=matplotlib_svg.SOFT, lw=0.9)
+            for y, pair in enumerate(pairs):
+                one = pair.success if name == "sr" else pair.differences[name]
+                ends = None if one.ci95 is None else sorted(scale * end for end in one.ci95)
+                run_styles.interval(ax, y, scale * one.difference, ends, own[pair.second])
+            ax.margins(x=0.08)
+        labels = [f"{run_styles.label(name)}\nn = {pair.n}" for name, pair in zip(names, pairs, strict=True)]
+        panels[0].set_yticks(range(rows), labels)
+        panels[0].set_ylim(rows - 0.45, -0.55)
+    return made

@@ -1,0 +1,171 @@
+"""How runs are told apart in figures: a colour each, and a mark for those who see none."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from matplotlib.lines import Line2D
+from msgspec import Struct
+
+from hthor.eval.statistics.intervals import Estimate
+from hthor.report.analysis.document import Arm
+from hthor.report.drawing import text_fit
+from hthor.report.html import matplotlib_svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_OTHERS = ("#9a5fb5", "#2f9270", "#c4587f", "#7f7a2c", "#4a79c4")
+_SHAPES = {"none": "o", "frontier": "s", "oracle": "^"}
+_NAME_IN, _NAME_PT = 1.35, 8.0
+"""Inches that a name is wide at most, and points of its letters."""
+LINE_IN = 0.135
+"""Inches of a line of a name."""
+_MORE = ("v", "P", "X", "p", "h")
+
+
+class Mark(Struct, frozen=True, kw_only=True):
+    """A run's colour and mark."""
+
+    shade: str
+    shape: str
+
+
+def of(arms: Sequence[Arm], more: Iterable[str] = ()) -> dict[str, Mark]:
+    """A mark for each run by its label; the article's three conditions always look alike, the first of each at least.
+
+    Args:
+        more: labels that may be of none of the runs.
+    """
+    found: dict[str, Mark] = {}
+    taken: set[str] = set()
+    conditions = {arm.label: arm.condition for arm in arms}
+    for label in dict.fromkeys((*conditions, *more)):
+        condition = conditions.get(label, "")
+        if condition and condition not in taken:
+            taken.add(condition)
+            found[label] = Mark(shade=matplotlib_svg.CONDITION[condition], shape=_SHAPES[condition])
+        else:
+            number = len(found) - len(taken)
+            found[label] = Mark(shade=_OTHERS[number % len(_OTHERS)], shape=_MORE[number % len(_MORE)])
+    return found
+
+
+def interval(
+    ax: Axes, y: float, mean: float | None, ci95: Sequence[float] | None, mark: Mark, *, thin: bool = False
+) -> None:
+    """A mean with its 95 % interval, lying; the ends are ticked, as a good interval is shorter than its mark."""
+    if mean is None:
+        return
+    if ci95 is not None:
+        ax.plot(tuple(ci95), (y, y), color=mark.shade, lw=1.0 if thin else 1.6, solid_capstyle="butt", zorder=3)
+        ax.plot(tuple(ci95), (y, y), "|", color=mark.shade, ms=3.6 if thin else 6.0, mew=0.9 if thin else 1.2, zorder=3)
+    size = (4.4 if thin else 5.4) * (1.15 if mark.shape == "^" else 1.0)
+    ax.plot(mean, y, mark.shape, color=mark.shade, ms=size, mec=matplotlib_svg.PAPER, mew=0.5, zorder=4)
+
+
+def estimate(ax: Axes, y: float, one: Estimate, mark: Mark, scale: float = 100.0, *, thin: bool = False) -> None:
+    """An estimate, as `interval` draws it."""
+    if one.mean is not None:
+        ends = None if one.ci95 is None else [scale * end for end in one.ci95]
+        interval(ax, y, scale * one.mean, ends, mark, thin=thin)
+
+
+def window(
+    values: Iterable[float], step: float, most: tuple[float, float] = (-math.inf, math.inf)
+) -> tuple[float, float]:
+    """Limits of an axis that holds these values with some air, at whole steps."""
+    held = list(values) or [0.0]
+    low = step * math.floor((min(held) - 0.15 * step) / step)
+    high = step * math.ceil((max(held) + 0.15 * step) / step)
+    return max(low, most[0]), min(max(high, low + step), most[1])
+
+
+def names(ax: Axes, ends: Sequence[tuple[float, float, str, Mark]], line: float) -> None:
+    """Names of curves on the right of all of them, each as near to its curve's end as the others let it be.
+
+    The axes' limits of y must be set: no name leaves them.
+
+    Args:
+        ends: x, y, name and mark of each. line: the height of a line of a name, in units of y.
+    """
+    if not ends:
+        return
+    right = max(x for x, _, _, _ in ends)  # a name that began at its own curve's end would lie below others' marks
+    ordered = sorted(ends, key=lambda end: end[1])
+    words = [label(name) for _, _, name, _ in ordered]
+    highs = [line * (text.count("\n") + 1) for text in words]
+    places = _apart([y for _, y, _, _ in ordered], highs, ax.get_ylim())
+    for (_, _, _, mark), text, y in zip(ordered, words, places, strict=True):
+        ax.annotate(
+            text,
+            (right, y),
+            (9, 0),
+            textcoords="offset points",
+            color=mark.shade,
+            fontsize=_NAME_PT,
+            va="center",
+            annotation_clip=False,
+        )
+
+
+def _apart(middles: Sequence[float], highs: Sequence[float], within: tuple[float, float]) -> list[float]:
+    """The middles, lowest first, moved so that nothing so high touches another or leaves the limits, if there is room.
+
+    What meets moves by as little as it can, in either direction: each group lies around the mean of its wishes.
+    """
+    groups: list[tuple[list[float], list[float]]] = []  # wishes and heights
+    for middle, high in zip(middles, highs, strict=True):
+        groups.append(([middle], [high]))
+        while len(groups) > 1 and _foot(groups[-1], within) < _foot(groups[-2], within) + sum(groups[-2][1]):
+            wishes, tall = groups.pop()
+            groups[-1][0].extend(wishes)
+            groups[-1][1].extend(tall)
+    found: list[float] = []
+    for group in groups:
+        foot = _foot(group, within)
+        for high in group[1]:
+            found.append(foot + high / 2.0)
+            foot += high
+    return found
+
+
+def _foot(group: tuple[list[float], list[float]], within: tuple[float, float]) -> float:
+    """Where a group begins."""
+    wishes, highs = group
+    starts = [
+        wish - high / 2.0 - sum(highs[:place]) for place, (wish, high) in enumerate(zip(wishes, highs, strict=True))
+    ]
+    foot = sum(starts) / len(starts)
+    return max(within[0], min(foot, within[1] - sum(highs)))
+
+
+def label(name: str) -> str:
+    """A long name in lines that are short enough for an axis."""
+    return text_fit.broken(name, _NAME_IN, _NAME_PT)
+
+
+def high(names: Iterable[str], least: float = 0.36) -> float:
+    """Inches that a row takes whose name has a line for n below."""
+    lines = 1 + max(label(name).count("\n") + 1 for name in names)
+    return max(least, LINE_IN * lines + 0.08)
+
+
+def column(names: Iterable[str]) -> float:
+    """Inches of all names, one below another."""
+    return sum(LINE_IN * (label(name).count("\n") + 1) for name in names)
+
+
+def handle(mark: Mark, label: str) -> Line2D:
+    """An entry of a legend."""
+    return Line2D(
+        [], [], color=mark.shade, lw=1.4, marker=mark.shape, ms=5, mec=matplotlib_svg.PAPER, mew=0.5, label=label
+    )
+
+
+def count(estimates: Sequence[Estimate]) -> str:
+    """How many trials: "n = 60", or the range where runs differ."""
+    counts = sorted({one.n for one in estimates})
+    return f"n = {counts[0]}" if len(counts) == 1 else f"n = {counts[0]} to {counts[-1]}"

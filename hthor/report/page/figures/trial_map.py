@@ -1,0 +1,88 @@
+"""One trial from above: the person's and the robots' ways, and the same person's without a robot."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from hthor.eval.records.trial_record import Record
+from hthor.report.drawing import floor_plan, text_fit, trial_figure, trial_trace
+from hthor.report.html import matplotlib_svg
+from hthor.types import HUMAN, HouseSpec
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+_WIDE, _HIGH = 3.5, 2.75
+_DASH = (0, (2, 2))
+
+
+def figure(record: Record, house: HouseSpec, alone: Record | None) -> Figure:
+    """A small plan; all are of one size, whatever the house.
+
+    Args:
+        alone: the trial of the same person at the same task without a robot, if there is one.
+    """
+    with matplotlib_svg.style():
+        made = matplotlib_svg.sheet(_HIGH, _WIDE)
+        made.set_facecolor("white")  # a plan's colours are those of light paper
+        ax = made.subplots()
+        floor_plan.draw_house(ax, house, marked=trial_trace.destinations(record.spec, house), small=True)
+        if alone is not None:
+            way = trial_trace.points(alone.log, HUMAN)
+            ax.plot(way[:, 0], way[:, 1], color=trial_trace.INK, lw=0.8, ls=_DASH, alpha=0.7, zorder=7.5)
+        for seat in record.paths:
+            trial_figure.draw_path(ax, record.log, seat, words=False)
+        for _, start in trial_trace.targets(record.spec, house):
+            ax.scatter(
+                *start.position[:2],
+                s=95,
+                marker="*",
+                color=trial_trace.TARGET,
+                edgecolor="white",
+                linewidths=0.6,
+                zorder=12,
+            )
+        trial_figure.draw_messages(ax, record.log, arrows=False)
+    return made
+
+
+def legend(seats: Collection[str], *, alone: bool, destined: bool, failed: bool = False) -> Figure:
+    """What all these plans have in common.
+
+    Args:
+        seats: everybody who is drawn. alone: whether ways without a robot are. destined: whether destinations are.
+        failed: whether the mind of one of them failed.
+    """
+    ways = [
+        Line2D([], [], color=trial_trace.colour(seat), lw=2, label="person" if seat == HUMAN else seat)
+        for seat in seats
+    ]
+    if alone:
+        ways.append(Line2D([], [], color=trial_trace.INK, lw=0.9, ls=_DASH, label="the same person alone"))
+    marks = [
+        _mark("o", "white", "start", matplotlib_svg.SOFT),
+        _mark("o", matplotlib_svg.SOFT, "end"),
+        _mark("*", trial_trace.TARGET, "target at the start", size=9),
+        _mark("o", trial_trace.MESSAGE, "message, confirmed"),
+        _mark("o", trial_trace.IDLE_MESSAGE, "message, not confirmed"),
+    ]
+    if failed:
+        marks.append(_mark("X", trial_trace.FAILED, "the agent failed", size=7.5))
+    if destined:
+        marks.append(_mark("s", floor_plan.MARKED, "destination", floor_plan.MARKED_EDGE))
+    handles = [*ways, *marks]
+    columns = -(-len(handles) // 2)
+    with matplotlib_svg.style():
+        made = matplotlib_svg.sheet(0.5)
+        made.set_facecolor("white")  # as the plans have it
+        text_fit.legend(
+            made, handles, columns, loc="center left", columnspacing=1.6, handlelength=1.8, labelcolor=trial_trace.INK
+        )
+    return made
+
+
+def _mark(marker: str, face: str, label: str, edge: str = "white", size: float = 6.5) -> Line2D:
+    return Line2D([], [], ls="", marker=marker, ms=size, mfc=face, mec=edge, label=label)

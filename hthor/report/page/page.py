@@ -1,0 +1,108 @@
+"""A report as one page that needs nothing else: no network, no script; computes and draws nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from html import escape
+
+from hthor.report.analysis.document import Findings
+from hthor.report.html import html, style
+from hthor.report.page import headline, sentences, warnings
+from hthor.report.page.sections import (
+    breakdown,
+    communication,
+    comparison,
+    faults,
+    provenance,
+    results,
+    time_spent,
+    trials,
+    trust,
+)
+
+_SECTIONS: dict[str, tuple[str, Callable[[Findings, Mapping[str, str]], list[str]]]] = {
+    "results": (results.TITLE, results.parts),
+    "compared": (comparison.TITLE, comparison.parts),
+    "time": (time_spent.TITLE, time_spent.parts),
+    "trust": (trust.TITLE, trust.parts),
+    "channel": (communication.TITLE, communication.parts),
+    "difficulty": (breakdown.DIFFICULTY, breakdown.difficulty),
+    "scenes": (breakdown.SCENES, breakdown.scenes),
+    "people": (breakdown.PEOPLE, breakdown.people),
+    "trials": (trials.TITLE, trials.parts),
+    "faults": (faults.TITLE, faults.parts),
+    "provenance": (provenance.TITLE, provenance.parts),
+}
+_RULES = """
+main{max-width:50rem;counter-reset:figure table}
+p,ul,h1{max-width:none}
+.over{font:.8rem system-ui,Arial,sans-serif;letter-spacing:.06em;text-transform:uppercase;color:var(--soft);margin:0}
+.lead{font-size:1.12rem;line-height:1.5;margin:.8rem 0}
+.facts{color:var(--soft);font-size:.92rem}
+table{width:100%}
+figcaption,caption{color:var(--ink);max-width:none}
+caption span{max-width:min(47rem,calc(100vw - 2rem))}
+tbody th{white-space:normal;min-width:5rem}
+figure:not(.map)>figcaption{counter-increment:figure}
+figure:not(.map)>figcaption::before{content:"Figure " counter(figure) ". ";font-weight:600}
+caption{counter-increment:table}
+caption span::before{content:"Table " counter(table) ". ";font-weight:600}
+figure.map figcaption{font-size:.8rem}
+figure.map figcaption code{display:block;color:var(--soft);margin-top:.15rem}
+.art{overflow-x:auto}
+.maps{display:grid;grid-template-columns:repeat(auto-fill,minmax(20rem,1fr));gap:0 1.6rem}
+.maps figure{margin:.5rem 0 .9rem}
+.maps svg{border:1px solid var(--line)}
+li{margin:.15rem 0}
+@media screen and (max-width:46rem){
+ main{padding:1.2rem 1rem 3rem}
+ h1{font-size:1.4rem}
+ figure:not(.map) svg{min-width:36rem}
+ .maps{grid-template-columns:1fr}
+ .wide thead th{min-width:4.5rem}
+ .wide td:not(.n,.v){min-width:8rem}
+}
+@media print{
+ .maps{grid-template-columns:1fr 1fr}
+ figcaption,caption{font-size:8pt}
+ figure.map figcaption{font-size:7pt}
+ @page{size:A4;margin:16mm 15mm}
+}
+"""
+
+
+def render(found: Findings, drawings: Mapping[str, str]) -> str:
+    """The page, the same bytes for the same findings.
+
+    Args:
+        drawings: elements of the page by the names that `hthor.report.page.figure_index` gives.
+    """
+    numbered = list(enumerate(_SECTIONS.items(), 1))
+    sections = [html.section(number, name, title, *make(found, drawings)) for number, (name, (title, make)) in numbered]
+    links = " ".join(f'<a href="#{name}">{number} {escape(title)}</a>' for number, (name, (title, _)) in numbered)
+    title = sentences.title(found)
+    return (
+        f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n<title>{escape(title)}</title>\n'
+        f'<meta name="description" content="{escape(headline.lead(found))}">\n<link rel="icon" href="data:,">\n'
+        f"<style>{style.css(_RULES)}</style>\n</head>\n<body>\n<main>\n{_head(found, title)}\n<nav>{links}</nav>\n"
+        + "\n".join(sections)
+        + f"\n{_foot(found)}\n</main>\n</body>\n</html>\n"
+    )
+
+
+def _head(found: Findings, title: str) -> str:
+    return "\n".join(
+        (
+            html.paragraph("hthor report", "over"),
+            f"<h1>{html.inside(title)}</h1>",
+            html.paragraph(headline.lead(found), "lead"),
+            html.paragraph(sentences.facts(found), "facts"),
+            *(html.paragraph(note, "note") for note in warnings.of(found)),
+        )
+    )
+
+
+def _foot(found: Findings) -> str:
+    said = f"Every number on this page is in report.json beside it, schema {found.schema}; every figure is in figures/."
+    return f"<footer>{escape(said)}</footer>"

@@ -1,0 +1,109 @@
+"""Success by difficulty, kind of task, split, scene and kind of person, with the gain over no robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from hthor.eval.results.paired_difference import Difference
+from hthor.eval.statistics.intervals import NOTHING
+from hthor.report.analysis.document import Findings, Split
+from hthor.report.html import html
+from hthor.report.html.html import Band, Piece
+from hthor.report.html.numbers import listed
+from hthor.report.page import sentences, table_cells
+
+DIFFICULTY, SCENES, PEOPLE = "By difficulty and kind of task", "By scene", "By kind of person"
+_KEYS = {"difficulty": "difficulty", "kind of task": "kind", "split": "split", "scene": "scene"}
+_LONG = 12
+"""A table of more groups is shown when one asks for it."""
+Gains = dict[str, dict[str, Difference]]
+"""By group and robot."""
+
+
+def difficulty(found: Findings, drawings: Mapping[str, str]) -> list[str]:
+    """Of what the section by difficulty is made."""
+    held = [one for one in found.splits if one.word != "scene"]
+    if not held:
+        return [
+            html.paragraph(
+                "These tasks name no difficulty, and are all of one kind and split; or there is one trial of each."
+            )
+        ]
+    said = [sentences.widest(one.word, _gains(found, one)) for one in held if one.word == "difficulty"]
+    by = listed(one.word for one in held)
+    return _made(found, held, said, drawings, "difficulty", f"Success rates by {by} with 95 % intervals.")
+
+
+def scenes(found: Findings, drawings: Mapping[str, str]) -> list[str]:
+    """Of what the section by scene is made."""
+    held = [one for one in found.splits if one.word == "scene"]
+    if not held:
+        return [html.paragraph("All trials are in one scene, or there is one trial in each.")]
+    said = [sentences.widest(one.word, _gains(found, one)) for one in held]
+    caption = "Success rates by scene with 95 % intervals, the scenes in which people do worst first."
+    return _made(found, held, said, drawings, "scenes", caption)
+
+
+def people(found: Findings, drawings: Mapping[str, str]) -> list[str]:
+    """Of what the section by kind of person is made."""
+    if found.by_people is None:
+        return [
+            html.paragraph(
+                f"Everybody in these runs is of one people, '{found.people}'. Runs of several, as 'hthor eval --humans "
+                "kinds' makes them, are set side by side here."
+            )
+        ]
+    said = [sentences.worst_people(found.by_people), sentences.widest("kind of person", _gains(found, found.by_people))]
+    caption = "Success rates with each kind of people, with 95 % intervals."
+    return _made(found, [found.by_people], said, drawings, "people", caption)
+
+
+def _made(
+    found: Findings,
+    held: Sequence[Split],
+    said: Sequence[str],
+    drawings: Mapping[str, str],
+    name: str,
+    caption: str,
+) -> list[str]:
+    labels = _ordered(found, (label for one in held for group in one.groups for label in group.sr))
+    helped = _ordered(found, (label for one in held for by in _gains(found, one).values() for label in by))
+    head = ("", *labels, *(f"gain by {label}" for label in helped))
+    rows: list[list[Piece] | Band] = []
+    for one in held:
+        rows += [Band(one.word)] if len(held) > 1 else []
+        gains = _gains(found, one)
+        for group in one.groups:
+            rates = [table_cells.estimate(group.sr.get(label, NOTHING)) for label in labels]
+            rows.append(
+                [group.name, *rates, *(table_cells.difference(gains.get(group.name, {}).get(one)) for one in helped)]
+            )
+    long = any(len(one.groups) > _LONG for one in held)
+    told = "Success rates [%]" + (", and gains over no robot [points], trial by trial" if helped else "")
+    table = html.table(head, rows, f"{told}. {table_cells.NOTE}")
+    return [
+        *(html.paragraph(text) for text in said if text),
+        html.drawn(drawings, name, caption),
+        html.folded(f"The same in numbers, {len(rows)} rows", table) if long else table,
+    ]
+
+
+def _ordered(found: Findings, labels: Iterable[str]) -> list[str]:
+    """Each label once, those of the page's runs first and in their order."""
+    there = set(labels)
+    own = [arm.label for arm in found.arms if arm.label in there]
+    return [*own, *sorted(there.difference(own))]
+
+
+def _gains(found: Findings, split: Split) -> Gains:
+    """What each robot adds within each group, where its trials have partners without a robot."""
+    if split.word not in _KEYS:
+        return {
+            people: {pair.second: pair.differences["sr"] for pair in pairs}
+            for people, pairs in found.people_uplift.items()
+        }
+    gains: Gains = {}
+    for pair in found.uplift:
+        for name, one in pair.groups.get(_KEYS[split.word], {}).items():
+            gains.setdefault(name.replace("_", " ") if split.word == "kind of task" else name, {})[pair.second] = one
+    return gains

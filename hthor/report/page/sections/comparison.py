@@ -1,0 +1,81 @@
+"""Runs against each other and against no robot, trial by trial."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from hthor.eval.comparison.compare import Comparison
+from hthor.report.analysis.document import Findings
+from hthor.report.html import html
+from hthor.report.html.html import Piece, Value
+from hthor.report.page import headline, sentences, table_cells
+
+TITLE = "Paired comparisons"
+_SHORT = 24
+"""Names up to so long stand in one line."""
+_COLUMNS = (
+    "Below: n, the trials that both runs share, and mde, the smallest true difference that these would have seen in "
+    "four of five cases. Won: only the robot that is named first succeeded; lost: only the other; with the exact "
+    "McNemar test of that. Tied: both succeeded, or neither did. p (Holm): two-sided, of no difference in success, "
+    "adjusted for all comparisons here."
+)
+_HEAD = ("", "success [points]", "time-weighted [points]", "time saved [s]", "won : lost", "tied", "p (Holm)")
+
+
+def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
+    """Of what the section is made."""
+    said = [html.paragraph(sentences.alone(found))] if not found.baseline else []
+    apart = [html.bullets([sentences.apart(one) for one in found.apart])] if found.apart else []
+    if not found.comparisons:
+        return [*said, *apart]
+    return [
+        *said,
+        html.bullets([sentences.sentence(pair) for pair in headline.worth_telling(found)]),
+        html.drawn(
+            drawings,
+            "compared",
+            "Differences trial by trial: the same person, on the same day, at the same task. Right of the line the "
+            f"robot that is named first is better. Bars: {_bars(found)}.",
+        ),
+        html.table(
+            _HEAD,
+            [_row(pair) for pair in found.comparisons],
+            f"The same in numbers. {_intervals(found)} {_COLUMNS}",
+        ),
+        *apart,
+    ]
+
+
+def _among(found: Findings) -> int:
+    return max(pair.among for pair in found.comparisons)
+
+
+def _bars(found: Findings) -> str:
+    among = _among(found)
+    return "95 % intervals" + (f", those of success adjusted for {among} comparisons" if among > 1 else "")
+
+
+def _intervals(found: Findings) -> str:
+    """What the brackets say."""
+    among = _among(found)
+    if among == 1:
+        return "In brackets: 95 % interval."
+    return (
+        f"In brackets: 95 % interval; that of success is adjusted for {among} comparisons, as its p is, and leaves out "
+        "0 exactly where one robot is better. The others stand each for itself."
+    )
+
+
+def _row(pair: Comparison) -> list[Piece]:
+    only = pair.mcnemar
+    told = f"p {'' if only.p < 0.001 else '= '}{table_cells.p_value(only.p)}"
+    name = f"{pair.second} − {pair.first}"
+    return [
+        name.replace(" ", "\u00a0") if len(name) <= _SHORT else name,
+        table_cells.difference(pair.success),
+        table_cells.difference(pair.differences.get("twsr")),
+        table_cells.difference(pair.differences.get("time_s"), -1.0),
+        Value(f"{only.only_second} : {only.only_first}", "", told),
+        str(pair.n - only.only_first - only.only_second),
+        table_cells.p_value(pair.p_holm),
+    ]

@@ -1,0 +1,53 @@
+"""What failed: kinds of fault, and of each the first with its traceback, its last output and how to replay it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from hthor.report.analysis.document import Findings
+from hthor.report.analysis.example_trials import Failure
+from hthor.report.html import html
+from hthor.report.html.html import Code, Mark, Piece
+
+TITLE = "Faults"
+_HEAD = ("run", "whose", "fault", "trials", "share", "first in")
+
+
+def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
+    """Of what the section is made."""
+    trials = sum(one.trials for one in found.origins)
+    if not found.failures:
+        return [html.paragraph(f"No robot failed in any of the {trials} trials.")]
+    rows: list[list[Piece]] = [
+        [
+            one.run,
+            f"{one.seat}: {one.agent}",
+            Mark(one.kind, "bad"),
+            str(one.trials),
+            f"{100.0 * one.trials / one.whole:.1f} %",
+            f"{one.task}, after {one.after_s:.1f} s",
+        ]
+        for one in found.failures
+    ]
+    return [
+        html.paragraph(
+            "After a fault the person went on without that robot; the trial counts as it ended. No trial is left out."
+        ),
+        html.table(_HEAD, rows, "Trials with a fault, by its kind.", words=(0, 1, 2, 5)),
+        *(part for one in found.failures for part in _first(one)),
+    ]
+
+
+def _first(one: Failure) -> list[str]:
+    """What is known of the first of a kind."""
+    where = f"{one.task}, person {one.participant}, trial {one.index + 1}, after {one.after_s:.1f} s"
+    commands = [command for command in (one.again, one.replay) if command]
+    return [
+        f"<h3>{html.inside(one.run)}, {html.inside(Mark(one.kind, 'bad'))}: the first</h3>",
+        html.paragraph(f"{where}:"),
+        html.block(one.detail or "nothing was said"),
+        *((html.paragraph("It printed last:"), html.block(one.output)) if one.output else ()),
+        html.listed(
+            ["Play it again: " if command == one.again else "Draw it: ", Code(command)] for command in commands
+        ),
+    ]

@@ -1,0 +1,59 @@
+"""The table against the baselines and the article."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from hthor.report.analysis.document import Findings
+from hthor.report.html import html
+from hthor.report.html.html import Band, Piece
+from hthor.report.page import sentences, table_cells
+
+TITLE = "Results"
+_COLUMNS = (
+    ("sr", "success [%]", 100.0, 1),
+    ("twsr", "time-weighted success [%]", 100.0, 1),
+    ("adoption", "adoption [%]", 100.0, 1),
+    ("progress", "progress [%]", 100.0, 1),
+    ("time_s", "time spent [s]", 1.0, 1),
+    ("trust", "trust, 1 to 7", 1.0, 2),
+)
+_PUBLISHED = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
+
+
+def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
+    """Of what the section is made."""
+    held = [column for column in _COLUMNS if any(getattr(arm.scores, column[0]).n for arm in found.arms)]
+    rows: list[list[Piece] | Band] = []
+    if found.published is not None:
+        rows.append(Band(f"These runs: {found.suite.name}, {found.people} people"))
+    for arm in found.arms:
+        estimates = (table_cells.estimate(getattr(arm.scores, name), scale, digits) for name, _, scale, digits in held)
+        rows.append([arm.label, *estimates])
+    rows += _published(found, [name for name, *_ in held])
+    head = ("robot", *(title for _, title, _, _ in held))
+    return [
+        html.table(head, rows, f"Means over trials. {table_cells.NOTE}"),
+        html.paragraph(sentences.published(found)),
+        html.drawn(
+            drawings,
+            "scores",
+            "Success, time-weighted success and adoption, with 95 % intervals. "
+            + ("Open diamonds: what the article printed for the same kind of robot." if found.published else ""),
+        ),
+    ]
+
+
+def _published(found: Findings, metrics: list[str]) -> Iterator[list[Piece] | Band]:
+    """The article's rows."""
+    study = found.published
+    if study is None:
+        return
+    rows: list[list[Piece]] = []
+    for condition, name in _PUBLISHED.items():
+        figures = [f"{metric} {condition}" for metric in metrics]
+        if any(one in study.figures for one in figures):
+            rows.append([name, *(table_cells.share(study.figures.get(one), study.counts.get(one)) for one in figures)])
+    trials = sum(one.n for name, one in study.counts.items() if name.startswith("sr "))
+    yield Band(f"Published: {study.source.partition(':')[0]}, people in {trials} trials")
+    yield from rows

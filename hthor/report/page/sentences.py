@@ -1,0 +1,170 @@
+"""What the findings say, as sentences made from the numbers; holds no result, and claims none that they do not show."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+from hthor.eval.comparison.compare import Comparison
+from hthor.eval.results.paired_difference import Difference
+from hthor.report.analysis.document import Apart, Arm, Curve, Findings, Spent, Split
+from hthor.report.analysis.example_trials import Shown
+from hthor.report.html.numbers import listed, plain, signed
+
+_NAMED = 4
+"""So many robots are named in the title."""
+_CLEAR = 2.0
+"""A slope of so many standard errors is called one."""
+_APART = {
+    "": "they have no trial in common yet; finish both",
+    "suite.sha256": "they have other tasks",
+    "kind.sha256": "their kind of task comes from different files",
+    "humans.sha256": "they have other people",
+    "seed": "their seeds differ, so other people did other tasks",
+    "rules_sha256": "they were played under other rules",
+    "code_sha256": "they were played by different versions of the code",
+}
+
+
+def title(found: Findings) -> str:
+    """What the page is called."""
+    robots = [arm.label for arm in found.arms if arm.label != found.baseline]
+    against = " against no robot" if found.baseline and robots else ""
+    named = listed(robots or [found.baseline]) if len(robots) <= _NAMED else f"{len(robots)} robots"
+    return f"{_upper(named)}{against}, on the suite {found.suite.name}"
+
+
+def facts(found: Findings) -> str:
+    """How much there is of what."""
+    trials = sum(one.trials for one in found.origins)
+    tasks, people = max(arm.tasks for arm in found.arms), max(arm.people for arm in found.arms)
+    runs = "1 run" if len(found.origins) == 1 else f"{len(found.origins)} runs"
+    who = found.people if found.by_people is None else f"{found.people}; by kind of person others too"
+    return f"{runs}, {trials} trials: {tasks} tasks, {people} {'person' if people == 1 else 'people'} ({who})."
+
+
+def alone(found: Findings) -> str:
+    """That nothing can be said about help."""
+    return (
+        "There is no run without a robot among these or beside them, so whether the robots help cannot be said. This "
+        f"makes one: {found.origins[0].alone}"
+    )
+
+
+def apart(one: Apart) -> str:
+    """Why two runs are not compared."""
+    return f"{_upper(one.first)} and {one.second} are not compared trial by trial: {_APART.get(one.field, one.field)}."
+
+
+def sentence(pair: Comparison) -> str:
+    """What `hthor compare` says of two runs."""
+    return _upper(re.sub(r"(?<=[ (])-(?=\d)", "−", pair.sentence))
+
+
+def published(found: Findings) -> str:
+    """What the article's figures are, and whether these runs can be set against them."""
+    study = found.published
+    if study is None:
+        return ""
+    text = f"Published figures: {study.source}; intervals are Wilson's, from its counts"
+    text += (
+        ", inferred where it prints only percentages. " if any(one.inferred for one in study.counts.values()) else ". "
+    )
+    if found.suite.name == study.suite:
+        return text + "These runs are of its tasks."
+    return (
+        text + f"Its tasks are the suite '{study.suite}'; these runs are of '{found.suite.name}', so the order of the "
+        "robots may be compared, absolute figures may not."
+    )
+
+
+def spent(parts: Sequence[Spent]) -> str:
+    """Where the boxes differ."""
+    each = listed(f"{one.arm} {one.median:.1f} s [{one.lower:.1f}, {one.upper:.1f}]" for one in parts)
+    text = f"Median [quartiles]: {each}."
+    if len(parts) > 1:
+        lowers, medians = [one.lower for one in parts], [one.median for one in parts]
+        text += (
+            f" The lower quartiles lie within {max(lowers) - min(lowers):.1f} s of one another, the medians within "
+            f"{max(medians) - min(medians):.1f} s."
+        )
+    return text
+
+
+def trust(curves: Sequence[Curve]) -> str:
+    """Whether trust rises or falls over a session."""
+    return " ".join(_trend(curve) for curve in curves)
+
+
+def _trend(curve: Curve) -> str:
+    if curve.slope is None or curve.slope_se is None:
+        return f"Trust in {curve.arm}: too few people for a trend."
+    size = f"{signed(curve.slope, 3)} points a trial, standard error {plain(curve.slope_se, 3)}"
+    if abs(curve.slope) < _CLEAR * curve.slope_se or curve.slope == 0.0:
+        return f"Trust in {curve.arm} shows no clear trend ({size})."
+    return f"Trust in {curve.arm} {'rises' if curve.slope > 0 else 'falls'} ({size})."
+
+
+def channel(arms: Sequence[Arm]) -> str:
+    """How much robots said, and how much of it was taken."""
+    said = []
+    for arm in arms:
+        sent, taken, useful = arm.scores.sent, arm.scores.accepted, arm.scores.first_useful_s
+        if not sent.mean:
+            said.append(f"{_upper(arm.label)} sent no message.")
+            continue
+        share = 100.0 * (taken.mean or 0.0) / sent.mean
+        when = f", the first useful one after {useful.mean:.1f} s" if useful.mean is not None else ""
+        said.append(f"Of {sent.mean:.2f} messages a trial from {arm.label} people confirmed {share:.0f} %{when}.")
+    return " ".join(said)
+
+
+def widest(word: str, gains: Mapping[str, Mapping[str, Difference]]) -> str:
+    """In which part the robots make the largest difference, and the smallest."""
+    each = [(one.difference, label, name, one) for name, by in gains.items() for label, one in by.items()]
+    if not each:
+        return ""
+    most, least = max(each, key=lambda one: one[:3]), min(each, key=lambda one: one[:3])
+    return (
+        f"By {word}, the largest gain over no robot is {_points(most[3])} ({most[1]}, {most[2]}), the smallest "
+        f"{_points(least[3])} ({least[1]}, {least[2]}). With so many parts, extremes are partly chance."
+    )
+
+
+def worst_people(split: Split) -> str:
+    """With which people each robot does worst."""
+    said = []
+    for label in dict.fromkeys(label for group in split.groups for label in group.sr):
+        rates = [
+            (one.mean, group.name) for group in split.groups if (one := group.sr.get(label)) and one.mean is not None
+        ]
+        if len(rates) > 1:
+            said.append(f"{label} {min(rates)[1]} ({100.0 * min(rates)[0]:.1f} %)")
+    return f"The people who do worst: with {listed(said)}." if said else ""
+
+
+def shown(one: Shown) -> str:
+    """What became of a trial that is drawn."""
+    end = f"done in {one.time_s:.1f} s" if one.met else f"not done in {one.time_s:.0f} s"
+    text = f"“{one.instruction}” {_upper(end)}"
+    if one.alone_s is not None:
+        text += f"; alone {f'done in {one.alone_s:.1f} s' if one.alone_met else f'not done in {one.alone_s:.0f} s'}"
+    return f"{text}; T*\u00a0{one.t_star:.1f} s. {one.task}, person {one.participant}, trial {one.index + 1}."
+
+
+def gained(one: Shown) -> str:
+    """What the robot was worth in a trial."""
+    if one.gain_s is None:
+        return "Done." if one.met else "Not done."
+    if one.gain_s == 0.0:
+        return "No time saved."
+    return f"{'Saved' if one.gain_s > 0.0 else 'Lost'} {abs(one.gain_s):.1f} s."
+
+
+def _points(one: Difference) -> str:
+    ends = "" if one.ci95 is None else f" [{', '.join(signed(100.0 * end) for end in one.ci95)}]"
+    return f"{signed(100.0 * one.difference)} points{ends}"
+
+
+def _upper(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,62 @@
+"""Estimates and differences as cells of tables: number, interval, and below them n and what it could have seen."""
+
+from __future__ import annotations
+
+from hthor.eval.results.paired_difference import Difference
+from hthor.eval.statistics.intervals import Estimate
+from hthor.report.analysis.document import Arm, Share
+from hthor.report.html.html import Piece, Value
+from hthor.report.html.numbers import plain, signed
+
+_PER_CENT = 100.0
+NOTE = (
+    "In brackets: 95 % interval, for new tasks and new people of the same populations. Below: n, the number of trials "
+    "that have the value, and mde, the smallest difference from a given number that so many trials would have seen in "
+    "four of five cases."
+)
+"""What the cells of `estimate` say."""
+
+
+def estimate(one: Estimate, scale: float = 100.0, digits: int = 1) -> Piece:
+    """A mean: "66.7 [45.1, 85.0]", and below "n 60 · mde 9.1"."""
+    if one.mean is None:
+        return "–"
+    interval = "" if one.ci95 is None else f"[{', '.join(plain(scale * end, digits) for end in one.ci95)}]"
+    return Value(plain(scale * one.mean, digits), interval, _note(one.n, one.mde80, scale, digits))
+
+
+def difference(one: Difference | None, scale: float = 100.0, digits: int = 1) -> Piece:
+    """A difference with its sign; ``scale`` is negative where less is better."""
+    if one is None:
+        return "–"
+    ends = None if one.ci95 is None else sorted(scale * end for end in one.ci95)
+    interval = "" if ends is None else f"[{', '.join(signed(end, digits) for end in ends)}]"
+    return Value(signed(scale * one.difference, digits), interval, _note(one.n, one.mde80, scale, digits))
+
+
+def share(value: float | None, of: Share | None) -> Piece:
+    """A published figure, with the interval of its counts where it has any."""
+    if value is None:
+        return ""
+    if of is None:
+        return plain(100.0 * value, 1)
+    interval = ", ".join(plain(100.0 * end, 1) for end in of.ci95)
+    return Value(plain(100.0 * value, 1), f"[{interval}]", f"n {of.n}{', inferred' if of.inferred else ''}")
+
+
+def p_value(p: float | None) -> str:
+    """A probability, as papers print it."""
+    return "–" if p is None else "< 0.001" if p < 0.001 else f"{p:.3f}"
+
+
+def robots(arms: tuple[Arm, ...]) -> tuple[Arm, ...]:
+    """The runs that have robots."""
+    return tuple(arm for arm in arms if arm.scores.sent.n)
+
+
+def _note(n: int, mde80: float | None, scale: float, digits: int) -> str:
+    if not mde80:  # too few, or all alike: no measure of chance
+        return f"n {n}"
+    if abs(scale) == _PER_CENT and mde80 >= 1.0:
+        return f"n {n} · mde > 100"
+    return f"n {n} · mde {plain(abs(scale) * mde80, digits)}"

@@ -1,0 +1,1 @@
+"""Results and comparisons as terminal tables."""

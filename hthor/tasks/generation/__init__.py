@@ -1,0 +1,1 @@
+"""Making tasks: goals, arrangements, starts and their difficulty."""

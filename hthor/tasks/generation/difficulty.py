@@ -1,0 +1,116 @@
+"""How difficult a task is, by the task alone: how far it is at least, and how much there is to search on the way."""
+
+from __future__ import annotations
+
+import functools
+from collections import Counter, defaultdict
+from typing import Literal
+
+import numpy as np
+from msgspec import Struct
+from numpy.typing import NDArray
+
+from hthor import catalog, plugins
+from hthor.catalog import priors
+from hthor.tasks.generation.reachability import Ground
+from hthor.tasks.kind import TaskKind
+from hthor.types import HouseSpec, Placement, TaskSpec, Thing
+
+Level = Literal["easy", "medium", "hard"]
+
+SEARCH_S = 20.0
+"""What it is worth [s of the least time] to look at all places where people expect the target before its own: about as
+much as the success of people without a robot says."""
+MEDIUM_S, HARD_S = 22.0, 29.0
+"""Where medium and hard begin: about a third of all tasks of `navigation` and `manipulation` lie in each stratum."""
+_PACE_M_S, _LOOK_S = 0.4, 5.0
+"""How fast the searcher walks, and what a look at a place takes once they are there."""
+
+
+class Difficulty(Struct, frozen=True, kw_only=True):
+    """The ``least`` time [s], and the share [0, 1] of the priors' mass that a searcher meets before the target."""
+
+    least: float
+    before: float
+
+    @property
+    def score(self) -> float:
+        """Both in one number [s]."""
+        return self.least + SEARCH_S * self.before
+
+    @property
+    def level(self) -> Level:
+        """The stratum."""
+        return "easy" if self.score < MEDIUM_S else "medium" if self.score < HARD_S else "hard"
+
+
+def of(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Level:
+    """The stratum of a task in its house; ``kind`` is the task's, found by its name when absent."""
+    return measured(task, house, kind).level
+
+
+def measured(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Difficulty:
+    """What the stratum follows from; of several targets the mean."""
+    own: TaskKind = kind or plugins.load("task kind", task.kind)
+    wanted = {job.target for job in task.goal.todo}
+    targets = [placement for placement in task.objects if placement.id in wanted]
+    shares = [_before(task, placement, house) for placement in targets]
+    return Difficulty(least=own.least(task), before=sum(shares) / len(shares) if shares else 0.0)
+
+
+def _before(task: TaskSpec, target: Placement, house: HouseSpec) -> float:
+    """The share of the mass of all places that are worth a look before the target's, those worth as much by half.
+
+    A place is worth its mass for the time that it takes to walk there from the start and to look: who searches by
+    common sense goes first where the object is most likely for the least time.
+    """
+    mass = masses(house, target.kind)
+    ways = _ways(house, (task.human_start.x, task.human_start.y))
+    worth = {id: share / (ways[id] / _PACE_M_S + _LOOK_S) for id, share in mass.items()}
+    brought = {placed.id: placed.support for placed in task.objects}
+    place = target.support or target.near
+    own = worth.get(brought.get(place, place), 0.0)
+    earlier = sum(share for id, share in mass.items() if worth[id] > own)
+    level = sum(share for id, share in mass.items() if worth[id] == own)
+    return (earlier + level / 2) / max(sum(mass.values()), 1e-12)
+
+
+@functools.lru_cache(maxsize=256)
+def masses(house: HouseSpec, kind: str) -> dict[str, float]:
+    """By id of a house's things, how much of the priors' mass of a kind of object lies there.
+
+    The weight of a triplet is shared among the things of its reference's kind; what is near another target is where
+    that one is *on* or *in*. Kinds that the priors do not know are anywhere alike.
+    """
+    if kind not in catalog.TARGETS:
+        return {thing.id: 1.0 for thing in house.things if catalog.kind(thing.kind).rests(thing.size)}
+    weights: defaultdict[str, float] = defaultdict(float)
+    for (relation, reference), weight in priors.weights(kind).items():
+        if relation == "near" and reference in catalog.TARGETS:
+            for (other, place), share in priors.weights(reference).items():
+                weights[place] += weight * share * (other != "near")
+        else:
+            weights[reference] += weight
+    many = Counter(thing.kind for thing in house.things)
+    known = [thing for thing in house.things if weights.get(thing.kind, 0.0) > 0.0]
+    return {thing.id: weights[thing.kind] / many[thing.kind] for thing in known}
+
+
+@functools.lru_cache(maxsize=256)
+def _ways(house: HouseSpec, start: tuple[float, float]) -> dict[str, float]:
+    """Walking distance [m] from a start to the free floor nearest to each thing."""
+    ground = Ground.of(house)
+    lengths = ground.paths.distances(ground.space.nearest_free(*start), _beside(house))
+    return {thing.id: float(length) for thing, length in zip(house.things, lengths, strict=True)}
+
+
+@functools.lru_cache(maxsize=32)
+def _beside(house: HouseSpec) -> NDArray[np.float64]:
+    """(N, 2) [m] for each thing the place nearest to its middle where somebody can stand."""
+    space = Ground.of(house).space
+    floor = space.component(*space.nearest_free(house.start.x, house.start.y))
+    return np.array([_nearest(house, thing, floor) for thing in house.things]).reshape(-1, 2)
+
+
+def _nearest(house: HouseSpec, thing: Thing, floor: NDArray[np.bool_]) -> tuple[float, float]:
+    return Ground.of(house).space.nearest_free(thing.centre[0], thing.centre[1], floor)

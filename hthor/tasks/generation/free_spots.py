@@ -1,0 +1,124 @@
+"""A free place for one object, on furniture or on the floor, that everybody can get at."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Iterable, Sequence
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from hthor import catalog, seeds
+from hthor.geometry.plane import inside
+from hthor.houses.space.free_space import FreeSpace
+from hthor.tasks.generation.avatar import HEIGHT_M
+from hthor.tasks.generation.placement import Rest, Shelves, laid, placed
+from hthor.tasks.generation.reachability import Ground
+from hthor.types import HouseSpec, Placement, Room, Thing
+
+Floats = NDArray[np.float64]
+
+NEAR_M = 0.85
+"""From so near, measured on the plan, a robot with an arm gets at an object; a person gets at it from farther away."""
+LANE_M = 0.35
+"""Half the width of the ways between places on the floor: the broadest robot's radius, and a little more."""
+_TRIES = 60
+
+
+def spot(
+    house: HouseSpec,
+    id: str,
+    kind: str,
+    weigh: Callable[[Thing], float],
+    root: int,
+    done: Sequence[Placement] = (),
+) -> Placement | None:
+    """A place on or in furniture, clear of ``done`` and of everything else, None when none was found.
+
+    It rests exactly on a surface, and from free floor less than `NEAR_M` away that the house's start is joined to, the
+    avatar sees it, the fridge's door being open.
+
+    Args:
+        id, kind: of the object.
+        weigh: how likely a thing is to bear it, for every thing; zero for never. A thing's surfaces share by size.
+        root: of all draws.
+    """
+    rests = Shelves.of(house).rests
+    areas: dict[str, float] = {}
+    for rest in rests:
+        areas[rest.thing.id] = areas.get(rest.thing.id, 0.0) + _area(rest)
+    weights = [weigh(rest.thing) * _area(rest) / areas[rest.thing.id] for rest in rests]
+    if not any(weights):
+        return None
+    for attempt in range(_TRIES):
+        rest = rests[seeds.choice(weights, root, "rest", attempt)]
+        u, v, turn = (2 * seeds.draw(root, axis, attempt) - 1 for axis in ("u", "v", "yaw"))
+        placement = msgspec.structs.replace(placed(kind, rest, u, v, math.pi * turn), id=id)
+        if Shelves.of(house).fits(rest, placement, done) and at_hand(house, placement):
+            return placement
+    return None
+
+
+def at_hand(house: HouseSpec, placement: Placement) -> bool:
+    """Whether the object can be seen and is at most `NEAR_M` away from free floor that the house's start is joined to;
+    what it lies shut in being open.
+    """
+    ground = Ground.of(house)
+    holder = next((thing for thing in house.things if thing.id == placement.support), None)
+    shut = placement.relation == "in" and holder is not None and catalog.kind(holder.kind).hides
+    opened = frozenset({placement.support}) if shut else frozenset[str]()
+    floor = ground.space.component(*ground.space.nearest_free(house.start.x, house.start.y))
+    cells = ground.space.centres(ground.touching(placement) & floor & ground.seeing(placement, opened))
+    x, y, _ = placement.position
+    return bool(len(cells)) and float(np.hypot(cells[:, 0] - x, cells[:, 1] - y).min()) <= NEAR_M
+
+
+def floor_spot(
+    house: HouseSpec, id: str, kind: str, room: Room, clear: float, root: int, near: Thing | None = None
+) -> Placement | None:
+    """A place on the floor of a room with ``clear`` [m] free all round the object's middle, None where there is none.
+
+    Args:
+        near: what it is to stand beside: the places nearest to it, rather than any.
+    """
+    cells = _room_floor(house, room, clear)
+    if not len(cells):
+        return None
+    if near is not None:
+        away = np.hypot(cells[:, 0] - near.centre[0], cells[:, 1] - near.centre[1])
+        cells = cells[away <= away.min() + 0.2]
+    x, y = cells[int(seeds.draw(root, "cell") * len(cells))]
+    placement = laid(kind, (float(x), float(y)), math.pi * (2 * seeds.draw(root, "yaw") - 1))
+    placement = msgspec.structs.replace(placement, id=id)
+    return placement if Shelves.of(house).lies(house, placement, ()) else None
+
+
+def room_of(house: HouseSpec, thing_id: str) -> str:
+    """The id of the room that a thing stands in, empty for what is nowhere."""
+    return next((thing.room for thing in house.things if thing.id == thing_id), "")
+
+
+def unique(house: HouseSpec, kinds: Iterable[str]) -> tuple[Thing, ...]:
+    """The things of these kinds of which the house has just one, so that "the" says which."""
+    rows = [[thing for thing in house.things if thing.kind == kind] for kind in kinds]
+    return tuple(row[0] for row in rows if len(row) == 1)
+
+
+@functools.lru_cache(maxsize=64)
+def _room_floor(house: HouseSpec, room: Room, clear: float) -> Floats:
+    """(N, 2) [m] middles of cells of a room with ``clear`` [m] free all round, from which broad bodies get about."""
+    wide, lane = FreeSpace.of(house, clear, HEIGHT_M), FreeSpace.of(house, LANE_M, HEIGHT_M)
+    if not lane.free.any():
+        return np.zeros((0, 2))
+    largest = int(np.bincount(lane.components[lane.free]).argmax())
+    cells = wide.centres(wide.free & lane.free & (lane.components == largest))
+    (x0, y0), (x1, y1) = np.min(room.polygon, axis=0), np.max(room.polygon, axis=0)
+    cells = cells[(cells[:, 0] >= x0) & (cells[:, 0] <= x1) & (cells[:, 1] >= y0) & (cells[:, 1] <= y1)]
+    floor: Floats = cells[np.array([inside((x, y), room.polygon) for x, y in cells], dtype=bool)]
+    return floor
+
+
+def _area(rest: Rest) -> float:
+    return rest.surface.half[0] * rest.surface.half[1]

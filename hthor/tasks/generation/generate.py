@@ -1,0 +1,178 @@
+"""Making tasks and suites of them: goals, arrangements and starts, drawn by name.
+
+``python -m hthor.tasks.generation.generate smoke`` writes ``suites/smoke.json`` anew, byte for byte the same as
+long as the houses, the catalogue, the rules and this code are. A second argument names another file to write.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal
+
+import msgspec
+
+from hthor import houses, jsonio, plugins, seeds
+from hthor.catalog.priors import Triplet
+from hthor.errors import HthorError, UnknownName
+from hthor.tasks.generation import difficulty
+from hthor.tasks.generation.difficulty import Level
+from hthor.tasks.generation.start_poses import Begin, begin
+from hthor.tasks.generation.suite_specs import PLANS, ROBOTS, Order, Plan
+from hthor.tasks.generation.target_arrangement import arrange
+from hthor.tasks.kind import TaskKind
+from hthor.tasks.suites import library
+from hthor.types import Goal, HouseSpec, Placement, TaskSpec
+
+EASY_S, HARD_S = 4.0, 20.5
+"""Least times that the easiest and the hardest task of a house are aimed at; a small house falls short of these."""
+_CLOSE_S = 0.5
+_TRIES = 20
+
+
+def build(plan: Plan) -> library.Suite:
+    """The suite that a plan describes: its houses' tasks in turn, the first of each, then the second of each.
+
+    Raises:
+        HthorError: when a house cannot take one of its tasks.
+    """
+    columns = [in_house(plan, houses.load(name)) for name in plan.houses]
+    longest = max(len(column) for column in columns)
+    tasks = [column[number] for number in range(longest) for column in columns if number < len(column)]
+    return library.frozen(plan.name, plan.version, tuple(tasks))
+
+
+def in_house(plan: Plan, house: HouseSpec) -> tuple[TaskSpec, ...]:
+    """One house's tasks of a plan."""
+    return tuple(ordered(plan, house, order) for order in plan.orders(plan, house))
+
+
+def ordered(plan: Plan, house: HouseSpec, order: Order) -> TaskSpec:
+    """One task of a plan, whatever the others are."""
+    lap = dict(plan.redrawn).get(order.name, 0)
+    return task(
+        house,
+        plugins.load("task kind", order.kind),
+        order.goal,
+        seeds.derive(plan.root, "again", lap) if lap else plan.root,
+        name=order.name,
+        fixed=order.fixed,
+        share=order.share,
+        robots=plan.robots,
+        looks=plan.looks,
+        level=order.level,
+        serial=plan.serial,
+        told=plan.told,
+    )
+
+
+def task(
+    house: HouseSpec,
+    kind: TaskKind,
+    goal: Goal | None,
+    root: int,
+    *,
+    name: str,
+    fixed: Triplet | None = None,
+    share: float | None = None,
+    robots: int = ROBOTS,
+    looks: int = 2,
+    level: Level | Literal[""] = "",
+    split: Literal["", "seen", "new"] = "",
+    serial: bool = False,
+    told: bool = True,
+) -> TaskSpec:
+    """A task of any kind, fixed by ``root`` and ``name``.
+
+    Args:
+        goal: what to do; None lets the kind draw it, with an arrangement of its own (`TaskKind.draw`).
+        name: the task's id, such as ``navigation/alder/apple-in-fridge``.
+        fixed: a triplet that must hold for the goal's target.
+        share: how hard, in [0, 1]: the least time is aimed at that share of the way from `EASY_S` to `HARD_S`; drawn
+            when None.
+        robots: for how many robots there are starts.
+        looks: of how many arrangements the one whose time is nearest to that is taken, unless one is near enough.
+        level: the stratum of difficulty that it must be of, if any.
+        split: whether the house is one of the ten scenes; empty when the suite does not tell.
+        serial: as `hthor.tasks.generation.target_arrangement.arrange` has it.
+        told: whether the task tells how difficult it is.
+
+    Raises:
+        HthorError: when the house has no room for it: no arrangement, or no place to start from.
+    """
+    hardness = seeds.draw(root, name, "share") if share is None else share
+    wanted = EASY_S + hardness * (HARD_S - EASY_S)
+    best: tuple[Begin, Goal, tuple[Placement, ...]] | None = None
+    reason = ""
+    for attempt in range(2 * _TRIES):
+        own = seeds.derive(root, name, attempt)
+        try:
+            aim, objects = _scene(house, kind, goal, own, fixed, serial)
+        except HthorError as error:
+            reason = f": {error}"
+            continue
+        found = begin(house, kind, aim, objects, wanted, own, robots=robots, strict=attempt < _TRIES)
+        if found is None:
+            continue
+        made = _spec(house, kind, name, found, aim, objects)
+        problem = kind.misfit(made, house)
+        if problem or (level and difficulty.of(made, house, kind) != level):
+            reason = f": {problem or f'none was {level}'}"
+            continue
+        if best is None or abs(found.least - wanted) < abs(best[0].least - wanted):
+            best = (found, aim, objects)
+        if best is not None and (abs(best[0].least - wanted) <= _CLOSE_S or attempt + 1 >= looks):
+            break
+    if best is None:
+        raise HthorError(f"no arrangement was found for task '{name}' in {2 * _TRIES} tries{reason}")
+    made = msgspec.structs.replace(_spec(house, kind, name, *best), split=split)
+    return msgspec.structs.replace(made, difficulty=difficulty.of(made, house, kind)) if told else made
+
+
+def _scene(
+    house: HouseSpec, kind: TaskKind, goal: Goal | None, root: int, fixed: Triplet | None, serial: bool
+) -> tuple[Goal, tuple[Placement, ...]]:
+    if goal is None:
+        return kind.draw(house, root)
+    return goal, arrange(house, root, {goal.target: goal.destination}, fixed=fixed, serial=serial)
+
+
+def _spec(
+    house: HouseSpec,
+    kind: TaskKind,
+    name: str,
+    start: Begin,
+    goal: Goal,
+    objects: tuple[Placement, ...],
+) -> TaskSpec:
+    return TaskSpec(
+        id=name,
+        kind=kind.name,
+        house=house.id,
+        house_sha256=house.sha256,
+        human_start=start.poses[0],
+        robot_starts=start.poses[1:],
+        objects=objects,
+        goal=goal,
+        instruction=kind.instruction(goal, objects),
+        time_limit=kind.time_limit,
+        t_star=kind.judged(start.least),
+    )
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Write the suite of the given name."""
+    try:
+        if not arguments or arguments[0] not in PLANS:
+            raise UnknownName("suite plan", arguments[0] if arguments else "", PLANS)
+        path = Path(arguments[1]) if len(arguments) > 1 else library.path_of(arguments[0])
+        jsonio.write(path, library.encode(build(PLANS[arguments[0]])))
+    except HthorError as error:
+        sys.stderr.write(f"{error}\n")
+        return error.exit_code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

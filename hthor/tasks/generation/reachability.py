@@ -1,0 +1,154 @@
+"""The floor an all-knowing person walks on: where they can stand to see, to reach and to put down.
+
+Places are told by cells of the free-space grid. A person anywhere in a cell counts as standing at its middle, so every
+range is widened and every leg of a walk shortened by half a cell's diagonal: what comes out is never too long.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hthor import catalog, rules
+from hthor.geometry.plane import to_house
+from hthor.houses.space.free_space import FreeSpace
+from hthor.houses.space.geodesic import Field, Geodesics
+from hthor.tasks.generation.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
+from hthor.tasks.generation.occlusion import Sight
+from hthor.types import HouseSpec, Placement, Thing, Vec2, Vec3
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+
+SLACK_M = rules.GRID_M * math.sqrt(0.5)
+
+
+class Ground:
+    """A house's floor for the person's avatar. Masks are (ny, nx) bool over the cells of ``space``, free cells only."""
+
+    def __init__(self, house: HouseSpec) -> None:
+        self.house = house
+        self.space = FreeSpace.of(house, RADIUS_M, HEIGHT_M)
+        self.paths = Geodesics.of(self.space)
+
+    @staticmethod
+    @functools.lru_cache(maxsize=32)
+    def of(house: HouseSpec) -> Ground:
+        """The same as the constructor, worked out once a process."""
+        return Ground(house)
+
+    @functools.cached_property
+    def joined(self) -> Bools:
+        """The floor that the house's start is joined to."""
+        return self.space.component(*self.space.nearest_free(self.house.start.x, self.house.start.y))
+
+    def seeing(
+        self, placement: Placement, opened: frozenset[str] = frozenset(), reach_m: float = rules.FIND_RANGE_M
+    ) -> Bools:
+        """Where the object is within ``reach_m`` [m] of the eyes (in space, not on the plan) and in sight.
+
+        The range is to its centre. In sight means that no wall or furniture lies between the eyes and its centre or a
+        point near its top.
+        """
+        mask = self._disc((placement.position[0], placement.position[1]), reach_m + SLACK_M)
+        places = self.space.centres(mask)
+        eyes = np.column_stack((places, np.full(len(places), EYE_M)))
+        lit = np.linalg.norm(eyes - placement.position, axis=1) <= reach_m + SLACK_M
+        lit[lit] = Sight.of(self.house, opened).seen(eyes[lit], _samples(placement))
+        mask[mask] = lit
+        return mask
+
+    def touching(self, placement: Placement) -> Bools:
+        """Where the object's centre is within reach."""
+        return self._disc((placement.position[0], placement.position[1]), REACH_M + SLACK_M)
+
+    def beside(self, thing: Thing) -> Bools:
+        """Where the nearest edge of the thing is within reach."""
+        return self._around(thing.centre[:2], thing.size[:2], thing.yaw)
+
+    def serving(self, kind: str) -> Bools:
+        """Where the nearest point of any surface of any thing of the kind is within reach."""
+        mask = np.zeros(self.space.free.shape, dtype=bool)
+        for thing in self.house.things:
+            if thing.kind == kind:
+                for surface in catalog.kind(kind).rests(thing.size):
+                    x, y, _ = to_house(surface.centre, thing.centre, thing.yaw)
+                    mask |= self._around((x, y), (2 * surface.half[0], 2 * surface.half[1]), thing.yaw)
+        return mask
+
+    def walk(self, stops: Sequence[Bools]) -> Walk:
+        """The shortest walk through one cell of each mask in turn."""
+        return Walk(self, stops)
+
+    def _disc(self, centre: Vec2, radius: float) -> Bools:
+        return self._around(centre, (0.0, 0.0), 0.0, radius)
+
+    def _around(self, centre: Vec2, size: Vec2, yaw: float, radius: float = REACH_M + SLACK_M) -> Bools:
+        """Free cells with their middle within ``radius`` of a turned rectangle."""
+        columns, rows = self._axes
+        dx, dy = columns[None, :] - centre[0], rows[:, None] - centre[1]
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        u = np.maximum(np.abs(cos * dx + sin * dy) - size[0] / 2, 0.0)
+        v = np.maximum(np.abs(cos * dy - sin * dx) - size[1] / 2, 0.0)
+        mask: Bools = self.space.free & (u * u + v * v <= radius * radius)
+        return mask
+
+    @functools.cached_property
+    def _axes(self) -> tuple[Floats, Floats]:
+        ny, nx = self.space.free.shape
+        x, y = self.space.centre_of(0, 0)
+        columns: Floats = x + np.arange(nx, dtype=np.float64) * self.space.cell
+        rows: Floats = y + np.arange(ny, dtype=np.float64) * self.space.cell
+        return columns, rows
+
+
+class Walk:
+    """The shortest walk from anywhere through one cell of each of several masks in turn."""
+
+    def __init__(self, ground: Ground, stops: Sequence[Bools]) -> None:
+        self._space, self._stops = ground.space, tuple(stops)
+        self._fields: dict[int, Field] = {}
+        for number in reversed(range(len(self._stops))):
+            edge = ground.space.centres(rim(self._stops[number], ground.space.free))
+            self._fields[number] = ground.paths.field(edge, self._left(edge, number + 1))
+
+    def lengths(self, starts: ArrayLike) -> Floats:
+        """(N,) [m] for ``starts`` (N, 2), less the grid's slack; inf where there is no such walk."""
+        slack = (2 * len(self._stops) - 1) * SLACK_M
+        return np.maximum(self._left(np.asarray(starts, dtype=float).reshape(-1, 2), 0) - slack, 0.0)
+
+    def _left(self, places: Floats, stop: int) -> Floats:
+        """What is left of the walk at ``places`` when the stops before ``stop`` are done."""
+        if stop == len(self._stops):
+            return np.zeros(len(places))
+        lengths = self._fields[stop].at(places)
+        there = np.array([self._holds(stop, x, y) for x, y in places], dtype=bool)
+        if there.any():
+            lengths[there] = self._left(places[there], stop + 1)
+        return lengths
+
+    def _holds(self, stop: int, x: float, y: float) -> bool:
+        row, column = self._space.cell_of(x, y)
+        ny, nx = self._space.free.shape
+        return 0 <= row < ny and 0 <= column < nx and bool(self._stops[stop][row, column])
+
+
+def _samples(placement: Placement) -> tuple[Vec3, Vec3]:
+    """Where an object is looked for, as the world does: its centre and a point near its top."""
+    x, y, z = placement.position
+    return (x, y, z), (x, y, z + 0.4 * catalog.kind(placement.kind).size[2])
+
+
+def rim(mask: Bools, free: Bools) -> Bools:
+    """The cells of a mask through which one enters it."""
+    out = np.zeros_like(mask)
+    outside = free & ~mask
+    out[1:, :] |= outside[:-1, :]
+    out[:-1, :] |= outside[1:, :]
+    out[:, 1:] |= outside[:, :-1]
+    out[:, :-1] |= outside[:, 1:]
+    return out & mask

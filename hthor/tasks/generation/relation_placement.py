@@ -1,0 +1,138 @@
+"""One relation of a scene graph as a pose: where a target can be on, in or near what it is to be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import msgspec
+from msgspec import Struct
+
+from hthor import catalog, seeds
+from hthor.catalog import priors
+from hthor.catalog.priors import Triplet
+from hthor.geometry.plane import inside
+from hthor.tasks.generation.placement import NEAR_M, Rest, Shelves, gap_to, placed
+from hthor.tasks.generation.reachability import Ground
+from hthor.types import HouseSpec, Placement, Thing, Vec2
+
+TRIES = 60
+"""Poses that are tried for a relation."""
+_ODD = 0.005
+"""The weight of surfaces where people do not put an object, where it is to be near something and nothing else is."""
+
+
+class Wish(Struct, frozen=True, kw_only=True):
+    """What is to be placed how: a relation, the kind of thing that the target must not rest on or in, and the ids of
+    the objects placed before that have to be near it.
+
+    ``careful`` asks that what is near is in the same room, and that nothing rests on what itself can be picked up, but
+    where the relation says so, and what that lies on is not banned either.
+    """
+
+    row: Triplet
+    ban: str = ""
+    waiting: tuple[str, ...] = ()
+    tries: int = TRIES
+    careful: bool = True
+
+
+def find(
+    house: HouseSpec, root: int, wish: Wish, done: Sequence[Placement], *, first: bool = False
+) -> Placement | None:
+    """A pose for one relation, None where none was found.
+
+    Args:
+        root: of all draws. done: what is placed already.
+        first: whether an object may also be placed where what it is to be near to is still to come.
+    """
+    row = wish.row
+    for rest, mark, attempt in _rests(house, root, wish, done, first):
+        edge = (row.relation, row.reference)
+        u, v, turn = (2 * seeds.draw(root, *edge, axis, attempt) - 1 for axis in ("u", "v", "yaw"))
+        placement = placed(row.target, rest, u, v, math.pi * turn)
+        near = near_enough(house, placement, mark, wish, done)
+        if near and Shelves.of(house).fits(rest, placement, done) and reachable(house, placement, rest):
+            return msgspec.structs.replace(placement, near="" if mark is None else mark.id)
+    return None
+
+
+def _rests(
+    house: HouseSpec, root: int, wish: Wish, done: Sequence[Placement], first: bool
+) -> Iterator[tuple[Rest, Thing | Placement | None, int]]:
+    """Surfaces to try, large ones more often, each with what the object must be near to, and the attempt's number.
+
+    What is only to be near something rests where people put such an object, if there is such a place.
+    """
+    relation, reference = wish.row.relation, wish.row.reference
+    pairs = _pairs(house, wish, done, first)
+    areas = [rest.surface.half[0] * rest.surface.half[1] for rest, _ in pairs]
+    if relation == "near" and wish.careful:
+        usual = priors.weights(wish.row.target)
+        kinds = [(catalog.kind(rest.thing.kind).relation, rest.thing.kind) for rest, _ in pairs]
+        areas = [area * (usual.get(kind, 0.0) + _ODD) for area, kind in zip(areas, kinds, strict=True)]
+    for attempt in range(wish.tries if pairs else 0):
+        yield (*pairs[seeds.choice(areas, root, relation, reference, "rest", attempt)], attempt)
+
+
+def _pairs(
+    house: HouseSpec, wish: Wish, done: Sequence[Placement], first: bool
+) -> list[tuple[Rest, Thing | Placement | None]]:
+    """Surfaces that would do, each with what the object is near to there."""
+    reference = wish.row.reference
+    rests = [rest for rest in Shelves.of(house).rests if rest.thing.kind != wish.ban]
+    if wish.careful and wish.ban:
+        rests = [rest for rest in rests if _beneath(house, rest.thing) != wish.ban]
+    if wish.row.relation != "near":
+        return [(rest, None) for rest in rests if rest.thing.kind == reference]
+    if wish.careful:
+        rests = [rest for rest in rests if not catalog.kind(rest.thing.kind).pickable]
+    outside = [rest for rest in rests if not rest.surface.inside]
+    marks: list[Thing | Placement] = [thing for thing in house.things if thing.kind == reference]
+    marks += [placement for placement in done if placement.kind == reference]
+    if not marks and first and reference in catalog.TARGETS:
+        return [(rest, None) for rest in outside]
+    return [(rest, mark) for mark in marks for rest in outside if rest.thing.id != mark.id and _may_be_near(rest, mark)]
+
+
+def near_enough(
+    house: HouseSpec, placement: Placement, mark: Thing | Placement | None, wish: Wish, done: Sequence[Placement]
+) -> bool:
+    """Whether a placement is near to what it is to be near to, and to what was to be near to it."""
+    place = (placement.position[0], placement.position[1])
+    marks = [*(() if mark is None else (mark,)), *(one for one in done if one.id in wish.waiting)]
+    if any(_distance(place, one) > NEAR_M for one in marks):
+        return False
+    return not wish.careful or all(_room(house, place) == _room(house, _middle(one)) for one in marks)
+
+
+def reachable(house: HouseSpec, placement: Placement, rest: Rest) -> bool:
+    """Whether the person can stand somewhere, all that is shut being open, to see it close by and to reach it."""
+    ground = Ground.of(house)
+    opened = frozenset({rest.thing.id}) if rest.surface.inside else frozenset[str]()
+    return bool((ground.seeing(placement, opened) & ground.touching(placement) & ground.joined).any())
+
+
+def _beneath(house: HouseSpec, thing: Thing) -> str:
+    """The kind of what a thing lies on, empty for what stands on the floor."""
+    return next((other.kind for other in house.things if other.id == thing.parent), "")
+
+
+def _room(house: HouseSpec, place: Vec2) -> str:
+    return next((room.id for room in house.rooms if inside(place, room.polygon)), "")
+
+
+def _middle(mark: Thing | Placement) -> Vec2:
+    x, y, _ = mark.centre if isinstance(mark, Thing) else mark.position
+    return (x, y)
+
+
+def _distance(place: Vec2, mark: Thing | Placement) -> float:
+    if isinstance(mark, Thing):
+        return gap_to(place, mark)
+    return math.dist(place, _middle(mark))
+
+
+def _may_be_near(rest: Rest, mark: Thing | Placement) -> bool:
+    x, y, _ = rest.centre
+    return _distance((x, y), mark) <= NEAR_M + math.hypot(*rest.surface.half)

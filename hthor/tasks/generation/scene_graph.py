@@ -1,0 +1,105 @@
+"""Scene graphs: which relation of the priors puts each target where, drawn by weight."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Set
+from functools import cache
+
+from hthor import catalog, seeds
+from hthor.catalog import priors
+from hthor.catalog.priors import Triplet
+from hthor.types import HouseSpec
+
+CODE_PART = "tools"
+
+
+def present(house: HouseSpec) -> frozenset[str]:
+    """Kinds that a triplet may refer to in a house: those of its things, and the targets that every task brings."""
+    return frozenset(thing.kind for thing in house.things) | frozenset(catalog.TARGETS)
+
+
+def applicable(target: str, kinds: Set[str]) -> tuple[Triplet, ...]:
+    """The triplets of a target whose reference is among ``kinds``, in the table's order.
+
+    Raises:
+        UnknownName: when ``target`` is none of the six.
+    """
+    return tuple(row for row in _rows(target).values() if row.reference in kinds)
+
+
+def draw(target: str, kinds: Set[str], root: int) -> Triplet:
+    """One triplet of a target, by weight among those whose reference is among ``kinds``.
+
+    Raises:
+        UnknownName: when ``target`` is none of the six.
+        ValueError: when no reference of the target is there.
+    """
+    first = next(draws(target, kinds, root), None)
+    if first is None:
+        raise ValueError(f"no reference of '{target}' is among {sorted(kinds)}")
+    return first
+
+
+def draws(target: str, kinds: Set[str], root: int) -> Iterator[Triplet]:
+    """The triplets of a target in the order in which they are drawn by weight, none twice: the sample, then what to
+    turn to where that has no room.
+    """
+    rows, weights = _rows(target), {edge: weight for edge, weight in priors.weights(target).items() if weight > 0.0}
+    while weights:
+        edges = list(weights)
+        edge = edges[seeds.choice(list(weights.values()), root, "triplet", len(weights))]
+        if edge[1] in kinds:
+            yield rows[edge]
+        del weights[edge]
+
+
+def sample(kinds: Set[str], root: int, fixed: Triplet | None = None) -> dict[str, Triplet]:
+    """A scene graph: a triplet for each target, by weight; ``fixed`` is that of its target, whatever its weight."""
+    graph = {target: draw(target, kinds, seeds.derive(root, target)) for target in catalog.TARGETS}
+    return graph if fixed is None else {**graph, fixed.target: fixed}
+
+
+def order(graph: Mapping[str, Triplet], root: int) -> list[str]:
+    """The targets in an order in which each comes after what it is near, where the graph lets it, mixed otherwise.
+
+    Of a ring of targets that are near one another some one comes first; the last then has to be near both.
+    """
+    left = [catalog.TARGETS[number] for number in seeds.shuffled(len(catalog.TARGETS), root, "order")]
+    done: list[str] = []
+    while left:
+        ready = (target for target in left if _waits_for(graph[target]) not in left)
+        done.append(next(ready, None) or _ring(graph, left)[0])
+        left.remove(done[-1])
+    return done
+
+
+def triplet(target: str, relation: str, reference: str) -> Triplet:
+    """The row of the table.
+
+    Raises:
+        KeyError: when the table has no such row. UnknownName: when ``target`` is none of the six.
+    """
+    return _rows(target)[relation, reference]
+
+
+def words(row: Triplet) -> str:
+    """A triplet as part of a task's id, such as ``apple-in-fridge``."""
+    return f"{row.target}-{row.relation}-{row.reference}"
+
+
+def _waits_for(row: Triplet) -> str:
+    return row.reference if row.relation == "near" else ""
+
+
+def _ring(graph: Mapping[str, Triplet], left: list[str]) -> list[str]:
+    """The targets of a ring, the earliest of ``left`` first; each of ``left`` waits for another of them."""
+    seen = [left[0]]
+    while (following := _waits_for(graph[seen[-1]])) not in seen:
+        seen.append(following)
+    return [target for target in left if target in seen[seen.index(following) :]]
+
+
+@cache
+def _rows(target: str) -> dict[tuple[str, str], Triplet]:
+    priors.weights(target)  # raises when there is no such target
+    return {(row.relation, row.reference): row for row in priors.triplets() if row.target == target}

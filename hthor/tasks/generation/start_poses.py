@@ -1,0 +1,121 @@
+"""Where a task begins: places for all, the least time as wished."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from msgspec import Struct
+from numpy.typing import NDArray
+
+from hthor import seeds
+from hthor.houses.space.free_space import FreeSpace
+from hthor.tasks.generation.avatar import HEIGHT_M, START_MARGIN_M
+from hthor.tasks.generation.reachability import Ground, rim
+from hthor.tasks.kind import TaskKind
+from hthor.types import Goal, HouseSpec, Placement, Pose
+
+Floats = NDArray[np.float64]
+
+AWAY_M = 3.0
+"""Least way of a start from the target: to a place from which it is in reach, and on to it as the crow flies."""
+APART_M = 1.2
+"""Least distance between two starts."""
+_STARTS = 400
+
+
+class Begin(Struct, frozen=True, kw_only=True):
+    """Where everybody starts, the person first, and the least time [s] from there."""
+
+    least: float
+    poses: tuple[Pose, ...]
+
+
+def begin(
+    house: HouseSpec,
+    kind: TaskKind,
+    goal: Goal,
+    objects: tuple[Placement, ...],
+    wanted: float,
+    root: int,
+    *,
+    robots: int,
+    strict: bool = True,
+) -> Begin | None:
+    """The starts of the person and of ``robots`` robots, the least time as near to ``wanted`` [s] as the floor allows.
+
+    The person starts on ample floor, `AWAY_M` from the target, and does not have it in view and close by.
+
+    Args:
+        root: of all draws.
+        strict: whether those two wishes must come true; otherwise one that leaves no place is dropped.
+
+    Returns:
+        None where the goal is met already, or cannot be met, from any place to start from.
+    """
+    if kind.solved(goal, objects, house):
+        return None
+    places = _places(house, root)
+    target = next((placement for placement in objects if placement.id == goal.target), None)
+    fits = places if target is None else _unseen(house, target, _away(house, target, places))
+    fits, times = _possible(kind, house, objects, goal, fits)
+    if not len(fits) and not strict:
+        fits, times = _possible(kind, house, objects, goal, places)
+    if not len(fits):
+        return None
+    first = int(np.argmin(np.abs(times - wanted)))
+    chosen = [fits[first]]
+    for place in fits if strict else np.concatenate((fits, places)):
+        if len(chosen) <= robots and all(math.dist(place, other) >= APART_M for other in chosen):
+            chosen.append(place)
+    if len(chosen) <= robots:
+        return None
+    poses = tuple(_pose(place, root, number) for number, place in enumerate(chosen))
+    return Begin(least=round(float(times[first]), 3), poses=poses)
+
+
+def _possible(
+    kind: TaskKind, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal, places: Floats
+) -> tuple[Floats, Floats]:
+    """Those of the places from which the goal can be met, and the least time [s] from each."""
+    if not len(places):
+        return places, np.zeros(0)
+    times = kind.least_times(house, objects, goal)(places)
+    there = np.isfinite(times)
+    return places[there], times[there]
+
+
+def _away(house: HouseSpec, target: Placement, places: Floats) -> Floats:
+    """Those of the places that are `AWAY_M` from the target: whoever gets within reach of it passes the rim."""
+    ground = Ground.of(house)
+    reach = ground.space.centres(rim(ground.touching(target), ground.space.free))
+    rest = np.hypot(reach[:, 0] - target.position[0], reach[:, 1] - target.position[1])
+    far: Floats = places[ground.paths.field(reach, rest).at(places) >= AWAY_M]
+    return far
+
+
+def _unseen(house: HouseSpec, target: Placement, places: Floats) -> Floats:
+    ground = Ground.of(house)
+    seeing = ground.seeing(target)
+    out: Floats = places[np.array([not seeing[ground.space.cell_of(x, y)] for x, y in places], dtype=bool)]
+    return out
+
+
+def _places(house: HouseSpec, root: int) -> Floats:
+    """(N, 2) [m] places to start from, in random order: ample free floor that the house's start is joined to."""
+    ground, ample = Ground.of(house), FreeSpace.of(house, START_MARGIN_M, HEIGHT_M)
+    joined = ground.space.component(*ground.space.nearest_free(house.start.x, house.start.y))
+    cells = ample.centres(ample.free & joined & (ample.components == _largest(ample)))
+    picks = [int(seeds.draw(root, "start", number) * len(cells)) for number in range(_STARTS)]
+    chosen: Floats = np.round(cells[list(dict.fromkeys(picks))], 4)
+    return chosen
+
+
+def _largest(space: FreeSpace) -> int:
+    """The number of the component with the most cells."""
+    return int(np.bincount(space.components[space.free]).argmax()) if space.free.any() else 0
+
+
+def _pose(place: Floats, root: int, number: int) -> Pose:
+    yaw = math.pi * (2 * seeds.draw(root, "yaw", number) - 1)
+    return Pose(x=float(place[0]), y=float(place[1]), yaw=round(yaw, 4))

@@ -1,0 +1,207 @@
+"""What each suite is made of: how many tasks of which kind, or each that there can be.
+
+A plan gives a list of orders for each house, and an order all that decides a task but chance.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Literal
+
+from msgspec import Struct
+
+from hthor import catalog, plugins, seeds
+from hthor.catalog.priors import Triplet
+from hthor.errors import HthorError
+from hthor.tasks.generation import scene_graph
+from hthor.tasks.generation.difficulty import Level
+from hthor.tasks.kind import TaskKind
+from hthor.types import Goal, HouseSpec
+
+SCENES = ("alder", "birch", "cedar", "elder", "hazel", "juniper", "linden", "maple", "rowan", "willow")
+"""The ten scenes of the benchmark."""
+FIND, MOVE = "object_goal_navigation", "mobile_manipulation"
+ROBOTS = 4
+"""Starts for robots in every task, the first for the first robot."""
+
+
+class Order(Struct, frozen=True, kw_only=True):
+    """One task to be made. ``share`` [0, 1] says how hard it shall be, from an easy start to a hard one.
+
+    ``goal`` is None where the kind draws it itself. ``fixed`` is a triplet that must hold for the target, ``level`` the
+    stratum of difficulty that the task must be of, if any.
+    """
+
+    name: str
+    kind: str
+    share: float
+    goal: Goal | None = None
+    fixed: Triplet | None = None
+    level: Level | Literal[""] = ""
+
+
+class Plan(Struct, frozen=True, kw_only=True):
+    """A suite to be made in ``houses``, every draw from ``root``.
+
+    ``orders`` lists a house's tasks. ``robots`` is how many of them a task has starts for, ``looks`` how many
+    arrangements are compared for how hard they are. ``serial`` as
+    `hthor.tasks.generation.target_arrangement.arrange` has it. ``told`` says whether the tasks tell how difficult
+    they are. ``redrawn`` says how often a task was drawn again, because ``hthor tasks check`` found that nobody can
+    do it: in the real world small things hide the target, or the way takes too long.
+    """
+
+    name: str
+    version: int
+    root: int
+    houses: tuple[str, ...]
+    orders: Callable[[Plan, HouseSpec], list[Order]]
+    robots: int = ROBOTS
+    looks: int = 2
+    serial: bool = False
+    told: bool = True
+    redrawn: tuple[tuple[str, int], ...] = ()
+
+
+def counted(*counts: tuple[str, int]) -> Callable[[Plan, HouseSpec], list[Order]]:
+    """So many tasks of each kind in a house, the kinds spread evenly over the list."""
+
+    def orders(plan: Plan, house: HouseSpec) -> list[Order]:
+        shelves: list[tuple[float, int, Order]] = []
+        shift = (seeds.draw(plan.root, house.id, "shift") - 0.5) / max(count for _, count in counts)
+        for rank, (name, count) in enumerate(counts):
+            kind: TaskKind = plugins.load("task kind", name)
+            goals = _goals(kind, house, count, seeds.derive(plan.root, house.id, name))
+            levels = seeds.shuffled(count, plan.root, house.id, name, "levels")
+            for number, goal in enumerate(goals):
+                task = f"{plan.name}/{house.id}/{kind.short}-{number + 1:02d}"
+                order = Order(name=task, kind=name, share=(levels[number] + 0.5) / count, goal=goal)
+                shelves.append(((number + 0.5) / count + rank * shift, rank, order))
+        return [order for _, _, order in sorted(shelves, key=lambda shelf: shelf[:2])]
+
+    return orders
+
+
+def drawn(kind: str, count: int) -> Callable[[Plan, HouseSpec], list[Order]]:
+    """So many tasks in a house of a kind that draws its goals with their objects."""
+
+    def orders(plan: Plan, house: HouseSpec) -> list[Order]:
+        names = [f"{plan.name}/{house.id}/{number + 1:02d}" for number in range(count)]
+        return [Order(name=name, kind=kind, share=seeds.draw(plan.root, name, "share")) for name in names]
+
+    return orders
+
+
+def levelled(kind: str, *hands: tuple[tuple[Level, float], ...]) -> Callable[[Plan, HouseSpec], list[Order]]:
+    """A house's tasks of one kind, each of a given stratum of difficulty, in an order of its own.
+
+    Args:
+        hands: strata and shares (as `Order.share`) of a house's tasks: of the first house, the second, and over again.
+    """
+
+    def orders(plan: Plan, house: HouseSpec) -> list[Order]:
+        made: TaskKind = plugins.load("task kind", kind)
+        hand = hands[plan.houses.index(house.id) % len(hands)]
+        goals = _goals(made, house, len(hand), seeds.derive(plan.root, house.id, kind))
+        rows = [hand[place] for place in seeds.shuffled(len(hand), plan.root, house.id, "levels")]
+        stem = f"{plan.name}/{house.id}/{made.short}"
+        return [
+            Order(name=f"{stem}-{number:02d}", kind=kind, share=share, goal=goal, level=row)
+            for number, (goal, (row, share)) in enumerate(zip(goals, rows, strict=True), 1)
+        ]
+
+    return orders
+
+
+def each_triplet(plan: Plan, house: HouseSpec) -> list[Order]:
+    """A search for each target in each way in which the house can have it."""
+    kinds = scene_graph.present(house)
+    return [
+        _exact(plan, house, FIND, Goal(target=target, relation="find"), row, scene_graph.words(row))
+        for target in catalog.TARGETS
+        for row in scene_graph.applicable(target, kinds)
+    ]
+
+
+def each_template(plan: Plan, house: HouseSpec) -> list[Order]:
+    """Each template from each place where its target can be, but for the place where it is to go."""
+    kind: TaskKind = plugins.load("task kind", MOVE)
+    kinds = scene_graph.present(house)
+    return [
+        _exact(plan, house, kind.name, goal, row, _delivery(goal, row))
+        for goal in kind.goals(house)
+        for row in scene_graph.applicable(goal.target, kinds)
+        if (row.relation, row.reference) != (goal.relation, goal.destination)
+    ]
+
+
+def _exact(plan: Plan, house: HouseSpec, kind: str, goal: Goal, row: Triplet, words: str) -> Order:
+    name = f"{plan.name}/{house.id}/{words}"
+    return Order(name=name, kind=kind, share=seeds.draw(plan.root, name, "share"), goal=goal, fixed=row)
+
+
+def _delivery(goal: Goal, row: Triplet) -> str:
+    return f"{goal.target}-to-{goal.destination}/{row.relation}-{row.reference}"
+
+
+def _goals(kind: TaskKind, house: HouseSpec, count: int, root: int) -> list[Goal]:
+    """As many goals as wanted, each of the benchmark's once before any comes again, no target twice running."""
+    known = kind.goals(house)
+    if not known:
+        raise HthorError(f"house '{house.id}' has nothing for a task of kind '{kind.name}'")
+    order: list[Goal] = []
+    for lap in range(math.ceil(count / len(known))):
+        order += [known[index] for index in seeds.shuffled(len(known), root, "goals", lap)]
+    return order[:count]
+
+
+_EASY: tuple[tuple[Level, float], ...] = (("easy", 0.05), ("easy", 0.15))
+PLANS = {
+    plan.name: plan
+    for plan in (
+        Plan(
+            name="smoke",
+            version=4,
+            root=20240608,
+            houses=SCENES,
+            orders=counted((FIND, 2), (MOVE, 4)),
+            robots=2,
+            looks=6,
+            serial=True,
+            told=False,
+        ),
+        Plan(
+            name="paper",
+            version=2,
+            root=20240611,
+            houses=SCENES,
+            orders=levelled(MOVE, (*_EASY, ("medium", 0.25)), (*_EASY, ("hard", 0.6))),
+            looks=6,
+        ),
+        Plan(
+            name="navigation",
+            version=2,
+            root=20240609,
+            houses=SCENES,
+            orders=each_triplet,
+            redrawn=(
+                ("navigation/elder/remote_control-on-sofa", 1),
+                ("navigation/hazel/book-on-sofa", 1),
+                ("navigation/juniper/remote_control-on-sofa", 1),
+            ),
+        ),
+        Plan(
+            name="manipulation",
+            version=2,
+            root=20240610,
+            houses=SCENES,
+            orders=each_template,
+            redrawn=(("manipulation/birch/tomato-to-fridge/near-apple", 1),),
+        ),
+        Plan(name="collect", version=1, root=20240612, houses=SCENES, orders=drawn("multi_robot_collection", 2)),
+        Plan(name="rearrange", version=1, root=20240613, houses=SCENES, orders=drawn("room_rearrangement", 2)),
+        Plan(name="tidy", version=1, root=20240614, houses=SCENES, orders=drawn("tidying_up", 2)),
+        Plan(name="carry", version=1, root=20240615, houses=SCENES, orders=drawn("collaborative_carrying", 2)),
+    )
+}
+"""The suites that are made here, by name."""

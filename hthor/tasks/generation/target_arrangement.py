@@ -1,0 +1,123 @@
+"""Spreading the six targets over a house as the scene priors say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import msgspec
+
+from hthor import catalog, seeds
+from hthor.catalog.priors import Triplet
+from hthor.errors import HthorError
+from hthor.tasks.generation import fallback_placement, scene_graph
+from hthor.tasks.generation.placement import NEAR_M
+from hthor.tasks.generation.relation_placement import TRIES, Wish, find
+from hthor.types import HouseSpec, Placement
+
+CODE_PART = "tools"
+
+_MOST_TRIES = 2000
+"""Poses that are tried for a relation that a task is about."""
+_GRAPHS = 40
+"""Scene graphs that are tried before a relation counts as impossible."""
+
+__all__ = ["NEAR_M", "arrange"]
+
+
+def arrange(
+    house: HouseSpec,
+    root: int,
+    bans: Mapping[str, str] | None = None,
+    *,
+    fixed: Triplet | None = None,
+    serial: bool = False,
+) -> tuple[Placement, ...]:
+    """A placement for each target, in the catalogue's order, and for what a task brings along.
+
+    A scene graph is drawn by the priors' weights among the triplets whose reference the house or the task has; then for
+    each relation a pose that rests exactly on a surface, touches nothing, and can be reached and seen by the person's
+    avatar, the fridge's door being open. What is near something is in the same room. Where a relation has no such pose,
+    that target's is drawn again, unless it is ``fixed``: then the whole graph is, but where no graph helps because of
+    what is banned, see `hthor.tasks.generation.fallback_placement`.
+
+    Args:
+        house: the floor plan.
+        root: of all draws.
+        bans: for a target, the kind of thing that it must not rest on or in.
+        fixed: a triplet that must hold.
+        serial: draw one target after the other, with what is placed by then as the targets to be near to, which makes
+            that rarer than the priors say, through walls too, and record nothing of it: the manner of ``smoke``.
+
+    Raises:
+        HthorError: when a target fits nowhere, or ``fixed`` cannot be.
+    """
+    bans = bans or {}
+    if serial:
+        return _in_order(_serial(house, root, bans))
+    for attempt in range(_GRAPHS):
+        done = _spread(house, seeds.derive(root, "graph", attempt), bans, fixed)
+        if done is not None:
+            return _in_order(done)
+    what = "some target" if fixed is None else f"'{scene_graph.words(fixed)}'"
+    raise HthorError(f"house '{house.id}' has no place for {what}: it needs a free surface within reach")
+
+
+def _in_order(done: Sequence[Placement]) -> tuple[Placement, ...]:
+    names = [*catalog.TARGETS, *(placement.id for placement in done)]
+    return tuple(sorted(done, key=lambda placement: names.index(placement.id)))
+
+
+def _serial(house: HouseSpec, root: int, bans: Mapping[str, str]) -> list[Placement]:
+    kinds, done = {thing.kind for thing in house.things}, list[Placement]()
+    for number in seeds.shuffled(len(catalog.TARGETS), root, "order"):
+        target = catalog.TARGETS[number]
+        own, there = seeds.derive(root, target), kinds | {placement.kind for placement in done}
+        wishes = (
+            Wish(row=row, ban=bans.get(target, ""), careful=False) for row in scene_graph.draws(target, there, own)
+        )
+        spots = (find(house, own, wish, done) for wish in wishes)
+        spot = next((spot for spot in spots if spot is not None), None)
+        if spot is None:
+            raise HthorError(f"house '{house.id}' has no place for the {target}: it needs a free surface within reach")
+        done.append(msgspec.structs.replace(spot, near=""))
+    return done
+
+
+def _spread(house: HouseSpec, root: int, bans: Mapping[str, str], fixed: Triplet | None) -> list[Placement] | None:
+    """All targets by one scene graph, None where a target has no place."""
+    kinds = scene_graph.present(house)
+    if not all(scene_graph.applicable(target, kinds) for target in catalog.TARGETS):
+        return None
+    wanted = scene_graph.sample(kinds, root, fixed)
+    done: list[Placement] = []
+    for target in scene_graph.order(wanted, root):
+        own, ban = seeds.derive(root, target), bans.get(target, "")
+        waiting = tuple(one.id for one in done if one.id in wanted and _waits(wanted[one.id], one, target))
+        rows = [fixed] if fixed is not None and target == fixed.target else list(scene_graph.draws(target, kinds, own))
+        for row in rows:
+            wish = Wish(row=row, ban=ban, waiting=waiting, tries=_MOST_TRIES if row is fixed else TRIES)
+            spot = find(house, own, wish, done, first=row is wanted[target])
+            spots = (spot,) if spot is not None else _makeshift(house, own, wish, done) if row is fixed else ()
+            if spots:
+                break
+        else:
+            return None
+        wanted[target] = row
+        done = [msgspec.structs.replace(one, near=target) if one.id in waiting else one for one in done]
+        done += spots
+    return done
+
+
+def _makeshift(house: HouseSpec, root: int, wish: Wish, done: Sequence[Placement]) -> tuple[Placement, ...]:
+    """What helps where the house's own surfaces do not because some are banned; () where nothing does."""
+    if not wish.ban or wish.row.reference in catalog.TARGETS:
+        return ()
+    both = fallback_placement.on_brought(house, root, wish, done)
+    if both is not None:
+        return both
+    spot = fallback_placement.on_floor(house, root, wish, done)
+    return () if spot is None else (spot,)
+
+
+def _waits(row: Triplet, placement: Placement, target: str) -> bool:
+    return row.relation == "near" and row.reference == target and not placement.near

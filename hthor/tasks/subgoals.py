@@ -1,0 +1,202 @@
+"""Kinds of task whose goal is a list of jobs, `Goal.jobs`: when a job is done, and the least time.
+
+A job is done when its object is in nobody's hands and rests where one of its ``destinations`` says: on or in the thing
+of that id, on or in a thing of that kind, or in the room of that id; and, where ``place`` says where exactly, within
+`PLACE_M` of it on the plan, or `TOGETHER_M` for what it takes several to carry.
+
+T* of a team is a time that no team can beat, whoever is in it and wherever its robots start: that of the longest job,
+done by somebody who happens to stand next to its object. It is a walk at `rules.PACE_M_S` along the shortest path of
+the avatar from a cell within the avatar's reach of the object to one within reach of the nearest thing that will do
+(into the room that will do), less the slack of the grid, plus `rules.HANDLING_S` each to pick, to place, and to open
+what the object lies shut in. Several who carry something go at `rules.HANDLE_PACE` of that pace. All other jobs are
+done meanwhile. From where the person cannot walk to every object, T* is infinite.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from abc import abstractmethod
+from collections.abc import Collection, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hthor import catalog, houses, rules
+from hthor.geometry import plane
+from hthor.tasks.generation.avatar import REACH_M
+from hthor.tasks.generation.reachability import SLACK_M, Bools, Ground, Walk
+from hthor.tasks.kind import LeastTimes, TaskKind
+from hthor.types import Goal, HouseSpec, Job, Placement, Snapshot, TaskSpec, Thing, ThingState, Vec2, Vec3
+
+PLACE_M = 0.30
+"""How far an object may lie from where exactly it belongs. A hand puts things on the free spot nearest to the one that
+is wanted, and a person remembers a spot to within about 0.1 m; but the other end of the same table is not the place."""
+TOGETHER_M = 0.75
+"""The same for what several carry: it follows its leader like a trailer, and is put down where it hangs."""
+
+
+class JobKind(TaskKind):
+    """A kind whose goal is to do all of a list of jobs, in any order. A kind of this sort says how a task is drawn.
+
+    Progress counts the jobs that are left: of those not done at the start, the share that is done, and a job that was
+    done and has been undone takes one away again, down to none. The goal is met when none is left.
+    """
+
+    @abstractmethod
+    def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]: ...
+
+    def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
+        """One of the many that can be drawn, where they cannot be told without the objects."""
+        return (self.draw(house, 0)[0],)
+
+    def objection(self, goal: Goal, house: HouseSpec) -> str:
+        if not goal.jobs:
+            return f"has no jobs; a task of kind '{self.name}' is a list of them"
+        first = goal.jobs[0]
+        if (goal.target, goal.relation) != (first.target, first.relation):
+            return f"target '{goal.target}' and relation '{goal.relation}' are not those of the first job"
+        if len({job.target for job in goal.jobs}) < len(goal.jobs):
+            return "has two jobs about the same object; one for each is allowed"
+        return next((f"jobs[{n}] {text}" for n, job in enumerate(goal.jobs) if (text := impossible(job, house))), "")
+
+    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> bool:
+        home = house or houses.load(task.house)
+        return all(is_done(job, snapshot.things.get(job.target), home) for job in task.goal.jobs)
+
+    def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
+        return not left(goal, objects, house)
+
+    def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> float:
+        home = house or houses.load(task.house)
+        first = len(left(task.goal, task.objects, home))
+        now = sum(1 for job in task.goal.jobs if not is_done(job, snapshot.things.get(job.target), home))
+        return max(0.0, (first - now) / first) if first else float(not now)
+
+    def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
+        ground = Ground.of(house)
+        there = {placement.id: placement for placement in objects}
+        todo = left(goal, objects, house)
+        longest = max((carrying_time(house, there[job.target], job) for job in todo), default=0.0)
+        walks = [ground.walk([ground.touching(there[job.target])]) for job in todo]
+
+        def times(starts: Any) -> NDArray[np.float64]:
+            places = np.asarray(starts, dtype=float).reshape(-1, 2)
+            reached = np.all([np.isfinite(walk.lengths(places)) for walk in walks], axis=0)
+            return np.where(reached, longest, np.inf)
+
+        return times
+
+
+def is_done(job: Job, state: ThingState | None, house: HouseSpec) -> bool:
+    """Whether the object rests where it belongs, in nobody's hands; a search is never done."""
+    if state is None or state.held_by or state.bearers or job.relation == "find":
+        return False
+    spare = TOGETHER_M if job.hands > 1 else PLACE_M
+    if job.place is not None and math.dist(state.position[:2], job.place[:2]) > spare:
+        return False
+    if not job.destinations:
+        return job.place is not None
+    if job.relation == "at":
+        return any(_indoors(state, room, house) for room in job.destinations)
+    return state.support in job.destinations or _kind_of(state.support, house) in job.destinations
+
+
+def left(goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> tuple[Job, ...]:
+    """The jobs that the arrangement leaves to be done."""
+    lying = {
+        one.id: ThingState(id=one.id, kind=one.kind, position=one.position, support=one.support) for one in objects
+    }
+    return tuple(job for job in goal.todo if not is_done(job, lying.get(job.target), house))
+
+
+def _state(placement: Placement) -> ThingState:
+    return ThingState(id=placement.id, kind=placement.kind, position=placement.position, support=placement.support)
+
+
+def bearers(destinations: Collection[str], house: HouseSpec) -> tuple[Thing, ...]:
+    """The things of the house with these ids, or of these kinds."""
+    wanted = frozenset(destinations)
+    return tuple(thing for thing in house.things if thing.id in wanted or thing.kind in wanted)
+
+
+def impossible(job: Job, house: HouseSpec) -> str:
+    """Why no arrangement of the house can do the job, empty when one can."""
+    rooms = {room.id: room for room in house.rooms}
+    if job.relation == "at":
+        valid = set(rooms)
+    else:
+        things = [thing for thing in house.things if catalog.kind(thing.kind).receptacle]
+        valid = {thing.id for thing in things} | {thing.kind for thing in things}
+    # One of several that will do has to be there; a kind that this house lacks does no harm.
+    if job.destinations and not valid.intersection(job.destinations):
+        return f"has destinations {', '.join(job.destinations)}; the house has {', '.join(sorted(valid))}"
+    if job.place is not None and not any(plane.inside(job.place[:2], room.polygon) for room in house.rooms):
+        return f"has a place in no room: {job.place}"
+    if not job.destinations and job.place is None and job.relation != "find":
+        return "has neither destinations nor a place"
+    return ""
+
+
+def carrying_time(house: HouseSpec, placement: Placement, job: Job) -> float:
+    """The least time [s] of one job for somebody who stands next to the object; inf when it cannot be done."""
+    lying = next((thing for thing in house.things if thing.id == placement.support), None)
+    shut = placement.relation == "in" and lying is not None and catalog.kind(lying.kind).hides
+    way, pace = carrying_way(house, placement, job), rules.PACE_M_S
+    if job.hands > 1:  # by a handle, from farther off; and it need not come all the way
+        way -= catalog.kind(placement.kind).size[0] + TOGETHER_M
+        pace *= rules.HANDLE_PACE
+    return max(way, 0.0) / pace + (2 + shut) * rules.HANDLING_S
+
+
+def carrying_way(house: HouseSpec, placement: Placement, job: Job) -> float:
+    """The least way [m], less the grid's slack, from within reach of the object to where it can be put down."""
+    ground = Ground.of(house)
+    near, (ends, walk) = ground.touching(placement), _way(house, job.relation, job.destinations, job.place)
+    if not (near.any() and ends.any()):
+        return math.inf
+    if (near & ends).any():
+        return 0.0
+    lengths = walk.lengths(ground.space.centres(_edge(near)))
+    return max(float(lengths.min()) - SLACK_M, 0.0)
+
+
+def _edge(mask: Bools) -> Bools:
+    """The cells of a mask that have a neighbour outside it."""
+    inner = mask[1:-1, 1:-1] & mask[:-2, 1:-1] & mask[2:, 1:-1] & mask[1:-1, :-2] & mask[1:-1, 2:]
+    out = mask.copy()
+    out[1:-1, 1:-1] &= ~inner
+    return out
+
+
+@functools.lru_cache(maxsize=64)
+def _way(house: HouseSpec, relation: str, destinations: tuple[str, ...], place: Vec3 | None) -> tuple[Bools, Walk]:
+    """Where whoever carries an object may stand when it is done, and the walk there."""
+    ground = Ground.of(house)
+    mask = np.zeros(ground.space.free.shape, dtype=bool)
+    if relation == "at" and place is not None:
+        mask |= ground.touching(Placement(id="", kind="", position=place))
+    elif relation == "at":
+        rooms = [room.polygon for room in house.rooms if room.id in destinations]
+        free = ground.space.free
+        mask[free] = [_within(REACH_M, (x, y), rooms) for x, y in ground.space.centres(free)]
+    else:
+        for thing in bearers(destinations, house):
+            mask |= ground.beside(thing)
+    return mask, ground.walk([mask])
+
+
+def _within(reach: float, point: Vec2, polygons: Sequence[Sequence[Vec2]]) -> bool:
+    return any(plane.inside(point, one) or plane.distance_to_edge(point, one) <= reach for one in polygons)
+
+
+def _indoors(state: ThingState, room: str, house: HouseSpec) -> bool:
+    return any(one.id == room and plane.inside(state.position[:2], one.polygon) for one in house.rooms)
+
+
+def _kind_of(thing_id: str, house: HouseSpec) -> str:
+    for thing in house.things if thing_id else ():
+        if thing.id == thing_id:
+            return thing.kind
+    return ""

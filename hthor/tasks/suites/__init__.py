@@ -1,0 +1,1 @@
+"""Suites of tasks: those that ship, secret ones, and one's own."""

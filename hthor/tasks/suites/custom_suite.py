@@ -1,0 +1,135 @@
+"""Suites of one's own: tasks of some kinds, drawn in a given house; plays nothing, and writes nothing.
+
+Equal recipes and houses give equal tasks.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import Literal
+
+import msgspec
+from msgspec import Struct
+
+from hthor import houses, plugins, seeds
+from hthor.errors import HthorError
+from hthor.tasks.generation import generate
+from hthor.tasks.generation.difficulty import Level
+from hthor.tasks.generation.suite_specs import FIND, MOVE, ROBOTS, Order, Plan, counted
+from hthor.tasks.suites import standard
+from hthor.types import Goal, HouseSpec, TaskSpec
+
+VERSION = 1
+"""Grows when the same recipe gives another suite."""
+SEARCHES = 0.26
+"""The share of searches where no kind is given, as in the suite ``standard``."""
+_ROOT = 4
+_LAPS = 10
+"""How often a task is drawn before its goal counts as hopeless in its house."""
+
+
+class Recipe(Struct, frozen=True, kw_only=True):
+    """What a suite is to be: its name, ``tasks`` in each house, of which ``kinds`` (by name; none: searches and
+    deliveries as in ``standard``), of which difficulty if any, every draw from ``seed``.
+    """
+
+    name: str
+    tasks: int
+    kinds: tuple[str, ...] = ()
+    difficulty: Level | Literal[""] = ""
+    seed: int = 0
+
+
+def in_house(recipe: Recipe, given: str, possible: Callable[[TaskSpec], bool] = lambda _: True) -> tuple[TaskSpec, ...]:
+    """The tasks of one house, no two of them alike; what is not ``possible`` is drawn again.
+
+    Raises:
+        HthorError: when the house has no room for so many.
+    """
+    house = houses.load(given)
+    orders = functools.partial(_orders, recipe)
+    plan = Plan(name=recipe.name, version=VERSION, root=seeds.derive(_ROOT, recipe.seed), houses=(), orders=orders)
+    made = _House(plan, house, possible)
+    for order in plan.orders(plan, house):
+        made.add(order)
+    return tuple(made.done)
+
+
+def _orders(recipe: Recipe, plan: Plan, house: HouseSpec) -> list[Order]:
+    """What is to be made in a house."""
+    rows: list[Order] = []
+    for kind, count in _counts(recipe):
+        if not count:
+            continue
+        if kind in (FIND, MOVE):
+            rows += counted((kind, count))(plan, house)
+            continue
+        short = plugins.load("task kind", kind).short
+        names = [f"{plan.name}/{house.id}/{short}-{number + 1:02d}" for number in range(count)]
+        rows += [Order(name=name, kind=kind, share=seeds.draw(plan.root, name, "share")) for name in names]
+    return [msgspec.structs.replace(row, level=recipe.difficulty) for row in rows]
+
+
+def _counts(recipe: Recipe) -> list[tuple[str, int]]:
+    """How many tasks of each kind a house has."""
+    if not recipe.kinds:
+        searches = round(SEARCHES * recipe.tasks)
+        return [(FIND, searches), (MOVE, recipe.tasks - searches)]
+    whole, rest = divmod(recipe.tasks, len(recipe.kinds))
+    return [(kind, whole + (number < rest)) for number, kind in enumerate(recipe.kinds)]
+
+
+class _House:
+    """One house's tasks, made one after the other."""
+
+    def __init__(self, plan: Plan, house: HouseSpec, possible: Callable[[TaskSpec], bool]) -> None:
+        self._plan, self._house, self._possible = plan, house, possible
+        self._hopeless: set[Goal] = set()
+        self.done: list[TaskSpec] = []
+
+    def add(self, order: Order) -> None:
+        """One more task. Where its goal cannot be met here, say for want of room on the desk, another one is taken.
+
+        Raises:
+            HthorError: when no goal gives a task.
+        """
+        reason = "no goal of its kind can be met here"
+        for goal in self._goals(order):
+            for lap in range(_LAPS):
+                try:
+                    made = self._made(order, goal, lap)
+                except HthorError as error:
+                    reason = str(error)
+                    continue
+                if any(standard.alike(made, other) for other in self.done):
+                    reason = "what was drawn is like an earlier task"
+                elif not self._possible(made):
+                    reason = "what was drawn cannot be done"
+                else:
+                    self.done.append(made)
+                    return
+            if goal is not None:
+                self._hopeless.add(goal)
+        named = f"house '{self._house.id}' has no room for another task like '{order.name}'"
+        raise HthorError(f"{named}: {reason}. Ask for fewer or for others.")
+
+    def _goals(self, order: Order) -> list[Goal | None]:
+        """The order's goal, then the others of its kind, without those that came to nothing before."""
+        if order.goal is None:
+            return [None]
+        known = plugins.load("task kind", order.kind).goals(self._house)
+        others = [known[number] for number in seeds.shuffled(len(known), self._plan.root, order.name, "others")]
+        return [goal for goal in dict.fromkeys((order.goal, *others)) if goal not in self._hopeless]
+
+    def _made(self, order: Order, goal: Goal | None, lap: int) -> TaskSpec:
+        return generate.task(
+            self._house,
+            plugins.load("task kind", order.kind),
+            goal,
+            seeds.derive(self._plan.root, "lap", lap) if lap else self._plan.root,
+            name=order.name,
+            share=order.share,
+            robots=ROBOTS,
+            level=order.level,
+        )

@@ -1,0 +1,68 @@
+"""Tasks like those of a suite that nobody can know: the same recipe with another root; plays nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import msgspec
+
+from hthor import houses, seeds
+from hthor.errors import HthorError, UnknownName
+from hthor.tasks.generation import generate
+from hthor.tasks.generation.suite_specs import PLANS, Plan
+from hthor.tasks.suites import library, standard
+from hthor.types import TaskSpec
+
+_VERSION = 1
+_LAPS = 50
+Possible = Callable[[Sequence[TaskSpec]], Sequence[bool]]
+"""Whether each of these tasks can be done."""
+
+
+def suite(name: str, root: int, count: int, possible: Possible) -> library.Suite:
+    """A suite of so many tasks by the recipe of one of hthor's own, which shares no draw with it.
+
+    The houses, the kinds of task and their shares, the goals and how hard tasks are aimed to be are the recipe's; what
+    lies where, and where everybody starts, is drawn anew. A task that cannot be done is drawn again.
+
+    Args:
+        name: of a suite of hthor's own. root: what everything is drawn from.
+
+    Raises:
+        UnknownName: when no recipe has that name.
+        HthorError: when the recipe does not give so many tasks.
+    """
+    plan = _plan(name)
+    again = msgspec.structs.replace(plan, root=seeds.derive(plan.root, "fresh", root), redrawn=())
+    made: dict[int, TaskSpec] = {}
+    for lap in range(_LAPS):
+        open_ = [number for number in range(count) if number not in made]
+        drafts = list(_drafts(again, open_, lap))
+        sound = possible([task for _, task in drafts])
+        made |= {number: task for (number, task), good in zip(drafts, sound, strict=True) if good}
+        if len(made) == count:
+            tasks = tuple(made[number] for number in sorted(made))
+            return library.frozen(f"{name}-fresh", _VERSION, tasks)
+    missing = f"{count - len(made)} of {count} fresh tasks like those of '{name}'"
+    raise HthorError(f"{missing} could not be drawn; ask for fewer")
+
+
+def _plan(name: str) -> Plan:
+    plans = {**PLANS, standard.PLAN.name: standard.PLAN}
+    if name not in plans:
+        raise UnknownName("recipe of tasks", name, tuple(sorted(plans)))
+    return plans[name]
+
+
+def _drafts(plan: Plan, numbers: Sequence[int], lap: int) -> Iterator[tuple[int, TaskSpec]]:
+    """A task for each of these numbers, as far as its house takes one: of as many houses and orders as there are."""
+    shelves = [(house, order) for house in plan.houses for order in plan.orders(plan, houses.load(house))]
+    order_of = seeds.shuffled(len(shelves), plan.root, "orders")
+    for number in numbers:
+        house, order = shelves[order_of[number % len(shelves)]]
+        own = msgspec.structs.replace(plan, root=seeds.derive(plan.root, "task", number, lap))
+        try:
+            task = generate.ordered(own, houses.load(house), order)
+        except HthorError:
+            continue
+        yield number, msgspec.structs.replace(task, id=f"fresh/{number:04d}")

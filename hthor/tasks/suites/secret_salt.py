@@ -1,0 +1,118 @@
+"""A secret salt: made, read, judged, committed to and turned into roots.
+
+The commitment is SHA-256 over a name of its own and the salt: nobody finds a salt of 128 bits or more from it, and
+nobody finds a second salt with the same commitment. What is drawn comes from HMAC-SHA256 with the salt as the key, 128
+bits a purpose: whoever knows one root, or all that came of it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import math
+import os
+import secrets
+import stat
+import zlib
+from collections import Counter
+from pathlib import Path
+
+from hthor import jsonio
+from hthor.errors import HthorError
+from hthor.seeds import Name
+
+LEAST_CHARACTERS, LEAST_BITS = 32, 128
+_COMMITTED, _DRAWN = b"hthor.commitment/1\0", b"hthor.root/1\0"
+_FRAME = 8
+"""Bytes that zlib adds to what it packs."""
+
+
+class Salt:
+    """A secret text. It is shown by nothing but `reveal`: not when printed, and not in a traceback."""
+
+    __slots__ = ("_bytes",)
+
+    def __init__(self, text: str) -> None:
+        """Take a salt as it is, without judging it; `read` judges."""
+        self._bytes = text.encode("ascii")
+
+    def __repr__(self) -> str:
+        return "Salt(hidden)"
+
+    def __reduce__(self) -> tuple[object, ...]:
+        raise TypeError("a salt stays in the process that read it; pass on the roots that are drawn from it")
+
+    def commitment(self) -> str:
+        """What may be published now, 64 hexadecimal digits: it fixes the salt and does not tell it."""
+        return hashlib.sha256(_COMMITTED + self._bytes).hexdigest()
+
+    def root(self, *purpose: Name) -> int:
+        """A root for the draws of one purpose, 128 bits, as `hthor.seeds` takes it."""
+        return int.from_bytes(self._mac(purpose)[:16], "little", signed=True)
+
+    def word(self, digits: int, *purpose: Name) -> str:
+        """So many hexadecimal digits for one purpose: an id that tells nothing."""
+        return self._mac(purpose).hex()[:digits]
+
+    def reveal(self) -> str:
+        """The salt itself, for the day when it is published."""
+        return self._bytes.decode("ascii")
+
+    def _mac(self, purpose: tuple[Name, ...]) -> bytes:
+        return hmac.digest(self._bytes, _DRAWN + jsonio.canonical(purpose), "sha256")
+
+
+def fresh(path: Path) -> None:
+    """Write a new salt of 256 bits to a file that only its owner can read.
+
+    Raises:
+        HthorError: when there is such a file already; a salt that something was made of must not be lost.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    except FileExistsError:
+        raise HthorError(f"{path} is there already, and a salt is never written over. Choose another name.") from None
+    with os.fdopen(handle, "w", encoding="ascii") as file:
+        file.write(secrets.token_hex(32) + "\n")
+
+
+def read(path: Path) -> Salt:
+    """The salt in a file: its text, without the white space around it.
+
+    Raises:
+        HthorError: when the file cannot be read, or what it holds could be guessed; the salt is never part of the
+            message.
+    """
+    advice = "'hthor suite salt --out FILE' makes a good one."
+    try:
+        text = path.read_text(encoding="ascii").strip()
+    except UnicodeDecodeError:
+        raise HthorError(f"{path}: a salt is plain ASCII text, this is not. {advice}") from None
+    except OSError as error:
+        raise HthorError(f"{path}: the salt cannot be read: {error.strerror}. {advice}") from None
+    if not text.isprintable():
+        raise HthorError(f"{path}: a salt is one line of text, this is more than one. {advice}")
+    if len(text) < LEAST_CHARACTERS:
+        problem = f"the salt has {len(text)} characters, at least {LEAST_CHARACTERS} are needed"
+        raise HthorError(f"{path}: {problem}: a short one can be found by trying. {advice}")
+    if bits(text) < LEAST_BITS:
+        problem = f"the salt looks as if it held {bits(text):.0f} bits, at least {LEAST_BITS} are needed"
+        raise HthorError(f"{path}: {problem}: what repeats itself or is a simple word can be found by trying. {advice}")
+    return Salt(text)
+
+
+def bits(text: str) -> float:
+    """How much a text seems to hold [bit], by its letters' frequencies and by how far it can be packed.
+
+    It finds blunders, such as one letter repeated; it cannot tell a line of a poem from a draw of lots.
+    """
+    data = text.encode("ascii")
+    letters = -sum(count * math.log2(count / len(data)) for count in Counter(data).values())
+    packed = 8.0 * max(len(zlib.compress(data, 9)) - _FRAME, 0)
+    return min(letters, packed)
+
+
+def exposed(path: Path) -> bool:
+    """Whether others than the owner can read the file."""
+    return bool(path.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH))

@@ -1,0 +1,240 @@
+"""Suites from a secret salt, in houses that nobody has seen.
+
+Everything comes of the salt and the suite's name: each house of a root of its own, its tasks of another, and the ids of
+both are words that tell nothing. So the same salt gives the same bytes, and one house tells nothing of the next.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import re
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from msgspec import Struct
+
+from hthor import houses, jsonio
+from hthor.errors import HthorError, TaskError
+from hthor.houses import generator, loader
+from hthor.houses.checks.findings import Finding
+from hthor.houses.generator import attempt
+from hthor.houses.generator.attempt import Flaw
+from hthor.houses.generator.draws import Dice
+from hthor.houses.generator.floorplan.room_specs import choose
+from hthor.houses.generator.furnishing.requirements import wants
+from hthor.tasks.generation.suite_specs import Plan, counted
+from hthor.tasks.suites import commitment, library, standard
+from hthor.tasks.suites.commitment import COMMITMENT, Commitment
+from hthor.tasks.suites.secret_salt import Salt
+from hthor.types import HouseSpec, TaskSpec
+
+VERSION = 1
+"""Grows when the same salt gives another suite."""
+SUITE = "suite.json"
+ROOMS = (4, 5, 5, 4, 6, 4, 5, 7, 6, 5)
+"""Rooms of the first ten houses, and of every ten after them: as many of each size as among the scenes."""
+SEARCHES = 0.26
+"""The share of searches among the tasks of a house, as in the suite ``standard``."""
+_TRIES = 40
+
+
+class Order(Struct, frozen=True, kw_only=True):
+    """What a suite is to be: its name, how many houses, and how many tasks over all of them."""
+
+    name: str
+    houses: int
+    tasks: int
+
+
+Each = Callable[[Callable[["Lot"], "Part"], Iterable["Lot"]], Iterable["Part"]]
+"""Does something to each, in order, as `map` does: in this process or in several."""
+
+
+class Proof(Struct, frozen=True, kw_only=True):
+    """Who judges what is drawn. ``house`` tells what is wrong with one, errors among it when it is not one to live in;
+    ``task`` whether one can be done, its house being found by name.
+    """
+
+    house: Callable[[HouseSpec], Sequence[Finding]]
+    task: Callable[[TaskSpec], bool]
+
+
+class Lot(Struct, frozen=True, kw_only=True):
+    """One house to be made: its opaque id, roots to try for it and for its tasks, and how many tasks of each kind."""
+
+    suite: str
+    house: str
+    rooms: int
+    roots: tuple[tuple[int, int], ...]
+    counts: tuple[tuple[str, int], ...]
+
+
+class Part(Struct, frozen=True, kw_only=True):
+    """One house that was made: its file and its tasks."""
+
+    house: str
+    file: bytes
+    tasks: tuple[TaskSpec, ...]
+
+
+def write(order: Order, salt: Salt, folder: Path, files: Mapping[str, bytes], made_with: Mapping[str, str]) -> Path:
+    """Write a suite's files to its folder, and the commitment to them and to the salt; gives the commitment's path."""
+    for path, data in files.items():
+        jsonio.write(folder / path, data)
+    jsonio.write(folder / COMMITMENT, jsonio.pretty(committed(order, salt, files, made_with)))
+    return folder / COMMITMENT
+
+
+def committed(order: Order, salt: Salt, files: Mapping[str, bytes], made_with: Mapping[str, str]) -> Commitment:
+    """The commitment to a suite's files and salt."""
+    return Commitment(
+        name=order.name,
+        salt=salt.commitment(),
+        houses=order.houses,
+        tasks=order.tasks,
+        suite_sha256=msgspec.json.decode(files[SUITE], type=library.Suite).sha256,
+        files=commitment.hashes(files),
+        made_with={"houses": str(generator.VERSION), "official": str(VERSION), **made_with},
+    )
+
+
+def files(order: Order, salt: Salt, proof: Proof, each: Each = map) -> dict[str, bytes]:
+    """The files of a suite by their path in its folder: ``suite.json`` and ``houses/*.json``.
+
+    Raises:
+        HthorError: when the order is none that can be met.
+    """
+    parts = list(each(functools.partial(part, proof=proof), lots(order, salt)))
+    columns = [[_named(task, order, salt, number) for number, task in enumerate(one.tasks)] for one in parts]
+    suite = library.frozen(order.name, VERSION, tuple(standard.in_turn(columns)))
+    return {SUITE: library.encode(suite), **{f"houses/{one.house}.json": one.file for one in parts}}
+
+
+def lots(order: Order, salt: Salt) -> tuple[Lot, ...]:
+    """What is to be made for an order, with all that is drawn from the salt.
+
+    Raises:
+        HthorError: when the order cannot be met.
+    """
+    _check(order)
+    found = []
+    for number in range(order.houses):
+        tasks = order.tasks // order.houses + (number < order.tasks % order.houses)
+        searches = round(SEARCHES * tasks)
+        counts = (("object_goal_navigation", searches), ("mobile_manipulation", tasks - searches))
+        names = [(order.name, sort, number) for sort in ("house", "tasks")]
+        found.append(
+            Lot(
+                suite=order.name,
+                house="h" + salt.word(12, order.name, "house id", number),
+                rooms=ROOMS[number % len(ROOMS)],
+                roots=tuple((salt.root(*names[0], lap), salt.root(*names[1], lap)) for lap in range(_TRIES)),
+                counts=tuple((kind, count) for kind, count in counts if count),
+            )
+        )
+    return tuple(found)
+
+
+def part(lot: Lot, proof: Proof) -> Part:
+    """One house and its tasks: of the first root that gives a sound house with room for all of them.
+
+    Raises:
+        HthorError: when no root does.
+    """
+    problem = ""
+    for house_root, tasks_root in lot.roots:
+        try:
+            file = jsonio.pretty(_document(lot.rooms, Dice(house_root)))
+            house = loader.build(msgspec.json.decode(file), lot.house)
+            if flaw := next((str(finding) for finding in proof.house(house) if finding.severity == "error"), ""):
+                raise HthorError(flaw)
+            plan = Plan(name=lot.suite, version=VERSION, root=tasks_root, houses=(), orders=counted(*lot.counts))
+            with _shelved(lot.house, file):
+                tasks = tuple(standard.in_house(plan, house, "new", proof.task))
+            return Part(house=lot.house, file=file, tasks=tasks)
+        except (Flaw, HthorError) as error:
+            problem = str(error)
+    raise HthorError(f"no house of {lot.rooms} rooms came of {len(lot.roots)} roots; of the last: {problem}")
+
+
+@contextmanager
+def _shelved(name: str, file: bytes) -> Iterator[None]:
+    """Let a house be found by name for as long as its tasks are judged."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / f"{name}.json").write_bytes(file)
+        houses.shelve(Path(folder))
+        yield
+
+
+def _document(rooms: int, dice: Dice) -> dict[str, Any]:
+    """A house file's document, which tells the generator's version and not what it was made from."""
+    return attempt.build(choose(rooms, dice, None), wants(None, dice.of("wants")), dice, {"version": generator.VERSION})
+
+
+def differences(
+    folder: Path, held: Commitment, salt: Salt, proof: Proof, each: Each = map
+) -> Iterator[tuple[str, str]]:
+    """What in a suite's folder is not what the salt gives: pairs of a file and a problem. Everything is made again."""
+    if salt.commitment() != held.salt:
+        yield COMMITMENT, f"commits to another salt: {held.salt[:10]}..., this one's is {salt.commitment()[:10]}..."
+        return
+    made = files(Order(name=held.name, houses=held.houses, tasks=held.tasks), salt, proof, each)
+    digests = commitment.hashes(made)
+    for path in sorted(digests.keys() | held.files.keys()):
+        there = (folder / path).read_bytes() if (folder / path).is_file() else b""
+        if path not in held.files:
+            yield path, "comes of the salt, and is not in the commitment"
+        elif path not in made:
+            yield path, "is in the commitment, and does not come of the salt"
+        elif digests[path] != held.files[path]:
+            yield path, "comes out otherwise than it was committed to" + (_first(there, made[path]) if there else "")
+    suite = msgspec.json.decode(made[SUITE], type=library.Suite).sha256
+    if suite != held.suite_sha256:
+        yield COMMITMENT, f"suite_sha256 is {held.suite_sha256[:10]}..., the salt gives {suite[:10]}..."
+
+
+def _first(there: bytes, made: bytes) -> str:
+    """Where two files part."""
+    lines = itertools.zip_longest(there.splitlines(), made.splitlines())
+    number = next((number for number, (one, two) in enumerate(lines, 1) if one != two), 0)
+    return f": line {number} is the first that differs" if number else ""
+
+
+def _named(task: TaskSpec, order: Order, salt: Salt, number: int) -> TaskSpec:
+    """The task under an id that tells nothing, not even its kind or its place among the others."""
+    word = salt.word(12, order.name, "task id", task.house, number)
+    return msgspec.structs.replace(task, id=f"{order.name}/{task.house}/{word}")
+
+
+def _check(order: Order) -> None:
+    if not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,40}", order.name):
+        valid = "small letters, digits and hyphens, at most 41"
+        raise HthorError(f"'{order.name}' cannot be a suite's name; valid: {valid}, such as official-2027a.")
+    if order.houses < 1 or order.tasks < order.houses:
+        problem = f"{order.tasks} tasks in {order.houses} houses"
+        raise HthorError(f"a suite needs a house or more and a task or more in each; asked for: {problem}.")
+
+
+def unused(name: str) -> None:
+    """See that no suite of hthor's own has the name.
+
+    Raises:
+        HthorError: when one has.
+    """
+    if name in library.suites():
+        raise HthorError(f"'{name}' is a suite of hthor's own; choose another name, such as official-2027a.")
+
+
+def beside(path: Path, folder: Path) -> None:
+    """See that a salt does not lie in the folder that will be published.
+
+    Raises:
+        TaskError: when it does.
+    """
+    if path.resolve().is_relative_to(folder.resolve()):
+        raise TaskError(str(path), "$", f"the salt lies in {folder}, which will be published; keep it elsewhere")

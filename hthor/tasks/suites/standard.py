@@ -1,0 +1,130 @@
+"""The suite ``standard``: 2000 tasks in the ten scenes and ten houses beside them.
+
+``python -m hthor.tasks.suites.standard`` writes ``suites/standard.json`` anew, byte for byte the same as long as
+the houses, the catalogue, the rules and the makers of tasks are. An argument names another file to write.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Literal
+
+from hthor import houses, jsonio, plugins, seeds
+from hthor.errors import HthorError
+from hthor.tasks.generation import generate
+from hthor.tasks.generation.suite_specs import SCENES, Plan, counted
+from hthor.tasks.suites import library
+from hthor.tasks.validate import validate
+from hthor.types import HouseSpec, Placement, TaskSpec
+
+UNSEEN = ("aspen", "beech", "cherry", "fir", "holly", "larch", "oak", "pine", "spruce", "yew")
+"""The ten houses that are not among the scenes."""
+ALIKE_M = 1.0
+"""Tasks with the same goal and the same place of the target differ when the person starts this far away."""
+_LAPS = 50
+REDRAWN = {
+    "standard/maple/navigation-12": 1,
+    "standard/spruce/manipulation-17": 1,
+    "standard/spruce/manipulation-26": 1,
+    "standard/willow/manipulation-72": 1,
+}
+"""How many draws of a task are passed over, for ``hthor tasks check`` found that they could not be done."""
+
+PLAN = Plan(
+    name="standard",
+    version=2,
+    root=20240620,
+    houses=(*SCENES, *UNSEEN),
+    orders=counted(("object_goal_navigation", 26), ("mobile_manipulation", 74)),
+)
+"""A hundred tasks a house, of the two kinds as many as in the paper's 565 and 1583: 26 to 74 in a hundred."""
+
+
+def build() -> library.Suite:
+    """The suite, validated; made by one process a CPU.
+
+    Raises:
+        HthorError: when a house cannot take one of its tasks.
+    """
+    with ProcessPoolExecutor(len(os.sched_getaffinity(0)), get_context("spawn")) as pool:
+        columns = list(pool.map(column, PLAN.houses))
+    suite = library.frozen(PLAN.name, PLAN.version, tuple(in_turn(columns)))
+    validate(suite, PLAN.name)
+    return suite
+
+
+def column(name: str) -> tuple[TaskSpec, ...]:
+    """The tasks in the house of this name."""
+    return tuple(in_house(PLAN, houses.load(name), "seen" if name in SCENES else "new"))
+
+
+def in_house(
+    plan: Plan, house: HouseSpec, split: Literal["seen", "new"], possible: Callable[[TaskSpec], bool] = lambda _: True
+) -> Iterator[TaskSpec]:
+    """One house's tasks of a plan one by one, no two of them alike; what is not ``possible`` is drawn again.
+
+    Raises:
+        HthorError: when the house cannot take one of its tasks, or not so many that differ.
+    """
+    done: list[TaskSpec] = []
+    for order in plan.orders(plan, house):
+        for lap in range(REDRAWN.get(order.name, 0), _LAPS):
+            made = generate.task(
+                house,
+                plugins.load("task kind", order.kind),
+                order.goal,
+                seeds.derive(plan.root, "lap", lap) if lap else plan.root,
+                name=order.name,
+                share=order.share,
+                robots=plan.robots,
+                looks=plan.looks,
+                split=split,
+            )
+            if not any(alike(made, other) for other in done) and possible(made):
+                done.append(made)
+                yield made
+                break
+        else:
+            raise HthorError(f"house '{house.id}' has no room for another task like '{order.name}'; ask for fewer")
+
+
+def alike(one: TaskSpec, two: TaskSpec) -> bool:
+    """Whether two tasks ask for the same thing from the same place: their goals are equal, their targets are on the
+    same thing of the same house, and the person's starts are less than `ALIKE_M` apart.
+    """
+    if (one.house, one.goal) != (two.house, two.goal) or _target(one).support != _target(two).support:
+        return False
+    here, there = one.human_start, two.human_start
+    return math.dist((here.x, here.y), (there.x, there.y)) < ALIKE_M
+
+
+def in_turn(columns: Sequence[Sequence[TaskSpec]]) -> Iterable[TaskSpec]:
+    """The houses' tasks in turn, so that tasks that follow one another are in different houses."""
+    rows = itertools.zip_longest(*columns)
+    return (task for row in rows for task in row if task is not None)
+
+
+def _target(task: TaskSpec) -> Placement:
+    return next(placement for placement in task.objects if placement.id == task.goal.target)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Write the suite."""
+    path = Path(arguments[0]) if arguments else library.path_of(PLAN.name)
+    try:
+        jsonio.write(path, library.encode(build()))
+    except HthorError as error:
+        sys.stderr.write(f"{error}\n")
+        return error.exit_code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

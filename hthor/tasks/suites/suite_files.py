@@ -1,0 +1,122 @@
+"""The files of a suite of one's own: the tasks, copies of the houses, and what these need of an asset database."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from msgspec import Struct
+
+from hthor import houses, jsonio
+from hthor.errors import HouseError, HthorError
+from hthor.houses import schema
+from hthor.houses.assets import DATABASE, Assets
+from hthor.tasks.suites import library, standard
+from hthor.types import TaskSpec
+
+SUITE = "suite.json"
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,60}")
+
+
+class Source(Struct, frozen=True, kw_only=True):
+    """A house to make tasks in: what it is loaded by, and its file where that is the user's own, else None."""
+
+    given: str
+    file: Path | None
+
+
+def sources(given: Sequence[str]) -> tuple[Source, ...]:
+    """The houses that are named, each a name of ours or the path of a house file.
+
+    Raises:
+        UnknownName, HouseError: as `hthor.houses.load`.
+        HthorError: when two have one name, or a file is called like a house of hthor's own.
+    """
+    ours = {*houses.names(), *houses.names("unseen")}
+    found = [Source(given=one, file=None if one in ours else Path(one)) for one in given]
+    names = [houses.load(one.given).id for one in found]
+    for number, (one, name) in enumerate(zip(found, names, strict=True)):
+        if one.file is not None and name in ours:
+            raise HthorError(
+                f"{one.given} is called like a house of hthor's own, '{name}'; give the file another name."
+            )
+        if name in names[:number]:
+            raise HthorError(
+                f"two of the houses are called '{name}'; give each house once, and each file its own name."
+            )
+    return tuple(found)
+
+
+def named(name: str) -> str:
+    """The name, if a suite can be called so.
+
+    Raises:
+        HthorError: when it cannot.
+    """
+    if not _NAME.fullmatch(name):
+        raise HthorError(f"'{name}' cannot be a suite's name; valid: letters, digits, '-', '_' and '.', at most 61.")
+    if name in library.suites():
+        raise HthorError(f"'{name}' is a suite of hthor's own; choose another name, such as my-{name}.")
+    return name
+
+
+def files(name: str, version: int, found: Sequence[Source], columns: Sequence[Sequence[TaskSpec]]) -> dict[str, bytes]:
+    """The files of a suite by their path in its folder: the suite, its houses, and what it needs of an asset database.
+
+    Args:
+        name, version: of the suite. columns: the tasks of each of the houses ``found``.
+    """
+    suite = library.frozen(name, version, tuple(standard.in_turn(columns)))
+    own = {f"houses/{one.file.stem}.json": one.file for one in found if one.file is not None}
+    made = {SUITE: library.encode(suite), **{path: file.read_bytes() for path, file in own.items()}}
+    database = _excerpt(list(own.values()))
+    return {**made, **({f"houses/{DATABASE}": database} if database else {})}
+
+
+def write(out: Path, made: Mapping[str, bytes]) -> Path:
+    """Write a suite's files, the houses first; gives the path of the suite.
+
+    Args:
+        out: ``mine.json``, with its houses in ``mine.houses``; or a folder, with the suite in ``suite.json``.
+    """
+    single = out.suffix == ".json"
+    for path, data in sorted(made.items(), key=lambda item: item[0] == SUITE):
+        folder, _, name = path.rpartition("/")
+        place = out.with_suffix(".houses") if single else out / "houses"
+        jsonio.write(place / name if folder else out if single else out / SUITE, data)
+    return out
+
+
+def clear(out: Path) -> None:
+    """See that nothing is where a suite is to be written.
+
+    Raises:
+        HthorError: when something is.
+    """
+    for path in (out, out.with_suffix(".houses")) if out.suffix == ".json" else (out,):
+        if path.exists() and (path.is_file() or any(path.iterdir())):
+            raise HthorError(f"{path} is there already. Choose another place with --out, or delete it.")
+
+
+def _excerpt(own: Sequence[Path]) -> bytes:
+    """What houses of the user's own need of an asset database; each may have its own."""
+    types: dict[str, dict[str, Any]] = {}
+    for path in own:
+        document, _ = schema.read(path, str(path))
+        data = Assets(path).excerpt(_assets(document["objects"]))
+        for name, rows in msgspec.json.decode(data or b"{}").items():
+            for row in rows:
+                known = types.setdefault(name, {}).setdefault(row["assetId"], row)
+                if known != row:
+                    problem = f"asset '{row['assetId']}' has another size than in another of the houses"
+                    raise HouseError(str(path), "objects", problem)
+    return jsonio.pretty({name: [rows[id] for id in sorted(rows)] for name, rows in types.items()}) if types else b""
+
+
+def _assets(objects: Sequence[Any]) -> Iterator[str]:
+    for one in objects:
+        yield one["assetId"]
+        yield from _assets(one.get("children") or ())

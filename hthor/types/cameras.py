@@ -1,0 +1,67 @@
+"""What the name of a robot's camera stands for."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from hthor.errors import HthorError, UnknownName
+from hthor.types import CameraSpec
+
+OWN = "own"
+"""Stands for the camera that a robot's body declares."""
+LARGEST = 4096
+"""Pixels of the longest side."""
+NAMED = {
+    spec.name: spec
+    for spec in (
+        CameraSpec(name="square", size=(128, 128), fov=math.radians(90.0)),
+        CameraSpec(name="thor", size=(300, 300), fov=math.radians(90.0)),  # AI2-THOR's default
+        CameraSpec(name="habitat", size=(640, 480), fov=math.radians(79.0)),  # Habitat's ObjectNav challenge
+        CameraSpec(name="realsense", size=(640, 360), fov=math.radians(69.4)),  # Intel RealSense D435, colour
+    )
+}
+_SIZE = re.compile(r"([1-9][0-9]{0,4})x([1-9][0-9]{0,4})")
+_EXAMPLE = "Expected WIDTHxHEIGHT in pixels, such as 320x240"
+
+
+def read(text: str) -> CameraSpec:
+    """The camera of a name ("own" or one of `NAMED`), of a size ("320x240"), or of both ("thor:128x128").
+
+    Raises:
+        HthorError: when it is none of these.
+    """
+    name, colon, size = text.partition(":")
+    if not colon and _SIZE.fullmatch(name):
+        name, size = OWN, name
+    if name != OWN and name not in NAMED:
+        raise UnknownName("camera", name, (OWN, *NAMED), "A size may follow: own:320x240.")
+    spec = NAMED.get(name, CameraSpec(name=OWN))
+    if not size and not colon:
+        return spec
+    width, height = _size(size)
+    return CameraSpec(name=f"{name}:{width}x{height}", size=(width, height), fov=spec.fov)
+
+
+def tidy(name: str, size: str = "") -> str:
+    """The same camera in one spelling.
+
+    Args:
+        name: as `read` takes it. size: "320x240", empty for the camera's own.
+
+    Raises:
+        HthorError: as `read`, and when both give a size.
+    """
+    if size and (":" in name or _SIZE.fullmatch(name)):
+        raise HthorError(f"the camera '{name}' has a size already; leave out the size '{size}'.")
+    return read(f"{name}:{size}" if size else name).name
+
+
+def _size(text: str) -> tuple[int, int]:
+    found = _SIZE.fullmatch(text)
+    if found is None:
+        raise HthorError(f"'{text}' is no size of pictures. {_EXAMPLE}.")
+    width, height = int(found[1]), int(found[2])
+    if max(width, height) > LARGEST:
+        raise HthorError(f"pictures of {text} are too large: at most {LARGEST} pixels a side. {_EXAMPLE}.")
+    return (width, height)

@@ -1,0 +1,142 @@
+"""Places and things, and the units and frames of everything."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from msgspec import Struct
+
+Vec2 = tuple[float, float]
+Vec3 = tuple[float, float, float]
+Rgba = tuple[float, float, float, float]
+
+HUMAN = "human"
+"""The person's seat. Robots sit at ``robot``, ``robot2``, ``robot3`` ..."""
+
+
+class Pose(Struct, frozen=True, kw_only=True):
+    """A body's place and gaze: ``x``, ``y`` [m] house frame, ``yaw`` [rad], camera ``pitch`` [rad], up positive."""
+
+    x: float
+    y: float
+    yaw: float = 0.0
+    pitch: float = 0.0
+
+
+class Part(Struct, frozen=True, kw_only=True):
+    """One solid of a thing, in the thing's local frame.
+
+    ``half`` [m] holds the half extents of its bounding box: (r, r, half height) of an upright cylinder, (r, r, r) of a
+    sphere. ``axis`` is the direction of a cylinder. ``moves`` names the `Joint` that it moves with, empty for none.
+    """
+
+    shape: Literal["box", "cylinder", "sphere"]
+    centre: Vec3
+    half: Vec3
+    rgba: Rgba
+    axis: Literal["x", "y", "z"] = "z"
+    moves: str = ""
+
+
+class Surface(Struct, frozen=True, kw_only=True):
+    """A flat place of a thing where objects can rest, in the thing's local frame.
+
+    ``centre`` [m] is the middle of the surface, ``half`` [m] its half extents along local x and y, ``clearance`` [m]
+    the free height above it. ``inside`` marks a surface that only an open door gives access to. ``moves`` names the
+    `Joint` that it moves with, as a drawer's floor does; ``centre`` is then where it is while closed.
+    """
+
+    name: str
+    centre: Vec3
+    half: Vec2
+    clearance: float
+    inside: bool = False
+    moves: str = ""
+
+
+class Joint(Struct, frozen=True, kw_only=True):
+    """How a door turns or a drawer slides, in the thing's local frame; 0 is closed, ``travel`` open.
+
+    A hinge turns by ``travel`` [rad] about the unit vector ``axis`` through ``anchor`` [m], right-handed; a slide goes
+    ``travel`` [m] along ``axis``. All joints of a thing move together.
+    """
+
+    name: str
+    kind: Literal["hinge", "slide"]
+    anchor: Vec3
+    axis: Vec3
+    travel: float
+
+
+class Thing(Struct, frozen=True, kw_only=True):
+    """A piece of furniture or a small object of a house, where it stands, or lies on its support.
+
+    ``centre`` [m] house frame is the middle of the bounding box, ``size`` [m] its extents along the thing's local
+    x (width), y (depth) and z (height) axes. ``variant`` picks one of its kind's finishes; it changes looks only.
+    ``lift`` [m] is how much higher the house's file has it, which was laid down since (`hthor.houses.laying`).
+    """
+
+    id: str
+    kind: str
+    asset: str
+    variant: int = 0
+    centre: Vec3
+    size: Vec3
+    yaw: float
+    room: str = ""
+    parent: str = ""
+    lift: float = 0.0
+
+
+class Room(Struct, frozen=True, kw_only=True):
+    """A room: ``kind`` is one of kitchen, living_room, bedroom, bathroom; ``polygon`` [m] runs counter-clockwise."""
+
+    id: str
+    kind: str
+    name: str
+    polygon: tuple[Vec2, ...]
+    floor: str = ""
+
+
+class Wall(Struct, frozen=True, kw_only=True):
+    """One quad of wall seen from ``room`` (or "exterior"), from ``a`` to ``b`` [m], ``height`` [m] tall."""
+
+    id: str
+    room: str
+    a: Vec2
+    b: Vec2
+    height: float
+    material: str = ""
+    rgb: Vec3 | None = None
+
+
+class Opening(Struct, frozen=True, kw_only=True):
+    """A hole in a wall: the floor segment ``a`` to ``b`` [m] and the heights ``low`` and ``high`` [m] it spans.
+
+    A ``passable`` one is an open doorway; the closed outside door and every window are not. In an ``openable`` one
+    hangs a leaf that stands open when a trial begins; in other doorways there is none. ``asset`` is what fills it.
+    """
+
+    id: str
+    kind: Literal["door", "window"]
+    rooms: tuple[str, str]
+    a: Vec2
+    b: Vec2
+    low: float
+    high: float
+    passable: bool
+    openable: bool = False
+    asset: str = ""
+
+
+class HouseSpec(Struct, frozen=True, kw_only=True):
+    """A floor plan with everything in it. ``sha256`` is the hash of the file's canonical JSON."""
+
+    id: str
+    sha256: str
+    rooms: tuple[Room, ...]
+    walls: tuple[Wall, ...]
+    openings: tuple[Opening, ...]
+    things: tuple[Thing, ...]
+    height: float
+    start: Pose

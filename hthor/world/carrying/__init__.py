@@ -1,0 +1,1 @@
+"""Two bodies that carry one trunk."""

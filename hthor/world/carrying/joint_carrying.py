@@ -1,0 +1,164 @@
+"""Laws of carrying together: what is too heavy for one, taken by its handles and lifted by several.
+
+A thing with handles (`hthor.catalog.Kind.handles`, such as a trunk) has one at either end of its length. A body that is
+not strong enough to take it in hand takes hold of a handle instead, with the same motion:
+
+- ``Pick(object=...)`` takes hold of the free handle that is nearest to the body. The laws of the hand hold as ever (the
+  body can pick, its hands are empty, the handle is in reach and before it, the thing in sight); weight is no objection.
+  It must not stand on the thing (what lies on the floor stops nobody from walking over it). The outcome is ok, the
+  event ``held``, and ``Observation.holding`` the thing's id.
+- By a handle, a body lifts `rules.HANDLE_STRENGTH` times its ``strength``. Once what all who hold the thing lift adds
+  up to its mass, it rises: the event ``lifted`` names its ``bearers``. Until then it lies where it lies, and whoever
+  holds it may turn, wait for another, or let go; a ``Move`` is refused and says how much is missing.
+- While it is up, a ``Move`` of any bearer carries it along. The others are drawn along by their handle, no faster than
+  they walk and whatever else they do, so one leads and the others wait (or turn, or look about). Of several bearers
+  that move in the same tick the first in the order of the seats leads, the person before all robots. All go at
+  `rules.HANDLE_PACE` times the pace of the slowest.
+- Every body keeps to its own free floor, and the thing, as the rectangle that it is, touches no wall, no furniture, no
+  shut door and nobody else. What would tear it from a hand (farther from a handle than that body's reach) or push it
+  into something does not happen: the move ends ``blocked``, as it does for a body alone.
+- ``Drop()`` by any bearer lets go. If the rest are too weak, the thing is put down right there and all are rid of it:
+  event ``lowered``. Before it was up, only that body lets go: event ``released``. ``Place(on="floor")`` is the same;
+  on furniture it cannot be placed.
+
+In the truth and to detectors ``held_by`` is empty while the thing lies on the floor and names who took hold of it first
+while it is up; ``bearers`` names all who hold it, up or not, in the order in which they took hold.
+
+It follows like a trailer. A leader who pulls gets it round corners, one who pushes does only straight ahead; so whoever
+is to lead should take hold of the end that the way begins at (the handle nearest to where they stand is theirs), and go
+where a disc of 0.40 m would find room, as far as there is such a way.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from hthor import catalog
+from hthor.geometry import plane
+from hthor.houses.space import free_space
+from hthor.types import HouseSpec, Vec3
+from hthor.world.carrying.load import LIFT_M
+from hthor.world.carrying.trailer import Train
+from hthor.world.motion.reach import out_of_reach
+from hthor.world.state import doorways
+from hthor.world.state.body_state import Seat
+from hthor.world.state.doors import Doors
+from hthor.world.state.objects import Item, Objects
+from hthor.world.state.overlap_test import Touch
+
+_STEP_M = 0.01
+"""In such steps a place is sought for what is put down, from the floor up."""
+_INSIDE_M = 0.05
+"""How far a body may stand in what lies on the floor and still take hold of it."""
+_TALL_M = 1.0
+"""What begins higher above the floor is in the way of nothing that is carried so."""
+News = tuple[tuple[str, dict[str, Any]], ...]
+"""What happened: kinds of events with their data."""
+
+
+class Together:
+    """What several bodies of one world hold by its handles."""
+
+    def __init__(self, house: HouseSpec, objects: Objects, doors: Doors, touch: Touch, seats: Sequence[Seat]) -> None:
+        self._house, self._objects, self._doors, self._touch, self._seats = house, objects, doors, touch, tuple(seats)
+        self._loads: dict[str, Train] = {}
+        self._fixed: Any = None
+
+    def reset(self) -> None:
+        """An episode begins: nobody holds anything."""
+        self._loads.clear()
+
+    def of(self, seat: Seat) -> Train | None:
+        """What ``seat`` holds by a handle, None for nothing."""
+        load = self._loads.get(seat.holding)
+        return load if load is not None and seat.name in load.ends else None
+
+    @staticmethod
+    def takes(seat: Seat, item: Item) -> bool:
+        """Whether ``seat`` can only take the object by a handle: it is too heavy, or others hold it so."""
+        return catalog.kind(item.kind).handles and (item.mass > seat.spec.strength or bool(item.bearers))
+
+    def refusal(self, seat: Seat, item: Item) -> str:
+        """Why ``seat`` cannot take hold of it, empty when it can."""
+        load = self._loads.get(item.id)
+        if load is not None and len(load.ends) == 2:
+            return f"both handles of {item.id} are taken, by {' and '.join(load.ends)}"
+        x, y, _ = item.position
+        gap = plane.distance_to_rectangle((seat.pose.x, seat.pose.y), (x, y), item.size[:2], item.yaw)
+        if gap < seat.spec.radius - _INSIDE_M:
+            return f"{seat.name} stands on {item.id}; step back from it"
+        return out_of_reach(seat, f"the handle of {item.id}", self._handle(seat, item)[1])
+
+    def stuck(self, seat: Seat) -> str:
+        """Why ``seat`` cannot go anywhere because of what it holds, empty when it can."""
+        load = self.of(seat)
+        if load is None or load.up:
+            return ""
+        weight = f"{load.item.id} weighs {load.item.mass:.1f} kg; {load.holders} {load.lifted:.1f} kg by its handles"
+        return f"{weight}: wait until somebody helps, or let go"
+
+    def hold(self, seat: Seat, item: Item) -> News:
+        """Take hold; the thing rises if that is enough."""
+        load = self._loads.setdefault(item.id, Train(item, self._seats, self._rows))
+        load.ends[seat.name] = self._handle(seat, item)[0]
+        seat.holding = item.id
+        self._objects.grip(item.id, tuple(load.ends))
+        held = ("held", {"object": item.id})
+        if load.up or load.lifted < item.mass:
+            return (held,)
+        load.up, load.z = True, LIFT_M + item.size[2] / 2
+        self._objects.take(item.id, next(iter(load.ends)), load.pose)
+        return (held, ("lifted", {"object": item.id, "bearers": list(load.ends)}))
+
+    def let_go(self, seat: Seat) -> News:
+        """Let go; what the rest cannot hold is put down."""
+        load = self.of(seat)
+        if load is None:
+            return ()
+        names = list(load.ends)
+        del load.ends[seat.name]
+        seat.holding = ""
+        if load.up and load.lifted < load.item.mass:
+            for other in load.bearers:
+                other.holding = ""
+            load.ends.clear()
+            self._lower(load)
+            news: News = (("lowered", {"object": load.item.id, "bearers": names}),)
+        else:
+            news = (("released", {"object": load.item.id}),)
+        if not load.ends:
+            del self._loads[load.item.id]
+        self._objects.grip(load.item.id, tuple(load.ends))
+        return news
+
+    def _rows(self) -> Any:
+        """(N, 5) what stands in the way of such a thing now, see `hthor.world.carrying.trailer_kernel`."""
+        if self._fixed is None:
+            self._fixed = free_space.obstacles(self._house, _TALL_M)
+        shut = [doorways.rectangle(leaf.opening) for leaf in self._doors if leaf.opening and not leaf.open]
+        return np.concatenate((self._fixed, np.array(shut))) if shut else self._fixed
+
+    def _lower(self, load: Train) -> None:
+        """Put it down where it is: on the floor, or on what lies there."""
+        item, top = load.item, load.z
+        low = item.size[2] / 2 + _STEP_M / 10
+        for step in range(math.ceil((top - low) / _STEP_M)):
+            load.z = low + step * _STEP_M
+            self._objects.follow(item.id)
+            if not self._touch.inside(item):
+                break
+        else:
+            load.z = top
+        self._objects.put(item.id, load.pose(), "")
+
+    def _handle(self, seat: Seat, item: Item) -> tuple[int, Vec3]:
+        """The free handle that is nearest to a body: which end, and where [m]."""
+        load = self._loads.get(item.id) or Train(item, self._seats, self._rows)
+        here = (seat.pose.x, seat.pose.y)
+        ends = [end for end in (1, -1) if end not in load.ends.values()]
+        places = [(end, load.handle(end)) for end in ends]
+        return min(places, key=lambda place: math.dist(place[1][:2], here))

@@ -1,0 +1,74 @@
+"""A thing that several hold by its handles: who has which end, where it is, what they can lift."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from hthor import rules
+from hthor.geometry.plane import turn
+from hthor.types import Vec3
+from hthor.world.model import geoms
+from hthor.world.model.composer_env import QPose
+from hthor.world.state.body_state import Seat
+from hthor.world.state.objects import Item
+
+LIFT_M = 0.30
+"""How high above the floor the bottom of what is carried hangs."""
+
+
+class Load:
+    """One thing with handles, from the moment somebody takes hold of it.
+
+    Attributes:
+        ends: seat -> +1 or -1, the end that it holds, in the order in which they took hold.
+        state: (3,) [m, rad] x, y and yaw. z: [m] height of its middle. half: (2,) [m] half its width and depth.
+        up: whether it is off the floor.
+    """
+
+    def __init__(self, item: Item, seats: Sequence[Seat]) -> None:
+        self.item, self.seats = item, tuple(seats)
+        self._named = {seat.name: seat for seat in seats}
+        self.ends: dict[str, int] = {}
+        self.up, self._leader, self._tick = False, "", -1
+        x, y, self.z = item.position
+        self.state: Any = np.array((x, y, item.yaw))
+        self.half: Any = np.array(item.size[:2]) / 2
+
+    @property
+    def bearers(self) -> tuple[Seat, ...]:
+        """Who holds it, in the order in which they took hold."""
+        return tuple(self._named[name] for name in self.ends)
+
+    @property
+    def lifted(self) -> float:
+        """What all who hold it lift together [kg]."""
+        return math.fsum(rules.HANDLE_STRENGTH * seat.spec.strength for seat in self.bearers)
+
+    @property
+    def holders(self) -> str:
+        """Who holds it, and the verb."""
+        return f"{' and '.join(self.ends)} {'lifts' if len(self.ends) == 1 else 'together lift'}"
+
+    @property
+    def pace(self) -> float:
+        """How fast they go with it [m/s]."""
+        return rules.HANDLE_PACE * min(seat.spec.speed for seat in self.bearers)
+
+    def handle(self, end: int) -> Vec3:
+        """Where the handle of that end is [m]."""
+        x, y = turn((end * float(self.half[0]), 0.0), float(self.state[2]))
+        return (float(self.state[0]) + x, float(self.state[1]) + y, self.z)
+
+    def pose(self) -> QPose:
+        """Where it is."""
+        return (float(self.state[0]), float(self.state[1]), self.z, *geoms.quaternion(float(self.state[2])))
+
+    def follows(self, seat: Seat, tick: int) -> bool:
+        """Whether another bearer leads in this tick; if nobody does yet, ``seat`` does from now on."""
+        if self._tick != tick:
+            self._tick, self._leader = tick, seat.name
+        return self._leader != seat.name

@@ -1,0 +1,196 @@
+"""A rectangle drawn by its handles between obstacles, in the plane: compiled.
+
+A state is ``(x, y, yaw)`` [m, rad] of a rectangle with half extents ``half`` [m]. Rectangles in its way are rows
+``(x, y, half width, half depth, yaw)``, discs rows ``(x, y, radius)``. Every constraint is met in turn by the least
+shift and turn that meets it, as of a thin plate of even weight, a few times over.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numba
+import numpy as np
+
+_EDGE, _NIL = 0.005, 1e-6
+_PULLS, _PUSHES, _PASSES = 12, 6, 2
+"""How often it is drawn, then only pushed out of what it is in; how often each time it is pushed out of the walls."""
+
+
+@numba.njit(cache=True)
+def _shove(state: Any, half: Any, px: float, py: float, dx: float, dy: float) -> None:
+    """Move the rectangle so that its point (px, py) goes by (dx, dy)."""
+    length = math.hypot(dx, dy)
+    if length < 1e-12:
+        return
+    nx, ny = dx / length, dy / length
+    arm = (px - state[0]) * ny - (py - state[1]) * nx
+    ease = 3.0 / (half[0] * half[0] + half[1] * half[1])
+    share = length / (1.0 + arm * arm * ease)
+    state[0] += nx * share
+    state[1] += ny * share
+    state[2] += arm * share * ease
+
+
+@numba.njit(cache=True)
+def _corner(cx: float, cy: float, a: float, b: float, cos: float, sin: float, k: int) -> Any:
+    u = a if k == 0 or k == 3 else -a
+    v = b if k < 2 else -b
+    return cx + cos * u - sin * v, cy + sin * u + cos * v
+
+
+@numba.njit(cache=True)
+def _within(x: float, y: float, cos: float, sin: float, a: float, b: float) -> bool:
+    return abs(cos * x + sin * y) <= a + _NIL and abs(cos * y - sin * x) <= b + _NIL
+
+
+@numba.njit(cache=True)
+def meets(state: Any, half: Any, row: Any) -> Any:
+    """Depth [m] to which the rectangle is in another, 0 for none; the way out of it, and where they touch."""
+    dx, dy = row[0] - state[0], row[1] - state[1]
+    if math.hypot(dx, dy) > math.hypot(half[0], half[1]) + math.hypot(row[2], row[3]):
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    ca, sa, cb, sb = math.cos(state[2]), math.sin(state[2]), math.cos(row[4]), math.sin(row[4])
+    c, s = abs(ca * cb + sa * sb), abs(ca * sb - sa * cb)
+    deep, nx, ny = np.inf, 0.0, 0.0
+    for k in range(4):
+        ax, ay = (ca, sa) if k == 0 else (-sa, ca) if k == 1 else (cb, sb) if k == 2 else (-sb, cb)
+        if k < 2:
+            mine = half[k]
+            other = row[2] * c + row[3] * s if k == 0 else row[2] * s + row[3] * c
+        else:
+            mine = half[0] * c + half[1] * s if k == 2 else half[0] * s + half[1] * c
+            other = row[k]
+        along = dx * ax + dy * ay
+        over = mine + other - abs(along)
+        if over <= 0.0:
+            return 0.0, 0.0, 0.0, 0.0, 0.0
+        if over < deep:
+            way = -1.0 if along > 0.0 else 1.0
+            deep, nx, ny = over, way * ax, way * ay
+    px, py, count = 0.0, 0.0, 0
+    for k in range(4):
+        x, y = _corner(state[0], state[1], half[0], half[1], ca, sa, k)
+        if _within(x - row[0], y - row[1], cb, sb, row[2], row[3]):
+            px, py, count = px + x, py + y, count + 1
+        x, y = _corner(row[0], row[1], row[2], row[3], cb, sb, k)
+        if _within(x - state[0], y - state[1], ca, sa, half[0], half[1]):
+            px, py, count = px + x, py + y, count + 1
+    if count:
+        return deep, nx, ny, px / count, py / count
+    u = min(max(ca * dx + sa * dy, -half[0]), half[0])
+    v = min(max(ca * dy - sa * dx, -half[1]), half[1])
+    return deep, nx, ny, state[0] + ca * u - sa * v, state[1] + sa * u + ca * v
+
+
+@numba.njit(cache=True)
+def touches(state: Any, half: Any, disc: Any) -> Any:
+    """The same for a disc."""
+    cos, sin = math.cos(state[2]), math.sin(state[2])
+    dx, dy = disc[0] - state[0], disc[1] - state[1]
+    u, v = cos * dx + sin * dy, cos * dy - sin * dx
+    cu, cv = min(max(u, -half[0]), half[0]), min(max(v, -half[1]), half[1])
+    px, py = state[0] + cos * cu - sin * cv, state[1] + sin * cu + cos * cv
+    gap = math.hypot(disc[0] - px, disc[1] - py)
+    if gap >= disc[2]:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    if gap > 1e-9:
+        return disc[2] - gap, (px - disc[0]) / gap, (py - disc[1]) / gap, px, py
+    if half[0] - abs(u) < half[1] - abs(v):  # its middle is inside: out by the nearer side
+        way = -1.0 if u > 0.0 else 1.0
+        return disc[2] + half[0] - abs(u), way * cos, way * sin, px, py
+    way = -1.0 if v > 0.0 else 1.0
+    return disc[2] + half[1] - abs(v), -way * sin, way * cos, px, py
+
+
+@numba.njit(cache=True)
+def deepest(state: Any, half: Any, rows: Any, discs: Any) -> Any:
+    """How deep [m] the rectangle is in the rectangles, and in the discs, at most."""
+    wall, body = 0.0, 0.0
+    for k in range(len(rows)):
+        wall = max(wall, meets(state, half, rows[k])[0])
+    for k in range(len(discs)):
+        body = max(body, touches(state, half, discs[k])[0])
+    return wall, body
+
+
+@numba.njit(cache=True)
+def relax(state: Any, half: Any, ends: Any, hands: Any, ropes: Any, pulls: Any, rows: Any, discs: Any) -> Any:
+    """The rectangle's state after it was drawn to the hands and pushed out of everything.
+
+    Args:
+        ends: (N,) where the handles are [m] along its length. hands: (N, 2) [m] who draws at each. ropes: (N,) [m] how
+            far each may be from its handle. pulls: (N,) [m] how far at most each draws at a time, so that it slides
+            along what it meets rather than into it.
+    """
+    out = state.copy()
+    for turn in range(_PULLS + _PUSHES):
+        moved = False
+        for k in range(len(ends) if turn < _PULLS else 0):
+            gx, gy = out[0] + math.cos(out[2]) * ends[k], out[1] + math.sin(out[2]) * ends[k]
+            dx, dy = hands[k, 0] - gx, hands[k, 1] - gy
+            far = math.hypot(dx, dy)
+            if far > ropes[k] + _NIL:
+                share = min(far - ropes[k], pulls[k]) / far
+                _shove(out, half, gx, gy, dx * share, dy * share)
+                moved = True
+        for k in range(len(discs)):
+            deep, nx, ny, px, py = touches(out, half, discs[k])
+            if deep > _NIL:
+                _shove(out, half, px, py, nx * deep, ny * deep)
+                moved = True
+        for _ in range(_PASSES):
+            stuck = False
+            for k in range(len(rows)):
+                deep, nx, ny, px, py = meets(out, half, rows[k])
+                if deep > _NIL:
+                    _shove(out, half, px, py, nx * deep, ny * deep)
+                    moved = stuck = True
+            if not stuck:
+                break
+        if not moved:
+            break
+    return out
+
+
+@numba.njit(cache=True)
+def near(state: Any, reach: float, rows: Any) -> Any:
+    """Those of the rectangles that come nearer than ``reach`` [m] to the middle of it."""
+    keep = np.zeros(len(rows), np.bool_)
+    for k in range(len(rows)):
+        cx, cy, hw, hd, yaw = rows[k]
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        dx, dy = state[0] - cx, state[1] - cy
+        u, v = max(abs(cos * dx + sin * dy) - hw, 0.0), max(abs(cos * dy - sin * dx) - hd, 0.0)
+        keep[k] = u * u + v * v < reach * reach
+    return rows[keep]
+
+
+@numba.njit(cache=True)
+def crosses(ax: float, ay: float, bx: float, by: float, rows: Any, margin: float) -> bool:
+    """Whether a line between two points [m] comes nearer than ``margin`` [m] to any of the rectangles.
+
+    Coming as near as one of its ends is does not count.
+    """
+    for k in range(len(rows)):
+        cx, cy, hw, hd, yaw = rows[k]
+        far = math.hypot(hw, hd) + margin
+        if min(ax, bx) > cx + far or max(ax, bx) < cx - far or min(ay, by) > cy + far or max(ay, by) < cy - far:
+            continue
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        ux, uy = cos * (ax - cx) + sin * (ay - cy), cos * (ay - cy) - sin * (ax - cx)
+        vx, vy = cos * (bx - cx) + sin * (by - cy), cos * (by - cy) - sin * (bx - cx)
+        near = min(margin, max(abs(ux) - hw, abs(uy) - hd) - _EDGE, max(abs(vx) - hw, abs(vy) - hd) - _EDGE)
+        low, high = 0.0, 1.0
+        for axis in range(2):
+            start, way, half = (ux, vx - ux, hw + near) if axis == 0 else (uy, vy - uy, hd + near)
+            if abs(way) < 1e-12:
+                if abs(start) > half:
+                    low = 2.0
+                continue
+            a, b = (-half - start) / way, (half - start) / way
+            low, high = max(low, min(a, b)), min(high, max(a, b))
+        if low <= high and min(hw + near, hd + near) > 0.0:
+            return True
+    return False

@@ -1,0 +1,98 @@
+"""The whole truth of a world, worked out anew only where something changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from hthor.errors import StaleObservation
+from hthor.types import HUMAN, Pose, Snapshot, ThingState
+from hthor.world.perception.visibility import Gaze
+from hthor.world.state.body_state import Seat
+from hthor.world.state.doors import Doors
+from hthor.world.state.objects import Objects
+
+
+class Truth:
+    """States of all objects and of all things that open, and what the person has in view."""
+
+    def __init__(self, objects: Objects, doors: Doors, gaze: Gaze, seats: Sequence[Seat]) -> None:
+        self._objects, self._doors, self._gaze, self._seats = objects, doors, gaze, seats
+        self._human = next(seat for seat in seats if seat.name == HUMAN)
+        self._things: dict[str, ThingState] = {}
+        self._version = (-1, -1)
+        self._view: InView | None = None
+
+    def snapshot(self, tick: int) -> Snapshot:
+        """Everything at this tick."""
+        poses, holding = {}, {}
+        for seat in self._seats:  # at every tick of a trial: one loop is cheaper than two comprehensions
+            poses[seat.name], holding[seat.name] = seat.pose, seat.holding
+        view, things = self._in_view(tick), self.states()
+        return Snapshot(tick=tick, poses=poses, things=things, in_view=view, holding=holding)
+
+    def states(self) -> dict[str, ThingState]:
+        """By id: a fresh dict whenever anything changed, the same one as long as nothing did."""
+        version = (self._objects.changes, self._doors.changes)
+        if version != self._version:
+            self._things = self._renewed(doors=version[1] != self._version[1])
+            self._version = version
+        return self._things
+
+    def _renewed(self, doors: bool) -> dict[str, ThingState]:
+        """The states, those of what changed replaced; ``doors`` says whether any door moved."""
+        things, known = dict(self._things), len(self._things)
+        gone = False
+        for item in self._objects.news():
+            if item.present:
+                things[item.id] = item.state()
+            else:
+                gone = things.pop(item.id, None) is not None or gone
+        if doors:
+            things.update((state.id, state) for state in self._doors.states())
+        return {id: things[id] for id in sorted(things)} if gone or len(things) != known else things
+
+    def _in_view(self, tick: int) -> InView:
+        """The same as long as nothing changes."""
+        moment = (self._human.pose, self._objects.changes, self._doors.changes)
+        if self._view is None or self._view.moment != moment:
+            self._view = InView(self, moment, tick)
+        return self._view
+
+    def look(self, moment: tuple[Pose, int, int], tick: int) -> tuple[str, ...]:
+        """What the person has in view.
+
+        Raises:
+            StaleObservation: when it is not this ``moment`` any more.
+        """
+        if moment != (self._human.pose, self._objects.changes, self._doors.changes):
+            raise StaleObservation(
+                f"in_view of the snapshot of tick {tick} is asked for only now that the world has moved on; "
+                "read it while the snapshot is new"
+            )
+        return self._gaze.in_view(self._human)
+
+
+class InView(Mapping[str, tuple[str, ...]]):
+    """What `hthor.types.Snapshot.in_view` holds: worked out when it is first read, which few tasks do."""
+
+    __slots__ = ("_found", "_tick", "_truth", "moment")
+
+    def __init__(self, truth: Truth, moment: tuple[Pose, int, int], tick: int) -> None:
+        self._truth, self._tick, self.moment = truth, tick, moment
+        self._found: tuple[str, ...] | None = None
+
+    def __getitem__(self, seat: str) -> tuple[str, ...]:
+        if seat != HUMAN:
+            raise KeyError(seat)
+        if self._found is None:
+            self._found = self._truth.look(self.moment, self._tick)
+        return self._found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((HUMAN,))
+
+    def __len__(self) -> int:
+        return 1
+
+    def __repr__(self) -> str:
+        return repr(dict(self))

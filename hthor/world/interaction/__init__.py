@@ -1,0 +1,1 @@
+"""Picking, placing and opening: what actions do to the scene."""

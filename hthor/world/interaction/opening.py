@@ -1,0 +1,201 @@
+"""Laws of opening and closing: of doors, drawers and the leaves of doorways.
+
+A hinged leaf on its way sweeps through whatever is there; it only has to fit where it stops. A drawer takes along what
+lies in it and needs its way free.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from hthor.errors import HthorError, UnknownName
+from hthor.geometry import plane
+from hthor.houses.space import solids
+from hthor.houses.space.solids import Slab
+from hthor.types import Close, Joint, Open, Opening, Part, Thing, Vec3
+from hthor.world.model.geom_index import Scene
+from hthor.world.motion.reach import out_of_reach
+from hthor.world.perception import view_frustum
+from hthor.world.state import doorways
+from hthor.world.state.body_state import Seat
+from hthor.world.state.doors import Doors, Leaf
+from hthor.world.state.doorways import Passages
+from hthor.world.state.objects import Item, Objects
+from hthor.world.state.overlap_test import DEEP_M
+from hthor.world.state.support_surfaces import Places
+
+_KNOB_M = 1.0
+"""Height at which a doorway's leaf is taken hold of."""
+
+
+class Hinges:
+    """What bodies can open and close in one world."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        objects: Objects,
+        doors: Doors,
+        places: Places,
+        gates: Passages,
+        seats: Sequence[Seat],
+    ) -> None:
+        self._scene, self._objects, self._doors, self._places = scene, objects, doors, places
+        self._gates, self._seats = gates, seats
+
+    def refusal(self, seat: Seat, motion: Open | Close) -> str:
+        """Why ``seat`` cannot do it now, empty when it can."""
+        if "open" not in seat.spec.capabilities:
+            return f"{seat.spec.title} cannot open or close things"
+        leaf = self._doors.get(motion.thing) if isinstance(motion.thing, str) else None
+        if leaf is None:
+            return f"'{motion.thing!s:.40}' has no door"
+        name = leaf.thing.id
+        if leaf.user and leaf.user != seat.name:
+            return f"{name} is being used by {leaf.user}"
+        if leaf.open == isinstance(motion, Open):
+            return f"{name} is already {'open' if leaf.open else 'closed'}"
+        return self._far(seat, leaf) or self._in_the_way(leaf, isinstance(motion, Open))
+
+    def out_of_hand(self, seat: Seat, id: str) -> str:
+        """Why ``seat`` could not get at a thing's door from where it stands; empty when it could, or there is none."""
+        leaf = self._doors.get(id)
+        return "" if leaf is None else self._far(seat, leaf)
+
+    def begin(self, seat: Seat, motion: Open | Close) -> None:
+        """Take hold of a door."""
+        self._leaf(motion).user = seat.name
+
+    def during(self, motion: Open | Close, share: float) -> None:
+        """``share`` of the motion's time has passed: doors swing along, drawers take along what lies in them."""
+        self._move(self._leaf(motion), share if isinstance(motion, Open) else 1.0 - share)
+
+    def finish(self, motion: Open | Close) -> str:
+        """The door is where it goes; if something has got in its way, it goes back, and that is the reason."""
+        leaf, wanted = self._leaf(motion), isinstance(motion, Open)
+        leaf.user = ""
+        reason = self._in_the_way(leaf, wanted)
+        self._rest(leaf, leaf.open if reason else wanted)
+        return reason
+
+    def put(self, id: str, wanted: bool) -> None:
+        """See `World.set_open`."""
+        leaf = self._doors.get(id)
+        if leaf is None:
+            raise UnknownName("thing that opens", id, [one.thing.id for one in self._doors])
+        reason = f"it is being used by {leaf.user}" if leaf.user else self._in_the_way(leaf, wanted)
+        if reason:
+            raise HthorError(f"{id} cannot be {'opened' if wanted else 'closed'}: {reason}")
+        self._rest(leaf, wanted)
+
+    def let_go(self, seat: str) -> None:
+        """A body leaves off: what it was opening or closing goes back."""
+        for leaf in self._doors:
+            if leaf.user == seat:
+                leaf.user = ""
+                self._rest(leaf, leaf.open)
+
+    def _rest(self, leaf: Leaf, opened: bool) -> None:
+        self._move(leaf, 1.0 if opened else 0.0)
+        leaf.open = opened
+        self._gates.update({one.thing.id: one.opening for one in self._doors if one.opening and not one.open})
+        self._doors.changes += 1
+
+    def _leaf(self, motion: Open | Close) -> Leaf:
+        leaf = self._doors.get(motion.thing)
+        assert leaf is not None, "checked before the motion started"
+        return leaf
+
+    def _move(self, leaf: Leaf, share: float) -> None:
+        step = share - leaf.share
+        for place in self._places.of(leaf.thing.id):
+            if place.slides:
+                riders = [item.id for item in self._objects.lying(place)]
+                x, y, z = (step * way for way in place.way)
+                self._objects.ride(riders, (x, y, z))
+        self._doors.swing(leaf, share)
+
+    def _far(self, seat: Seat, leaf: Leaf) -> str:
+        name, thing = leaf.thing.id, leaf.thing
+        local = plane.to_local((seat.pose.x, seat.pose.y, 0.0), thing.centre, thing.yaw)
+        if leaf.opening is None and local[1] < 0.0:
+            return f"{seat.name} stands behind {name}; its door is on the other side"
+        point = _front(thing, local) if leaf.opening is None else _knob(leaf.opening, thing, local)
+        reason = out_of_reach(seat, name, point)
+        return reason or ("" if self._sees(seat, leaf, point) else f"{name} is out of sight")
+
+    def _sees(self, seat: Seat, leaf: Leaf, point: Vec3) -> bool:
+        """Whether the eye sees the place to take hold of, or that of a pulled drawer, or the upper edge there."""
+        eye, name = view_frustum.eye(seat.pose, seat.spec), leaf.thing.id
+        x, y, _ = point
+        top = leaf.thing.centre[2] + 0.45 * leaf.thing.size[2]
+        ways = [place.way for place in self._places.of(name) if place.slides]
+        points = [point, (x, y, top), *((x + leaf.share * way[0], y + leaf.share * way[1], top) for way in ways)]
+        return any(not self._scene.hidden(eye, place, name) for place in points)
+
+    # ---------------------------------------------------------------------------------------------- what is in the way
+
+    def _in_the_way(self, leaf: Leaf, opening: bool) -> str:
+        if leaf.opening is not None and not opening:
+            for seat in self._seats:
+                if doorways.in_doorway(seat, leaf.opening):
+                    return f"{seat.name} stands in the doorway"
+        riders = set()
+        for place in self._places.of(leaf.thing.id):
+            if place.slides:
+                lying = self._objects.lying(place)
+                riders |= {item.id for item in lying}
+                top = place.centre[2] + place.clearance
+                tall = [item.id for item in lying if item.position[2] + item.size[2] / 2 > top]
+                if tall and not opening:
+                    return f"{tall[0]} is too tall for the drawer of {leaf.thing.id}"
+        ways = tuple(_ways(leaf, opening))
+        for item in self._objects:
+            carried = item.held_by and not item.bearers  # what several carry by its handles is in the way all the same
+            if item.present and not carried and item.id not in riders and _meets(item, ways):
+                return f"{item.id} is in the way"
+        return ""
+
+
+def _ways(leaf: Leaf, opening: bool) -> Iterator[Slab]:
+    """Where nothing may be: a hinged leaf's place when it shuts, a drawer's whole way."""
+    joints = {joint.name: joint for joint in leaf.joints}
+    for part in leaf.parts:
+        joint = joints[part.moves]
+        if joint.kind == "slide" or not opening:
+            yield _slab(leaf.thing, part, joint)
+
+
+def _slab(thing: Thing, part: Part, joint: Joint) -> Slab:
+    """A part of a shut leaf, or all that a drawer's part covers on its way, as an upright box."""
+    way = joint.travel if joint.kind == "slide" else 0.0
+    along = (joint.axis[0] * way, joint.axis[1] * way)
+    local = (part.centre[0] + along[0] / 2, part.centre[1] + along[1] / 2, part.centre[2])
+    x, y, z = plane.to_house(local, thing.centre, thing.yaw)
+    size = (2 * part.half[0] + abs(along[0]), 2 * part.half[1] + abs(along[1]))
+    return Slab((x, y), size, thing.yaw, z - part.half[2], z + part.half[2])
+
+
+def _meets(item: Item, ways: Sequence[Slab]) -> bool:
+    x, y, z = item.position
+    w, d, h = item.size
+    reach = math.hypot(w, d) / 2
+    body = Slab((x, y), (w, d), item.yaw, z - h / 2 + DEEP_M, z + h / 2)
+    return any(
+        math.dist(way.centre, body.centre) < reach + math.hypot(*way.size) / 2 and solids.overlap(way, body) > DEEP_M
+        for way in ways
+    )
+
+
+def _front(thing: Thing, local: Vec3) -> Vec3:
+    """The point of the thing's front, at half its height, that is nearest to a place in its local frame."""
+    x = max(-thing.size[0] / 2, min(thing.size[0] / 2, local[0]))
+    return plane.to_house((x, thing.size[1] / 2, 0.0), thing.centre, thing.yaw)
+
+
+def _knob(opening: Opening, thing: Thing, local: Vec3) -> Vec3:
+    """The point of a doorway's line, at the height of a door handle, that is nearest to a place in its frame."""
+    x = max(-thing.size[0] / 2, min(thing.size[0] / 2, local[0]))
+    place = plane.to_house((x, 0.0, 0.0), thing.centre, thing.yaw)
+    return (place[0], place[1], opening.low + _KNOB_M)

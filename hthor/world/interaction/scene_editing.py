@@ -1,0 +1,108 @@
+"""Setting and removing objects without a hand, as whoever prepares a scene does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from hthor.errors import HthorError, UnknownName
+from hthor.geometry import plane
+from hthor.types import HouseSpec, Vec3
+from hthor.world import numbers
+from hthor.world.model import geoms
+from hthor.world.model.composer_env import FASTEST_M_S, FastEnv, QPose
+from hthor.world.model.composer_task import HouseTask
+from hthor.world.model.geom_index import Scene
+from hthor.world.state import support_surfaces
+from hthor.world.state.objects import Item, Objects
+from hthor.world.state.overlap_test import Touch
+from hthor.world.state.support_surfaces import Places
+
+
+class Arranging:
+    """Moves the objects of one world about."""
+
+    def __init__(
+        self,
+        house: HouseSpec,
+        task: HouseTask,
+        env: FastEnv,
+        scene: Scene,
+        objects: Objects,
+        surfaces: Places,
+        touch: Touch,
+    ) -> None:
+        self._house = house
+        self._env, self._scene, self._objects, self._places, self._touch = env, scene, objects, surfaces, touch
+        self._parking = {prop.id: task.parking(number) for number, prop in enumerate(task.props)}
+
+    def put(self, id: str, position: Sequence[float] | None, on: str, yaw: float, velocity: Sequence[float]) -> None:
+        """See `World.put_object`."""
+        item = self._idle(id)
+        at = None if position is None else numbers.point3("position", position)
+        speed = numbers.point3("velocity", velocity, "metres a second")
+        yaw = plane.wrap(numbers.number("yaw", yaw, "radians"))
+        if math.hypot(*speed) > FASTEST_M_S:
+            raise HthorError(f"velocity must be at most {FASTEST_M_S:.0f} m/s, got {math.hypot(*speed):.3g} m/s")
+        if on:
+            self._objects.move(id, self._on(item, on, at, yaw), speed)
+        elif at is not None:
+            self._at(item, (*at, *geoms.quaternion(yaw)), speed)
+        else:
+            raise HthorError(f"say where to put {id}: give its position, or what to put it on")
+
+    def remove(self, id: str) -> None:
+        """See `World.remove_object`."""
+        self._idle(id)
+        self._objects.remove(id, self._parking[id])
+
+    def _idle(self, id: str) -> Item:
+        item = self._objects.known(id)
+        if item is None:
+            raise UnknownName("object", id, [one.id for one in self._objects])
+        if item.held_by or item.bearers:
+            who = " and ".join(item.bearers) or item.held_by
+            raise HthorError(f"{id} is in the hand of {who}; let it be placed or dropped first")
+        return item
+
+    def _on(self, item: Item, on: str, near: Vec3 | None, yaw: float) -> QPose:
+        """A free place on the thing, nearest to ``near`` or to a surface's middle: inside only where it has no top."""
+        surfaces = self._places.of(on)
+        if not surfaces:
+            known = sorted({place.thing for place in self._places.all()})
+            raise UnknownName("thing to put objects on", on, known)
+        if near is None:
+            surfaces = tuple(place for place in surfaces if not place.inside) or surfaces
+        boxes = self._scene.boxes_but(on, item.id)
+        found = []
+        for turn in (yaw, yaw + math.pi / 2):
+            w, d = abs(math.cos(turn)), abs(math.sin(turn))
+            size = (w * item.size[0] + d * item.size[1], d * item.size[0] + w * item.size[1], item.size[2])
+            for order, place in enumerate(surfaces):
+                goal = near or place.centre
+                spots = support_surfaces.candidates(place, size, boxes, goal)
+                if spots:
+                    rank = math.dist(spots[0], goal) if near else float(order)
+                    found.append((round(rank, 6), (*spots[0], *geoms.quaternion(place.yaw + turn))))
+            if found:
+                return min(found)[1]
+        w, d = item.size[:2]
+        raise HthorError(f"no room on {on} for {item.id}, which needs {w:.2f} x {d:.2f} m; remove something first")
+
+    def _at(self, item: Item, pose: QPose, velocity: Vec3) -> None:
+        """There and nowhere else; back to where it was if something is there already."""
+        indoors = any(plane.inside(pose[:2], room.polygon) for room in self._house.rooms)
+        if not indoors or pose[2] > self._house.height:
+            at = ", ".join(numbers.short(value) for value in pose[:3])
+            raise HthorError(f"({at}) is in no room of the house; give a position indoors")
+        data = self._env.data
+        rows, speeds = slice(item.qpos, item.qpos + 7), slice(item.dof, item.dof + 6)
+        old = data.qpos[rows].copy(), data.qvel[speeds].copy()
+        data.qpos[rows] = pose
+        where = self._touch.inside(item)
+        if where:
+            data.qpos[rows], data.qvel[speeds] = old
+            self._env.touch()
+            x, y, z = pose[:3]
+            raise HthorError(f"{item.id} would be inside {where} at ({x:.2f}, {y:.2f}, {z:.2f}); give a free position")
+        self._objects.move(item.id, pose, velocity)

@@ -1,0 +1,1 @@
+"""The MuJoCo model of a house: geoms, props, doors and their index."""

@@ -1,0 +1,126 @@
+"""The empty stage: floors, walls, openings and everything in a house that never moves.
+
+All of it is geoms of the world body, so that the engine has no bodies to sort through for what stands still.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from hthor import catalog
+from hthor.geometry import plane
+from hthor.types import HouseSpec, Room, Thing
+from hthor.world.model import colors, geoms, walls
+from hthor.world.model.engine import Arena
+
+_SLAB_M = 0.01
+_ROOF_M = 1.0
+"""So thick that nothing flies through it between two steps. It is not drawn; the ceilings are."""
+_TILT = (1.0, 5e-6, 5e-6, 0.0)
+"""Off level by a tenth of a millimetre in ten metres: an upright cylinder on a plane that is exactly level meets it
+in points that the engine works out from rounding errors.
+"""
+_LIGHT = {"ambient": (0.50, 0.50, 0.50), "diffuse": (0.34, 0.34, 0.33), "specular": (0.04, 0.04, 0.04)}
+_SKY = {"rgb1": (0.80, 0.88, 0.94), "rgb2": (0.93, 0.94, 0.93)}
+_DARK = (0.0, 0.0, 0.0)
+_SUNS = (((0.3, 0.5, -1.0), (0.20, 0.19, 0.17)), ((-0.6, -0.3, -0.5), (0.12, 0.12, 0.13)))
+"""Direction and colour of the two lights from the sky."""
+
+
+class HouseArena(Arena):
+    """A house without its movable things.
+
+    Attributes:
+        owners: name of each geom -> id of the thing, room, wall or opening it belongs to.
+    """
+
+    def _build(self, house: HouseSpec, statics: Iterable[Thing]) -> None:  # type: ignore[override]
+        super()._build(name="house")
+        self.owners: dict[str, str] = {}
+        self._serial = itertools.count()
+        self._settings()
+        self._floors(house)
+        self._walls(house)
+        for thing in statics:
+            self._thing(thing)
+
+    def _settings(self) -> None:
+        """Options as measured: long steps, sleeping islands, a headlight that leaves no corner black."""
+        root = self.mjcf_model
+        root.compiler.fusestatic = True
+        root.compiler.boundinertia = 5e-6  # [kg m2] a pen that hits an edge would spin up without end
+        root.option.timestep = 0.02
+        root.option.sleep_tolerance = 5e-3
+        root.option.flag.sleep = "enable"
+        root.visual.headlight.set_attributes(active=1, **_LIGHT)
+        root.visual.quality.set_attributes(shadowsize=0, offsamples=4, numslices=24, numstacks=12)
+        root.visual.map.set_attributes(znear=0.002, zfar=8.0)
+        root.statistic.set_attributes(extent=10.0)
+        root.asset.add("texture", name="sky", type="skybox", builtin="gradient", width=32, height=192, **_SKY)
+        root.asset.add("material", name="ceiling", rgba=colors.CEILING, emission=0.3)
+        for direction, colour in _SUNS:
+            light = {"directional": True, "castshadow": False, "pos": (0, 0, 10), "ambient": _DARK, "specular": _DARK}
+            root.worldbody.add("light", dir=direction, diffuse=colour, **light)
+
+    def _name(self, owner: str) -> str:
+        name = f"{owner.replace('/', '|')}:{next(self._serial)}"
+        self.owners[name] = owner
+        return name
+
+    def _floors(self, house: HouseSpec) -> None:
+        world = self.mjcf_model.worldbody
+        hidden: dict[str, Any] = {"group": 5, "rgba": (0, 0, 0, 0), "quat": _TILT}
+        world.add("geom", name=self._name("ground"), type="plane", size=(50, 50, 1), **geoms.STATIC, **hidden)
+        x, y = ([corner[axis] for room in house.rooms for corner in room.polygon] for axis in (0, 1))
+        roof = ((min(x) + max(x)) / 2, (min(y) + max(y)) / 2, house.height + _ROOF_M / 2)
+        half = ((max(x) - min(x)) / 2 + 1.0, (max(y) - min(y)) / 2 + 1.0, _ROOF_M / 2)
+        geoms.add_box(world, self._name("roof"), roof, half, 0.0, group=5, rgba=(0, 0, 0, 0), **geoms.STATIC)
+        lawn: dict[str, Any] = {"pos": (0, 0, -2 * _SLAB_M), "rgba": colors.GROUND, "group": geoms.FURNITURE}
+        world.add("geom", name=self._name("outdoors"), type="plane", size=(50, 50, 1), **geoms.GHOST, **lawn)
+        for room in house.rooms:
+            for x0, y0, x1, y1 in _rectangles(room):
+                centre, half = ((x0 + x1) / 2, (y0 + y1) / 2), ((x1 - x0) / 2, (y1 - y0) / 2, _SLAB_M / 2)
+                floor = {"rgba": colors.floor(room.floor), "group": geoms.FURNITURE}
+                ceiling = {"material": "ceiling", "group": geoms.CEILINGS}
+                name = self._name(f"floor of {room.id}")
+                geoms.add_box(world, name, (*centre, -_SLAB_M / 2), half, 0.0, **floor, **geoms.GHOST)
+                name = self._name(f"ceiling of {room.id}")
+                geoms.add_box(world, name, (*centre, house.height + _SLAB_M / 2), half, 0.0, **ceiling, **geoms.GHOST)
+
+    def _walls(self, house: HouseSpec) -> None:
+        for panel in walls.panels(house):
+            geoms.add_box(
+                self.mjcf_model.worldbody,
+                self._name(panel.name),
+                panel.centre,
+                panel.half,
+                panel.yaw,
+                rgba=panel.rgba,
+                group=geoms.CEILINGS if panel.sort == "lintel" else geoms.WALLS,
+                **geoms.STATIC,
+            )
+
+    def _thing(self, thing: Thing) -> None:
+        for part in catalog.kind(thing.kind).parts(thing.size, thing.variant):
+            if not part.moves:
+                name = self._name(thing.id)
+                bits = geoms.STATIC
+                geoms.add_part(
+                    self.mjcf_model.worldbody, name, part, thing.centre, thing.yaw, group=geoms.FURNITURE, **bits
+                )
+
+
+def _rectangles(room: Room) -> Iterator[tuple[float, float, float, float]]:
+    """The room's floor in strips from west to east; exact for rooms with square corners."""
+    xs, ys = (sorted({round(corner[axis], 4) for corner in room.polygon}) for axis in (0, 1))
+    for y0, y1 in itertools.pairwise(ys):
+        begin = None
+        for x0, x1 in [*itertools.pairwise(xs), (xs[-1], xs[-1])]:
+            covered = x1 > x0 and plane.inside(((x0 + x1) / 2, (y0 + y1) / 2), room.polygon)
+            if covered and begin is None:
+                begin = x0
+            elif not covered and begin is not None:
+                yield (begin, y0, x0, y1)
+                begin = None

@@ -1,0 +1,1 @@
+"""Bodies of people and robots in the MuJoCo model."""

@@ -1,0 +1,131 @@
+"""Bodies of robots and of the person: moved like puppets, without degrees of freedom.
+
+A body meets nothing in the engine. Walls, furniture and other bodies stop it on the free-space grid (see `motion`),
+which is exactly what planners see. Its head turns with the camera: solids and meshes that move with "head" are given
+as they are while the camera looks straight ahead.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import math
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from hthor import plugins
+from hthor.errors import HthorError
+from hthor.looks import Piece
+from hthor.looks.furniture import plain
+from hthor.types import HUMAN, BodySpec, Part, Rgba, RobotSpec, Vec3
+from hthor.world.model import geoms
+from hthor.world.model.bodies import avatar
+from hthor.world.model.bodies.primitives import HEAD, box, post
+from hthor.world.model.engine import Entity, mjcf
+
+_HAND_HEIGHT = 0.60
+"""Height of the hand as a share of the body's height, where its file does not say."""
+_HAND_AHEAD_M = 0.14
+_NECK_HEIGHT = 0.93
+_SHELL: Rgba = (0.80, 0.82, 0.84, 1.0)
+_LENS: Rgba = (0.10, 0.11, 0.13, 1.0)
+
+
+def robot(name: str) -> RobotSpec:
+    """The body of the robot with this name, or of the robot in this file, such as ``my_robot.py``.
+
+    Raises:
+        UnknownName: when there is none.
+        HthorError: when the file does not load or does not define a robot.
+    """
+    spec = plugins.load("robot", name)
+    own = Path(name).stem
+    if not isinstance(spec, RobotSpec) or spec.name != own:
+        given = f"a RobotSpec called '{spec.name}'" if isinstance(spec, RobotSpec) else f"a {type(spec).__name__}"
+        raise HthorError(f"{name}: SPEC must be a RobotSpec called '{own}', as its file is; it is {given}.")
+    return spec
+
+
+def look(spec: BodySpec) -> tuple[Part, ...]:
+    """The body's solids in its own frame: its file's own look, or a plain drum with a mast."""
+    draw = getattr(_module(spec), "look", None)
+    return _plain(spec) if draw is None else tuple(draw())
+
+
+@functools.lru_cache(maxsize=64)
+def pieces(spec: BodySpec) -> tuple[Piece, ...]:
+    """The body's meshes in its own frame, for pictures for people: its file's own, or its solids'."""
+    draw = getattr(_module(spec), "pieces", None)
+    return tuple(plain.pieces(look(spec)) if draw is None else draw())
+
+
+def neck(spec: BodySpec) -> Vec3:
+    """Where the head turns [m], in the body's frame."""
+    place: Vec3 = getattr(_module(spec), "NECK", (0.0, 0.0, round(_NECK_HEIGHT * spec.height, 3)))
+    return place
+
+
+def head(spec: BodySpec, pitch: float) -> tuple[Any, Any]:
+    """How the head's points move as the camera tilts by ``pitch`` [rad]: rotation (3, 3) and offset (3,) [m].
+
+    A point p of the head, given while the camera looks straight ahead, is at ``rotation @ p + offset``, all in the
+    body's frame.
+    """
+    cos, sin = math.cos(pitch), math.sin(pitch)
+    rotation = np.array(((cos, 0.0, -sin), (0.0, 1.0, 0.0), (sin, 0.0, cos)))
+    pivot = np.array(neck(spec))
+    return rotation, pivot - rotation @ pivot
+
+
+def hand(spec: BodySpec) -> Vec3:
+    """Where the lowest point of what a body holds rests [m], in its own frame (x ahead, y left, z up)."""
+    ahead = (spec.radius + _HAND_AHEAD_M, 0.0, round(_HAND_HEIGHT * spec.height, 3))
+    place: Vec3 = getattr(_module(spec), "HAND", ahead)
+    return place
+
+
+def grasp(spec: BodySpec, size: Vec3) -> Vec3:
+    """Where the centre of a held object of ``size`` [m] is, in the body's own frame: it lies on the hand."""
+    x, y, z = hand(spec)
+    return (x, y, z + size[2] / 2)
+
+
+def seat_names(robots: int) -> tuple[str, ...]:
+    """The seats of a world with that many robots: "human", "robot", "robot2", ..."""
+    return (HUMAN, *(f"robot{number if number > 1 else ''}" for number in range(1, robots + 1)))
+
+
+class Body(Entity):
+    """The figure in a seat; its frame stands on the floor, x ahead, the camera level."""
+
+    def _build(self, seat: str, spec: BodySpec) -> None:
+        self.seat, self.spec = seat, spec
+        self._root = mjcf.RootElement(model=f"body|{seat}")
+        for index, part in enumerate(look(spec)):
+            bits = geoms.GHOST
+            geoms.add_part(self._root.worldbody, f"part:{index}", part, group=geoms.BODIES, **bits)
+
+    @property
+    def mjcf_model(self) -> mjcf.RootElement:
+        return self._root
+
+
+def _module(spec: BodySpec) -> ModuleType | None:
+    """The file that a body comes from, None for one that was made from a bare record."""
+    if spec.name == avatar.HUMAN.name:
+        return avatar
+    if spec.name in plugins.names("robot"):
+        return importlib.import_module(f"hthor.world.robots.{spec.name}")
+    return plugins.loaded("robot", spec.name)
+
+
+def _plain(spec: BodySpec) -> tuple[Part, ...]:
+    r, h = spec.radius, spec.height
+    return (
+        post((0.0, 0.0, 0.1 * h), r, 0.1 * h, _SHELL),
+        post((0.0, 0.0, 0.55 * h), 0.15 * r, 0.35 * h, _SHELL),
+        box((0.0, 0.0, 0.95 * h), (0.25 * r, 0.45 * r, 0.05 * h), _LENS, HEAD),
+    )

@@ -1,0 +1,100 @@
+"""The composer task of a house: arena, props, doors and bodies in one model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from hthor import rules
+from hthor.types import BodySpec, HouseSpec, Vec3
+from hthor.world.model import door_geometry, geoms
+from hthor.world.model.arena import HouseArena
+from hthor.world.model.articulated import Door
+from hthor.world.model.bodies.bodies import Body
+from hthor.world.model.composer_env import QPose
+from hthor.world.model.engine import composer, mujoco
+from hthor.world.model.inventory import Contents
+from hthor.world.model.props import Prop
+
+PHYSICS_STEP_S = 0.02
+"""The longest step at which everything on a table falls asleep (with a sleep tolerance of 5e-3)."""
+_CONTACT_S = 0.001
+"""Time constant of contacts; the engine makes it two steps where that is more, so it counts for what moves fast."""
+_HARDNESS = (0.95, 0.99)
+"""How little a contact gives, lightly and firmly pressed: things rest a millimetre deep at most."""
+_DRAG_NMS = 1e-5
+"""What the air takes from spinning."""
+_PARK: Vec3 = (-500.0, 0.0, 1.0)
+_PARK_STEP_M = 2.0
+
+
+class HouseTask(composer.Task):
+    """Everything in one model, compiled once; an episode only writes poses.
+
+    Attributes:
+        props, doors, bodies: the entities, each with the attributes its class documents.
+        starts: object id -> (position [m], yaw [rad]) at the next reset; what is missing goes where the house has it,
+            or is parked out of the world.
+    """
+
+    def __init__(self, house: HouseSpec, contents: Contents, seats: Mapping[str, BodySpec]) -> None:
+        self._arena = HouseArena(house, contents.statics)
+        self.props = tuple(Prop(item.id, item.kind, item.size, item.variant) for item in contents.movables)
+        opening = (*(door_geometry.of_thing(thing) for thing in contents.doors), *door_geometry.of_house(house))
+        self.doors = tuple(Door(one) for one in opening)
+        self.bodies = tuple(Body(seat, spec) for seat, spec in seats.items())
+        self.starts: dict[str, tuple[Vec3, float]] = {}
+        homes = [
+            self.parking(number) if item.home is None else _pose(item.home, item.yaw)
+            for number, item in enumerate(contents.movables)
+        ]
+        self._homes = np.array(homes).reshape(-1, 7)
+        for index, prop in enumerate(self.props):
+            self._arena.add_free_entity(prop).pos = self.parking(index)[:3]
+        for door in self.doors:
+            frame = self._arena.attach(door)
+            frame.pos, frame.quat = door.thing.centre, geoms.quaternion(door.thing.yaw)
+        for body in self.bodies:
+            self._arena.attach(body).mocap = "true"
+        self.set_timesteps(control_timestep=rules.TICK_S, physics_timestep=PHYSICS_STEP_S)
+
+    @property
+    def root_entity(self) -> HouseArena:
+        return self._arena
+
+    def get_reward(self, physics: Any) -> float:  # noqa: ARG002 - composer's signature
+        """Always zero: success is the umpire's to judge."""
+        return 0.0
+
+    @staticmethod
+    def parking(index: int) -> QPose:
+        """Where the object with that number is kept while it is not in the world."""
+        return _pose((_PARK[0] - _PARK_STEP_M * index, _PARK[1], _PARK[2]), 0.0)
+
+    def after_compile(self, physics: Any, random_state: Any) -> None:  # noqa: ARG002
+        """Let everything start asleep; composer's frames cannot say so in the model itself."""
+        policy = physics.model.ptr.tree_sleep_policy
+        allowed, start = mujoco.mjtSleepPolicy.mjSLEEP_AUTO_ALLOWED, mujoco.mjtSleepPolicy.mjSLEEP_INIT
+        policy[policy == int(allowed)] = int(start)
+        model = physics.model.ptr
+        model.geom_solref[:, 0], model.geom_solimp[:, :2] = _CONTACT_S, _HARDNESS
+        free = model.jnt_dofadr[model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)]
+        model.dof_damping[free[:, None] + np.arange(3, 6)] = _DRAG_NMS
+        bodies = [physics.bind(prop.root_body).element_id for prop in self.props]
+        first = np.array([model.jnt_qposadr[model.body_jntadr[body]] for body in bodies], int)
+        self._addresses = first[:, None] + np.arange(7)
+        self._numbers = {prop.id: number for number, prop in enumerate(self.props)}
+
+    def initialize_episode(self, physics: Any, random_state: Any) -> None:  # noqa: ARG002
+        """Write the starting poses as the model's own, so that a plain reset puts everything there, asleep."""
+        model, data = physics.model.ptr, physics.data.ptr
+        model.qpos0[self._addresses] = self._homes
+        for id, (position, yaw) in self.starts.items():
+            model.qpos0[self._addresses[self._numbers[id]]] = _pose(position, yaw)
+        mujoco.mj_resetData(model, data)
+
+
+def _pose(position: Vec3, yaw: float) -> QPose:
+    return (*position, *geoms.quaternion(yaw))

@@ -1,0 +1,122 @@
+"""The compiled model's geoms as plain arrays: who owns each, which of them hide what."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+
+from hthor.geometry.ray_casting import blocked
+from hthor.types import Vec3
+from hthor.world.model.composer_env import FastEnv
+from hthor.world.model.composer_task import HouseTask
+from hthor.world.model.engine import mujoco
+
+_CLEAR = 0.5
+"""What is less opaque than this, glass, hides nothing."""
+
+
+class Scene:
+    """Boxes around all solids, laid out as `hthor.geometry.ray_casting` wants them, and the list of those that hide.
+
+    Attributes:
+        half: (N, 3) half extents [m]. pos: (N, 3) centres. mat: (N, 9) rotations; both are live views of the engine.
+        radius: (N,) bounding radii [m]. owner: id of each geom's thing, seat, room, wall or opening.
+        walls: indices of what hides and never moves, furniture too, largest first. loose: the rest of ``ids``.
+        ids: indices of what hides, largest first; carried objects are not among them.
+        names: the owners in alphabetic order. numbers: (N,) index of each geom's owner in them.
+        span: owner -> [first, last + 1) of its geoms; of a thing with a door, those that do not move.
+    """
+
+    def __init__(self, env: FastEnv, task: HouseTask) -> None:
+        model, data = env.model, env.data
+        self.half = _halves(model)
+        self.pos, self.mat = data.geom_xpos, data.geom_xmat.reshape(-1, 9)
+        self.radius = np.linalg.norm(self.half, axis=1)
+        self.owner = tuple(_owners(model, task))
+        self.span = _spans(self.owner)
+        self.names = tuple(sorted(set(self.owner)))
+        self._number = {owner: number for number, owner in enumerate(self.names)}
+        self.numbers = np.array([self._number[owner] for owner in self.owner])
+        self.solid = model.geom_contype != 0
+        self.solid &= model.geom_rgba[:, 3] >= _CLEAR
+        self.solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)
+        fixed = self.solid & (model.body_weldid[model.geom_bodyid] == 0)
+        self.walls = self._sorted(fixed)
+        self._moving = self.solid & ~fixed
+        self.ids = self.loose = np.zeros(0, np.int64)
+        self.hide_all_but(())
+
+    def hide_all_but(self, ghosts: Iterable[str]) -> None:
+        """Say which objects hide nothing for now: those that someone carries."""
+        solid = self.solid.copy()
+        for id in ghosts:
+            solid[slice(*self.span[id])] = False
+        self.ids, self.loose = self._sorted(solid), self._sorted(solid & self._moving)
+
+    def _sorted(self, chosen: Any) -> Any:
+        """Indices of the chosen geoms, largest first."""
+        ids = np.flatnonzero(chosen)
+        return ids[np.argsort(-self.radius[ids], kind="stable")]
+
+    def hidden(self, eye: Vec3, point: Vec3, ignore: str = "") -> bool:
+        """Whether something other than ``ignore`` stands between the two points [m]."""
+        ends = np.array(eye), np.array(point)
+        return bool(blocked(*ends, self.half, self.pos, self.mat, self.radius, self._without(ignore), 0, 0))
+
+    def first(self, start: Vec3, end: Vec3, ignore: str = "") -> str:
+        """Owner of a solid other than ``ignore`` that stands between two points [m], empty for none."""
+        ends, ids = (np.array(start), np.array(end)), self._without(ignore)
+        solids = self.half, self.pos, self.mat, self.radius
+        met = (self.owner[geom] for geom in ids if blocked(*ends, *solids, np.array([geom]), 0, 0))
+        return next(met, "") if blocked(*ends, *solids, ids, 0, 0) else ""
+
+    def boxes_but(self, *without: str) -> tuple[Any, Any]:
+        """As `boxes`, without those of several owners."""
+        keep = self.ids[~np.isin(self.numbers[self.ids], [self._number[owner] for owner in without])]
+        return self._upright(keep)
+
+    def boxes(self, without: str) -> tuple[Any, Any]:
+        """Centres (M, 3) and half extents (M, 3) [m] of upright boxes around all solids but those of ``without``."""
+        return self._upright(self._without(without))
+
+    def _upright(self, keep: Any) -> tuple[Any, Any]:
+        rotation = np.abs(self.mat[keep].reshape(-1, 3, 3))
+        return self.pos[keep], np.einsum("nij,nj->ni", rotation, self.half[keep])
+
+    def _without(self, owner: str) -> Any:
+        number = self._number.get(owner)
+        return self.ids if number is None else self.ids[self.numbers[self.ids] != number]
+
+
+def _halves(model: Any) -> Any:
+    half = np.array(model.geom_size)
+    sphere = model.geom_type == int(mujoco.mjtGeom.mjGEOM_SPHERE)
+    cylinder = model.geom_type == int(mujoco.mjtGeom.mjGEOM_CYLINDER)
+    half[sphere] = half[sphere][:, :1]
+    half[cylinder] = half[cylinder][:, [0, 0, 1]]
+    return half
+
+
+def _owners(model: Any, task: HouseTask) -> Iterator[str]:
+    scopes = {f"{entity.mjcf_model.model}/": name for entity, name in _entities(task)}
+    for geom in range(model.ngeom):
+        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_GEOM, geom)
+        scope, slash, _ = name.rpartition("/")
+        yield scopes[scope + slash] if slash else task.root_entity.owners[name]
+
+
+def _entities(task: HouseTask) -> Iterator[tuple[Any, str]]:
+    yield from ((prop, prop.id) for prop in task.props)
+    yield from ((door, door.id) for door in task.doors)
+    yield from ((body, body.seat) for body in task.bodies)
+
+
+def _spans(owners: tuple[str, ...]) -> dict[str, tuple[int, int]]:
+    spans: dict[str, tuple[int, int]] = {}
+    for geom, owner in enumerate(owners):
+        first, end = spans.get(owner, (geom, geom))
+        if end == geom:
+            spans[owner] = (first, geom + 1)
+    return spans

@@ -1,0 +1,84 @@
+"""What of a house moves and what stays: the split that decides which things the engine simulates.
+
+Free to move are the objects that a world is built with, and of the house's own things all that can be picked up and lie
+on a surface of something, where `hthor.houses.laying` lays it. What cannot lie there stays where the house puts it, as
+furniture does; so does what lies on the bare floor, where the free-space grid counts it as an obstacle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from msgspec import Struct
+
+from hthor import catalog
+from hthor.errors import HthorError
+from hthor.houses import laying
+from hthor.types import HouseSpec, Thing, Vec3
+
+DEFAULT_OBJECTS = tuple((name, name) for name in catalog.TARGETS)
+"""The six target objects as (id, kind) pairs; their ids are their kinds' names."""
+
+
+class Movable(Struct, frozen=True, kw_only=True):
+    """An object that can move: ``home`` is where the house puts it, None for one that a task must place."""
+
+    id: str
+    kind: str
+    size: Vec3
+    mass: float
+    variant: int = 0
+    home: Vec3 | None = None
+    yaw: float = 0.0
+    support: str = ""
+
+    @property
+    def clutter(self) -> bool:
+        """Whether it is one of a house's many small things that no task asks for."""
+        return self.home is not None and catalog.kind(self.kind).family != "target"
+
+
+class Contents(Struct, frozen=True, kw_only=True):
+    """A house's things, split. ``doors`` are the statics that open."""
+
+    statics: tuple[Thing, ...]
+    movables: tuple[Movable, ...]
+    doors: tuple[Thing, ...]
+
+
+def split(house: HouseSpec, objects: Iterable[tuple[str, str]]) -> Contents:
+    """Sort the house's things and the world's ``objects``, given as (id, kind) pairs.
+
+    Raises:
+        HthorError: when two things share an id, or an object's kind cannot be picked up.
+        UnknownName: when a kind does not exist.
+    """
+    movables = [_free(thing) for thing in laying.movable(house)]
+    taken = {movable.id for movable in movables}
+    statics = tuple(thing for thing in house.things if thing.id not in taken)
+    taken = {thing.id for thing in house.things}
+    for id, name in objects:
+        kind = catalog.kind(name)
+        if id in taken:
+            raise HthorError(f"object id '{id}' is taken by another thing of house '{house.id}'; choose another id")
+        if not kind.pickable:
+            raise HthorError(f"object '{id}' is of kind '{name}', which cannot be picked up")
+        taken.add(id)
+        movables.append(Movable(id=id, kind=name, size=kind.size, mass=kind.mass))
+    doors = tuple(thing for thing in statics if catalog.kind(thing.kind).joints(thing.size))
+    return Contents(statics=statics, movables=tuple(movables), doors=doors)
+
+
+def _free(thing: Thing) -> Movable:
+    kind = catalog.kind(thing.kind)
+    scale = (thing.size[0] * thing.size[1] * thing.size[2]) / (kind.size[0] * kind.size[1] * kind.size[2])
+    return Movable(
+        id=thing.id,
+        kind=thing.kind,
+        size=thing.size,
+        mass=kind.mass * scale,
+        variant=thing.variant,
+        home=thing.centre,
+        yaw=thing.yaw,
+        support=thing.parent,
+    )

@@ -1,0 +1,1 @@
+"""How bodies move, reach, collide and where they start."""

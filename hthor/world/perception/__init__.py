@@ -1,0 +1,1 @@
+"""Visibility, detections and range scans."""

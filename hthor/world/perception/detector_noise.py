@@ -1,0 +1,150 @@
+"""The errors of a detector: objects overlooked, objects seen where they are not.
+
+What it makes of a look depends on the trial's seed, the seat, the second of time (a *glimpse*) and the object, never on
+how often anyone looked before. Within a glimpse:
+
+- an object in view is overlooked with the chance ``miss``, on its own, for the whole glimpse; looking again a second
+  later is a new chance. Furniture, doorways, people, robots and what the seat itself holds are never overlooked.
+- with the chance ``false_alarm`` one object that is not in view, of a kind that tasks ask for, is reported all the
+  same: as lying, in plain sight and within the detector's range, on a surface of a piece of furniture that is in view.
+  Where there is no such surface or object there is no false alarm. The report is like any other; only looking again
+  tells.
+- reported positions of objects are off by a normal error of ``position_sigma`` along each axis.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import msgspec
+
+from hthor import catalog, rules, seeds
+from hthor.errors import HthorError
+from hthor.geometry.plane import to_house
+from hthor.types import BodySpec, Detection, DetectorSpec, Vec3, detector_specs
+from hthor.world.model.geom_index import Scene
+from hthor.world.perception import view_frustum
+from hthor.world.state.body_state import Seat
+from hthor.world.state.objects import Item
+from hthor.world.state.support_surfaces import Place, Places
+
+GLIMPSE_TICKS = round(1.0 / rules.TICK_S)
+"""How long one draw holds: a detector that errs on a frame errs on the next one too."""
+_TRIES = 4
+_INSET = 0.8
+
+
+def assign(
+    robots: Sequence[str], bodies: Mapping[str, BodySpec], given: Iterable[DetectorSpec | str]
+) -> dict[str, DetectorSpec]:
+    """Each robot's detector.
+
+    Args:
+        robots: their seats. bodies: what each seat's body can do, and declares.
+        given: what a trial says, in the order of the robots: records, or what `hthor.types.detector_specs.read` reads.
+
+    Raises:
+        HthorError: when there are more than robots, or one cannot be read.
+    """
+    wanted = list(given)
+    if len(wanted) > len(robots):
+        raise HthorError(f"{len(wanted)} detectors for {len(robots)} robots; give at most one for each, in their order")
+    wanted += [detector_specs.OWN] * (len(robots) - len(wanted))
+    own = {
+        seat: bodies[seat].detector if one == detector_specs.OWN else one
+        for seat, one in zip(robots, wanted, strict=True)
+    }
+    return {seat: one if isinstance(one, DetectorSpec) else detector_specs.read(one) for seat, one in own.items()}
+
+
+class Detector:
+    """The errors of one seat's detector."""
+
+    def __init__(self, spec: DetectorSpec, seat: Seat, scene: Scene, places: Places) -> None:
+        self._spec, self._seat, self._scene, self._places = spec, seat, scene, places
+
+    def report(self, found: Sequence[Detection], items: Iterable[Item], seed: int, tick: int) -> tuple[Detection, ...]:
+        """What it reports instead of what there is to see, by id.
+
+        Args:
+            found: what an ideal detector reports. items: all objects of the world. seed: the trial's. tick: now.
+        """
+        spec, root = self._spec, seeds.derive(seed, "detector", self._seat.name, tick // GLIMPSE_TICKS)
+        kept = [self._seen(detection, root) for detection in found if not self._missed(detection, root)]
+        if spec.false_alarm and seeds.draw(root, "false alarm") < spec.false_alarm:
+            kept += self._phantom(found, items, root)
+        return tuple(sorted(kept, key=lambda detection: detection.id))
+
+    def _missed(self, detection: Detection, root: int) -> bool:
+        loose = detection.family == "object" and detection.id != self._seat.holding
+        return loose and seeds.draw(root, "miss", detection.id) < self._spec.miss
+
+    def _seen(self, detection: Detection, root: int) -> Detection:
+        sigma = self._spec.position_sigma
+        if detection.family != "object" or detection.id == self._seat.holding or not sigma:
+            return detection
+        x, y, z = (
+            value + sigma * seeds.normal(root, "position", detection.id, axis)
+            for axis, value in enumerate(detection.position)
+        )
+        return msgspec.structs.replace(detection, position=(x, y, z), distance=self._distance((x, y, z)))
+
+    def _phantom(self, found: Sequence[Detection], items: Iterable[Item], root: int) -> list[Detection]:
+        """At most one object where it is not."""
+        seen = {detection.id for detection in found}
+        absent = [item for item in items if _wanted(item) and item.id not in seen and item.id != self._seat.holding]
+        if not absent:
+            return []
+        item = min(absent, key=lambda item: seeds.draw(root, "which", item.id))
+        furniture = [detection.id for detection in found if detection.family == "furniture"]
+        for place, position in self._spots(furniture, item, root):
+            if self._plain(position):
+                return [
+                    Detection(
+                        id=item.id,
+                        kind=item.kind,
+                        family="object",
+                        position=position,
+                        size=item.size,
+                        yaw=place.yaw,
+                        distance=self._distance(position),
+                        support=place.thing,
+                    )
+                ]
+        return []
+
+    def _spots(self, furniture: Iterable[str], item: Item, root: int) -> Iterator[tuple[Place, Vec3]]:
+        """Where the object might lie on what is in view, in an order that the glimpse decides."""
+        places = [
+            (seeds.draw(root, "where", thing, number), place)
+            for thing in furniture
+            for number, place in enumerate(self._places.of(thing))
+            if not place.inside
+        ]
+        for mark, place in sorted(places, key=lambda pair: pair[0]):
+            for attempt in range(_TRIES):
+                u, v = (
+                    _INSET * half * (2.0 * seeds.draw(root, "spot", repr(mark), attempt, axis) - 1.0)
+                    for axis, half in enumerate(place.half)
+                )
+                yield place, to_house((u, v, item.size[2] / 2), place.centre, place.yaw)
+
+    def _plain(self, point: Vec3) -> bool:
+        """Whether a point is within range, in the field of view and unhidden."""
+        pose, body = self._seat.pose, self._seat.spec
+        view = view_frustum.camera(pose, body)
+        offset = tuple(point[axis] - float(view[axis]) for axis in range(3))
+        ahead, left, up = (sum(offset[axis] * float(view[row + axis]) for axis in range(3)) for row in (3, 6, 9))
+        if self._distance(point) > body.sight_range or ahead <= 0.0:
+            return False
+        if abs(left) > ahead * float(view[12]) or abs(up) > ahead * float(view[13]):
+            return False
+        return not self._scene.hidden(view_frustum.eye(pose, body), point)
+
+    def _distance(self, point: Vec3) -> float:
+        return math.dist(view_frustum.eye(self._seat.pose, self._seat.spec), point)
+
+
+def _wanted(item: Item) -> bool:
+    return item.present and item.kind in catalog.TARGETS

@@ -1,0 +1,90 @@
+"""What never moves and can be looked for, and where it is looked for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from msgspec import Struct
+
+from hthor import catalog
+from hthor.geometry.plane import to_house
+from hthor.houses.space.solids import WALL_M
+from hthor.types import Opening, Thing, Vec3
+
+_DOORWAY_HEIGHT_M = 1.0
+_ROUNDING_M = 1e-6
+_INSET, _PROUD_M = 0.85, 0.02
+"""A piece of furniture is looked for at its upper corners, pulled in to this share, and just off its surfaces."""
+
+
+class Landmark(Struct, frozen=True):
+    """What stays the same about a thing that never moves: the detection's fields but for distance and state.
+
+    ``points`` [m], house frame, are where it is looked for.
+    """
+
+    id: str
+    kind: str
+    family: str
+    position: Vec3
+    size: Vec3
+    yaw: float
+    points: tuple[Vec3, ...]
+
+
+def landmarks(statics: Iterable[Thing], openings: Iterable[Opening]) -> tuple[Landmark, ...]:
+    """Furniture by id, then doorways by id."""
+    furniture = [_furniture(thing) for thing in statics if _counts(thing)]
+    doorways = [_doorway(opening) for opening in openings if opening.passable]
+    return (
+        *sorted(furniture, key=lambda landmark: landmark.id),
+        *sorted(doorways, key=lambda landmark: landmark.id),
+    )
+
+
+def targets(found: Sequence[Landmark], span: Mapping[str, tuple[int, int]]) -> tuple[Any, Any]:
+    """Landmarks as `glance.see` takes them, ``balls`` and ``spots``; ``span`` tells the geoms of each."""
+    balls, begin = np.zeros((7, len(found) + 1)), 0
+    for number, landmark in enumerate(found):
+        balls[:, number] = (*_ball(landmark.points), *span.get(landmark.id, (0, 0)), begin)
+        begin += len(landmark.points)
+    balls[6, -1] = begin
+    spots = np.zeros((6, begin))
+    spots[:3] = np.array([point for landmark in found for point in landmark.points]).reshape(-1, 3).T
+    return balls, spots
+
+
+def _ball(points: Sequence[Vec3]) -> tuple[float, float, float, float]:
+    """Middle and radius [m] of a ball around the points, a little larger than it need be."""
+    x, y, z = (0.5 * (min(axis) + max(axis)) for axis in zip(*points, strict=True))
+    return x, y, z, max(math.dist((x, y, z), point) for point in points) + _ROUNDING_M
+
+
+def _counts(thing: Thing) -> bool:
+    """Small things that lie about are scenery, not furniture."""
+    return not thing.parent or catalog.kind(thing.kind).receptacle
+
+
+def _furniture(thing: Thing) -> Landmark:
+    kind = catalog.kind(thing.kind)
+    w, d, h = (extent / 2 for extent in thing.size)
+    local: list[Vec3] = [(0.0, 0.0, 0.0), (0.0, 0.0, h + _PROUD_M)]
+    for surface in kind.surfaces(thing.size):
+        if not surface.inside:
+            local.append((surface.centre[0], surface.centre[1], surface.centre[2] + _PROUD_M))
+    local += [(sx * _INSET * w, sy * _INSET * d, _INSET * h) for sx in (-1, 1) for sy in (-1, 1)]
+    if kind.openable:
+        local.append((0.0, d + _PROUD_M, 0.0))
+    points = tuple(to_house(point, thing.centre, thing.yaw) for point in local)
+    return Landmark(thing.id, thing.kind, "furniture", thing.centre, thing.size, thing.yaw, points)
+
+
+def _doorway(opening: Opening) -> Landmark:
+    (ax, ay), (bx, by) = opening.a, opening.b
+    middle = ((ax + bx) / 2, (ay + by) / 2, _DOORWAY_HEIGHT_M)
+    size = (math.dist(opening.a, opening.b), WALL_M, opening.high - opening.low)
+    yaw = math.atan2(by - ay, bx - ax)
+    return Landmark(opening.id, "doorway", "doorway", middle, size, yaw, (middle,))

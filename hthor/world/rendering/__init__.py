@@ -1,0 +1,1 @@
+"""Pictures: cameras, the rasterizer, the ray renderer and OpenGL."""

@@ -1,0 +1,95 @@
+"""Where a camera is and how it projects, as records and as the numbers a tracer wants; draws nothing."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from hthor.types import BodySpec, Camera, CameraSpec, Pose, Vec2
+from hthor.world import numbers
+from hthor.world.perception import view_frustum
+
+OWN = CameraSpec()
+SIDE, _ROUND = 128, 8
+NEAR_M, FAR_M = 0.02, 80.0
+"""Nothing nearer or farther is in a picture."""
+_UP_M = 1.0e5
+"""A camera so far up that its rays are parallel: over a house they part by less than a hundredth of a millimetre."""
+
+
+def size(spec: BodySpec, chosen: CameraSpec = OWN) -> tuple[int, int]:
+    """Width and height [pixels] of the pictures that a camera takes unless a call says otherwise.
+
+    A body's own pictures have the shape of its field of view, about as many pixels as a square of `SIDE`, and sides
+    that are multiples of `_ROUND`.
+    """
+    if chosen.size is not None:
+        return chosen.size
+    wide, high = view_frustum.lens(spec)
+    width, height = (_ROUND * max(1, round(SIDE * stretch / _ROUND)) for stretch in _stretch(wide / high))
+    return width, height
+
+
+def lens(spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = OWN) -> Vec2:
+    """Tangents of half the fields of view, horizontal and vertical, of pictures of ``size`` (width, height) [pixels].
+
+    Pixels are square, whatever the size. A picture by the body's own field of view shows no more than that; one of
+    another shape shows the middle of it. A picture by another camera's shows that field of view from side to side.
+    """
+    wide, high = view_frustum.lens(spec)
+    width, height = size
+    pixel = 2.0 * math.tan(chosen.fov / 2) / width if chosen.fov else 2.0 * min(wide / width, high / height)
+    return pixel * width / 2, pixel * height / 2
+
+
+def of(pose: Pose, spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = OWN) -> Camera:
+    """The camera of a body at a pose, for pictures of ``size`` (width, height) [pixels]."""
+    view = view_frustum.camera(pose, spec)
+    width, height = size
+    wide, high = lens(spec, size, chosen)
+    matrix = np.array(
+        (
+            (width / (2.0 * wide), 0.0, (width - 1) / 2.0),
+            (0.0, height / (2.0 * high), (height - 1) / 2.0),
+            (0.0, 0.0, 1.0),
+        )
+    )
+    place = np.eye(4)
+    place[:3, 0], place[:3, 1], place[:3, 2], place[:3, 3] = -view[6:9], -view[9:12], view[3:6], view[:3]
+    return Camera(size=size, matrix=matrix, pose=place, near=NEAR_M, far=FAR_M)
+
+
+def view(pose: Pose, spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = OWN) -> Any:
+    """(16,) float64 for `hthor.world.rendering.rasterizer.fill`: a body's camera, for pictures of ``size``."""
+    return np.concatenate((view_frustum.camera(pose, spec)[:12], lens(spec, size, chosen), (NEAR_M, FAR_M)))
+
+
+def above(bounds: tuple[float, float, float, float]) -> Any:
+    """(16,) float64 for `hthor.world.rendering.rasterizer.fill`: straight down on x0, y0, x1, y1 [m], with north up."""
+    x0, y0, x1, y1 = bounds
+    eye = ((x0 + x1) / 2, (y0 + y1) / 2, _UP_M)
+    tangents = ((x1 - x0) / 2 / _UP_M, (y1 - y0) / 2 / _UP_M)
+    return np.array((*eye, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0, 0.0, 1.0, 0.0, *tangents, NEAR_M, 2.0 * _UP_M))
+
+
+def check(size: tuple[int, int]) -> None:
+    """Raise ValueError unless ``size`` is a width and a height of 1 to 4096 pixels."""
+    try:
+        width, height = size
+        sides = (width, height)
+        whole = all(isinstance(side, (int, np.integer)) and not isinstance(side, bool) for side in sides)
+        fits = whole and all(1 <= side <= 4096 for side in sides)
+    except (TypeError, ValueError):
+        fits = False
+    if not fits:
+        given = numbers.shown(size)
+        raise ValueError(
+            f"size must be (width, height) in whole pixels, 1 to 4096 each, such as (128, 128); got {given}"
+        )
+
+
+def _stretch(shape: float) -> Vec2:
+    """Width and height of a rectangle of that shape and of area 1."""
+    return math.sqrt(shape), math.sqrt(1.0 / shape)

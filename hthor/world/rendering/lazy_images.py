@@ -1,0 +1,149 @@
+"""Pictures of a world, put off until someone looks at them.
+
+The profile ``fast`` traces the engine's own solids, in a millisecond and with nothing but the processor. ``nice`` draws
+what they stand for, with textures and shadows, through OpenGL; it is loaded when it is first asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from hthor.types import Camera, CameraSpec, HouseSpec, Vec2, View
+from hthor.world import numbers
+from hthor.world.model.composer_env import FastEnv
+from hthor.world.model.geom_index import Scene
+from hthor.world.rendering import camera
+from hthor.world.rendering.labels import Labels
+from hthor.world.state.body_state import Seat
+from hthor.world.state.pose_snapshot import Moment
+
+if TYPE_CHECKING:
+    from hthor.world.rendering.opengl_renderer import Studio
+    from hthor.world.rendering.ray_renderer import Tracer
+
+PROFILES = ("fast", "nice")
+MODES = ("rgb", "depth", "segmentation")
+Size = tuple[int, int] | None
+"""Width and height [pixels], None for the camera's own."""
+_MARGIN_M = 0.3
+
+
+class Pictures:
+    """Copies moments now and draws them when asked.
+
+    Args:
+        studio: makes what draws the profile ``nice``; called at most once, when first needed.
+        profile: the profile of every picture for which a call names none.
+        cameras: of the seats that do not have their bodies' own.
+    """
+
+    def __init__(
+        self,
+        house: HouseSpec,
+        env: FastEnv,
+        scene: Scene,
+        seats: Mapping[str, Seat],
+        studio: Callable[[], Studio],
+        profile: str = "fast",
+        cameras: Mapping[str, CameraSpec] | None = None,
+    ) -> None:
+        _check(PROFILES, profile=profile)
+        self.profile = profile
+        self._house, self._env, self._scene, self._seats = house, env, scene, seats
+        self._cameras = dict(cameras or {})
+        self._make = studio
+        self._studio: Studio | None = None
+        self._tracer: Tracer | None = None
+        self._labels = Labels(scene.names)
+
+    def names(self, seed: int) -> tuple[str, ...]:
+        """Whom each number of a segmentation stands for in the episode of that seed."""
+        self._labels.draw(seed)
+        return self._labels.names
+
+    def view(self, seat: str, mode: str, size: Size, profile: str | None, seed: int) -> Any:
+        """The seat's own view now: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
+        _check(MODES, mode=mode)
+        size = self._size(seat, size)
+        picture = self._draw(profile).view(self._moment(), seat, mode, size, self._by(seat))
+        return self._labelled(picture, seed) if mode == "segmentation" else picture
+
+    def look(self, seat: str, size: Size, profile: str | None, seed: int) -> View:
+        """Colour, depth and segmentation of one glance."""
+        size = self._size(seat, size)
+        glance = self._draw(profile).look(self._moment(), seat, size, self._by(seat))
+        return View(
+            rgb=glance.rgb,
+            depth=glance.depth,
+            segmentation=self._labelled(glance.segmentation, seed),
+            camera=self.camera(seat, size),
+        )
+
+    def camera(self, seat: str, size: Size) -> Camera:
+        """The seat's camera now, as it takes pictures of this size."""
+        body = self._seats[seat]
+        return camera.of(body.pose, body.spec, self._size(seat, size), self._by(seat))
+
+    def frame(self, seat: str, size: Size, profile: str | None) -> Callable[[], Any]:
+        """The seat's own view of this moment in colour, drawn when called."""
+        _check(PROFILES, profile=profile or self.profile)
+        fixed, moment, by = self._size(seat, size), self._moment(), self._by(seat)
+        return lambda: self._draw(profile).view(moment, seat, "rgb", fixed, by)
+
+    def top_view(self, pixels_per_metre: float, profile: str | None) -> Any:
+        """The house from above now, (H, W, 3) uint8."""
+        if not numbers.finite(pixels_per_metre) or not 0.0 < pixels_per_metre <= 500.0:
+            raise ValueError(
+                f"pixels_per_metre must be more than 0 and at most 500, got {numbers.shown(pixels_per_metre)}"
+            )
+        return self._draw(profile).top_view(self._moment(), self.bounds, pixels_per_metre)
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """x0, y0, x1, y1 [m] around all rooms."""
+        corners: list[Vec2] = [corner for room in self._house.rooms for corner in room.polygon]
+        xs, ys = [corner[0] for corner in corners], [corner[1] for corner in corners]
+        return (min(xs) - _MARGIN_M, min(ys) - _MARGIN_M, max(xs) + _MARGIN_M, max(ys) + _MARGIN_M)
+
+    def _by(self, seat: str) -> CameraSpec:
+        return self._cameras.get(self._seats[seat].name, camera.OWN)  # which complains of a seat that there is not
+
+    def _size(self, seat: str, size: Size) -> tuple[int, int]:
+        """The size that is meant: the camera's own when None."""
+        if size is None:
+            return camera.size(self._seats[seat].spec, self._by(seat))
+        camera.check(size)
+        return size
+
+    def _labelled(self, numbers: Any, seed: int) -> Any:
+        self._labels.draw(seed)
+        return self._labels.of(numbers)
+
+    def _moment(self) -> Moment:
+        self._env.pin()
+        poses = {name: (seat.pose, seat.spec) for name, seat in self._seats.items()}
+        return Moment(self._env.data.qpos.copy(), poses)
+
+    def _draw(self, profile: str | None) -> Any:
+        wanted = profile or self.profile
+        _check(PROFILES, profile=wanted)
+        return self._fast() if wanted == "fast" else self._nice()
+
+    def _fast(self) -> Tracer:
+        if self._tracer is None:
+            from hthor.world.rendering.ray_renderer import Tracer
+
+            self._tracer = Tracer(self._env.model, self._scene, self._house)
+        return self._tracer
+
+    def _nice(self) -> Studio:
+        if self._studio is None:
+            self._studio = self._make()
+        return self._studio
+
+
+def _check(valid: tuple[str, ...], **given: str) -> None:
+    for what, name in given.items():
+        if name not in valid:
+            raise ValueError(f"{what} must be one of {', '.join(valid)}, got '{name}'")

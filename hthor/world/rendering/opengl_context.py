@@ -1,0 +1,87 @@
+"""Finding an OpenGL back end that works, with or without a display.
+
+Where Mesa draws without a graphics card it starts a thread for every core. Whoever runs one process a core does well to
+set ``LP_NUM_THREADS=0`` before: the same work, without threads that get in each other's way.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import sys
+import warnings
+from collections.abc import Container, Iterator
+from typing import Any
+
+from hthor.errors import RenderingUnavailable
+
+CODE_PART = "pictures"
+
+_VARIABLE = "MUJOCO_GL"
+_PLATFORM = "PYOPENGL_PLATFORM"
+_BACKENDS = ("egl", "osmesa", "glfw")
+_CURE = (
+    "On Debian or Ubuntu run 'apt-get install libegl1 libgl1-mesa-dri' (or 'libosmesa6'), or set MUJOCO_GL to the "
+    "back end that you have: egl, osmesa or glfw. Only pictures in the profile nice need it; fast draws without."
+)
+
+
+def context(width: int, height: int) -> Any:
+    """An off-screen context, made current: EGL, else OSMesa, else a hidden window; or what MUJOCO_GL names.
+
+    Raises:
+        RenderingUnavailable: when none works; says what was tried and what to install.
+    """
+    wanted = os.environ.get(_VARIABLE, "").strip().lower()
+    order = (wanted,) if wanted in _BACKENDS else _BACKENDS
+    failures = []
+    loaded = frozenset(sys.modules)
+    for name in order:
+        try:
+            return _open(name, width, height)
+        except Exception as error:  # each back end fails in ways of its own
+            failures.append(f"{name}: {str(error).splitlines()[0] if str(error) else type(error).__name__}")
+            _forget(loaded)
+    raise RenderingUnavailable(f"no OpenGL back end could draw ({'; '.join(failures)}). {_CURE}")
+
+
+@contextlib.contextmanager
+def named(context: Any) -> Iterator[None]:
+    """While the engine loads its OpenGL functions: it must look for them in the library that ``context`` came from."""
+    before = os.environ.get(_VARIABLE)
+    os.environ[_VARIABLE] = type(context).__module__.rpartition(".")[2]
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_VARIABLE]
+        else:
+            os.environ[_VARIABLE] = before
+
+
+def _open(name: str, width: int, height: int) -> Any:
+    if name == "glfw" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise RuntimeError("there is no display")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        context = importlib.import_module(f"mujoco.{name}").GLContext(width, height)
+        context.make_current()
+    return context
+
+
+def _forget(loaded: Container[str]) -> None:
+    """Undo a failed import: PyOpenGL settles on one platform the first time it is imported.
+
+    Modules that were ``loaded`` before are someone else's and stay.
+    """
+    if os.environ.get(_PLATFORM) in _BACKENDS and _PLATFORM not in _given:
+        del os.environ[_PLATFORM]
+    ours = ("OpenGL", *(f"mujoco.{name}" for name in _BACKENDS))
+    for module in [name for name in sys.modules if name not in loaded]:
+        if any(module == package or module.startswith(f"{package}.") for package in ours):
+            del sys.modules[module]
+
+
+_given = frozenset({_PLATFORM} & set(os.environ))
+"""Whether the user chose PyOpenGL's platform; then it stays."""

@@ -1,0 +1,186 @@
+"""Pictures in the ``nice`` profile, through OpenGL: colour, depth, segmentation, and the house from above.
+
+It draws copied moments on a stage of its own (see `hthor.world.rendering.scene`), so a picture never touches the world.
+"""
+
+from __future__ import annotations
+
+import atexit
+import math
+import weakref
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hthor.types import BodySpec, CameraSpec, HouseSpec, Pose
+from hthor.world.model import geoms
+from hthor.world.model.bodies import bodies
+from hthor.world.model.engine import mujoco
+from hthor.world.model.geom_index import Scene
+from hthor.world.model.inventory import Contents
+from hthor.world.rendering import camera as projection
+from hthor.world.rendering import opengl_context
+from hthor.world.rendering.scene import scene_camera
+from hthor.world.rendering.scene.asset_source import Fabric, Pack
+from hthor.world.rendering.scene.compile_scene import Dressing
+from hthor.world.rendering.scene.items import ABOVE, ALWAYS, INSIDE
+from hthor.world.rendering.scene.lights import Lamps
+from hthor.world.rendering.scene.pose_sync import Puppets
+from hthor.world.state.pose_snapshot import Moment
+
+CODE_PART = "pictures"
+
+_FINER = 2
+"""Colour is drawn finer and averaged: the engine's own smoothing leaves dotted edges where shadows are."""
+_FAR_AWAY = (0.0, 0.0, -200.0)
+_MODES = ("rgb", "depth", "segmentation")
+
+
+class Glance(NamedTuple):
+    """One glance: rgb (H, W, 3) uint8, depth (H, W) float32 [m], segmentation (H, W) int32."""
+
+    rgb: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    segmentation: NDArray[np.int32]
+
+
+class Studio:
+    """Draws moments of one world.
+
+    Args:
+        house: the floor plan. contents: its things, split. seats: body of each seat, in the order of the seats.
+        model: the compiled physics. scene: who owns its geoms. pack: furniture to draw instead of our own.
+
+    Raises:
+        RenderingUnavailable: when no OpenGL back end works.
+    """
+
+    def __init__(
+        self,
+        house: HouseSpec,
+        contents: Contents,
+        seats: Mapping[str, BodySpec],
+        model: Any,
+        scene: Scene,
+        pack: Pack | None = None,
+    ) -> None:
+        self._puppets, self._lamps = Puppets(model, scene), Lamps(house)
+        dressed = Dressing(house, contents, self._puppets, Fabric(pack)).build(seats, self._lamps)
+        self._model, self._followers, self._seats = dressed.model, dressed.followers, dressed.seats
+        number = {name: index for index, name in enumerate(scene.names)}
+        self._numbers = np.array([number.get(owner, -1) for owner in dressed.owner], np.int32)
+        self._data = mujoco.MjData(self._model)
+        self._gl = opengl_context.context(64, 64)
+        with opengl_context.named(self._gl):
+            self._context = mujoco.MjrContext(self._model, int(mujoco.mjtFontScale.mjFONTSCALE_100))
+        mujoco.mjr_setBuffer(int(mujoco.mjtFramebuffer.mjFB_OFFSCREEN), self._context)
+        self._scene = mujoco.MjvScene(self._model, maxgeom=self._model.ngeom + 64)
+        self._option = mujoco.MjvOption()
+
+        self.close = weakref.finalize(self, _free, self._gl, self._context)
+        """Gives the graphics memory back."""
+        self.close.atexit = False
+        atexit.register(self.close)  # registered after the back end's own farewell, so it runs before it
+
+    def look(self, moment: Moment, seat: str, size: tuple[int, int], by: CameraSpec = projection.OWN) -> Glance:
+        """What ``seat`` sees in every way."""
+        return Glance(*(self.view(moment, seat, mode, size, by) for mode in _MODES))
+
+    def view(self, moment: Moment, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = projection.OWN) -> Any:
+        """What ``seat`` sees: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
+        if mode not in _MODES:
+            raise ValueError(f"mode must be one of {', '.join(_MODES)}, got '{mode}'")
+        pose, spec = moment.seats[seat]
+        self._pose(moment, without=seat)
+        self._compose(INSIDE)
+        for eye in self._scene.camera:
+            scene_camera.look(eye, pose, spec, projection.lens(spec, size, by))
+        self._lamps.light(self._scene, pose)
+        return self._shoot(mode, size)
+
+    def top_view(self, moment: Moment, bounds: tuple[float, float, float, float], pixels_per_metre: float) -> Any:
+        """The area x0, y0, x1, y1 [m] from straight above without ceilings, (H, W, 3) uint8."""
+        x0, y0, x1, y1 = bounds
+        self._pose(moment)
+        self._compose(ABOVE)
+        for eye in self._scene.camera:
+            scene_camera.hover(eye, bounds)
+        self._lamps.daylight(self._scene, ((x0 + x1) / 2, (y0 + y1) / 2), scene_camera.ABOVE_M)
+        return self._shoot("rgb", (round((x1 - x0) * pixels_per_metre), round((y1 - y0) * pixels_per_metre)))
+
+    def _pose(self, moment: Moment, without: str = "") -> None:
+        """Everything where it was; the viewer's own body is out of the picture."""
+        position, turn = self._puppets.at(moment.qpos)
+        count = len(self._followers)
+        self._data.mocap_pos[:count], self._data.mocap_quat[:count] = position[self._followers], turn[self._followers]
+        for seat, (pose, spec) in moment.seats.items():
+            body, head = self._seats[seat]
+            self._stand(body, head, pose, spec)
+            if seat == without:
+                self._data.mocap_pos[[body, head]] = _FAR_AWAY
+        mujoco.mj_kinematics(self._model, self._data)
+
+    def _stand(self, body: int, head: int, pose: Pose, spec: BodySpec) -> None:
+        turn, shift = bodies.head(spec, pose.pitch)
+        about, cos, sin = geoms.quaternion(pose.yaw), math.cos(pose.yaw), math.sin(pose.yaw)
+        self._data.mocap_pos[body], self._data.mocap_quat[body] = (pose.x, pose.y, 0.0), about
+        x, y, z = shift
+        self._data.mocap_pos[head] = (pose.x + cos * x - sin * y, pose.y + sin * x + cos * y, z)
+        tilt = np.empty(4)
+        mujoco.mju_mat2Quat(tilt, np.asarray(turn, float).ravel())
+        mujoco.mju_mulQuat(self._data.mocap_quat[head], np.array(about), tilt)
+
+    def _compose(self, extra: int) -> None:
+        self._option.geomgroup[:] = [group in (ALWAYS, extra) for group in range(6)]
+        everything = int(mujoco.mjtCatBit.mjCAT_ALL)
+        blank = mujoco.MjvCamera()
+        mujoco.mjv_updateScene(self._model, self._data, self._option, None, blank, everything, self._scene)
+
+    def _shoot(self, mode: str, size: tuple[int, int]) -> Any:
+        fine = _FINER if mode == "rgb" else 1
+        width, height = size[0] * fine, size[1] * fine
+        self._gl.make_current()
+        if (self._context.offWidth, self._context.offHeight) != (width, height):
+            mujoco.mjr_resizeOffscreen(width, height, self._context)
+        for flag in (mujoco.mjtRndFlag.mjRND_SEGMENT, mujoco.mjtRndFlag.mjRND_IDCOLOR):
+            self._scene.flags[int(flag)] = mode == "segmentation"
+        self._scene.flags[int(mujoco.mjtRndFlag.mjRND_SHADOW)] = mode == "rgb"
+        area = mujoco.MjrRect(0, 0, width, height)
+        mujoco.mjr_render(area, self._scene, self._context)
+        if mode == "depth":
+            return self._depth(area)
+        pixels = np.empty((height, width, 3), np.uint8)
+        mujoco.mjr_readPixels(pixels, None, area, self._context)
+        return self._owners(pixels[::-1]) if mode == "segmentation" else _coarser(pixels[::-1], fine)
+
+    def _depth(self, area: Any) -> NDArray[np.float32]:
+        buffer = np.empty((area.height, area.width), np.float32)
+        mujoco.mjr_readPixels(None, buffer, area, self._context)
+        near, far = scene_camera.NEAR_M, scene_camera.FAR_M
+        depth = near / (1.0 - buffer[::-1].astype(np.float64) * (1.0 - near / far))
+        return np.asarray(np.minimum(depth, projection.FAR_M), np.float32)
+
+    def _owners(self, pixels: NDArray[np.uint8]) -> NDArray[np.int32]:
+        """The number of each pixel's owner, -1 where nothing was drawn."""
+        owner = np.full(1 << 16, -1, np.int32)
+        for geom in self._scene.geoms[: self._scene.ngeom]:
+            if geom.objtype == int(mujoco.mjtObj.mjOBJ_GEOM) and geom.segid >= 0:
+                owner[geom.segid + 1] = self._numbers[geom.objid]
+        wide = pixels.astype(np.int32)
+        numbers: NDArray[np.int32] = owner[(wide[..., 0] + (wide[..., 1] << 8) + (wide[..., 2] << 16)) & 0xFFFF]
+        return numbers
+
+
+def _coarser(pixels: NDArray[np.uint8], times: int) -> NDArray[np.uint8]:
+    """Each block of pixels as one of their mean colour."""
+    height, width, channels = pixels.shape
+    blocks = pixels.reshape(height // times, times, width // times, times, channels).sum(axis=(1, 3), dtype=np.uint16)
+    return np.asarray((blocks + times * times // 2) // (times * times), np.uint8)
+
+
+def _free(gl: Any, context: Any) -> None:
+    gl.make_current()
+    context.free()
+    gl.free()

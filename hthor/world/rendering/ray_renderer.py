@@ -1,0 +1,155 @@
+"""Pictures for agents and machines without OpenGL: a ray a pixel through the engine's own solids.
+
+It draws copied moments on a copy of the model, so a picture never touches the world.
+"""
+
+from __future__ import annotations
+
+import copy
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hthor.types import CameraSpec, HouseSpec
+from hthor.world.model import geoms
+from hthor.world.model.bodies import bodies
+from hthor.world.model.bodies.primitives import HEAD
+from hthor.world.model.engine import mujoco
+from hthor.world.model.geom_index import Scene
+from hthor.world.rendering import camera, rasterizer, shading, surface_patterns
+from hthor.world.state.pose_snapshot import Moment
+
+CODE_PART = "pictures"
+
+_CLEAR = 0.5
+"""What is less opaque is seen through: it tints the colours, and depth and segmentation pass it by."""
+_HIDDEN_GROUP = 5
+_UNSET = (0.5, 0.5, 0.5, 1.0)
+"""The engine's own colour, which says that a geom has that of its material."""
+
+
+class Trace(NamedTuple):
+    """One glance: rgb (H, W, 3) uint8, depth (H, W) float32 [m], segmentation (H, W) int32."""
+
+    rgb: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    segmentation: NDArray[np.int32]
+
+
+class Tracer:
+    """Draws moments of one world."""
+
+    def __init__(self, model: Any, scene: Scene, house: HouseSpec) -> None:
+        self._model = copy.copy(model)
+        self._model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+        self._data = mujoco.MjData(self._model)
+        self._pos, self._mat = self._data.geom_xpos, self._data.geom_xmat.reshape(-1, 9)
+        self._owners, self._names = np.append(scene.numbers, -1).astype(np.int32), scene.names
+        self._span = scene.span
+        self._shape = np.array(model.geom_type, np.int32)
+        self._half = _halves(model)
+        self._radius = np.linalg.norm(self._half, axis=1)
+        self._rgba = _colours(model)
+        self._skin = surface_patterns.of(model, scene.owner, house, self._rgba)
+        self._grain = np.argmax(self._half, axis=1).astype(np.int32)
+        self._noise = shading.mottle()
+        self._heads: dict[str, Any] = {}
+        shown = (model.geom_group != _HIDDEN_GROUP) & (self._rgba[:, 3] > 0.0)
+        clear = self._rgba[:, 3] < _CLEAR
+        order = np.argsort(-self._radius, kind="stable")
+        self._solid, self._glass = order[(shown & ~clear)[order]], order[(shown & clear)[order]]
+        self._roofless = self._solid[model.geom_group[self._solid] != geoms.CEILINGS]
+
+    def look(self, moment: Moment, seat: str, size: tuple[int, int], by: CameraSpec = camera.OWN) -> Trace:
+        """What ``seat`` sees in every way at once; its own body is not in it."""
+        view, w, hit = self._fill(moment, seat, size, by)
+        return Trace(self._shade(view, w, hit), _depth(w), self._numbers(hit))
+
+    def view(self, moment: Moment, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = camera.OWN) -> Any:
+        """What ``seat`` sees in one way: rgb, depth or segmentation."""
+        view, w, hit = self._fill(moment, seat, size, by)
+        if mode == "rgb":
+            return self._shade(view, w, hit)
+        return _depth(w) if mode == "depth" else self._numbers(hit)
+
+    def top_view(self, moment: Moment, bounds: tuple[float, float, float, float], pixels_per_metre: float) -> Any:
+        """The area x0, y0, x1, y1 [m] from straight above without ceilings, (H, W, 3) uint8."""
+        x0, y0, x1, y1 = bounds
+        self._pose(moment, "")
+        size = (max(1, round((x1 - x0) * pixels_per_metre)), max(1, round((y1 - y0) * pixels_per_metre)))
+        view = camera.above(bounds)
+        w, hit = _blank(view, size)
+        self._draw(view, self._roofless, w, hit)
+        return self._shade(view, w, hit)
+
+    def _fill(self, moment: Moment, seat: str, size: tuple[int, int], by: CameraSpec) -> tuple[Any, Any, Any]:
+        self._pose(moment, seat)
+        view = camera.view(*moment.seats[seat], size, by)
+        w, hit = _blank(view, size)
+        self._draw(view, self._solid, w, hit)
+        return view, w, hit
+
+    def _pose(self, moment: Moment, without: str) -> None:
+        """Everything where it was, heads tilted; the viewer's own body is far away."""
+        moment.restore(self._model, self._data, without)
+        for seat, (pose, spec) in moment.seats.items():
+            if seat == without or pose.pitch == 0.0:
+                continue
+            if seat not in self._heads:
+                parts = enumerate(bodies.look(spec))
+                self._heads[seat] = np.array([self._span[seat][0] + k for k, part in parts if part.moves == HEAD], int)
+            self._tilt(self._heads[seat], *bodies.head(spec, pose.pitch), pose)
+
+    def _tilt(self, ids: Any, turn: Any, offset: Any, pose: Any) -> None:
+        """Turn solids of a head, in the frame of a body that stands at ``pose``."""
+        cos, sin = np.cos(pose.yaw), np.sin(pose.yaw)
+        body, foot = np.array(((cos, -sin, 0.0), (sin, cos, 0.0), (0.0, 0.0, 1.0))), np.array((pose.x, pose.y, 0.0))
+        whole = body @ turn @ body.T
+        self._pos[ids] = (self._pos[ids] - foot) @ whole.T + body @ offset + foot
+        self._mat[ids] = (whole @ self._mat[ids].reshape(-1, 3, 3)).reshape(-1, 9)
+
+    def _draw(self, view: Any, order: Any, w: Any, hit: Any) -> None:
+        rasterizer.fill(view, order, self._shape, self._half, self._radius, self._pos, self._mat, w, hit)
+
+    def _shade(self, view: Any, w: Any, hit: Any) -> NDArray[np.uint8]:
+        """Colours; glass is drawn over what is behind it."""
+        glass_w, glass_hit = w.copy(), np.full_like(hit, -1)
+        self._draw(view, self._glass, glass_w, glass_hit)
+        out = np.empty((*w.shape, 3), np.uint8)
+        solids = self._shape, self._half, self._pos, self._mat, self._rgba, self._skin, self._grain
+        shading.shade(view, w, hit, glass_hit, *solids, self._noise, out)
+        return out
+
+    def _numbers(self, hit: Any) -> NDArray[np.int32]:
+        numbers: NDArray[np.int32] = self._owners[hit >> 3]
+        return numbers
+
+
+def _blank(view: Any, size: tuple[int, int]) -> tuple[Any, Any]:
+    return np.full((size[1], size[0]), 1.0 / view[15]), np.full((size[1], size[0]), -1, np.int32)
+
+
+def _depth(w: Any) -> NDArray[np.float32]:
+    depth: NDArray[np.float32] = (1.0 / w).astype(np.float32)
+    return depth
+
+
+def _halves(model: Any) -> Any:
+    """(N, 3) half extents [m] of the boxes around the geoms in their own frames."""
+    half, kind = np.array(model.geom_size), model.geom_type
+    sphere, plane = kind == rasterizer.SPHERE, kind == rasterizer.PLANE
+    half[sphere] = half[sphere][:, :1]
+    long = (kind == rasterizer.CYLINDER) | (kind == rasterizer.CAPSULE)
+    half[long] = half[long][:, [0, 0, 1]]
+    half[kind == rasterizer.CAPSULE, 2] += half[kind == rasterizer.CAPSULE, 0]
+    half[plane] = np.where(half[plane] > 0.0, half[plane], 1e3) * (1.0, 1.0, 0.0)
+    return half
+
+
+def _colours(model: Any) -> Any:
+    """(N, 4) float32: each geom's own colour, or its material's."""
+    rgba = np.array(model.geom_rgba)
+    plain = (model.geom_matid >= 0) & (np.abs(rgba - _UNSET) < 1e-6).all(axis=1)
+    rgba[plain] = model.mat_rgba[model.geom_matid[plain]]
+    return rgba

@@ -1,0 +1,106 @@
+"""Meshes and materials as assets of the visual model, each stored once."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from typing import Any
+
+import numpy as np
+
+from hthor.looks import Material, Mesh
+from hthor.types import Vec3
+from hthor.world.model.engine import mujoco
+from hthor.world.model.geoms import Quaternion
+from hthor.world.rendering.scene.asset_source import Fabric
+
+_THIN = 1e-12
+
+
+class Wardrobe:
+    """Adds geoms to a `mujoco.MjSpec`.
+
+    Args:
+        spec: the model in the making. fabric: where textures come from.
+    """
+
+    def __init__(self, spec: Any, fabric: Fabric) -> None:
+        self._spec, self._fabric = spec, fabric
+        self._meshes: dict[Hashable, str] = {}
+        self._materials: dict[Material, str] = {}
+        self._owners: list[str] = []
+        self._textures: dict[str, str] = {}
+
+    def geom(
+        self,
+        body: Any,
+        owner: str,
+        mesh: Mesh,
+        material: Material,
+        group: int = 0,
+        key: Hashable = None,
+        pos: Vec3 = (0.0, 0.0, 0.0),
+        quat: Quaternion = (1.0, 0.0, 0.0, 0.0),
+    ) -> None:
+        """Add a mesh to ``body``; meshes with the same ``key`` are stored once."""
+        name = self._mesh(mesh, key)
+        if name:
+            geom = body.add_geom()
+            geom.name, geom.type, geom.meshname = self.named(owner), mujoco.mjtGeom.mjGEOM_MESH, name
+            geom.contype = geom.conaffinity = 0
+            geom.group, geom.material, geom.rgba = group, self.material(material), material.rgba
+            geom.pos, geom.quat = pos, quat
+
+    def named(self, owner: str) -> str:
+        """A name for a new geom of ``owner``."""
+        self._owners.append(owner)
+        return str(len(self._owners) - 1)
+
+    def owners(self, model: Any) -> tuple[str, ...]:
+        """The owner of each geom of the compiled model."""
+        names = (mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_GEOM, geom) for geom in range(model.ngeom))
+        return tuple(self._owners[int(name)] for name in names)
+
+    def _mesh(self, mesh: Mesh, key: Hashable) -> str:
+        if key is not None and key in self._meshes:
+            return self._meshes[key]
+        vertices, faces = np.asarray(mesh.vertices, float), np.asarray(mesh.faces)
+        corners = vertices[faces]
+        area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        faces = faces[area > _THIN]
+        name = f"mesh {len(self._meshes)}" if len(faces) else ""
+        self._meshes[len(self._meshes) if key is None else key] = name
+        if name:
+            _store(self._spec.add_mesh(), name, mesh, faces)
+        return name
+
+    def material(self, material: Material) -> str:
+        """Name of the engine's material."""
+        if material in self._materials:
+            return self._materials[material]
+        name = f"material {len(self._materials)}"
+        made = self._spec.add_material()
+        made.name, made.rgba = name, material.rgba
+        made.specular, made.shininess, made.emission = material.specular, material.shininess, material.emission
+        if material.texture:
+            made.textures[int(mujoco.mjtTextureRole.mjTEXROLE_RGB)] = self._texture(material.texture)
+        self._materials[material] = name
+        return name
+
+    def _texture(self, name: str) -> str:
+        if name not in self._textures:
+            image = np.ascontiguousarray(self._fabric.texture(name))
+            made = self._spec.add_texture()
+            made.name, made.type = f"texture {len(self._textures)}", mujoco.mjtTexture.mjTEXTURE_2D
+            made.height, made.width, made.nchannel = image.shape
+            made.data = image.tobytes()
+            self._textures[name] = made.name
+        return self._textures[name]
+
+
+def _store(made: Any, name: str, mesh: Mesh, faces: Any) -> None:
+    made.name, made.inertia = name, mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+    made.uservert = np.asarray(mesh.vertices, "f4").ravel()
+    made.usernormal = np.asarray(mesh.normals, "f4").ravel()
+    made.usertexcoord = np.asarray(mesh.uv, "f4").ravel()
+    corners = faces.astype("i4").ravel()
+    made.userface = made.userfacenormal = made.userfacetexcoord = corners

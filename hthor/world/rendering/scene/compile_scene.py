@@ -1,0 +1,150 @@
+"""The visual model: a house, its things and bodies in their looks, compiled once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hthor.looks import Material, Mesh, Piece
+from hthor.types import BodySpec, HouseSpec, Thing
+from hthor.world.model import door_geometry, geoms
+from hthor.world.model.bodies import bodies
+from hthor.world.model.engine import mujoco
+from hthor.world.model.inventory import Contents, Movable
+from hthor.world.rendering.scene import materials, outdoors
+from hthor.world.rendering.scene.apertures import apertures, hung
+from hthor.world.rendering.scene.asset_registry import Wardrobe
+from hthor.world.rendering.scene.asset_source import Fabric
+from hthor.world.rendering.scene.grids import join
+from hthor.world.rendering.scene.items import ABOVE, INSIDE, Item
+from hthor.world.rendering.scene.lights import Lamps
+from hthor.world.rendering.scene.pose_sync import Puppets
+from hthor.world.rendering.scene.shell import shell
+
+_SHADOW_TEXELS, _SAMPLES = 2048, 0
+_EXTENT_M = 30.0
+"""Half the side of what the sun's shadows cover."""
+_STILL = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
+
+
+class Dressed(NamedTuple):
+    """The compiled visual model.
+
+    ``owner``: who owns each geom. ``followers``: for each of the first puppets (mocap bodies), the body of the physics
+    model that it follows. ``seats``: seat -> its puppets, the body's and the head's; the last ones of all.
+    """
+
+    model: Any
+    owner: tuple[str, ...]
+    followers: Any
+    seats: Mapping[str, tuple[int, int]]
+
+
+class Dressing:
+    """Dresses one house."""
+
+    def __init__(self, house: HouseSpec, contents: Contents, puppets: Puppets, fabric: Fabric) -> None:
+        self._house, self._contents, self._puppets, self._fabric = house, contents, puppets, fabric
+        self._spec = mujoco.MjSpec()
+        self._wardrobe = Wardrobe(self._spec, fabric)
+        self._followers: list[int] = []
+
+    def build(self, seats: Mapping[str, BodySpec], lamps: Lamps) -> Dressed:
+        """Everything, compiled."""
+        self._settings()
+        self._merged((*shell(self._house), *apertures(self._house), *lamps.items()))
+        for thing in self._contents.statics:
+            self._thing(thing)
+        for item in self._contents.movables:
+            self._movable(item)
+        self._doors()
+        first = len(self._followers)
+        for seat, spec in seats.items():
+            self._body(seat, spec)
+        places = {seat: (first + 2 * number, first + 2 * number + 1) for number, seat in enumerate(seats)}
+        model = self._spec.compile()
+        return Dressed(model, self._wardrobe.owners(model), np.array(self._followers, int), places)
+
+    def _settings(self) -> None:
+        spec = self._spec
+        spec.visual.headlight.active = 0
+        spec.visual.quality.shadowsize, spec.visual.quality.offsamples = _SHADOW_TEXELS, _SAMPLES
+        spec.visual.map.shadowclip, spec.visual.map.shadowscale = 1.0, 0.93
+        spec.stat.extent = _EXTENT_M
+        image, sky = outdoors.sky(), spec.add_texture()
+        sky.name, sky.type, sky.nchannel = "sky", mujoco.mjtTexture.mjTEXTURE_SKYBOX, 3
+        sky.height, sky.width, sky.data = image.shape[0], image.shape[1], image.tobytes()
+        self._lawn(materials.LAWN, INSIDE)
+        self._lawn(materials.LAWN_ABOVE, ABOVE)
+
+    def _lawn(self, material: Material, group: int) -> None:
+        lawn = self._spec.worldbody.add_geom()
+        lawn.name, lawn.type, lawn.size = self._wardrobe.named("outdoors"), mujoco.mjtGeom.mjGEOM_PLANE, (60, 60, 1)
+        lawn.pos, lawn.contype, lawn.conaffinity, lawn.group = (0.0, 0.0, -0.05), 0, 0, group
+        lawn.material, lawn.rgba = self._wardrobe.material(material), material.rgba
+
+    def _merged(self, items: Iterable[Item]) -> None:
+        """What stays where it is, one geom for each owner, material and group."""
+        heaps: dict[tuple[Any, ...], list[Mesh]] = {}
+        for item in items:
+            heaps.setdefault((item.owner, item.material, item.group), []).append(item.mesh)
+        for (owner, material, group), meshes in heaps.items():
+            self._wardrobe.geom(self._spec.worldbody, owner, join(meshes), material, group)
+
+    def _thing(self, thing: Thing) -> None:
+        """A thing that stays: its still pieces on the stage, those on its joints on puppets."""
+        frame = (thing.centre, geoms.quaternion(thing.yaw))
+        key = (thing.kind, thing.size, thing.variant)
+        for joint, pieces in _by_joint(self._fabric.look(*key)).items():
+            body, at = self._spec.worldbody, frame
+            if joint and (thing.id, joint) in self._puppets.hung:
+                body, at = self._follower(self._puppets.hung[thing.id, joint], frame)
+            self._pieces(body, thing.id, pieces, (key, joint), at)
+
+    def _movable(self, item: Movable) -> None:
+        body = self._puppet(self._puppets.free[item.id])
+        key = (item.kind, item.size, item.variant)
+        for joint, pieces in _by_joint(self._fabric.look(*key)).items():
+            self._pieces(body, item.id, pieces, (key, joint), _STILL)
+
+    def _doors(self) -> None:
+        """The leaves that hang in doorways."""
+        for opens in door_geometry.of_house(self._house):
+            for joint in opens.joints:
+                body, frame = self._follower(self._puppets.hung[opens.id, joint.name], _STILL)
+                for item in hung(opens, joint):
+                    self._wardrobe.geom(body, item.owner, item.mesh, item.material, item.group, None, *frame)
+
+    def _body(self, seat: str, spec: BodySpec) -> None:
+        """A seat's figure on two puppets, the second for its head."""
+        puppets = {"": self._puppet(), "head": self._puppet()}
+        for moves, pieces in _by_joint(bodies.pieces(spec)).items():
+            self._pieces(puppets[moves], seat, pieces, (spec, moves), _STILL)
+
+    def _pieces(self, body: Any, owner: str, pieces: Iterable[Piece], key: Any, frame: Any) -> None:
+        heaps: dict[Any, list[Mesh]] = {}
+        for piece in pieces:
+            heaps.setdefault(piece.material, []).append(piece.mesh)
+        for material, meshes in heaps.items():
+            mesh = meshes[0] if len(meshes) == 1 else join(meshes)
+            self._wardrobe.geom(body, owner, mesh, material, 0, (key, material), *frame)
+
+    def _follower(self, physical: int, frame: Any) -> tuple[Any, Any]:
+        """A puppet for a body of the physics, and ``frame`` of the house as seen from that body at rest."""
+        return self._puppet(physical), self._puppets.relative(physical, frame)
+
+    def _puppet(self, physical: int | None = None) -> Any:
+        if physical is not None:
+            self._followers.append(physical)
+        body = self._spec.worldbody.add_body()
+        body.mocap = True
+        return body
+
+
+def _by_joint(pieces: Iterable[Piece]) -> dict[str, list[Piece]]:
+    found: dict[str, list[Piece]] = {}
+    for piece in pieces:
+        found.setdefault(piece.moves, []).append(piece)
+    return found

@@ -1,0 +1,19 @@
+"""What stands on the stage, one mesh with its owner and material at a time."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from hthor.looks import Material, Mesh
+
+ALWAYS, INSIDE, ABOVE = 0, 4, 5
+"""Draw groups: always drawn; left out of the view from above, like ceilings; drawn only there, like cut walls."""
+
+
+class Item(NamedTuple):
+    """A mesh in the house frame. ``owner`` is whose number it bears in a segmentation."""
+
+    owner: str
+    mesh: Mesh
+    material: Material
+    group: int = ALWAYS

@@ -1,0 +1,178 @@
+"""Lights for a viewer: the lamp of the viewer's room, those of rooms seen through doors, and a soft fill.
+
+The lamps throw shadows, so their light stays in their rooms.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from hthor.geometry import plane
+from hthor.looks.furniture import building
+from hthor.types import HouseSpec, Pose, Room, Vec2, Vec3
+from hthor.world.model.engine import mujoco
+from hthor.world.rendering.scene.apertures import placed
+from hthor.world.rendering.scene.items import INSIDE, Item
+
+_LAMPS = 3
+"""OpenGL knows eight lights: headlight, fill, two for each of these lamps. Each that throws shadows costs a pass."""
+_SPAN_M2, _MOST = 24.0, 3
+"""A lamp for each so many square metres of a room, up to three."""
+_DROP_M = 0.14
+"""A lamp shines from this far under the ceiling."""
+_AMBIENT, _HEAD = (0.30, 0.30, 0.31), (0.12, 0.12, 0.12)
+_LAMP, _LAMP_FADE, _CUTOFF, _EXPONENT = (0.50, 0.48, 0.44), (1.0, 0.02, 0.012), 86.0, 2.0
+"""A lamp: colour, how it fades with distance, half its cone's angle, and how it gathers downwards."""
+_BOUNCE, _BOUNCE_FADE, _BOUNCE_DROP_M = (0.28, 0.27, 0.25), (1.0, 0.05, 0.06), 0.8
+"""What the room itself throws back, a point without shadows below the lamp."""
+_FILL: tuple[Vec3, Vec3] = ((0.35, 0.55, -0.6), (0.10, 0.10, 0.10))
+_SUN, _SUNNY = ((0.10, 0.15, -1.0), (0.32, 0.31, 0.28)), (0.42, 0.42, 0.44)
+"""Where the sun shines to in the view from above, its colour, and what the sky adds to it."""
+_SHINE: Vec3 = (0.25, 0.25, 0.25)
+_STEP_M, _TOUCH_M, _WALL_M, _ROUNDS = 0.25, 0.12, 0.6, 8
+"""Grid of places for lamps; what counts as touching; a lamp's least distance from walls; rounds of spreading."""
+_KINDS = {
+    "directional": mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
+    "spot": mujoco.mjtLightType.mjLIGHT_SPOT,
+    "point": mujoco.mjtLightType.mjLIGHT_SPOT,
+}
+
+
+class Lamps:
+    """A ceiling lamp for every room."""
+
+    def __init__(self, house: HouseSpec) -> None:
+        self._house = house
+        self.places = {room.id: _spread(room) for room in house.rooms}
+        self._next = {room.id: frozenset(_neighbours(house, room)) for room in house.rooms}
+
+    def items(self) -> Iterator[Item]:
+        """The lamps themselves."""
+        for room, places in self.places.items():
+            for x, y in places:
+                at = (x, y, self._house.height - 0.001)
+                for item in placed(f"ceiling of {room}", building.ceiling_lamp(), at, 0.0):
+                    yield item._replace(group=INSIDE)
+
+    def light(self, scene: Any, pose: Pose) -> None:
+        """Light ``scene``, its cameras set, for a viewer at ``pose``."""
+        self._common(scene, _AMBIENT)
+        height = self._house.height
+        for (x, y), share in self._active((pose.x, pose.y)):
+            bounce = (_BOUNCE[0] * share, _BOUNCE[1] * share, _BOUNCE[2] * share)
+            place = (x, y, height - _BOUNCE_DROP_M)
+            _add(scene, "point", pos=place, diffuse=bounce, attenuation=_BOUNCE_FADE)
+            place = (x, y, height - _DROP_M)
+            fade: dict[str, Any] = {"attenuation": _LAMP_FADE, "cutoff": _CUTOFF, "exponent": _EXPONENT}
+            _add(scene, "spot", pos=place, diffuse=_LAMP, castshadow=1, specular=_SHINE, **fade)
+
+    def daylight(self, scene: Any, middle: Vec2, height: float) -> None:
+        """Light ``scene``, its cameras set, for the view from above ``middle`` [m]: a sun ``height`` [m] up."""
+        self._common(scene, _SUNNY)
+        direction, colour = _SUN
+        aim = _unit(direction)
+        back = height / -aim[2]
+        pos = (middle[0] - aim[0] * back, middle[1] - aim[1] * back, height)
+        _add(scene, "directional", pos=pos, dir=aim, diffuse=colour, castshadow=1)
+
+    def _common(self, scene: Any, ambient: Vec3) -> None:
+        scene.nlight = 0
+        forward = tuple(float(value) for value in scene.camera[0].forward)
+        _add(scene, "directional", headlight=1, dir=forward, ambient=ambient, diffuse=_HEAD)
+        _add(scene, "directional", dir=_unit(_FILL[0]), diffuse=_FILL[1])
+
+    def _active(self, place: Vec2) -> list[tuple[Vec2, float]]:
+        """The lamps of the viewer's room, then those of rooms next to it that are nearest; and each one's bounce."""
+        rooms = self._house.rooms
+        own = next((room.id for room in rooms if plane.inside(place, room.polygon)), None)
+        if own is None:
+            own = min(self.places, key=lambda room: min(math.dist(place, lamp) for lamp in self.places[room]))
+        lamps = [(lamp, 1.0 / math.sqrt(len(self.places[own]))) for lamp in self.places[own]]
+        others = [(lamp, 1.0 / len(self.places[room])) for room in self._next[own] for lamp in self.places[room]]
+        others.sort(key=lambda lamp: (math.dist(place, lamp[0]), lamp))
+        return [*lamps, *others][:_LAMPS]
+
+
+def _add(scene: Any, kind: str, **given: Any) -> None:
+    light = scene.lights[scene.nlight]
+    scene.nlight += 1
+    blank = (0.0, 0.0, 0.0)
+    default: dict[str, Any] = {"id": -1, "headlight": 0, "castshadow": 0, "texid": -1, "exponent": 0.0, "cutoff": 180.0}
+    default |= {"type": _KINDS[kind], "pos": blank, "dir": (0.0, 0.0, -1.0)}
+    default |= {"ambient": blank, "diffuse": blank, "specular": blank, "attenuation": (1.0, 0.0, 0.0)}
+    for name, value in (default | given).items():
+        if isinstance(value, tuple):
+            getattr(light, name)[:] = value
+        else:
+            setattr(light, name, value)
+
+
+def _unit(direction: Vec3) -> Vec3:
+    length = math.hypot(*direction)
+    return (direction[0] / length, direction[1] / length, direction[2] / length)
+
+
+def _neighbours(house: HouseSpec, room: Room) -> Iterator[str]:
+    """Rooms that can be seen into from this one: through an open doorway, or where no wall is between."""
+    for opening in house.openings:
+        if opening.passable and room.id in opening.rooms:
+            yield from (other.id for other in house.rooms if other is not room and other.id in opening.rooms)
+    faces = [face for face in house.walls if face.room == room.id]
+    for a, b in _sides(room):
+        count = max(1, round(math.dist(a, b) / _STEP_M))
+        for k in range(count):
+            share = (k + 0.5) / count
+            point = (a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]))
+            if not any(_to_side(point, face.a, face.b) < _TOUCH_M for face in faces):
+                yield from (other.id for other in house.rooms if other is not room and _clear(point, other) < _TOUCH_M)
+
+
+def _sides(room: Room) -> Iterable[tuple[Vec2, Vec2]]:
+    return zip(room.polygon, (*room.polygon[1:], room.polygon[0]), strict=True)
+
+
+def _spread(room: Room) -> list[Vec2]:
+    """Where a room's lamps hang: one in its middle, or several that share its floor."""
+    points = [(x, y) for x, y in itertools.product(*(_steps(list(axis)) for axis in zip(*room.polygon, strict=True)))]
+    points = [point for point in points if plane.inside(point, room.polygon)]
+    count = min(_MOST, max(1, round(abs(plane.signed_area(room.polygon)) / _SPAN_M2)))
+    inner = [point for point in points if _clear(point, room) >= _WALL_M] or points
+    if count == 1:
+        return [_middle(room, inner)]
+    lamps = [min(inner), max(inner), max(inner, key=lambda point: (-point[0] + point[1], point))][:count]
+    for _ in range(_ROUNDS):
+        owner = [min(range(count), key=lambda k: math.dist(point, lamps[k])) for point in points]
+        for k in range(count):
+            share = [point for point, other in zip(points, owner, strict=True) if other == k]
+            if share:
+                centre = (sum(x for x, _ in share) / len(share), sum(y for _, y in share) / len(share))
+                lamps[k] = min(inner, key=lambda point: math.dist(point, centre))
+    return lamps
+
+
+def _middle(room: Room, points: list[Vec2]) -> Vec2:
+    """The point farthest from all walls of the room; of equal ones, the nearest to the middle of its extent."""
+    xs, ys = zip(*room.polygon, strict=True)
+    centre = ((min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2)
+    return max(points, key=lambda point: (round(_clear(point, room), 1), -math.dist(point, centre)))
+
+
+def _steps(values: list[float]) -> list[float]:
+    low, high = min(values), max(values)
+    count = max(2, 2 * round((high - low) / (2 * _STEP_M)))
+    return [low + (high - low) * k / count for k in range(1, count)]
+
+
+def _clear(point: Vec2, room: Room) -> float:
+    """Distance to the nearest side."""
+    return min(_to_side(point, a, b) for a, b in _sides(room))
+
+
+def _to_side(p: Vec2, a: Vec2, b: Vec2) -> float:
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    share = ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / max(dx * dx + dy * dy, 1e-12)
+    share = min(1.0, max(0.0, share))
+    return math.dist(p, (a[0] + share * dx, a[1] + share * dy))

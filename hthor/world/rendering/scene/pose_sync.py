@@ -1,0 +1,69 @@
+"""Poses of everything that moves at a moment, read off a private copy of the physics.
+
+A mover's *rest* is its pose with every door and drawer closed; what is drawn there follows it from then on.
+"""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import numpy as np
+
+from hthor.types import Vec3
+from hthor.world.model.engine import mujoco
+from hthor.world.model.geom_index import Scene
+from hthor.world.model.geoms import Quaternion
+
+
+class Puppets:
+    """The physics model's moving bodies by owner.
+
+    Attributes:
+        free: id of each movable object -> its body.
+        hung: (id of a thing or opening, joint's name) -> the body that the joint moves.
+    """
+
+    def __init__(self, model: Any, scene: Scene) -> None:
+        self._model = copy.copy(model)
+        self._model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+        self._data = mujoco.MjData(self._model)
+        self.free: dict[str, int] = {}
+        self.hung: dict[tuple[str, str], int] = {}
+        owners: dict[int, str] = {}
+        for geom, owner in enumerate(scene.owner):
+            owners.setdefault(int(model.geom_bodyid[geom]), owner)
+        rest = np.array(model.qpos0)
+        for joint in range(model.njnt):
+            body = int(model.jnt_bodyid[joint])
+            if model.jnt_type[joint] == int(mujoco.mjtJoint.mjJNT_FREE):
+                self._note_free(model, body, owners)
+                continue
+            name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, joint).rpartition("/")[2]
+            if body in owners:
+                self.hung[owners[body], name] = body
+            rest[model.jnt_qposadr[joint]] = 0.0
+        position, turn = self.at(rest)
+        self._rest = position.copy(), turn.copy()
+
+    def _note_free(self, model: Any, body: int, owners: dict[int, str]) -> None:
+        for inner in range(body, model.nbody):
+            if inner in owners and model.body_rootid[inner] == model.body_rootid[body]:
+                self.free[owners[inner]] = inner
+                return
+
+    def at(self, qpos: Any) -> tuple[Any, Any]:
+        """Positions (B, 3) and quaternions (B, 4) of all bodies at these positions of the engine."""
+        self._data.qpos[:] = qpos
+        mujoco.mj_kinematics(self._model, self._data)
+        return self._data.xpos, self._data.xquat
+
+    def relative(self, body: int, frame: tuple[Vec3, Quaternion]) -> tuple[Vec3, Quaternion]:
+        """A frame of the house as seen from ``body`` at rest."""
+        position, turn = self._rest[0][body], self._rest[1][body]
+        back, quat, pos = np.empty(4), np.empty(4), np.empty(3)
+        mujoco.mju_negQuat(back, turn)
+        mujoco.mju_mulQuat(quat, back, np.array(frame[1]))
+        mujoco.mju_rotVecQuat(pos, np.array(frame[0]) - position, back)
+        (x, y, z), (w, i, j, k) = pos.tolist(), quat.tolist()
+        return (x, y, z), (w, i, j, k)

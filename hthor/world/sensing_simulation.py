@@ -1,0 +1,154 @@
+"""What is seen of a house tick by tick: senses, detections, ranges, pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from hthor.errors import HthorError, UnknownName
+from hthor.looks import pack as packs
+from hthor.looks.pack import Pack
+from hthor.types import (
+    Camera,
+    CameraSpec,
+    Detection,
+    DetectorSpec,
+    HouseSpec,
+    RobotSpec,
+    Scan,
+    Senses,
+    Sighting,
+    Vec3,
+    View,
+)
+from hthor.types import cameras as hthor_cameras
+from hthor.world import numbers
+from hthor.world.body_senses import Senses as SeatSenses
+from hthor.world.model import inventory
+from hthor.world.perception import view_frustum
+from hthor.world.rendering.lazy_images import Pictures, Size
+from hthor.world.simulation import TickedWorld
+
+
+class SeenWorld(TickedWorld):
+    """A `TickedWorld` with eyes.
+
+    Args:
+        house, robots, objects, detectors: see `TickedWorld`.
+        profile: how pictures are drawn unless a call says otherwise: "fast" needs the processor alone, "nice" is for
+            people and needs OpenGL.
+        assets: a furniture pack, or its name, that the profile "nice" shows instead of our own furniture where it can.
+        cameras: what pictures the robots' cameras take, in their order: a record, or what
+            `hthor.types.cameras.read` reads;
+            where there is none, the body's own.
+
+    """
+
+    def __init__(
+        self,
+        house: HouseSpec | str,
+        robots: Iterable[RobotSpec | str] = (),
+        objects: Iterable[tuple[str, str]] = inventory.DEFAULT_OBJECTS,
+        detectors: Iterable[DetectorSpec | str] = (),
+        profile: str = "fast",
+        assets: Pack | str = "",
+        cameras: Iterable[CameraSpec | str] = (),
+    ) -> None:
+        self._pack = (packs.load(assets) if assets else None) if isinstance(assets, str) else assets
+        super().__init__(house, robots, objects, detectors)
+        given = [hthor_cameras.read(one) if isinstance(one, str) else one for one in cameras]
+        if len(given) > len(self.seats) - 1:
+            raise HthorError(
+                f"there are {len(given)} cameras and {len(self.seats) - 1} robots; give one camera a robot"
+            )
+        self.cameras = dict(zip(self.seats[1:], given, strict=False))
+        self._pictures = Pictures(self.house, self._env, self._scene, self._seats, self._studio, profile, self.cameras)
+
+    # -------------------------------------------------------------------------------------------------------- senses
+
+    def senses(self, seat: str) -> Senses:
+        """What the seat perceives at this tick."""
+        return SeatSenses(self, seat)
+
+    def detections(self, seat: str) -> tuple[Detection, ...]:
+        """What the seat's detector reports now, by id, with the errors that it has."""
+        found, noise = self._gaze.detections(self._seats[seat]), self._detectors.get(seat)
+        return found if noise is None else noise.report(found, self._objects, self._seed, self.tick)
+
+    def sighting(self, seat: str, id: str) -> Sighting:
+        """How well the seat sees an object now; nothing of it when it is not in view, or when it is no object."""
+        return self._gaze.sighting(self._seats[seat], id)
+
+    def hidden(self, id: str, eye: Vec3) -> bool:
+        """Whether furniture, walls or other objects hide an object from an eye at (x, y, z) [m].
+
+        Raises:
+            UnknownName: when there is no such object.
+        """
+        eye, item = numbers.point3("eye", eye), self._objects.known(id)
+        if item is None:
+            raise UnknownName("object", id, [one.id for one in self._objects])
+        return all(self._scene.hidden(eye, point, id) for point in view_frustum.points(item.position, item.size))
+
+    def scan(self, seat: str) -> Scan:
+        """What the seat's range scanner measures now."""
+        body = self._seats[seat]
+        return self._scanners[seat].scan(body.pose, body.space)
+
+    # ------------------------------------------------------------------------------------------------------ pictures
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What the numbers of a segmentation stand for: things, seats, rooms, walls and openings.
+
+        Every episode deals them anew, by its seed.
+        """
+        return self._pictures.names(self._seed)
+
+    @property
+    def profile(self) -> str:
+        """How pictures are drawn unless a call says otherwise."""
+        return self._pictures.profile
+
+    def picture(self, seat: str, mode: str = "rgb", size: Size = None, profile: str | None = None) -> Any:
+        """The seat's own view now, without its own body.
+
+        Args:
+            mode: rgb (H, W, 3) uint8, depth (H, W) float32 [m] along the optical axis, or segmentation (H, W) int32,
+                indices into `names`, -1 for nothing. Depth and segmentation look through glass.
+            size: (width, height) [pixels]; None for the camera's own. Pixels are square: a picture of another
+                shape than the body's field of view shows the middle of it.
+            profile: "fast", "nice", or None for the world's own.
+
+        Raises:
+            ValueError: when mode, size or profile are none of these.
+            RenderingUnavailable: when the profile is nice and no OpenGL back end works.
+        """
+        return self._pictures.view(seat, mode, size, profile, self._seed)
+
+    def look(self, seat: str, size: Size = None, profile: str | None = None) -> View:
+        """All pictures of one glance and the camera they were taken with; see `picture`."""
+        return self._pictures.look(seat, size, profile, self._seed)
+
+    def camera(self, seat: str, size: Size = None) -> Camera:
+        """The seat's camera now: how it projects pictures of ``size`` (width, height) [pixels], and where it is."""
+        return self._pictures.camera(seat, size)
+
+    def frame(self, seat: str, size: Size = None, profile: str | None = None) -> Callable[[], Any]:
+        """The seat's own view of this very moment, (H, W, 3) uint8, drawn if and when it is called."""
+        return self._pictures.frame(seat, size, profile)
+
+    def top_view(self, pixels_per_metre: float = 50.0, profile: str | None = None) -> Any:
+        """The house from above without its ceilings, (H, W, 3) uint8, covering `top_view_bounds`; north (+y) is up."""
+        return self._pictures.top_view(pixels_per_metre, profile)
+
+    def _studio(self) -> Any:
+        """What draws the profile nice; its module wakes OpenGL, so it is loaded only now."""
+        from hthor.world.rendering.opengl_renderer import Studio
+
+        return Studio(self.house, self._contents, self.bodies, self._env.model, self._scene, self._pack)
+
+    @property
+    def top_view_bounds(self) -> tuple[float, float, float, float]:
+        """x0, y0, x1, y1 [m] of the top view: the rooms and a small margin."""
+        return self._pictures.bounds

@@ -1,0 +1,382 @@
+"""A house with bodies and objects in it, one tick at a time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from hthor import houses
+from hthor.errors import HthorError, PhysicsError, TaskError, UnknownName
+from hthor.gc_freeze import uncollected
+from hthor.houses.space.free_space import FreeSpace
+from hthor.types import (
+    BodySpec,
+    DetectorSpec,
+    Event,
+    HouseSpec,
+    Motion,
+    Outcome,
+    Placement,
+    Pose,
+    RobotSpec,
+    Snapshot,
+    TaskSpec,
+    ThingState,
+    Vec2,
+    Vec3,
+)
+from hthor.world import numbers
+from hthor.world.carrying.joint_carrying import Together
+from hthor.world.ground_truth import Truth
+from hthor.world.interaction import manipulation
+from hthor.world.interaction.action_dispatch import Starting
+from hthor.world.interaction.manipulation import Hands
+from hthor.world.interaction.opening import Hinges
+from hthor.world.interaction.scene_editing import Arranging
+from hthor.world.model import inventory
+from hthor.world.model.bodies import avatar, bodies
+from hthor.world.model.composer_env import FastEnv
+from hthor.world.model.composer_task import HouseTask
+from hthor.world.model.geom_index import Scene
+from hthor.world.motion import spawn
+from hthor.world.perception import detector_noise
+from hthor.world.perception.range_scanner import Scanner
+from hthor.world.perception.visibility import Gaze
+from hthor.world.state.body_state import Seat, Seats
+from hthor.world.state.doors import Doors
+from hthor.world.state.doorways import Passages
+from hthor.world.state.objects import Objects
+from hthor.world.state.overlap_test import Touch
+from hthor.world.state.room_tracker import Whereabouts
+from hthor.world.state.support_surfaces import Places
+
+
+class TickedWorld:
+    """A house, one person and any number of robots.
+
+    The model is compiled once, here; `reset` only writes poses. After it a world gives the same states for the same
+    motions, bit for bit, however often it was reset before.
+
+    Args:
+        house: a floor plan, or the name of one.
+        robots: the robots' bodies or their names; they sit at "robot", "robot2", ...
+        objects: (id, kind) pairs of the movable objects that tasks may place, besides the house's own.
+        detectors: how the robots' detectors err, in their order: a record, or what
+            `hthor.types.detector_specs.read` reads; "own",
+            and where there is none, stands for what the body declares.
+
+    Attributes:
+        house: the floor plan. seats: names of all seats, the person's first. bodies: what each seat's body can do.
+        tick: ticks since the last reset. space: each seat's free-space grid.
+    """
+
+    def __init__(
+        self,
+        house: HouseSpec | str,
+        robots: Iterable[RobotSpec | str] = (),
+        objects: Iterable[tuple[str, str]] = inventory.DEFAULT_OBJECTS,
+        detectors: Iterable[DetectorSpec | str] = (),
+    ) -> None:
+        self.house = houses.load(house) if isinstance(house, str) else house
+        specs: list[BodySpec] = [avatar.HUMAN]
+        robots = (robots,) if isinstance(robots, str) else robots
+        specs += [bodies.robot(robot) if isinstance(robot, str) else robot for robot in robots]
+        self.seats = bodies.seat_names(len(specs) - 1)
+        self.bodies = dict(zip(self.seats, specs, strict=True))
+        self.space = {seat: FreeSpace.of(self.house, spec.radius, spec.height) for seat, spec in self.bodies.items()}
+        self.detectors = detector_noise.assign(self.seats[1:], self.bodies, detectors)
+        self._contents = inventory.split(self.house, objects)
+        with uncollected():
+            self._task = HouseTask(self.house, self._contents, self.bodies)
+            self._env = FastEnv(self._task)
+            self._assemble()
+        self.tick, self._episode = 0, 0
+        spawn.stand(tuple(self._seats.values()), self.house.start, ())
+        self._begin({})
+
+    def _assemble(self) -> None:
+        """The parts that share the compiled model."""
+        statics, env = self._contents.statics, self._env
+        places = Places(statics)
+        self._scene = Scene(env, self._task)
+        touch = Touch(env, self._scene)
+        self._objects = Objects(self._contents.movables, env, self._scene, places, touch)
+        self._doors = Doors(self._task.doors, env, places)
+        self._seats = Seats((name, Seat(name, spec, self.space[name])) for name, spec in self.bodies.items())
+        self._scanners = {name: Scanner(seat.spec, seat.space, self.house) for name, seat in self._seats.items()}
+        seats = tuple(self._seats.values())
+        self._whereabouts = Whereabouts(self.house, self.seats)
+        self._passages = Passages(seats, self.space)
+        self._hinges = Hinges(self._scene, self._objects, self._doors, places, self._passages, seats)
+        self._together = Together(self.house, self._objects, self._doors, touch, seats)
+        self._hands = Hands(
+            self.house, self._scene, self._objects, self._doors, places, self._hinges, touch, self._together
+        )
+        self._arranging = Arranging(self.house, self._task, env, self._scene, self._objects, places, touch)
+        self._gaze = Gaze(self._scene, self._objects, self._doors, statics, self.house.openings, seats)
+        self._starting = Starting(self.house, self._hands, self._doors, seats)
+        self._truth = Truth(self._objects, self._doors, self._gaze, seats)
+        self._detectors = {
+            name: detector_noise.Detector(spec, self._seats[name], self._scene, places)
+            for name, spec in self.detectors.items()
+            if spec.miss or spec.false_alarm or spec.position_sigma
+        }
+
+    @property
+    def model(self) -> Any:
+        """The compiled `mujoco.MjModel`, for whoever wants the engine itself; changing it voids every promise here."""
+        return self._env.model
+
+    # ------------------------------------------------------------------------------------------------------- episodes
+
+    def reset(self, task: TaskSpec, seed: int = 0) -> None:
+        """Begin a task: its objects in place and asleep, the house's own where the house has them, what opens closed,
+        all doorways open.
+
+        A body whose start is not free stands at the nearest free place; a robot for which the task gives no start,
+        at the nearest place to the first robot's start that keeps clear of the others.
+
+        Args:
+            seed: of all chance in the episode: the errors of noisy detectors.
+
+        Raises:
+            TaskError: when the task belongs to another house or places an object that this world does not have.
+        """
+        if task.house_sha256 and self.house.sha256 and task.house_sha256 != self.house.sha256:
+            raise TaskError(task.id, "house_sha256", f"made for another version of house '{task.house}'; make it anew")
+        _check_numbers(task)
+        self._begin({placement.id: placement for placement in task.objects}, task.id)
+        self._seed = seed
+        spawn.stand(tuple(self._seats.values()), task.human_start, task.robot_starts)
+
+    def _begin(self, placements: dict[str, Placement], task: str = "") -> None:
+        movables = {movable.id: movable for movable in self._contents.movables}
+        for id in placements:
+            if id not in movables:
+                raise TaskError(task, "objects", str(UnknownName("object", id, movables)))
+        self._whereabouts.reset()
+        self._seed = 0
+        begin: dict[str, tuple[Vec3, float, str]] = {}
+        for id, movable in movables.items():
+            placed = placements.get(id)
+            if placed is not None:
+                begin[id] = (placed.position, placed.yaw, placed.support)
+            elif movable.home is not None:
+                begin[id] = (movable.home, movable.yaw, movable.support)
+        self._task.starts = {id: begin[id][:2] for id in placements}
+        self._env.reset()
+        self._objects.reset(begin)
+        self._together.reset()
+        self._doors.reset()
+        self._passages.update({})
+        self.tick = 0
+        self._episode += 1
+        self._events: list[Event] = []
+
+    # -------------------------------------------------------------------------------------------------------- motions
+
+    def idle(self, seat: str) -> bool:
+        """Whether the seat's body is free for a new motion."""
+        return self._seats[seat].activity is None
+
+    def start(self, seat: str, action: Motion) -> None:
+        """Begin a motion. One that a law forbids is refused: see `outcome`, and the next `advance` reports it."""
+        body = self._seats[seat]
+        reason = (
+            f"{seat} is busy with another motion" if body.activity is not None else self._starting.refusal(body, action)
+        )
+        if reason:
+            verb = manipulation.verb_of(action)
+            body.outcome = Outcome(motion=verb, ok=False, reason=reason)
+            data = {"motion": verb, "reason": reason}
+            self._events.append(Event(tick=self.tick, seat=seat, kind="refused", data=data))
+            return
+        body.activity = self._starting.activity(body, action)
+
+    def outcome(self, seat: str) -> Outcome | None:
+        """How the seat's last motion ended, None before any has."""
+        return self._seats[seat].outcome
+
+    def advance(self) -> tuple[Event, ...]:
+        """Let one tick pass: every busy body moves, in the order of the seats, then objects fall and doors swing.
+
+        Returns:
+            what happened: picked, placed, dropped, opened, closed, refused, blocked (by the house), in_way (of another
+            body); held, lifted, lowered, released, see `hthor.world.carrying.joint_carrying`.
+
+        Raises:
+            PhysicsError: when the engine loses the state. All objects are then where they were a tick before, at rest,
+                and the next call goes on from there; what else happened in this tick, it returns.
+        """
+        self.tick += 1
+        events, self._events = self._events, []
+        for seat in self._seats.values():
+            if seat.activity is None:
+                continue
+            pose = seat.pose
+            outcome, news = seat.activity.advance(self.tick)
+            if news:
+                events.extend(news)
+            if outcome is not None:
+                seat.activity, seat.outcome = None, outcome
+            if seat.holding and seat.pose is not pose:
+                self._objects.follow(seat.holding)
+        if self._env.tick():
+            self._check(events)
+            self._objects.settle()
+        return tuple(sorted(events, key=lambda event: event.tick)) if events else ()
+
+    def _check(self, events: list[Event]) -> None:
+        """Recover when the engine has lost the state, and say so; nothing that happened in the tick is lost."""
+        complaints = self._env.warnings()
+        if not complaints:
+            return
+        lost = [f"{name} at {self._objects.at(where) or where}" for name, where in complaints.items()]
+        self._env.recover()
+        self._objects.reread()
+        self._events = events
+        raise PhysicsError(
+            f"the physics engine lost the state of house '{self.house.id}' at tick {self.tick} ({', '.join(lost)}). "
+            "All objects are back where they were one tick before, at rest: go on, move that object, or reset."
+        )
+
+    def out_of_hand(self, seat: str, id: str, place: Vec2 | None = None) -> str:
+        """Why a body could not pick an object up, or get at a thing's door, with an empty hand; empty when it could.
+
+        Args:
+            seat: whose body. id: the object or thing; "" is the answer for what can be neither picked up nor opened,
+                and for a body that does neither.
+            place: (x, y) [m] where the body would stand, facing it; None for where it stands, as it stands.
+        """
+        body = self._seats[seat]
+        if place is not None:
+            item, leaf = self._objects.get(id), self._doors.get(id)
+            centre = item.position if item is not None else leaf.thing.centre if leaf is not None else None
+            if centre is None:
+                return ""
+            body = Seat(seat, body.spec, body.space)
+            body.pose = Pose(x=place[0], y=place[1], yaw=math.atan2(centre[1] - place[1], centre[0] - place[0]))
+        return self._hands.out_of_hand(body, id)
+
+    def teleport(self, seat: str, pose: Pose) -> None:
+        """Put a body somewhere at once; what it was doing ends.
+
+        Raises:
+            HthorError: when its body does not fit there, somebody is there, or the pose is none: numbers that are not
+                finite, or a camera pitch beyond the body's limit.
+        """
+        body, pose = self._seats[seat], numbers.pose(pose)
+        limit = body.spec.pitch_limit
+        if abs(pose.pitch) > limit + 1e-9:
+            raise HthorError(
+                f"pitch must be from {-limit:.2f} to {limit:.2f} rad for {seat}, got {numbers.short(pose.pitch)} rad"
+            )
+        here = f"({numbers.short(pose.x)}, {numbers.short(pose.y)})"
+        if not body.space.is_free(pose.x, pose.y):
+            raise HthorError(f"{here} is not free for {seat}; try space['{seat}'].nearest_free")
+        for other in self._seats.values():
+            least = body.spec.radius + other.spec.radius - 1e-9
+            if other is not body and math.dist((pose.x, pose.y), (other.pose.x, other.pose.y)) < least:
+                raise HthorError(
+                    f"{other.name} is in the way at {here}: {seat} must stay {least:.2f} m away from "
+                    f"({other.pose.x:.2f}, {other.pose.y:.2f})"
+                )
+        body.pose, body.activity = pose, None
+        self._hinges.let_go(seat)
+        self._together.let_go(body)
+        if body.holding:
+            self._objects.follow(body.holding)
+
+    # -------------------------------------------------------------------------------------------------------- objects
+
+    def put_object(
+        self,
+        id: str,
+        position: Sequence[float] | None = None,
+        *,
+        on: str = "",
+        yaw: float = 0.0,
+        velocity: Sequence[float] = (0.0, 0.0, 0.0),
+    ) -> None:
+        """Set one of this world's objects somewhere at once; the engine takes it from there.
+
+        Args:
+            id: an object of the house or of ``objects``, whether it is in the episode by now or not.
+            position: [m] of its centre; with ``on``, where it should be as nearly as there is room.
+            on: id of a thing to put it on, or in when it has no top, along the thing's edges when ``yaw`` is 0.
+            yaw: [rad] its heading; with ``on``, relative to the thing.
+            velocity: [m/s] to throw it with.
+
+        Raises:
+            UnknownName: when there is no such object, or nothing can be put on that thing.
+            HthorError: when it is in someone's hand, would be outdoors or inside something, has no room there, or is
+                to fly faster than anyone throws.
+        """
+        self._arranging.put(id, position, on, yaw, velocity)
+
+    def remove_object(self, id: str) -> None:
+        """Take an object out of the episode; `put_object` brings it back.
+
+        Raises:
+            UnknownName: when there is no such object.
+            HthorError: when it is in someone's hand.
+        """
+        self._arranging.remove(id)
+
+    def set_open(self, thing: str, wanted: bool = True) -> None:
+        """Open or close a fridge, a drawer or a door at once.
+
+        Raises:
+            UnknownName: when no such thing opens.
+            HthorError: when something is in its way.
+        """
+        self._hinges.put(thing, wanted)
+
+    # ---------------------------------------------------------------------------------------------------------- truth
+
+    @property
+    def still(self) -> bool:
+        """Whether every object and door is at rest, but for what someone carries."""
+        return self._env.still
+
+    @property
+    def moment(self) -> tuple[int, int]:
+        """Episode and tick: what an observation belongs to."""
+        return (self._episode, self.tick)
+
+    def pose(self, seat: str) -> Pose:
+        """Where the seat's body is."""
+        return self._seats[seat].pose
+
+    def poses(self) -> dict[str, Pose]:
+        """Where every seat's body is, the person first."""
+        return {name: seat.pose for name, seat in self._seats.items()}
+
+    def holding(self, seat: str) -> str:
+        """Id of the object in the seat's hand, empty for none."""
+        return self._seats[seat].holding
+
+    def room(self, seat: str) -> str:
+        """Id of the room the seat's body is in, the last one while it is between rooms."""
+        return self._whereabouts.room(seat, self._seats[seat].pose)
+
+    def truth(self) -> tuple[ThingState, ...]:
+        """True states of all objects and openable things, by id."""
+        return tuple(self._truth.states().values())
+
+    def snapshot(self) -> Snapshot:
+        """The truth at this tick, for the umpire and the log."""
+        return self._truth.snapshot(self.tick)
+
+
+def _check_numbers(task: TaskSpec) -> None:
+    """Complain of a task whose positions or poses are no finite numbers."""
+    try:
+        for placement in task.objects:
+            numbers.point3(f"position of {placement.id}", placement.position)
+            numbers.number(f"yaw of {placement.id}", placement.yaw, "radians")
+        for pose in (task.human_start, *task.robot_starts):
+            numbers.pose(pose)
+    except HthorError as error:
+        raise TaskError(task.id, "objects or starts", str(error)) from None

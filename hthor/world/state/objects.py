@@ -1,0 +1,272 @@
+"""The movable objects of one episode: where each is, what it lies on, who holds it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from hthor.geometry.plane import wrap
+from hthor.types import ThingState, Vec3
+from hthor.world.model import geoms
+from hthor.world.model.composer_env import FastEnv, QPose
+from hthor.world.model.geom_index import Scene
+from hthor.world.model.inventory import Movable
+from hthor.world.state.overlap_test import FLOOR, Touch
+from hthor.world.state.support_surfaces import Place, Places
+
+AWAY: Vec3 = (-500.0, 0.0, 0.0)
+"""Where objects are that are not in the episode, for whoever asks."""
+
+
+class Item:
+    """One object. ``present`` is false for what this episode does not use.
+
+    ``held_by`` is whose hand it is in, ``bearers`` all who hold it by its handles, whether it is off the floor or not.
+    ``number`` is its row in `Objects.positions`.
+    """
+
+    def __init__(self, movable: Movable, number: int, model: Any, span: tuple[int, int]) -> None:
+        self.id, self.kind, self.size, self.mass = movable.id, movable.kind, movable.size, movable.mass
+        self.number, self.clutter = number, movable.clutter
+        body = model.geom_bodyid[span[0]]
+        joint = model.body_jntadr[body]
+        self.qpos, self.dof = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
+        self.tree = int(model.body_treeid[body])
+        self.geoms = slice(*span)
+        self.clear()
+
+    def clear(self) -> None:
+        """Out of the world until placed."""
+        self.present, self.held_by, self.support = False, "", ""
+        self.bearers: tuple[str, ...] = ()
+        self.position, self.yaw = AWAY, 0.0
+        self._state: ThingState | None = None
+
+    def at(self, qpos: Sequence[float]) -> None:
+        """Read position and heading from a pose, position and quaternion."""
+        x, y, z, w, _, _, k = qpos
+        self.position, self.yaw = (x, y, z), wrap(2.0 * math.atan2(k, w))
+        self._state = None
+
+    def state(self) -> ThingState:
+        """Its true state now; the same record until something about it changes."""
+        known = self._state
+        if known is None or known.support != self.support or known.held_by != self.held_by:
+            self._state = known = ThingState(
+                id=self.id,
+                kind=self.kind,
+                position=self.position,
+                support=self.support,
+                held_by=self.held_by,
+                bearers=self.bearers,
+            )
+        return known
+
+
+class Objects:
+    """All movable objects of a world.
+
+    Attributes:
+        changes: grows whenever any object's position, holder or support changes. roster: grows whenever one may have
+            come into the episode or left it.
+        positions: (N, 3) float64 [m], the objects' centres. present: (N,) bool, which are in the episode.
+    """
+
+    def __init__(self, movables: Iterable[Movable], env: FastEnv, scene: Scene, places: Places, touch: Touch) -> None:
+        self._env, self._scene, self._places, self._touch = env, scene, places, touch
+        ordered = sorted(movables, key=lambda movable: movable.id)
+        items = [Item(movable, n, env.model, scene.span[movable.id]) for n, movable in enumerate(ordered)]
+        self._items = {item.id: item for item in items}
+        self._list = items
+        self._trees = np.array([item.tree for item in items], int)
+        self._homes = {one.id: one.home for one in ordered if one.home is not None}
+        self._beneath = {id: places.support(home, self._items[id].size[2]) for id, home in self._homes.items()}
+        self.positions = np.full((len(items), 3), AWAY)
+        self.present = np.zeros(len(items), np.bool_)
+        self._ghosts: set[str] = set()
+        self._loose: set[int] = set()
+        self._news: set[int] = set()
+        self.changes = self.roster = 0
+
+    def __iter__(self) -> Iterator[Item]:
+        return iter(self._list)
+
+    def get(self, id: str) -> Item | None:
+        """The object of that id if it is in this episode."""
+        item = self._items.get(id)
+        return item if item is not None and item.present else None
+
+    def known(self, id: str) -> Item | None:
+        """The object of that id, in this episode or not."""
+        return self._items.get(id)
+
+    def news(self) -> list[Item]:
+        """The objects that may have changed since this was last asked, by id; all of them after a reset."""
+        news, self._news = self._news, set()
+        return [self._list[number] for number in sorted(news)]
+
+    def reset(self, starts: Mapping[str, tuple[Vec3, float, str]]) -> None:
+        """Begin an episode, the engine having been reset: id -> (position, yaw, what the task says it lies on)."""
+        for id in sorted(self._ghosts):
+            self._collide(self._items[id], True)
+        self._loose.clear()
+        self.positions[:], self.present[:] = AWAY, False
+        for item in self._list:
+            item.clear()
+            if item.id in starts:
+                position, item.yaw, support = starts[item.id]
+                item.present, item.position = True, position
+                self.positions[item.number], self.present[item.number] = position, True
+                home = self._homes.get(item.id)
+                beneath = self._beneath[item.id] if home == position else self._below(item)
+                item.support = beneath or support
+        self._scene.hide_all_but(())
+        self._news.update(range(len(self._list)))
+        self.changes += 1
+        self.roster += 1
+
+    def take(self, id: str, seat: str, hand: Callable[[], QPose]) -> None:
+        """From now on the object is in the hand of ``seat``, which ``hand()`` says where it is."""
+        item = self._items[id]
+        item.held_by, item.support = seat, ""
+        self._news.add(item.number)
+        self._loose.discard(item.number)
+        self._collide(item, False)
+        self._env.carry(item.tree, item.qpos, item.dof, hand)
+        self._after_handling()
+        self.follow(id)
+
+    def grip(self, id: str, bearers: tuple[str, ...]) -> None:
+        """These seats hold the object by its handles, and no others."""
+        item = self._items[id]
+        item.bearers, item._state = bearers, None
+        self._news.add(item.number)
+        self.changes += 1
+
+    def put(self, id: str, pose: QPose, support: str) -> None:
+        """Let go of the held object at ``pose``, a little above ``support``, or in the air."""
+        item = self._items[id]
+        item.held_by, item.support = "", support
+        self._loose.add(item.number)
+        self._read(item, pose)
+        self._collide(item, True)
+        self._env.release(item.tree, pose)
+        self._after_handling()
+
+    def move(self, id: str, pose: QPose, velocity: Vec3 = (0.0, 0.0, 0.0)) -> None:
+        """Set an object that nobody holds at ``pose``, at ``velocity`` [m/s]; the engine takes it from there."""
+        item, data = self._items[id], self._env.data
+        item.present, item.support = True, ""
+        self.present[item.number] = True
+        self._loose.add(item.number)
+        data.qpos[item.qpos : item.qpos + 7] = pose
+        data.qvel[item.dof : item.dof + 6] = (*velocity, 0.0, 0.0, 0.0)
+        self._read(item, pose)
+        item.support = self._below(item)
+        self._env.touch()
+        self.changes += 1
+        self.roster += 1
+
+    def remove(self, id: str, parking: QPose) -> None:
+        """Take an object that nobody holds out of the world."""
+        item, data = self._items[id], self._env.data
+        data.qpos[item.qpos : item.qpos + 7] = parking
+        data.qvel[item.dof : item.dof + 6] = 0.0
+        item.clear()
+        self.positions[item.number], self.present[item.number] = AWAY, False
+        self._loose.discard(item.number)
+        self._news.add(item.number)
+        self._env.touch()
+        self.changes += 1
+        self.roster += 1
+
+    def ride(self, ids: Iterable[str], way: Vec3) -> None:
+        """Carry objects along by ``way`` [m], as a drawer does that they lie in."""
+        data = self._env.data
+        for id in ids:
+            item = self._items[id]
+            data.qpos[item.qpos : item.qpos + 3] += way
+            data.qvel[item.dof : item.dof + 6] = 0.0
+            self._read(item, data.qpos[item.qpos : item.qpos + 7].tolist())
+            self._loose.add(item.number)
+        self._env.touch()
+        self.changes += 1
+
+    def lying(self, place: Place) -> tuple[Item, ...]:
+        """The objects that lie on a surface or on what lies on it."""
+        return tuple(
+            item
+            for item in self._list
+            if item.present and not item.held_by and place.holds(item.position, item.size[2])
+        )
+
+    def follow(self, id: str) -> None:
+        """A carried object's holder has moved."""
+        item = self._items[id]
+        self._env.pin()
+        self._read(item, self._env.data.qpos[item.qpos : item.qpos + 7].tolist())
+        self.changes += 1
+
+    def at(self, dof: int) -> str:
+        """Id of the object with that degree of freedom, empty for none."""
+        return next((item.id for item in self._list if item.dof <= dof < item.dof + 6), "")
+
+    def reread(self) -> None:
+        """The engine has put everything where it was a while ago."""
+        for item in self._list:
+            if item.present and not item.held_by:
+                self._read(item, self._env.data.qpos[item.qpos : item.qpos + 7].tolist())
+                self._loose.add(item.number)
+        self.changes += 1
+
+    def settle(self) -> None:
+        """Read from the engine what moved in the last tick; what came to rest lies on what is below it."""
+        awake = np.flatnonzero(self._env.asleep[self._trees] < 0).tolist() if len(self._trees) else []
+        for number in sorted({*awake, *self._loose}):
+            item = self._list[number]
+            if not item.present or item.held_by:
+                continue
+            self._read(item, self._env.data.qpos[item.qpos : item.qpos + 7].tolist())
+            self._loose.add(number)
+            if self._env.asleep[item.tree] >= 0:
+                self._loose.discard(number)
+                item.support = self._below(item) or self._bearer(item)
+            self.changes += 1
+
+    def _read(self, item: Item, pose: Sequence[float]) -> None:
+        item.at(pose)
+        self.positions[item.number] = item.position
+        self._news.add(item.number)
+
+    def _below(self, item: Item) -> str:
+        return self._places.support(item.position, item.size[2])
+
+    def _bearer(self, item: Item, above: tuple[str, ...] = ()) -> str:
+        """What bears an object at rest whose middle is over no surface, as it lies across an edge or leans.
+
+        ``above`` are the objects on it whose bearer is sought.
+        """
+        for owner in self._touch.touched(item):
+            other = self.get(owner)
+            if owner == FLOOR:
+                return ""
+            if other is None and self._places.of(owner):
+                return owner
+            if other is not None and owner not in above:
+                found = self._below(other) or self._bearer(other, (*above, item.id))
+                if found:
+                    return found
+        return ""
+
+    def _collide(self, item: Item, on: bool) -> None:
+        bits = geoms.MOVABLE if on else geoms.GHOST
+        self._env.model.geom_contype[item.geoms] = bits["contype"]
+        self._env.model.geom_conaffinity[item.geoms] = bits["conaffinity"]
+        (self._ghosts.discard if on else self._ghosts.add)(item.id)
+
+    def _after_handling(self) -> None:
+        self._scene.hide_all_but(item.id for item in self._list if item.held_by)
+        self.changes += 1

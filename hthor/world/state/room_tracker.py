@@ -1,0 +1,41 @@
+"""Which room each body is in."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from hthor.geometry import plane
+from hthor.types import HouseSpec, Pose
+
+_ROUNDING_M = 1e-9
+
+
+class Whereabouts:
+    """The room of each seat: the last one while it is between rooms, at first the house's first."""
+
+    def __init__(self, house: HouseSpec, seats: Iterable[str]) -> None:
+        self._rooms, self._seats = house.rooms, tuple(seats)
+        self.reset()
+
+    def reset(self) -> None:
+        """An episode begins."""
+        self._last = dict.fromkeys(self._seats, 0)
+        self._roam = dict.fromkeys(self._seats, (0.0, 0.0, 0.0))
+
+    def room(self, seat: str, pose: Pose) -> str:
+        """Id of the room that the seat's body is in at ``pose``."""
+        x, y, spare = self._roam[seat]
+        if math.hypot(pose.x - x, pose.y - y) >= spare:
+            self._look((pose.x, pose.y), seat)
+        return self._rooms[self._last[seat]].id
+
+    def _look(self, here: tuple[float, float], seat: str) -> None:
+        """Find the room, and how far from here the body is in it for sure."""
+        spare = 0.0
+        for number in (self._last[seat], *range(len(self._rooms))):
+            polygon = self._rooms[number].polygon
+            if plane.inside(here, polygon):
+                self._last[seat], spare = number, plane.distance_to_edge(here, polygon) - _ROUNDING_M
+                break
+        self._roam[seat] = (*here, spare)

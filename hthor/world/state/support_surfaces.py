@@ -1,0 +1,179 @@
+"""Surfaces of a house in the house frame: what lies on which, and where one more thing fits.
+
+What lies in a drawer rides along, because its surface does: `Places.pull` says how far the drawer is out.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+
+from hthor import catalog, rules
+from hthor.geometry import plane
+from hthor.types import Joint, Thing, Vec2, Vec3
+
+_SINK_M = 0.03
+"""How far below a surface the underside of what lies on it may be."""
+_GAP_M = 0.005
+"""Free air kept on every side of what is put down, and the height from which it is let go."""
+
+
+class Place(Struct, frozen=True, kw_only=True):
+    """A surface of ``thing``: ``centre`` [m] house frame, ``half`` [m] along local axes that are turned by ``yaw``.
+
+    ``way`` [m] is how far and where to it goes, house frame, when its drawer is pulled out.
+    """
+
+    thing: str
+    centre: Vec3
+    half: Vec2
+    yaw: float
+    clearance: float
+    inside: bool
+    way: Vec3 = (0.0, 0.0, 0.0)
+
+    @property
+    def slides(self) -> bool:
+        """Whether it is a drawer's."""
+        return self.way != (0.0, 0.0, 0.0)
+
+    def distance(self, x: float, y: float) -> float:
+        """Horizontal distance [m] from a point of the house to the nearest point of the surface."""
+        size = (2 * self.half[0], 2 * self.half[1])
+        return plane.distance_to_rectangle((x, y), self.centre[:2], size, self.yaw)
+
+    def holds(self, position: Vec3, height: float) -> bool:
+        """Whether an object ``height`` [m] tall with its centre there lies on it or on what lies on it."""
+        gap = position[2] - height / 2 - self.centre[2]
+        return -_SINK_M <= gap <= self.clearance and self.distance(*position[:2]) == 0.0
+
+
+class Places:
+    """Every surface of the things given, in their order."""
+
+    def __init__(self, things: Iterable[Thing]) -> None:
+        self._closed: dict[str, tuple[Place, ...]] = {}
+        for thing in things:
+            found = tuple(_places(thing))
+            if found:
+                self._closed[thing.id] = found
+        self.reset()
+
+    def reset(self) -> None:
+        """All drawers are closed."""
+        self._by_thing = dict(self._closed)
+        rows = [(*p.centre, *p.half, math.cos(p.yaw), math.sin(p.yaw), p.clearance) for p in self.all()]
+        self._rows = np.array(rows).reshape(-1, 8)
+        self._owners = [place.thing for place in self.all()]
+
+    def all(self) -> Iterator[Place]:
+        """Every surface."""
+        return (place for places in self._by_thing.values() for place in places)
+
+    def of(self, thing: str) -> tuple[Place, ...]:
+        """The thing's surfaces, none for what is no receptacle."""
+        return self._by_thing.get(thing, ())
+
+    def pull(self, thing: str, share: float) -> None:
+        """The thing's drawers are out by that share of their way, 0 to 1."""
+        pulled = tuple(_pulled(place, share) for place in self._closed.get(thing, ()))
+        if any(place.slides for place in pulled):
+            self._by_thing[thing] = pulled
+            first = self._owners.index(thing)
+            self._rows[first : first + len(pulled), :3] = [place.centre for place in pulled]
+
+    def support(self, position: Vec3, height: float) -> str:
+        """The thing on whose surface an object rests, directly or on top of others; empty on the floor.
+
+        Args:
+            position: [m] the object's centre. height: [m] how tall it is.
+        """
+        if not self._owners:
+            return ""
+        x, y, z, half_x, half_y, cos, sin, clearance = self._rows.T
+        dx, dy, gap = position[0] - x, position[1] - y, position[2] - height / 2 - z
+        over = (np.abs(cos * dx + sin * dy) <= half_x) & (np.abs(cos * dy - sin * dx) <= half_y)
+        gap = np.where(over & (gap >= -_SINK_M) & (gap <= clearance), gap, math.inf)
+        best = int(np.argmin(gap))
+        return self._owners[best] if gap[best] < math.inf else ""
+
+
+def candidates(place: Place, size: Vec3, boxes: tuple[Any, Any], near: Vec3) -> list[Vec3]:
+    """Centres [m] where an object of ``size`` fits on the surface, aligned with it, nearest to ``near`` first.
+
+    Args:
+        boxes: centres (M, 3) and half extents (M, 3) [m] of upright boxes that are in the way.
+        near: [m] house frame; only its x and y count.
+    """
+    half = (size[0] / 2, size[1] / 2)
+    spare = (place.half[0] - half[0], place.half[1] - half[1])
+    if min(spare) < 0.0 or size[2] + _GAP_M > place.clearance:
+        return []
+    wanted = plane.to_local(near, place.centre, place.yaw)
+    us, vs = (_line(reach, aim) for reach, aim in zip(spare, wanted[:2], strict=True))
+    u, v = (axis.ravel() for axis in np.meshgrid(us, vs, indexing="ij"))
+    free = ~_covered(place, u, v, half, size[2], boxes)
+    order = np.argsort(np.round(np.hypot(u - wanted[0], v - wanted[1]), 6), kind="stable")
+    z = place.centre[2] + size[2] / 2 + _GAP_M
+    return [(*_xy(place, float(u[k]), float(v[k])), z) for k in order if free[k]]
+
+
+def _places(thing: Thing) -> Iterator[Place]:
+    kind = catalog.kind(thing.kind)
+    slides = {joint.name: joint for joint in kind.joints(thing.size) if joint.kind == "slide"}
+    for surface in kind.surfaces(thing.size):
+        yield Place(
+            thing=thing.id,
+            centre=plane.to_house(surface.centre, thing.centre, thing.yaw),
+            half=surface.half,
+            yaw=thing.yaw,
+            clearance=surface.clearance,
+            inside=surface.inside,
+            way=_way(slides.get(surface.moves), thing.yaw),
+        )
+
+
+def _way(joint: Joint | None, yaw: float) -> Vec3:
+    if joint is None:
+        return (0.0, 0.0, 0.0)
+    x, y = plane.turn((joint.axis[0] * joint.travel, joint.axis[1] * joint.travel), yaw)
+    return (x, y, joint.axis[2] * joint.travel)
+
+
+def _pulled(place: Place, share: float) -> Place:
+    if not place.slides:
+        return place
+    x, y, z = (at + share * way for at, way in zip(place.centre, place.way, strict=True))
+    return msgspec.structs.replace(place, centre=(x, y, z))
+
+
+def _line(reach: float, aim: float) -> Any:
+    """Grid points along one axis and, between them, the wanted coordinate itself when it is within reach."""
+    count = math.floor(reach / rules.GRID_M + 1e-9)
+    line = np.arange(-count, count + 1) * rules.GRID_M
+    return np.sort(np.append(line, aim)) if abs(aim) <= reach else line
+
+
+def _covered(place: Place, u: Any, v: Any, half: Vec2, height: float, boxes: tuple[Any, Any]) -> Any:
+    """(N,) bool: which local positions would touch one of the boxes."""
+    centres, extents = boxes
+    low = place.centre[2]
+    tall = (centres[:, 2] + extents[:, 2] > low + 1e-3) & (centres[:, 2] - extents[:, 2] < low + height + 2 * _GAP_M)
+    centres, extents = centres[tall], extents[tall]
+    cos, sin = math.cos(place.yaw), math.sin(place.yaw)
+    dx, dy = centres[:, 0] - place.centre[0], centres[:, 1] - place.centre[1]
+    bu, bv = cos * dx + sin * dy, cos * dy - sin * dx
+    eu = abs(cos) * extents[:, 0] + abs(sin) * extents[:, 1] + half[0] + _GAP_M
+    ev = abs(sin) * extents[:, 0] + abs(cos) * extents[:, 1] + half[1] + _GAP_M
+    touching = (np.abs(u[:, None] - bu) < eu) & (np.abs(v[:, None] - bv) < ev)
+    return touching.any(axis=1)
+
+
+def _xy(place: Place, u: float, v: float) -> Vec2:
+    x, y = plane.turn((u, v), place.yaw)
+    return (place.centre[0] + x, place.centre[1] + y)

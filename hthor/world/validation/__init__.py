@@ -1,0 +1,1 @@
+"""Houses proven in the engine: drops, penetration, soundness."""

@@ -1,0 +1,68 @@
+"""Homes that are generated until one is proved sound."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from msgspec import Struct
+
+from hthor.errors import HthorError
+from hthor.houses import generator, loader
+from hthor.houses.checks.findings import Finding, sound
+from hthor.types import HouseSpec
+from hthor.world.validation.house_soundness import prove
+
+RADIUS_M = 0.25
+"""Of the broadest body that a home is proved for."""
+ATTEMPTS = 20
+"""How many homes of one seed are tried."""
+
+
+class Home(Struct, frozen=True, kw_only=True):
+    """A home that is sound: its ``document`` in ProcTHOR's schema, and the same as a ``house``.
+
+    ``attempt`` counts from 0: how many homes of this seed came to nothing before it. ``refused`` holds the errors of
+    those that the generator had passed and the proof refused, ``findings`` what is left to say of this one.
+    """
+
+    seed: int
+    rooms: int
+    attempt: int
+    document: dict[str, Any]
+    house: HouseSpec
+    findings: tuple[Finding, ...]
+    refused: tuple[Finding, ...] = ()
+
+
+def name(seed: int, rooms: int) -> str:
+    """What a home is called unless it is given another name."""
+    return f"home-{rooms}-{seed}"
+
+
+def make(seed: int, rooms: int) -> Home:
+    """The first sound home of a seed; equal arguments give equal documents.
+
+    Raises:
+        HthorError: when the number of rooms is none that can be made, or no attempt is sound.
+    """
+    refused: list[Finding] = []
+    attempt = 0
+    while attempt < ATTEMPTS:
+        document = generator.generate(seed, rooms, first=attempt, tries=ATTEMPTS - attempt)
+        attempt = int(document["metadata"]["generator"]["attempt"])
+        house = loader.build(document, name(seed, rooms))
+        findings = prove(house, RADIUS_M)
+        if sound(findings):
+            return Home(
+                seed=seed,
+                rooms=rooms,
+                attempt=attempt,
+                document=document,
+                house=house,
+                findings=findings,
+                refused=tuple(refused),
+            )
+        refused += (finding for finding in findings if finding.severity == "error")
+        attempt += 1
+    found = f"seed {seed} gave no sound home of {rooms} rooms in {ATTEMPTS} attempts"
+    raise HthorError(f"{found}; of the last: {refused[-1]}. Take another seed")
