@@ -75,7 +75,7 @@ class Chaos:
             **os.environ,
             MARK: self._mark,
             "TMPDIR": str(folder.parent),
-            "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests")]),
+            "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests" / "support"), str(ROOT / "tests")]),
             "LD_LIBRARY_PATH": libraries,
         }
         self._known: set[tuple[int, str]] = set()
@@ -225,7 +225,7 @@ def main() -> None:
     given = options.parse_args()
     with tempfile.TemporaryDirectory(prefix="hthor-chaos-") as name:
         reference, folder = Path(name, "undisturbed"), Path(name, "disturbed")
-        sys.path.insert(0, str(ROOT / "tests"))
+        sys.path[:0] = [str(ROOT / "tests" / "support"), str(ROOT / "tests")]
         import guest_fakes
 
         agent = guest_fakes.write(Path(name, "agent"))

@@ -4,7 +4,7 @@
 source "$(dirname "$0")/leaderboard/common.sh"
 cd "$ROOT"
 case "${1:-}" in
-  redteam) "$PYTHON" -m pytest -q tests/test_redteam.py tests/test_confinement.py ;;
+  redteam) "$PYTHON" -m pytest -q tests/guest/confinement/test_redteam.py tests/guest/confinement/test_confinement.py ;;
   resume) "$PYTHON" -m benchmarks.chaos ;;
   determinism)
     folder=$(mktemp -d)

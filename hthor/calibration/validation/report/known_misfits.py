@@ -48,8 +48,8 @@ def _held_out(found: Findings) -> list[str]:
 
 def _time(found: Findings) -> list[str]:
     return [
-        f"The lower quartile of the time spent is {phrases.signed(one.value)} s with {phrases.CONDITION[one.a]} against "
-        f"{phrases.CONDITION[one.b]}, where the article reports no significant difference."
+        f"The lower quartile of the time spent is {phrases.signed(one.value)} s with {phrases.CONDITION[one.a]} "
+        f"against {phrases.CONDITION[one.b]}, where the article reports no significant difference."
         for one in found.differences
         if one.statistic == "lower quartile" and abs(one.value) > QUARTILE_S
     ]

@@ -12,7 +12,7 @@ from hthor.humans.population.distributions import Beta, HalfNormal, LogNormal, L
 from hthor.humans.population.parameter_registry import PARAMETERS, Parameter
 from hthor.humans.population.parameters import Parameters
 
-PAGE = (Path(__file__).parents[1] / "docs" / "humans.md").read_text()
+PAGE = (Path(__file__).parents[2] / "docs" / "humans.md").read_text()
 ROWS = {
     cells[0].strip("`"): cells
     for cells in (
@@ -78,7 +78,7 @@ def test_every_source_in_the_text_is_in_the_list_and_the_other_way_round() -> No
 
 
 def test_every_file_that_the_page_names_exists() -> None:
-    folder = Path(__file__).parents[1] / "hthor" / "humans"
+    folder = Path(__file__).parents[2] / "hthor" / "humans"
     named = set(re.findall(r"`([a-z_]+\.py)`", PAGE))
     assert named
     assert [name for name in sorted(named) if not (folder / name).exists()] == []

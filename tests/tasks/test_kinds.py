@@ -28,7 +28,7 @@ from hthor.tasks.suites import library
 from hthor.tasks.validate import faults
 from hthor.types import Goal, Job, Pose, Snapshot, TaskSpec, ThingState
 
-EXAMPLE = Path(__file__).parents[1] / "examples" / "put_away.py"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "put_away.py"
 KINDS = {name: plugins.load("task kind", name) for name in plugins.names("task kind")}
 EXTENDED = {kind.short: kind for kind in KINDS.values() if isinstance(kind, JobKind)}
 DRAWN_IN = ("elder", "hazel", "willow")

@@ -24,7 +24,7 @@ from hthor.tasks.suites.library import frozen
 from hthor.types import Action, AgentRef, Goal, Message, Move, Pose, RobotSeat, Send, TaskSpec, TrialSpec, Wait
 from hthor.world import World
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 SEAT = RobotSeat(seat="robot", robot="scout", agent=AgentRef(name="teller", source="", sha256=""))
 QUICK = msgspec.structs.replace(Parameters(), lam0=3.0, v_pace=0.9, t_manip=1.0, p_fail=0.0)
 

@@ -24,7 +24,7 @@ from hthor.leaderboard.page import markup, page
 from hthor.leaderboard.ranking import admission, listing
 from hthor.leaderboard.ranking.board import Board, Struck
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 EVIL = "\"'><script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\"><b id=owned>"
 LINK = "javascript:document.title='owned'"
 

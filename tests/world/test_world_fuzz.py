@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from hthor.world import World
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from benchmarks import worldfuzz
 
 

@@ -112,7 +112,7 @@ def test_the_agent_of_the_readme_is_sound_and_warned_of_nothing(check: Any, root
 
 
 def test_a_program_is_checked_like_a_file(check: Any) -> None:
-    words = f"cmd:{sys.executable} {Path(__file__).parents[1] / 'examples' / 'wire_agent.py'}"
+    words = f"cmd:{sys.executable} {Path(__file__).parents[2] / 'examples' / 'wire_agent.py'}"
     code, out = check("check", words)
     assert code == 0, out
     assert f"sound    next:  hthor eval --agent '{words}' --humans proxy" in out

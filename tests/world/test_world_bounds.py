@@ -23,7 +23,7 @@ from hthor.world.model import composer_env
 from hthor.world.model.inventory import DEFAULT_OBJECTS
 from hthor.world.state.overlap_test import Touch
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from benchmarks import reaching
 
 ROBOTS = (Pose(x=2.9, y=3.3, yaw=-math.pi / 2), Pose(x=2.0, y=3.3, yaw=-math.pi / 2))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from msgspec import structs
+from test_guest import BRIEFING, HEAD, Sensors, agent, living, look
 
 from hthor import guest
 from hthor.errors import AgentError, UnknownName
@@ -41,10 +42,9 @@ from hthor.types import (
     ThingState,
     Wait,
 )
-from tests.test_guest import BRIEFING, HEAD, Sensors, agent, living, look
 
 PACKAGE = Path(guest.__file__).parents[1]
-EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 LEVELS = ("L1", "L2", "L3")
 
 

@@ -20,7 +20,7 @@ from hthor.tasks.validate import validate
 SUITE = tasks.suite("standard")
 FIND, MOVE = "object_goal_navigation", "mobile_manipulation"
 LEVELS, SPLITS = ("easy", "medium", "hard"), ("seen", "new")
-PAGE = (Path(__file__).parents[1] / "docs" / "suites.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "suites.md").read_text(encoding="utf-8")
 
 
 HOUSES = tuple(houses.load(name) for name in (*names(), *names("unseen")))

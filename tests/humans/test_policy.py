@@ -31,7 +31,7 @@ from hthor.humans.search import option_description
 from hthor.humans.search.option_choice import Option
 from hthor.types import HUMAN, Message
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "examples"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))
 import clone
 import cloned_person
 

@@ -22,7 +22,7 @@ from hthor.eval.runner import engines
 from hthor.guest.confinement import LEVELS
 from hthor.humans.population import kinds, population_file
 
-FAKES = Path(__file__).with_name("command_fakes.py")
+FAKES = Path(__file__).parents[1] / "support" / "command_fakes.py"
 WITHOUT_JSON = {
     "hthor agent serve": "serves until it is stopped, and has nothing to tell",
 }

@@ -10,13 +10,13 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from test_guest import HEAD, agent
+from test_guest_killed import FAMILIES, _line, _playing
 
 from hthor import guest
 from hthor.guest import IsolationError
 from hthor.guest.client import preloading
 from tests.redteam.nobody import ROOT, runner
-from tests.test_guest import HEAD, agent
-from tests.test_guest_killed import FAMILIES, _line, _playing
 
 TRIED = """
 import json, os, resource, socket, subprocess, sys

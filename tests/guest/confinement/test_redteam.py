@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from test_guest import BRIEFING, look
 
 from hthor import guest
 from hthor.guest import Guest, IsolationError
@@ -20,7 +21,6 @@ from hthor.guest.process_tools import cleanup
 from tests.redteam import nobody
 from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, PIPE, Case
 from tests.redteam.nobody import ROOT, runner
-from tests.test_guest import BRIEFING, look
 
 
 @functools.cache
@@ -109,7 +109,7 @@ import sys
 import time
 from pathlib import Path
 from hthor.guest import Guest
-from tests.test_guest import BRIEFING
+from test_guest import BRIEFING
 guest = Guest(sys.argv[1], isolation=sys.argv[2])
 guest.load()
 print(guest._process._ground or guest._process.policy.scratch, flush=True)

@@ -341,8 +341,7 @@ def test_the_same_doings_give_the_same_states_again_and_elsewhere() -> None:
     assert busy(world()) == first
     here = Path(__file__).parent
     code = "import test_world_laws as laws; print(laws.busy(laws.world()))"
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=here, env={**os.environ, "PYTHONPATH": str(here.parent)}, capture_output=True,
-        text=True, timeout=120, check=False,
-    )  # fmt: skip
+    paths = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, cwd=here, env=paths, capture_output=True, text=True, timeout=120, check=False)
     assert done.stdout.strip() == first, done.stderr
