@@ -24,7 +24,7 @@ import numpy as np
 
 from hthor import jsonio, seeds
 from hthor.agents import frontier, oracle
-from hthor.episode import play
+from hthor.episode import run_episode
 from hthor.eval.config import sessions
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.runner import trial_runner
@@ -66,13 +66,13 @@ AGENTS: dict[str, tuple[str, type[Mind] | None]] = {
 def played(agent: str, way: str, suite: str, people: int) -> dict[str, list[float]]:
     """Each metric of each trial, and who did it."""
     found: dict[str, list[float]] = {name: [] for name in ("person", *METRICS)}
-    (name, make), stage = AGENTS[agent], trial_runner.Stage()
-    hands = sessions.sessions(library.suite(suite), agent=name)[:people]
+    (name, make), stage = AGENTS[agent], trial_runner.TrialRunner()
+    hands = sessions.make_sessions(library.suite(suite), agent=name)[:people]
     with drawing(way):
         for hand in hands:
             human, minds = stage.enter(hand).human, {} if make is None else {"robot": make()}
             for trial in hand.trials:
-                log = play(trial, stage.world(trial), human, minds)
+                log = run_episode(trial, stage.world(trial), human, minds)
                 measured = trial_metrics.measure(trial, log)
                 found["person"].append(trial.participant)
                 for metric in METRICS:

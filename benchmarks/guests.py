@@ -17,7 +17,7 @@ import numpy as np
 
 from benchmarks.scenes import hands
 from benchmarks.table import Row
-from hthor.episode import play
+from hthor.episode import run_episode
 from hthor.eval.config import robot_team
 from hthor.eval.config.sessions import Session
 from hthor.eval.runner import trial_runner
@@ -142,9 +142,12 @@ def _trials(home: Path, suite: str, count: int, persistent: bool) -> Iterator[Ro
     """
     path = home / f"frontier_{'kept' if persistent else 'anew'}.py"
     path.write_text(_SAME.format(persistent))
-    guest = robot_team.introduce(str(path))
-    inside, outside = trial_runner.Stage(), trial_runner.Stage(trial_runner.Sources(minds={"robot": guest.path}))
-    ours, theirs = hands(suite, "frontier"), hands(suite, robot_team.form(["scout"], [guest]))
+    guest = robot_team.load_agent_info(str(path))
+    inside, outside = (
+        trial_runner.TrialRunner(),
+        trial_runner.TrialRunner(trial_runner.Sources(minds={"robot": guest.path})),
+    )
+    ours, theirs = hands(suite, "frontier"), hands(suite, robot_team.form_team(["scout"], [guest]))
     took: list[tuple[Spent, Spent]] = []
     for number in range(count + 1):  # the first session compiles
         pair = list(_together((inside, ours[number]), (outside, theirs[number])))
@@ -163,7 +166,7 @@ Spent = tuple[float, float]
 
 
 def _together(
-    one: tuple[trial_runner.Stage, Session], other: tuple[trial_runner.Stage, Session]
+    one: tuple[trial_runner.TrialRunner, Session], other: tuple[trial_runner.TrialRunner, Session]
 ) -> Iterator[tuple[Spent, Spent]]:
     """What two sessions' trials take, each trial of one followed by the same of the other."""
     with one[0].enter(one[1]) as mine, other[0].enter(other[1]) as yours:
@@ -173,7 +176,7 @@ def _together(
             for stage, company, trial in ((one[0], mine, first), (other[0], yours, second)):
                 world, robots = stage.world(trial), company.robots()
                 spent, begin = resource_usage.cpu_s(os.getpid()), time.perf_counter()
-                ticks.add(play(trial, world, company.human, robots).ticks)
+                ticks.add(run_episode(trial, world, company.human, robots).ticks)
                 company.rest()
                 wall = time.perf_counter() - begin
                 time.sleep(0.05)  # so that a guest's end is counted too

@@ -20,16 +20,16 @@ from pathlib import Path
 from hthor.eval.config import run_config
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import reader, trial_log
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, result_file
 from hthor.eval.runner import engines, progress, run
 
 
-def player(path: Path) -> Callable[[Session], Iterator[Record]]:
+def player(path: Path) -> Callable[[Session], Iterator[TrialRecord]]:
     """Gives sessions as this log has them."""
     there = {found.key: place for place, _, found in trial_log.places(path)}
 
-    def perform(session: Session) -> Iterator[Record]:
+    def perform(session: Session) -> Iterator[TrialRecord]:
         from hthor.eval.records import trial_record
 
         for line in trial_log.fetch(there[trial_record.key(trial)] for trial in session.trials):
@@ -66,7 +66,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="hthor-keeping-") as name:
         began = time.process_time()
         make = functools.partial(player, folder / "trials.jsonl")
-        run.evaluate(plan, dealt, make, folder=Path(name, "again"), engine=engine, watch=progress.Silent())
+        run.run_evaluation(plan, dealt, make, folder=Path(name, "again"), engine=engine, watch=progress.Silent())
         spent = time.process_time() - began
     began = os.times().children_user + os.times().children_system
     subprocess.run([sys.executable, "-m", "hthor", "--help"], check=True, stdout=subprocess.DEVNULL)

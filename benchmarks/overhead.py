@@ -20,20 +20,20 @@ from rich.console import Console
 from hthor.eval.config import run_config
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_log, trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline, result_file
 from hthor.eval.runner import collector, experiment, progress, run, run_options, trial_runner
 
 
-def player(folder: Path, sources: object = None) -> Callable[[Session], Iterator[Record]]:
+def player(folder: Path, sources: object = None) -> Callable[[Session], Iterator[TrialRecord]]:
     """What a worker does: tells the trials of a run and of its control from their logs."""
     del sources  # nothing is made
     logs = (folder / "trials.jsonl", folder / baseline.FOLDER / "trials.jsonl")
     kept = {_seat(one): one.log for path in logs for _, one in trial_log.read(path)}
 
-    def perform(session: Session) -> Iterator[Record]:
+    def perform(session: Session) -> Iterator[TrialRecord]:
         for trial in session.trials:
-            yield trial_record.of(trial, kept[bool(trial.robots), trial.participant, trial.index])
+            yield trial_record.make_record(trial, kept[bool(trial.robots), trial.participant, trial.index])
 
     return perform
 
@@ -46,9 +46,9 @@ def main(folder: Path) -> None:
     spent: dict[str, float] = {}
     for place, name in ((collector, "play"), (run, "_finish")):
         setattr(place, name, _timed(getattr(place, name), name, spent))
-    trial_runner.player = functools.partial(player, folder.resolve())  # type: ignore[assignment]
+    trial_runner.make_runner = functools.partial(player, folder.resolve())  # type: ignore[assignment]
     with tempfile.TemporaryDirectory() as scratch:
-        options = run_options.Options(
+        options = run_options.RunOptions(
             agents=tuple(robot.agent.name for robot in plan.robots),
             humans=(plan.humans.source,),
             suite=plan.suite.name,
@@ -59,7 +59,7 @@ def main(folder: Path) -> None:
         )
         console = Console(file=io.StringIO())
         count = sum(
-            one.result.counts.trials for one in experiment.conduct(options, lambda n: progress.Plain(console, n))
+            one.result.counts.trials for one in experiment.run_experiment(options, lambda n: progress.Plain(console, n))
         )
     whole = time.process_time()
     rows = {
@@ -85,7 +85,7 @@ def _timed(work: Callable[..., object], name: str, spent: dict[str, float]) -> C
     return timed
 
 
-def _seat(one: Record) -> tuple[bool, int, int]:
+def _seat(one: TrialRecord) -> tuple[bool, int, int]:
     return bool(one.spec.robots), one.spec.participant, one.spec.index
 
 

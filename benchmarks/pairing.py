@@ -26,7 +26,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=1, help="the suite is played with seeds 0, 1, ...")
     wanted = parser.parse_args()
     for seed in range(wanted.seeds):
-        options = run_options.Options(
+        options = run_options.RunOptions(
             agents=AGENTS,
             suite=wanted.suite,
             participants=wanted.participants,
@@ -34,7 +34,7 @@ def main() -> None:
             seed=seed,
             out=wanted.folder / str(seed),
         )
-        for _ in experiment.conduct(options, lambda _name: progress.Silent()):
+        for _ in experiment.run_experiment(options, lambda _name: progress.Silent()):
             pass
     print("pair                  n  only 1st/2nd   metric  difference (interval)      r  gain")
     for seed, (one, other) in itertools.product(range(wanted.seeds), itertools.combinations(AGENTS, 2)):

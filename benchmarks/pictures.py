@@ -25,7 +25,7 @@ import cv2
 
 from hthor import houses, jsonio, rules, tasks
 from hthor.eval.config import robot_team, sessions, task_selection
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
 from hthor.report.drawing import lettering, trial_figure
 from hthor.types import TaskSpec
@@ -102,15 +102,15 @@ def make(wanted: Sequence[str], folder: Path = FOLDER) -> None:
         jsonio.write(manifest, jsonio.pretty({one: known[one] for one in names() if one in known}))
 
 
-def played(task_id: str) -> Record:
+def played(task_id: str) -> TrialRecord:
     """The trial of a task with the oracle, as `hthor eval` plays it with the seed 0."""
     chosen = task_selection.choose(task_id.partition("/")[0], "")
-    suite, crew = chosen.suite, robot_team.form(chosen.crew, ["oracle"] * len(chosen.crew))
-    for one in sessions.sessions(suite, agent=crew):
+    suite, crew = chosen.suite, robot_team.form_team(chosen.crew, ["oracle"] * len(chosen.crew))
+    for one in sessions.make_sessions(suite, agent=crew):
         ids = [trial.task.id for trial in one.trials]
         if task_id in ids:
             until = sessions.Session(participant=one.participant, trials=one.trials[: ids.index(task_id) + 1])
-            return list(trial_runner.player()(until))[-1]
+            return list(trial_runner.make_runner()(until))[-1]
     raise ValueError(f"the suite {suite.name} has no task {task_id}")
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from msgspec import Struct
 
 from hthor import rules, tasks
-from hthor.eval.config.robot_team import Crew
-from hthor.eval.config.sessions import Session, sessions
+from hthor.eval.config.robot_team import RobotTeam
+from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.runner import trial_runner
 from hthor.houses.space.geodesic import geodesics
 from hthor.navigation.path_follower import Follower
@@ -32,17 +32,17 @@ class Scene(Struct, frozen=True):
 
 def scenes(suite: str) -> tuple[Scene, ...]:
     """One for every house of the suite, with its first task."""
-    stage, found = trial_runner.Stage(), {}
-    for session in sessions(tasks.suite(suite), agent="frontier"):
+    stage, found = trial_runner.TrialRunner(), {}
+    for session in make_sessions(tasks.suite(suite), agent="frontier"):
         for trial in session.trials:
             if trial.task.house not in found:
                 found[trial.task.house] = Scene(trial.task.house, trial.task, stage.world(trial))
     return tuple(found[name] for name in sorted(found))
 
 
-def hands(suite: str, agent: str | Crew) -> tuple[Session, ...]:
+def hands(suite: str, agent: str | RobotTeam) -> tuple[Session, ...]:
     """The sessions of the suite with one robot's mind, or with a crew."""
-    return sessions(tasks.suite(suite), agent=agent)
+    return make_sessions(tasks.suite(suite), agent=agent)
 
 
 Walk = list[tuple[int, str, Motion]]

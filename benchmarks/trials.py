@@ -8,9 +8,9 @@ from collections.abc import Iterator
 
 from benchmarks.scenes import TICKS, hands
 from benchmarks.table import Clock, Row
-from hthor.episode import play
+from hthor.episode import run_episode
 from hthor.eval.config import robot_team
-from hthor.eval.config.robot_team import Crew
+from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.runner import trial_runner
 
 AGENTS = {"none": "no robot that does anything", "frontier": "frontier robot", "oracle": "oracle robot"}
@@ -45,7 +45,7 @@ def rows(suite: str, each: int) -> Iterator[Row]:
         yield _row(f"{name}: {robots} and proxy, 90 s", name, crew, each, CREW_BAR_MS)
 
 
-def _row(what: str, suite: str, agent: str | Crew, each: int, bar: float | None) -> Row:
+def _row(what: str, suite: str, agent: str | RobotTeam, each: int, bar: float | None) -> Row:
     costs = cost(suite, agent, each)
     medians = {scene: statistics.median(values) for scene, values in sorted(costs.items())}
     worst = max(medians, key=lambda scene: medians[scene])
@@ -54,13 +54,13 @@ def _row(what: str, suite: str, agent: str | Crew, each: int, bar: float | None)
     return Row(part="trials", what=what, value=statistics.median(medians.values()), unit="ms", bar=bar, remark=remark)
 
 
-def cost(suite: str, agent: str | Crew, each: int) -> dict[str, list[float]]:
+def cost(suite: str, agent: str | RobotTeam, each: int) -> dict[str, list[float]]:
     """Scene -> CPU times [ms] of its trials, scaled to 90 s; the very first trial is played twice, to compile."""
-    stage, costs = trial_runner.Stage(), defaultdict(list)
+    stage, costs = trial_runner.TrialRunner(), defaultdict(list)
     sessions = hands(suite, agent)
     with stage.enter(sessions[0]) as company:
         first = sessions[0].trials[0]
-        play(first, stage.world(first), company.human, company.robots())
+        run_episode(first, stage.world(first), company.human, company.robots())
     wanted = {trial.task.house for session in sessions for trial in session.trials}
     for session in sessions:
         with stage.enter(session) as company:
@@ -68,7 +68,7 @@ def cost(suite: str, agent: str | Crew, each: int) -> dict[str, list[float]]:
                 world = stage.world(trial)
                 robots = company.robots()
                 clock = Clock()
-                log = play(trial, world, company.human, robots)
+                log = run_episode(trial, world, company.human, robots)
                 costs[trial.task.house].append(clock() * TICKS / log.ticks)
         if all(len(costs[scene]) >= each for scene in wanted):
             break

@@ -43,7 +43,7 @@ _T = TypeVar("_T")
 _LOOK_TICKS = round(1.0 / rules.TICK_S)
 
 
-class Stage(Protocol):
+class TrialWorld(Protocol):
     """What the umpire asks of a world."""
 
     @property
@@ -99,9 +99,9 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
     journal: tuple[Event, ...] = ()
 
 
-def play(
+def run_episode(
     trial: TrialSpec,
-    world: Stage,
+    world: TrialWorld,
     human: HumanModel,
     robots: Mapping[str, Mind],
     *,
@@ -123,7 +123,7 @@ class _Episode:
     def __init__(
         self,
         trial: TrialSpec,
-        world: Stage,
+        world: TrialWorld,
         human: HumanModel,
         robots: Mapping[str, Mind],
         thinking: Thinking | None,

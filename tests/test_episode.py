@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from hthor import episode, houses, tasks
-from hthor.episode import EpisodeLog, play
+from hthor.episode import EpisodeLog, run_episode
 from hthor.tasks.kinds.object_goal_navigation import ObjectGoalNavigation
 from hthor.types import (
     HUMAN,
@@ -143,7 +143,7 @@ def trial(*privileges: str) -> TrialSpec:
 
 
 def run(stage: Stage, human: Mind, robot: Mind | None, *privileges: str) -> EpisodeLog:
-    return play(trial(*privileges), stage, human, {"robot": robot} if robot else {})  # type: ignore[arg-type]
+    return run_episode(trial(*privileges), stage, human, {"robot": robot} if robot else {})  # type: ignore[arg-type]
 
 
 def kinds(log: EpisodeLog) -> list[str]:

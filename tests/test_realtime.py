@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from test_episode import Mind, Stage, trial
 
 from hthor import rules
-from hthor.episode import EpisodeLog, play
+from hthor.episode import EpisodeLog, run_episode
 from hthor.eval.records import trial_record
 from hthor.eval.results import pairing
 from hthor.thinking_time import Thinking
@@ -43,7 +43,7 @@ class Thinker(Mind):
 
 def run(stage: Stage, robot: Thinker, *, realtime: bool = True) -> EpisodeLog:
     spec = msgspec.structs.replace(trial(), realtime=realtime or msgspec.UNSET)
-    return play(spec, stage, Mind(), {"robot": robot}, clock=robot.clock)  # type: ignore[arg-type]
+    return run_episode(spec, stage, Mind(), {"robot": robot}, clock=robot.clock)  # type: ignore[arg-type]
 
 
 def starts(stage: Stage, seat: str) -> list[int]:

@@ -26,10 +26,10 @@ def make(folder: Path) -> Path:
     short = tuple(msgspec.structs.replace(one, time_limit=15.0, t_star=10.0) for one in few)
     suite = library.frozen("few", 1, short)
     jsonio.write(folder / "few.json", library.encode(suite))
-    options = run_options.Options(
+    options = run_options.RunOptions(
         agents=("silent", "oracle"), suite=str(folder / "few.json"), jobs=1, out=folder / "runs"
     )
-    list(experiment.conduct(options, lambda _: progress.Silent()))
+    list(experiment.run_experiment(options, lambda _: progress.Silent()))
     jsonio.write(folder / "runs" / "oracle" / "isolation.json", jsonio.pretty({"level": "L2", "landlock_abi": 4}))
     _faults(folder / "runs" / "oracle")
     _official(folder / "official", suite)
@@ -48,7 +48,7 @@ def _faults(run: Path) -> None:
     spec = find.trial(run, "0").spec
     key = find.trial(run, "0").key
     failure = fault_report.Failure(seat="robot", agent="oracle", kind="raised", tick=3, time_s=0.3, detail="lost")
-    left = fault_report.Remains(
+    left = fault_report.FaultReport(
         key=key, task=spec.task.id, participant=spec.participant, index=spec.index, failures=(failure,)
     )
     jsonio.write(run / fault_report.FOLDER / f"{key}.json", jsonio.pretty(left))

@@ -94,7 +94,7 @@ def power(
     """Say how many tasks and people it takes to see a difference in success, paired and not."""
     from hthor.eval.comparison import sample_size
 
-    found = sample_size.plan(tuple(runs or ()), rates, correlation, difference, wanted)
+    found = sample_size.plan_study(tuple(runs or ()), rates, correlation, difference, wanted)
     if formats.asks_json(json, shape):
         output.put_json(found)
         return

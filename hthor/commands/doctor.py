@@ -12,7 +12,7 @@ from hthor.commands.eval.evaluate import Json
 from hthor.console import output
 
 if TYPE_CHECKING:
-    from hthor.eval.doctor.result import Health
+    from hthor.eval.doctor.result import DoctorReport
 
 _FAILED_EXIT = 5
 _STYLES = {"ok": "green", "warn": "yellow", "fail": "bold red"}
@@ -37,7 +37,7 @@ def doctor(
         return
     from hthor.eval.doctor import run_all
 
-    found = run_all.examine(out, require_isolation)
+    found = run_all.run_all(out, require_isolation)
     if json:
         output.put_json(found)
     else:
@@ -60,7 +60,7 @@ def _renew(json: bool) -> None:
     output.put_files([reproducibility.REFERENCE], json, sha256=course.sha256)
 
 
-def _put(found: Health) -> None:
+def _put(found: DoctorReport) -> None:
     from rich.text import Text
 
     paper = output.console()

@@ -12,8 +12,8 @@ from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
 
 if TYPE_CHECKING:
-    from hthor.eval.browse.run_list import Seen
-    from hthor.eval.browse.run_view import Line, View
+    from hthor.eval.browse.run_list import RunSummary
+    from hthor.eval.browse.run_view import RunView, TrialLine
 
 app = typer.Typer(no_args_is_help=True, help="Runs that were played, or begun.")
 
@@ -40,7 +40,7 @@ def list_runs(
 
     if not folder.is_dir():
         raise RunError(f"{folder} is no folder. Name the one that your runs are in; 'hthor eval' writes to runs/.")
-    found = run_list.below(folder)
+    found = run_list.list_runs(folder)
     if formats.asks_json(json, shape):
         output.put_json(found)
         return
@@ -58,7 +58,7 @@ def list_runs(
         output.put_line(f"there is no run below {folder}; 'hthor eval' plays one.", shape)
 
 
-def _row(one: Seen) -> tuple[object, ...]:
+def _row(one: RunSummary) -> tuple[object, ...]:
     agents = "+".join(one.agents)
     name = one.name if agents == one.name else f"{one.name} ({agents})"
     done = str(one.done) if one.done == one.total else f"{one.done} of {one.total}"
@@ -92,15 +92,17 @@ def view_run(
     from hthor.eval.browse import run_view
     from hthor.report.terminal import result_tables
 
-    wanted = run_view.Wanted(task=task, kind=_kind(kind), house=house, participant=participant, met=met, faulty=faulty)
-    found, result = run_view.look(run, wanted)
+    wanted = run_view.TrialFilter(
+        task=task, kind=_kind(kind), house=house, participant=participant, met=met, faulty=faulty
+    )
+    found, result = run_view.view_run(run, wanted)
     if formats.asks_json(json, shape):
         output.put_json(found)
         return
     if shape is Format.CSV:
         output.put_records([formats.flat(line) for line in found.trials])
         return
-    if trials := trials or wanted != run_view.Wanted():
+    if trials := trials or wanted != run_view.TrialFilter():
         headings = ("no.", "task", "house", "person", "outcome", "time [s]", "sent", "accepted", "trust", "fault")
         output.put_table(headings, map(_trial, found.trials), shape)
         output.put_line(f"{len(found.trials)} of {found.done} trials", shape)
@@ -122,12 +124,12 @@ def _kind(word: str) -> str:
     from hthor.eval.config import task_selection
 
     try:
-        return task_selection.find(word).name if word else ""
+        return task_selection.find_kind(word).name if word else ""
     except UnknownName:
         return word
 
 
-def _trial(line: Line) -> tuple[object, ...]:
+def _trial(line: TrialLine) -> tuple[object, ...]:
     trust = "–" if line.trust is None else line.trust
     outcome = "met" if line.met else "not met"
     return (
@@ -136,6 +138,6 @@ def _trial(line: Line) -> tuple[object, ...]:
     )  # fmt: skip
 
 
-def _put_next(found: View, shape: Format) -> None:
+def _put_next(found: RunView, shape: Format) -> None:
     for number, words in enumerate(found.next):
         output.put_line(f"{'      ' if number else 'next: '} {words}", shape)

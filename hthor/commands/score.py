@@ -15,7 +15,7 @@ from hthor.console.formats import Format, Shape
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hthor.eval.results.result_file import Result
+    from hthor.eval.results.result_file import RunResult
 
 
 def score(
@@ -62,7 +62,7 @@ def score(
     result_file.store(run, result)
 
 
-def _rows(result: Result, everything: bool) -> Iterator[dict[str, object]]:
+def _rows(result: RunResult, everything: bool) -> Iterator[dict[str, object]]:
     """A result for a spreadsheet: a row a metric, of all tasks and then of each kind; rates are shares, not percent."""
     from hthor.eval.metrics import trial_metrics
     from hthor.report.terminal import result_tables

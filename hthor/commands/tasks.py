@@ -129,7 +129,7 @@ def draw_task(
     world = World(spec.house, objects=[(one.id, one.kind) for one in spec.objects])
     path = out or Path(spec.id.replace("/", "-") + ".png")
     limit = 10 * spec.time_limit
-    task_figure.draw(spec, world.house, omniscient_solver.perform(world, spec, limit_s=limit), path)
+    task_figure.draw(spec, world.house, omniscient_solver.solve(world, spec, limit_s=limit), path)
     output.put_files([path], json, task=spec.id)
 
 
@@ -171,7 +171,7 @@ def make_suite(
 
     given = suite_files.sources(houses)
     suite_files.clear(out)
-    kinds = tuple(dict.fromkeys(task_selection.find(one).name for one in kind or ()))
+    kinds = tuple(dict.fromkeys(task_selection.find_kind(one).name for one in kind or ()))
     recipe = custom_suite.Recipe(
         name=suite_files.named(name or out.stem), tasks=tasks, kinds=kinds, difficulty=difficulty or "", seed=seed
     )

@@ -13,7 +13,7 @@ import msgspec
 from hthor import code_identity
 from hthor.errors import HthorError, RunError
 from hthor.eval.config import cli_command, run_config, task_selection
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.records import platform, reader, run_isolation, session_restarts
 from hthor.eval.results import aggregate, baseline
@@ -127,13 +127,13 @@ def _refuse(board: Path, made: Mapping[Path, Entry]) -> None:
     files.refuse(msgspec.structs.replace(one, file=str(drawn[Path(one.file)])) for one in found)
 
 
-def _whole(folder: Path, plan: Setup, there: int) -> None:
+def _whole(folder: Path, plan: RunConfig, there: int) -> None:
     if plan.shard:
         raise RunError(f"{folder} is a shard of a run, and only whole runs go on the board. 'hthor merge' makes one.")
     if plan.trials != there:
         raise RunError(
             f"{folder} lacks {plan.trials - there} of its {plan.trials} trials, and only whole runs go on the board. "
-            f"Finish it: {cli_command.of(folder, plan)}"
+            f"Finish it: {cli_command.resume_command(folder, plan)}"
         )
     if plan.code_sha256 != (here := code_identity.code_sha256(plan.humans.model, plan.kinds)):
         raise RunError(
@@ -142,7 +142,7 @@ def _whole(folder: Path, plan: Setup, there: int) -> None:
         )
 
 
-def _crew(plan: Setup) -> tuple[str, ...]:
+def _crew(plan: RunConfig) -> tuple[str, ...]:
     """The bodies that the suite is made for; official ones have searches and deliveries, which are the scout's."""
     try:
         chosen = task_selection.choose(plan.suite.name, "")

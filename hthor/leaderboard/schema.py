@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.leaderboard.entries.entry import Entry, Trials
 from hthor.leaderboard.ranking.board import Board
 from hthor.types import RobotSeat
@@ -18,7 +18,7 @@ NEVER = "shard"
 """The one field of a run that no entry has: an entry is a whole run."""
 _MAYBE = {
     record.__name__: {field.name for field in msgspec.structs.fields(record) if field.default is msgspec.UNSET}
-    for record in (Setup, RobotSeat, Trials)
+    for record in (RunConfig, RobotSeat, Trials)
 }
 """Fields that are there only where they say something."""
 _HASH = {"pattern": "^([0-9a-f]{64})?$"}

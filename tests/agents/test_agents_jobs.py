@@ -16,7 +16,7 @@ from hthor.agents.skills.message_timing import lend_a_hand, please_look
 from hthor.agents.skills.routes import Routes
 from hthor.agents.skills.subgoals import Knowledge, resting
 from hthor.agents.skills.task_allocation import Crew
-from hthor.episode import EpisodeLog, play
+from hthor.episode import EpisodeLog, run_episode
 from hthor.geometry import plane
 from hthor.types import (
     HUMAN,
@@ -95,7 +95,7 @@ def run(task: TaskSpec, *robots: str, human: Any = None) -> tuple[EpisodeLog, fl
         code_sha256="",
     )
     stage = world(tuple(body for body, _ in cast), tuple((one.id, one.kind) for one in task.objects))
-    log = play(trial, stage, human or Bystander(), minds)
+    log = run_episode(trial, stage, human or Bystander(), minds)
     kind = plugins.load("task kind", task.kind)
     return log, kind.progress(task, stage.snapshot(), stage.house)
 

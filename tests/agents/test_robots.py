@@ -317,11 +317,11 @@ def test_a_user_s_robot_is_one_file(tmp_path: Path) -> None:
 def test_a_run_knows_the_file_and_notices_a_change(tmp_path: Path) -> None:
     file = tmp_path / "rover_that_changes.py"
     file.write_text(MINE.format(name="rover_that_changes"))
-    shape = robot_team.embody(str(file))
+    shape = robot_team.load_robot_info(str(file))
     assert (shape.name, shape.path) == ("rover_that_changes", str(file))
-    (seat,) = robot_team.form([shape], ["frontier"]).seats
+    (seat,) = robot_team.form_team([shape], ["frontier"]).seats
     assert seat.robot_sha256 == plugins.sha256(str(file))
-    stage = trial_runner.Stage(trial_runner.Sources(bodies={"robot": shape.path}))
+    stage = trial_runner.TrialRunner(trial_runner.Sources(bodies={"robot": shape.path}))
     assert stage._body(seat) == bodies.robot(str(file))
     file.write_text(file.read_text() + "# faster")
     with pytest.raises(HthorError, match="was changed while its run was going on"):
@@ -329,9 +329,11 @@ def test_a_run_knows_the_file_and_notices_a_change(tmp_path: Path) -> None:
 
 
 def test_robots_that_ship_with_hthor_are_covered_by_the_code_s_hash() -> None:
-    assert robot_team.embody("porter") == robot_team.Shape(name="porter", sha256=code_identity.robot_sha256("porter"))
+    assert robot_team.load_robot_info("porter") == robot_team.RobotInfo(
+        name="porter", sha256=code_identity.robot_sha256("porter")
+    )
     with pytest.raises(UnknownName, match="or give the path of a Python file"):
-        robot_team.embody("portr")
+        robot_team.load_robot_info("portr")
 
 
 def test_a_body_made_from_a_record_has_a_plain_look() -> None:

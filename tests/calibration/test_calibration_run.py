@@ -29,9 +29,9 @@ from hthor.calibration.simulation import (
 from hthor.cli import app
 from hthor.errors import HthorError, MissingExtra, RunError, UnknownName
 from hthor.eval.config import robot_team
-from hthor.eval.config.sessions import sessions
+from hthor.eval.config.sessions import make_sessions
 from hthor.eval.runner import progress
-from hthor.eval.runner.trial_runner import Stage
+from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.humans.population import parameter_registry
 from hthor.humans.population.population import Population
 from hthor.tasks.suites import library
@@ -94,31 +94,31 @@ def test_a_larger_table_goes_on_from_a_smaller_and_nothing_is_played_twice(train
 
 def test_a_changed_world_is_refused(trained, monkeypatch):
     folder, _ = trained
-    known = trial_identity.of(TINY)
+    known = trial_identity.trials_identity(TINY)
     changed = trial_identity.Identity(parts={**known.parts, "the person": "x"})
-    monkeypatch.setattr(trial_identity, "of", lambda _: changed)
+    monkeypatch.setattr(trial_identity, "trials_identity", lambda _: changed)
     with pytest.raises(RunError, match=r"another world or person: the person"):
         _train(folder, 3)
 
 
 def test_a_session_is_what_an_evaluation_would_have_played():
     """The same person out of the same population meets the same trials, whoever asks."""
-    from hthor.episode import play
+    from hthor.episode import run_episode
     from hthor.humans.models.proxy import Model
     from hthor.humans.population import random_effects
     from hthor.humans.population.participant import Person, root
 
     point = design_points.spread(1, len(parameter_registry.names()), 0, "x")[0]
-    one = simulate.place(TINY, trial_identity.of(TINY), 5, 0, point.tolist(), 1)
-    stage, seats = Stage(), robot_team.form(["scout"], ["frontier"]).seats
+    one = simulate.place(TINY, trial_identity.trials_identity(TINY), 5, 0, point.tolist(), 1)
+    stage, seats = TrialRunner(), robot_team.form_team(["scout"], ["frontier"]).seats
     rows = list(session_simulation.sit(one, TINY, seats, stage))
 
-    dealt = sessions(TINY, agent="frontier", seed=5, participants=1)[0]
+    dealt = make_sessions(TINY, agent="frontier", seed=5, participants=1)[0]
     traits = random_effects.individual(parameter_registry.from_unit(point.tolist()), root(5, 0))
     human, logs = Model(Person(seed=5, participant=0, traits=traits)), []
     with stage.enter(dealt) as company:
         for trial in dealt.trials:
-            logs.append((trial, play(trial, stage.world(trial), human, company.robots())))
+            logs.append((trial, run_episode(trial, stage.world(trial), human, company.robots())))
     for row, (trial, log) in zip(rows, logs, strict=True):
         told = dict(zip(session_simulation.OUTCOMES, row, strict=True))
         assert TINY.tasks[told["task"]].id == trial.task.id
@@ -157,12 +157,12 @@ def calibrated(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(simulate, "at", fakes.sessions)
         patch.setattr(studies, "at", fakes.whole)
-        found = run.conduct(_options(folder), stage_progress.Silent())
+        found = run.run_calibration(_options(folder), stage_progress.SilentProgress())
     return folder, found
 
 
 def _options(folder, **more):
-    return run.Options(out=Path(folder), quick=True, jobs=1, sessions=90, **more)
+    return run.CalibrationOptions(out=Path(folder), quick=True, jobs=1, sessions=90, **more)
 
 
 def _bytes(folder):
@@ -172,10 +172,13 @@ def _bytes(folder):
 
 def test_the_same_seed_gives_the_same_bytes_and_another_others(made_up, calibrated, tmp_path):
     folder, found = calibrated
-    assert run.conduct(_options(tmp_path / "again"), stage_progress.Silent()) == found
+    assert run.run_calibration(_options(tmp_path / "again"), stage_progress.SilentProgress()) == found
     assert _bytes(tmp_path / "again") == _bytes(folder)
-    assert run.conduct(_options(tmp_path / "other", seed=1, until="training"), stage_progress.Silent()) is None
-    other = stages.Stages(run.settle(_options(tmp_path / "other", seed=1)), stage_progress.Silent())
+    assert (
+        run.run_calibration(_options(tmp_path / "other", seed=1, until="training"), stage_progress.SilentProgress())
+        is None
+    )
+    other = stages.Stages(run.resolve_options(_options(tmp_path / "other", seed=1)), stage_progress.SilentProgress())
     assert not np.array_equal(other.training.met, trial_table.load(folder / "training.npz").met)
 
 
@@ -183,7 +186,7 @@ def test_products_are_kept_and_what_was_learned_is_told(made_up, calibrated, mon
     folder, found = calibrated
     before = _bytes(folder)
     monkeypatch.setattr(emulator, "fit", lambda *_, **__: pytest.fail("it was fitted before"))
-    assert run.conduct(_options(folder), stage_progress.Silent()) == found
+    assert run.run_calibration(_options(folder), stage_progress.SilentProgress()) == found
     assert _bytes(folder) == before
 
     people = Population.load(folder / "population.json")
@@ -222,7 +225,7 @@ def test_the_command_ends_with_1_when_a_gate_is_not_passed(made_up, calibrated, 
 
 def test_each_stage_is_told_of(made_up, tmp_path):
     heard = io.StringIO()
-    teller = stage_progress.Aloud(Console(file=heard, width=100), live=False)
+    teller = stage_progress.PrintedProgress(Console(file=heard, width=100), live=False)
     with teller.watch("training") as watch:
         watch.begin(3, 1)
         watch.played(True, False)
@@ -236,21 +239,23 @@ def test_each_stage_is_told_of(made_up, tmp_path):
 
 def test_a_calibration_may_stop_after_a_stage(made_up, tmp_path, monkeypatch):
     monkeypatch.setattr(studies, "at", lambda *_: pytest.fail("it was to stop before"))
-    assert run.conduct(_options(tmp_path, until="training"), stage_progress.Silent()) is None
+    assert run.run_calibration(_options(tmp_path, until="training"), stage_progress.SilentProgress()) is None
     monkeypatch.setattr(studies, "at", fakes.whole)
-    assert run.conduct(_options(tmp_path, until="correction"), stage_progress.Silent()) is None  # a small one has none
+    assert (
+        run.run_calibration(_options(tmp_path, until="correction"), stage_progress.SilentProgress()) is None
+    )  # a small one has none
     with pytest.raises(UnknownName, match=r"stage 'trainings'\. Did you mean 'training'"):
-        run.conduct(_options(tmp_path, until="trainings"), stage_progress.Silent())
+        run.run_calibration(_options(tmp_path, until="trainings"), stage_progress.SilentProgress())
 
 
 def test_wrong_input_is_told_before_anything_is_done(tmp_path, monkeypatch):
     with pytest.raises(UnknownName, match="suite 'papers'"):
-        run.settle(run.Options(suite="papers"))
+        run.resolve_options(run.CalibrationOptions(suite="papers"))
     with pytest.raises(HthorError, match="one set of published results"):
-        run.settle(run.Options(targets=("paper", "paper")))
+        run.resolve_options(run.CalibrationOptions(targets=("paper", "paper")))
     monkeypatch.setitem(__import__("sys").modules, "sklearn", None)
     with pytest.raises(MissingExtra, match=r"hthor\[calibration\]"):
-        run.conduct(_options(tmp_path), stage_progress.Silent())
+        run.run_calibration(_options(tmp_path), stage_progress.SilentProgress())
 
 
 def test_a_folder_that_is_called_like_a_target_is_not_taken_for_logs(tmp_path, monkeypatch):
@@ -261,7 +266,7 @@ def test_a_folder_that_is_called_like_a_target_is_not_taken_for_logs(tmp_path, m
         (tmp_path / name).mkdir()
     asked = []
     monkeypatch.setattr(from_logs, "run", lambda targets, *_: asked.append(targets))
-    monkeypatch.setattr(run, "conduct", lambda options, _: asked.append(options.targets))
+    monkeypatch.setattr(run, "run_calibration", lambda options, _: asked.append(options.targets))
     for name in ("paper", "mine"):
         CliRunner().invoke(app, ["calibrate", "--target", name, "--quiet"])
     assert asked == [("paper",), ("mine",)]

@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from hthor import jsonio, tasks
 from hthor.calibration import targets
 from hthor.calibration.diagnostics import acceptance
-from hthor.calibration.pipeline.artifact_cache import Shelf
+from hthor.calibration.pipeline.artifact_cache import ArtifactCache
 from hthor.calibration.simulation import design_points, session_store, trial_identity, trial_table
-from hthor.calibration.simulation.session_simulation import Sat
-from hthor.calibration.simulation.session_store import Ledger
+from hthor.calibration.simulation.session_simulation import SessionOutcome
+from hthor.calibration.simulation.session_store import SessionStore
 from hthor.calibration.simulation.trial_identity import Identity
 from hthor.errors import HthorError, RunError, RunLocked, UnknownName
 from hthor.eval.records import trial_record
@@ -182,16 +182,18 @@ def test_a_simulated_study_loses_as_many_trials_as_the_published_one():
 def test_what_decides_only_t_star_is_no_part_of_a_trials_identity():
     slower = tuple(msgspec.structs.replace(task, t_star=task.t_star + 7.0, difficulty="hard") for task in SUITE.tasks)
     elsewhere = (msgspec.structs.replace(SUITE.tasks[0], time_limit=80.0), *SUITE.tasks[1:])
-    known = trial_identity.of(SUITE)
-    assert trial_identity.of(msgspec.structs.replace(SUITE, tasks=slower)) == known
-    assert known.differences(trial_identity.of(msgspec.structs.replace(SUITE, tasks=elsewhere))) == ["suite paper"]
+    known = trial_identity.trials_identity(SUITE)
+    assert trial_identity.trials_identity(msgspec.structs.replace(SUITE, tasks=slower)) == known
+    assert known.differences(trial_identity.trials_identity(msgspec.structs.replace(SUITE, tasks=elsewhere))) == [
+        "suite paper"
+    ]
 
 
 def test_identity_has_the_code_the_rules_and_the_priors():
-    parts = trial_identity.of(SUITE).parts
+    parts = trial_identity.trials_identity(SUITE).parts
     assert {"code", "rules", "parameters and their priors", "version of mujoco", "suite paper"} <= set(parts)
     assert "version of hthor" not in parts
-    assert trial_identity.of_statistics() != parts["code"]
+    assert trial_identity.statistics_sha256() != parts["code"]
 
 
 def _identity(**parts):
@@ -199,42 +201,42 @@ def _identity(**parts):
 
 
 def _line(key, *rows):
-    return trial_record.encode(Sat(key=key, rows=rows))
+    return trial_record.encode(SessionOutcome(key=key, rows=rows))
 
 
 def test_sessions_are_kept_once_and_a_torn_line_is_cut(tmp_path):
     known = _identity(a="1")
-    with Ledger(tmp_path, known) as book:
+    with SessionStore(tmp_path, known) as book:
         assert book.append(_line("", (1, 2))).rows == ((1, 2),)
         for _ in range(2):
             book.append(_line("one", (1, 2), (3, 4)))
     whole_file = (tmp_path / session_store.FILE).read_bytes()
     assert whole_file.count(b"\n") == 1
     (tmp_path / session_store.FILE).write_bytes(whole_file + b'{"key":"two","ro')
-    with Ledger(tmp_path, known) as book:
+    with SessionStore(tmp_path, known) as book:
         assert book.torn == 16
         assert set(book.held) == {"one"}
     assert (tmp_path / session_store.FILE).read_bytes() == whole_file
 
 
 def test_a_changed_line_is_told_of(tmp_path):
-    with Ledger(tmp_path, _identity(a="1")) as book:
+    with SessionStore(tmp_path, _identity(a="1")) as book:
         book.append(_line("one", (1, 2)))
     path = tmp_path / session_store.FILE
     path.write_bytes(path.read_bytes().replace(b"[1,2]", b"[1,3]"))
     with pytest.raises(RunError, match="line 1: check: is not the line's checksum"):
-        Ledger(tmp_path, _identity(a="1"))
+        SessionStore(tmp_path, _identity(a="1"))
 
 
 def test_sessions_of_another_world_are_never_taken_for_ones_of_this(tmp_path):
-    with Ledger(tmp_path, _identity(a="1", b="2")):
+    with SessionStore(tmp_path, _identity(a="1", b="2")):
         pass
-    with Ledger(tmp_path, _identity(a="1", b="3")) as book:  # nothing was played yet
+    with SessionStore(tmp_path, _identity(a="1", b="3")) as book:  # nothing was played yet
         book.append(_line("one", (1, 2)))
         with pytest.raises(RunLocked):
-            Ledger(tmp_path, _identity(a="1", b="3"))
+            SessionStore(tmp_path, _identity(a="1", b="3"))
     with pytest.raises(RunError, match="another world or person: b changed"):
-        Ledger(tmp_path, _identity(a="1", b="4"))
+        SessionStore(tmp_path, _identity(a="1", b="4"))
 
 
 def test_a_product_is_made_again_only_when_what_it_comes_of_has_changed(tmp_path):
@@ -245,7 +247,7 @@ def test_a_product_is_made_again_only_when_what_it_comes_of_has_changed(tmp_path
         return np.arange(3)
 
     for key in ("a", "a", "b", "b", "a"):
-        assert Shelf(tmp_path, key * 64).kept("thing", make).tolist() == [0, 1, 2]
+        assert ArtifactCache(tmp_path, key * 64).kept("thing", make).tolist() == [0, 1, 2]
     assert len(made) == 3
 
 

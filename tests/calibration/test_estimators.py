@@ -33,7 +33,7 @@ from hthor.calibration.from_logs.models.trust_model import Experience
 from hthor.calibration.from_logs.update_population import update
 from hthor.errors import RunError
 from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
 from hthor.humans.communication.trust import Experience as Lived
 from hthor.humans.communication.trust import Trust, initial
@@ -268,15 +268,15 @@ def test_too_few_data_leave_a_population_as_it_was(rng: np.random.Generator) -> 
 
 
 @pytest.fixture(scope="module")
-def played() -> tuple[Parameters, list[Record]]:
+def played() -> tuple[Parameters, list[TrialRecord]]:
     """Six people of one population, some with robots, four trials each in two houses."""
     smoke = tasks.suite("smoke")
     few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house in ("alder", "hazel"))[:4])
     population = Parameters(v_pace=0.45, omega=1.2, t_manip=1.6, t_read=4.2, sigma=0.1, a0=3.0)
-    return population, parameter_recovery.logs(population, few, trial_runner.Stage(), seed=5, people=6)
+    return population, parameter_recovery.logs(population, few, trial_runner.TrialRunner(), seed=5, people=6)
 
 
-def test_real_logs_tell_what_people_were_made_of(played: tuple[Parameters, list[Record]]) -> None:
+def test_real_logs_tell_what_people_were_made_of(played: tuple[Parameters, list[TrialRecord]]) -> None:
     population, records = played
     found = {one.name: one for one in estimate_all.everything(load_sessions.of(records), BELIEFS)}
     for name, off in (("v_pace", 0.1), ("omega", 0.1), ("t_manip", 0.35)):
@@ -288,7 +288,7 @@ def test_real_logs_tell_what_people_were_made_of(played: tuple[Parameters, list[
 
 
 def test_logs_are_read_from_folders_and_files_each_trial_once(
-    played: tuple[Parameters, list[Record]], tmp_path: Path
+    played: tuple[Parameters, list[TrialRecord]], tmp_path: Path
 ) -> None:
     _, records = played
     (tmp_path / "run").mkdir()
@@ -311,7 +311,7 @@ def test_logs_are_read_from_folders_and_files_each_trial_once(
     ],
 )
 def test_foreign_and_broken_logs_are_refused(
-    played: tuple[Parameters, list[Record]], tmp_path: Path, damage: object, words: str
+    played: tuple[Parameters, list[TrialRecord]], tmp_path: Path, damage: object, words: str
 ) -> None:
     lines = [trial_record.encode(one) for one in played[1][:3]]
     path = tmp_path / "trials.jsonl"
@@ -347,12 +347,14 @@ def test_recovery_counts_what_was_found_and_what_was_covered() -> None:
     assert not parameter_recovery.summary(scrambled)[0].passed
 
 
-def test_logs_become_a_population_the_same_every_time(played: tuple[Parameters, list[Record]], tmp_path: Path) -> None:
+def test_logs_become_a_population_the_same_every_time(
+    played: tuple[Parameters, list[TrialRecord]], tmp_path: Path
+) -> None:
     log = tmp_path / "trials.jsonl"
     log.write_bytes(b"".join(trial_record.encode(one) for one in played[1]))
     told: list[str] = []
-    found, made = run.conduct([log], "literature", tmp_path / "a" / "mine", told.append)
-    run.conduct([log], "literature", tmp_path / "b" / "mine", told.append)
+    found, made = run.estimate_from_logs([log], "literature", tmp_path / "a" / "mine", told.append)
+    run.estimate_from_logs([log], "literature", tmp_path / "b" / "mine", told.append)
     for name in ("population.json", "population.npz", "estimates.json"):
         one, other = ((tmp_path / folder / "mine" / name).read_bytes() for folder in ("a", "b"))
         assert one == other, name
@@ -367,8 +369,8 @@ def test_logs_become_a_population_the_same_every_time(played: tuple[Parameters, 
     assert told.count("walking") == 2
 
 
-def test_a_log_without_a_journal_is_refused(played: tuple[Parameters, list[Record]], tmp_path: Path) -> None:
+def test_a_log_without_a_journal_is_refused(played: tuple[Parameters, list[TrialRecord]], tmp_path: Path) -> None:
     bare = [msgspec.structs.replace(one, journal=()) for one in played[1]]
     (tmp_path / "trials.jsonl").write_bytes(b"".join(trial_record.encode(one) for one in bare))
     with pytest.raises(RunError, match="holds no journal of the person"):
-        run.conduct([tmp_path], "literature", tmp_path / "out", lambda _: None)
+        run.estimate_from_logs([tmp_path], "literature", tmp_path / "out", lambda _: None)

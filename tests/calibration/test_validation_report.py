@@ -525,7 +525,7 @@ def test_kinds_and_suites_are_played_when_asked_for(stage: list[tuple[str, str, 
     options = run.Options(name="literature", quick=True, kinds=True, suites=("smoke",), out=tmp_path)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(measures, "played", lambda name, run, least: _played(name))
-        done = run.conduct(options, lambda _: pytest.fail("nobody plays"))
+        done = run.run_validation(options, lambda _: pytest.fail("nobody plays"))
     names = [word for word, suite, _ in stage if suite == "paper"]
     assert "cautious" in names
     assert ("literature", "smoke", plan.QUICK) in stage
@@ -541,13 +541,13 @@ def _played(name: str) -> object:
 
 def test_too_few_participants_are_refused_before_anything_is_played(stage: list[tuple[str, str, int]]) -> None:
     with pytest.raises(HthorError, match="too few"):
-        run.conduct(run.Options(participants=5), lambda _: pytest.fail("nobody plays"))
+        run.run_validation(run.Options(participants=5), lambda _: pytest.fail("nobody plays"))
     assert not stage
 
 
 def test_few_people_are_not_judged(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
     options = run.Options(name="greedy", participants=12, out=tmp_path)
-    done = run.conduct(options, lambda _: pytest.fail("nobody plays"))
+    done = run.run_validation(options, lambda _: pytest.fail("nobody plays"))
     assert [many for _, _, many in stage] == [12, 12]
     assert set(verdicts(done.findings).values()) == {"not judged"}
     assert "ask for 18 people or more" in (tmp_path / "validation.html").read_text()

@@ -38,7 +38,7 @@ def hthor(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     monkeypatch.setenv("_TYPER_FORCE_DISABLE_TERMINAL", "1")  # the command sets it; this takes it back afterwards
     real = tasks.suite
     monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
-    monkeypatch.setattr(trial_runner, "player", fakes.player)
+    monkeypatch.setattr(trial_runner, "make_runner", fakes.player)
 
     def run(*words: str) -> Said:
         monkeypatch.setattr(sys, "argv", ["hthor", *words])
@@ -131,7 +131,7 @@ def test_eval_writes_what_json_shows(hthor, tmp_path: Path):
 
 
 def test_the_document_of_eval_has_one_shape_however_many_agents_there_are(hthor, tmp_path: Path, monkeypatch):
-    monkeypatch.setattr(robot_team, "introduce", fakes.character)
+    monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     shapes = []
     for count, agents in enumerate((("helper",), ("helper", "twin")), 1):
         words = [word for agent in agents for word in ("--agent", agent)]
@@ -162,8 +162,10 @@ def test_eval_of_something_else_in_the_same_folder_is_refused(hthor, done: Path)
 
 
 def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    real = robot_team.introduce
-    monkeypatch.setattr(robot_team, "introduce", lambda name: real(name) if name == "none" else fakes.character(name))
+    real = robot_team.load_agent_info
+    monkeypatch.setattr(
+        robot_team, "load_agent_info", lambda name: real(name) if name == "none" else fakes.character(name)
+    )
     said = hthor("eval", "--agent", "none", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path), "--quiet")
     assert said.code == 3, "done, but an agent failed in some trials"
     assert "none" in said.out
@@ -173,8 +175,10 @@ def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.
 
 
 def test_the_control_is_played_too_once_and_the_uplift_is_reported(hthor, tmp_path: Path, monkeypatch):
-    real = robot_team.introduce
-    monkeypatch.setattr(robot_team, "introduce", lambda name: real(name) if name == "none" else fakes.character(name))
+    real = robot_team.load_agent_info
+    monkeypatch.setattr(
+        robot_team, "load_agent_info", lambda name: real(name) if name == "none" else fakes.character(name)
+    )
     words = ("eval", "--agent", "helper", "--suite", "fake", "--jobs", "1")
     said = hthor(*words, "--out", str(tmp_path / "run"))
     assert said.code == 0
@@ -189,9 +193,11 @@ def test_the_control_is_played_too_once_and_the_uplift_is_reported(hthor, tmp_pa
 
 
 def test_runs_are_compared_and_a_worse_one_fails(hthor, tmp_path: Path, monkeypatch):
-    monkeypatch.setattr(trial_runner, "player", fakes.leaning_player)
-    real = robot_team.introduce
-    monkeypatch.setattr(robot_team, "introduce", lambda name: real(name) if name == "none" else fakes.character(name))
+    monkeypatch.setattr(trial_runner, "make_runner", fakes.leaning_player)
+    real = robot_team.load_agent_info
+    monkeypatch.setattr(
+        robot_team, "load_agent_info", lambda name: real(name) if name == "none" else fakes.character(name)
+    )
     agents = ("--agent", "none", "--agent", "helper")
     hthor("eval", *agents, "--suite", "fake", "--participants", "16", "--out", str(tmp_path), "--quiet")
     silent, helper = str(tmp_path / "none"), str(tmp_path / "helper")
@@ -210,7 +216,7 @@ def test_runs_are_compared_and_a_worse_one_fails(hthor, tmp_path: Path, monkeypa
 
 
 def test_an_agents_faults_are_shown_with_a_way_to_look(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(robot_team, "introduce", fakes.character)
+    monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     said = hthor("eval", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path / "run"))
     assert said.code == 3
     assert "failed in 2 of 20 trials" in said.out
@@ -236,7 +242,7 @@ def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor,
         name = text.removesuffix(".py")
         return fakes.character(name, absent=name == "none")
 
-    monkeypatch.setattr(robot_team, "introduce", introduce)
+    monkeypatch.setattr(robot_team, "load_agent_info", introduce)
     drawn: list[str] = []
     hazel = houses.load("hazel")
     monkeypatch.setattr(render_trial, "house", lambda _: hazel)
@@ -268,7 +274,7 @@ def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor,
 
 def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(robot_team, "introduce", lambda name: fakes.character(name, absent=name == "none"))
+    monkeypatch.setattr(robot_team, "load_agent_info", lambda name: fakes.character(name, absent=name == "none"))
     assert hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--quiet").code == 0
     run = next((tmp_path / "runs").iterdir())
     hazel = houses.load("hazel")
@@ -281,7 +287,7 @@ def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_p
 
 
 def test_what_the_people_were_not_calibrated_for_is_said_once_and_last(hthor, tmp_path: Path, monkeypatch):
-    monkeypatch.setattr(robot_team, "introduce", lambda name: fakes.character(name, absent=name == "none"))
+    monkeypatch.setattr(robot_team, "load_agent_info", lambda name: fakes.character(name, absent=name == "none"))
     agents = ("--agent", "none", "--agent", "helper", "--agent", "twin")
     said = hthor("eval", *agents, "--suite", "fake", "--out", str(tmp_path), "--jobs", "1")
     told = [line for line in said.out.splitlines() + said.err.splitlines() if "was calibrated" in line]
@@ -308,7 +314,7 @@ def test_each_thing_has_one_word_and_the_words_of_before_are_read(hthor, tmp_pat
 
 
 def test_real_time_is_another_run_and_says_so(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(robot_team, "introduce", fakes.character)
+    monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     monkeypatch.chdir(tmp_path)
     modes = {}
     for words in ((), ("--realtime",)):
@@ -326,7 +332,7 @@ def test_real_time_is_another_run_and_says_so(hthor, tmp_path: Path, monkeypatch
 
 
 def test_faults_of_several_robots_are_told_apart(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(robot_team, "introduce", fakes.character)
+    monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     folder = str(tmp_path / "run")
     said = hthor("eval", "--robots", "tall:clumsy,small:other", "--suite", "fake", "--out", folder)
     assert said.code == 3

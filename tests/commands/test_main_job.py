@@ -26,10 +26,10 @@ from benchmarks import forging
 from hthor import cli, guest, houses, jsonio, rules, tasks
 from hthor.errors import AgentError
 from hthor.eval.config import robot_team
-from hthor.eval.config.sessions import Session, sessions
+from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.records import find, run_isolation
-from hthor.eval.records.trial_log import Log
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_log import TrialLog
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import engines, trial_runner
 from hthor.leaderboard import enter
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
@@ -244,7 +244,7 @@ def test_what_an_early_death_leaves_is_cleared_away(copied: Path, say: Callable[
     (copied / "run.json").rename(copied / ".run.json.k1ll3d")
     (copied / "trials.jsonl").write_bytes(b"")
     (copied / "result.json").unlink()
-    with Log(copied):  # so that nothing is played: the folder was accepted, and then found busy
+    with TrialLog(copied):  # so that nothing is played: the folder was accepted, and then found busy
         assert say(*EVAL, "--out", copied).code == 75
 
 
@@ -280,16 +280,16 @@ def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(tmp_path
 
 def dealt(agent: str, count: int = 2) -> tuple[trial_runner.Sources, Session]:
     """Where an agent's file lies, and the first trials of its first person."""
-    who = robot_team.form(["scout"], [agent])
-    whole = sessions(tasks.suite(SUITE), agent=who, participants=1)[0]
+    who = robot_team.form_team(["scout"], [agent])
+    whole = make_sessions(tasks.suite(SUITE), agent=who, participants=1)[0]
     return trial_runner.Sources(minds=who.minds, manifests=who.manifests), msgspec.structs.replace(
         whole, trials=whole.trials[:count]
     )
 
 
-def played(agent: str, count: int = 2) -> list[Record]:
+def played(agent: str, count: int = 2) -> list[TrialRecord]:
     sources, session = dealt(agent, count)
-    return list(trial_runner.player(sources)(session))
+    return list(trial_runner.make_runner(sources)(session))
 
 
 def test_the_example_works(root: Path):
@@ -342,21 +342,21 @@ def written(folder: Path, **bodies: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def idle_robot(tmp_path_factory: pytest.TempPathFactory) -> list[Record]:
+def idle_robot(tmp_path_factory: pytest.TempPathFactory) -> list[TrialRecord]:
     """Two trials with a robot that waits."""
     return played(written(tmp_path_factory.mktemp("idle"), act="pass"))
 
 
 @pytest.mark.parametrize("name", HARMLESS)
-def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: list[Record]):
+def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: list[TrialRecord]):
     records = played(written(tmp_path, **HARMLESS[name]))
     assert not any(record.faults for record in records)
     assert [record.paths[HUMAN] for record in records] == [record.paths[HUMAN] for record in idle_robot]
 
 
-def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(idle_robot: list[Record]):
+def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(idle_robot: list[TrialRecord]):
     _, session = dealt("silent")
-    alone = list(trial_runner.player()(session))
+    alone = list(trial_runner.make_runner()(session))
     assert [one.spec.task for one in alone] == [one.spec.task for one in idle_robot]
     for none, idle in zip(alone, idle_robot, strict=True):
         met = [event.tick for event in idle.events if event.kind == "in_way"]
@@ -369,7 +369,7 @@ def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(i
 
 @pytest.mark.parametrize("name", FAULTY)
 def test_a_failing_agent_leaves_the_person_alone(
-    name: str, tmp_path: Path, idle_robot: list[Record], monkeypatch: pytest.MonkeyPatch
+    name: str, tmp_path: Path, idle_robot: list[TrialRecord], monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setattr(guest, "Guest", functools.partial(guest.Guest, step_s=0.5, bank_s=0.0))
     bodies, kind, told = FAULTY[name]
@@ -436,7 +436,7 @@ def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
     sources, session = dealt(written(tmp_path))
     written(tmp_path, act="return None")
     with pytest.raises(AgentError, match=r"agent\.py was changed while its run was going on"):
-        list(trial_runner.player(sources)(session))
+        list(trial_runner.make_runner(sources)(session))
 
 
 # ----------------------------------------------------------------------------------------------------- what a run holds
@@ -484,7 +484,7 @@ def test_a_torn_last_line_is_one_trial_less(copied: Path, say: Callable[..., Sai
 
 
 def test_folders_that_cannot_be_used(copied: Path, say: Callable[..., Said], tmp_path: Path):
-    with Log(copied):
+    with TrialLog(copied):
         busy = say(*EVAL, "--out", copied)
     assert busy.code == 75
     assert f"{copied} is being written by process {os.getpid()}" in busy.err

@@ -65,15 +65,15 @@ AGENTS = {
 def one_world_for_all() -> Any:
     """All checks are held in the same two houses."""
     worlds: dict[object, Any] = {}
-    before = trial_runner.Stage.__init__
+    before = trial_runner.TrialRunner.__init__
 
-    def begin(self: trial_runner.Stage, sources: trial_runner.Sources | None = None) -> None:
+    def begin(self: trial_runner.TrialRunner, sources: trial_runner.Sources | None = None) -> None:
         before(self, sources)
         self._worlds = worlds
 
-    trial_runner.Stage.__init__ = begin  # type: ignore[method-assign]
+    trial_runner.TrialRunner.__init__ = begin  # type: ignore[method-assign]
     yield
-    trial_runner.Stage.__init__ = before  # type: ignore[method-assign]
+    trial_runner.TrialRunner.__init__ = before  # type: ignore[method-assign]
 
 
 @pytest.fixture

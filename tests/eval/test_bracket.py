@@ -17,7 +17,7 @@ from hthor.eval.results import aggregate, result_file
 from hthor.eval.statistics import intervals
 
 CREWS = {
-    "silent": robot_team.form(["scout"], [eval_fakes.character("silent", absent=True)]),
+    "silent": robot_team.form_team(["scout"], [eval_fakes.character("silent", absent=True)]),
     "frontier": eval_fakes.crew("frontier"),
     "oracle": eval_fakes.crew("oracle"),
 }
@@ -25,13 +25,15 @@ SUITE = eval_fakes.suite(30)
 
 
 @functools.cache
-def nothing(agent: str, model: str) -> result_file.Result:
+def nothing(agent: str, model: str) -> result_file.RunResult:
     """The result of a run without a trial."""
     who = msgspec.structs.replace(eval_fakes.persons(model), model=model)
-    return aggregate.summarise(run_config.settle(SUITE, CREWS[agent], human=who, seed=0, participants=None), [], [])
+    return aggregate.summarise(
+        run_config.build_config(SUITE, CREWS[agent], human=who, seed=0, participants=None), [], []
+    )
 
 
-def result(agent: str, model: str, sr: float, half: float = 0.05, trials: int = 60) -> result_file.Result:
+def result(agent: str, model: str, sr: float, half: float = 0.05, trials: int = 60) -> result_file.RunResult:
     """A run's result with this success rate, and half of it for the time-weighted one."""
 
     def about(mean):
@@ -43,7 +45,7 @@ def result(agent: str, model: str, sr: float, half: float = 0.05, trials: int = 
     return msgspec.structs.replace(empty, metrics=metrics, counts=counts)
 
 
-def results(**rates: tuple[float, ...]) -> dict[str, list[result_file.Result]]:
+def results(**rates: tuple[float, ...]) -> dict[str, list[result_file.RunResult]]:
     """By people, the rates of silent, frontier and oracle, or of the first of them."""
     models = {"paper": "proxy", "slow": "proxy"}
     return {

@@ -28,7 +28,7 @@ from hthor.report.terminal import result_tables
 
 def _run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, make=fakes.player, count: int = 60) -> Path:
     plan, dealt = fakes.run_of(count, name=name, absent=absent, seed=seed)
-    run.evaluate(plan, dealt, make, folder=folder / name, jobs=1, watch=progress.Silent())
+    run.run_evaluation(plan, dealt, make, folder=folder / name, jobs=1, watch=progress.Silent())
     return folder / name
 
 
@@ -171,7 +171,7 @@ def test_a_comparison_and_a_plan_say_the_same_of_more_tasks(runs: Path, four: tu
     for one, other in ((four[0], four[2]), (four[1], four[3])):
         (pair,) = compare.pairs([one, other])
         with mock.patch.object(compare, "read", return_value=(one, other)):
-            plan = sample_size.plan([one.folder, other.folder], "", None, None, 0.8)
+            plan = sample_size.plan_study([one.folder, other.folder], "", None, None, 0.8)
         assert plan.more == pair.differences["sr"].more_tasks > 0
         assert plan.paired.trials == plan.more + pair.n
         words = power.about(plan.more)
@@ -179,12 +179,12 @@ def test_a_comparison_and_a_plan_say_the_same_of_more_tasks(runs: Path, four: tu
         assert f"about {words} more than the {pair.n}" in plan.sentence
     folders = [runs / "leaning" / "alone", runs / "leaning" / "better"]
     found = compare.runs(folders).pairs[0].differences["sr"]
-    assert sample_size.plan(folders, "", None, None, 0.8).more == found.more_tasks
+    assert sample_size.plan_study(folders, "", None, None, 0.8).more == found.more_tasks
 
 
 def test_a_plan_for_another_difference_scales_what_was_measured(runs: Path):
     folders = [runs / "leaning" / "alone", runs / "leaning" / "better"]
-    near, far = (sample_size.plan(folders, "", None, gap, 0.8) for gap in (0.05, 0.2))
+    near, far = (sample_size.plan_study(folders, "", None, gap, 0.8) for gap in (0.05, 0.2))
     assert near.paired.trials > far.paired.trials
     assert near.unpaired.trials > near.paired.trials
 
@@ -320,9 +320,9 @@ def test_what_cannot_be_is_refused():
         power.need(0.5, 0.5)
     for rates, difference in (("0.73,1.2", None), ("0.73,0.76", 0.4)):
         with pytest.raises(HthorError, match="second rate"):
-            sample_size.plan((), rates, None, difference, 0.8)
+            sample_size.plan_study((), rates, None, difference, 0.8)
     with pytest.raises(HthorError, match="two rates"):
-        sample_size.plan((), "0.5", None, None, 0.8)
+        sample_size.plan_study((), "0.5", None, None, 0.8)
 
 
 def test_a_difference_that_cannot_be_is_not_one_that_could_have_been_seen():
@@ -332,7 +332,7 @@ def test_a_difference_that_cannot_be_is_not_one_that_could_have_been_seen():
 
 
 def test_a_plan_from_two_runs_has_their_rates_and_correlation(runs: Path):
-    found = sample_size.plan([runs / "leaning" / "alone", runs / "leaning" / "better"], "", None, None, 0.8)
+    found = sample_size.plan_study([runs / "leaning" / "alone", runs / "leaning" / "better"], "", None, None, 0.8)
     assert found.measured
     assert found.paired.trials < found.unpaired.trials
     assert found.second > found.first

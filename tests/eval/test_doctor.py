@@ -13,22 +13,22 @@ import pytest
 from hthor.eval.doctor import hardware, isolation_levels, libraries, rendering, reproducibility
 from hthor.eval.doctor.rendering import Drawn
 from hthor.eval.doctor.reproducibility import Course
-from hthor.eval.doctor.result import Finding, Health
+from hthor.eval.doctor.result import CheckResult, DoctorReport
 from hthor.guest import IsolationError
 
 STALE = "trials go otherwise than before: if that is meant, renew the reference with 'hthor doctor --write-reference'"
 
 
 @pytest.fixture(scope="module")
-def examined(tmp_path_factory: pytest.TempPathFactory) -> tuple[Health, subprocess.CompletedProcess[str], Path]:
+def examined(tmp_path_factory: pytest.TempPathFactory) -> tuple[DoctorReport, subprocess.CompletedProcess[str], Path]:
     """What the command says of this machine."""
     folder = tmp_path_factory.mktemp("here")
     words = ["-m", "hthor", "doctor", "--json", "--out", str(folder / "runs")]
     done = subprocess.run([sys.executable, *words], capture_output=True, text=True, timeout=280, cwd=folder)
-    return msgspec.json.decode(done.stdout.encode(), type=Health), done, folder
+    return msgspec.json.decode(done.stdout.encode(), type=DoctorReport), done, folder
 
 
-def found(health: Health, name: str) -> Finding:
+def found(health: DoctorReport, name: str) -> CheckResult:
     return next(one for one in health.findings if one.name == name)
 
 

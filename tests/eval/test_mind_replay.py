@@ -15,7 +15,7 @@ from hthor import tasks
 from hthor.cli import app
 from hthor.errors import HthorError, RunError
 from hthor.eval.records import find, trial_log
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import human_trace, session_history
 from hthor.eval.replay.human_trace import Stream
 from hthor.eval.runner import experiment, progress, run_options
@@ -34,20 +34,20 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     smoke = tasks.suite("smoke")
     few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house == "hazel")[:3])
     (folder / "few.json").write_bytes(library.encode(few))
-    options = run_options.Options(
+    options = run_options.RunOptions(
         agents=("oracle",), suite=str(folder / "few.json"), participants=1, jobs=1, seed=4, out=folder / "run"
     )
-    list(experiment.conduct(options, lambda _: progress.Silent()))
+    list(experiment.run_experiment(options, lambda _: progress.Silent()))
     return folder / "run"
 
 
 @pytest.fixture(scope="module")
-def heard(run: Path) -> list[tuple[Record, Stream]]:
+def heard(run: Path) -> list[tuple[TrialRecord, Stream]]:
     records = [find.trial(run, str(number)) for number in range(3)]
     return [(one, human_trace.listen(run, one)) for one in records]
 
 
-def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[Record, Stream]]) -> None:
+def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[TrialRecord, Stream]]) -> None:
     assert [stream.same for _, stream in heard] == [True] * 3
     assert all(stream.key == record.key for record, stream in heard)
     assert all([e.tick for e in s.events] == sorted(e.tick for e in s.events) for _, s in heard)
@@ -64,7 +64,7 @@ def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run
         camera_frames.film(run, msgspec.structs.replace(one, ticks=one.ticks - 1), [0])
 
 
-def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[Record, Stream]]) -> None:
+def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[TrialRecord, Stream]]) -> None:
     for record, stream in heard:
         logged = [event.tick for event in record.journal if event.kind == "choice" and event.data["aim"] == "target"]
         thought = [event.tick for event in stream.events if event.kind == "choice" and event.data["aim"] == "target"]
@@ -78,7 +78,7 @@ def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[Record, St
     assert {"beliefs", "choice", "noticed", "aim", "trust", "weighed", "offer", "shown"} <= kinds
 
 
-def test_beliefs_and_chances_add_up(heard: list[tuple[Record, Stream]]) -> None:
+def test_beliefs_and_chances_add_up(heard: list[tuple[TrialRecord, Stream]]) -> None:
     seen = 0
     for _, stream in heard:
         for event in stream.events:
@@ -93,7 +93,7 @@ def test_beliefs_and_chances_add_up(heard: list[tuple[Record, Stream]]) -> None:
     assert seen
 
 
-def test_the_terms_of_an_answer_are_its_chance(heard: list[tuple[Record, Stream]]) -> None:
+def test_the_terms_of_an_answer_are_its_chance(heard: list[tuple[TrialRecord, Stream]]) -> None:
     weighed = [event.data for _, stream in heard for event in stream.events if event.kind == "weighed"]
     assert weighed
     for data in weighed:
@@ -102,13 +102,13 @@ def test_the_terms_of_an_answer_are_its_chance(heard: list[tuple[Record, Stream]
         assert data["share"] == pytest.approx(share, abs=1e-3)
 
 
-def test_trust_at_the_end_is_what_the_next_trial_begins_with(heard: list[tuple[Record, Stream]]) -> None:
+def test_trust_at_the_end_is_what_the_next_trial_begins_with(heard: list[tuple[TrialRecord, Stream]]) -> None:
     courses = [[e.data["mean"] for e in stream.events if e.kind == "trust"] for _, stream in heard]
     for before, after in pairwise(courses):
         assert before[-1] == after[0]
 
 
-def test_it_is_drawn(heard: list[tuple[Record, Stream]], tmp_path: Path) -> None:
+def test_it_is_drawn(heard: list[tuple[TrialRecord, Stream]], tmp_path: Path) -> None:
     record, stream = max(heard, key=lambda pair: len(pair[1].events))
     figure = human_trace_figure.figure(record, render_trial.house(record), stream)
     figure.savefig(tmp_path / "mind.png", dpi=40)
@@ -118,7 +118,7 @@ def test_it_is_drawn(heard: list[tuple[Record, Stream]], tmp_path: Path) -> None
     assert human_trace_timeline.lanes(quiet) == ["is about"]
 
 
-def test_the_command_prints_thoughts_or_draws_them(run: Path, heard: list[tuple[Record, Stream]]) -> None:
+def test_the_command_prints_thoughts_or_draws_them(run: Path, heard: list[tuple[TrialRecord, Stream]]) -> None:
     found = CliRunner().invoke(app, ["replay", str(run), "1", "--mind", "--json"])
     assert found.exit_code == 0, found.output
     told = json.loads(found.stdout)
@@ -159,10 +159,10 @@ def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> N
     )
     one = library.frozen("one", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == "hazel")[:1])
     (tmp_path / "one.json").write_bytes(library.encode(one))
-    options = run_options.Options(
+    options = run_options.RunOptions(
         agents=(str(agent),), suite=str(tmp_path / "one.json"), jobs=1, out=tmp_path / "run", max_faults="100%"
     )
-    list(experiment.conduct(options, lambda _: progress.Silent()))
+    list(experiment.run_experiment(options, lambda _: progress.Silent()))
     faulty = find.trial(tmp_path / "run", "0")
     assert "clumsy.py" in faulty.faults[0].detail
     assert str(tmp_path) not in faulty.faults[0].detail

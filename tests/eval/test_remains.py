@@ -11,7 +11,7 @@ import pytest
 from hthor.episode import Fault
 from hthor.errors import RunError
 from hthor.eval.runner import fault_report, redact
-from hthor.eval.runner.agent_recorder import Watched
+from hthor.eval.runner.agent_recorder import RecordedAgent
 from hthor.types import Action, Observation, Pose
 
 
@@ -31,8 +31,8 @@ class Tired:
         return Action()
 
 
-def left(key: str, kind: str = "raised") -> fault_report.Remains:
-    mind = Watched(Tired())
+def left(key: str, kind: str = "raised") -> fault_report.FaultReport:
+    mind = RecordedAgent(Tired())
     mind.begin(None)
     for tick in range(30):
         mind.act(look(tick))
@@ -44,7 +44,7 @@ def left(key: str, kind: str = "raised") -> fault_report.Remains:
 
 
 def test_the_last_looks_and_the_last_words_are_kept_and_read_again(tmp_path: Path):
-    fault_report.Keeper(tmp_path, "hthor agent run x").keep(left("ab"))
+    fault_report.FaultArchive(tmp_path, "hthor agent run x").keep(left("ab"))
     (failure,) = fault_report.load(tmp_path / "faults" / "ab.json").failures
     assert [one.tick for one in failure.looks] == list(range(11, 31))
     assert [one.action is None for one in failure.looks] == [False] * 19 + [True]
@@ -59,7 +59,7 @@ def test_the_last_looks_and_the_last_words_are_kept_and_read_again(tmp_path: Pat
 
 def test_a_thousand_faults_fill_no_disk(tmp_path: Path):
     for command in range(2):  # the second one resumes
-        keeper = fault_report.Keeper(tmp_path)
+        keeper = fault_report.FaultArchive(tmp_path)
         for number in range(500):
             keeper.keep(left(f"{command}-{number}", "raised" if number % 5 else f"odd{number}"))
     kept = [fault_report.load(path).failures[0].kind for path in (tmp_path / "faults").glob("*.json")]

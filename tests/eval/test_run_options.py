@@ -66,14 +66,14 @@ def test_a_limited_run_has_other_tasks_and_says_so() -> None:
         task_selection.shorten(whole, 999)
 
 
-def submitted() -> robot_team.Crew:
-    return robot_team.form(
-        ["scout"], [robot_team.Character(ref=robot_team.introduce("oracle").ref, path="somewhere.py")]
+def submitted() -> robot_team.RobotTeam:
+    return robot_team.form_team(
+        ["scout"], [robot_team.AgentInfo(ref=robot_team.load_agent_info("oracle").ref, path="somewhere.py")]
     )
 
 
-def plan(**more: object) -> run_config.Setup:
-    return run_config.settle(suite(30), submitted(), human=persons(), seed=0, participants=None, **more)  # type: ignore[arg-type]
+def plan(**more: object) -> run_config.RunConfig:
+    return run_config.build_config(suite(30), submitted(), human=persons(), seed=0, participants=None, **more)  # type: ignore[arg-type]
 
 
 def test_both_are_part_of_a_run_and_of_the_command_that_plays_it() -> None:
@@ -81,7 +81,7 @@ def test_both_are_part_of_a_run_and_of_the_command_that_plays_it() -> None:
     assert bare.sha256 != short.sha256
     assert b"limit" not in msgspec.json.encode(bare)
     assert "-30-" in short.folder_name
-    words = cli_command.of(Path("runs/x"), short)
+    words = cli_command.resume_command(Path("runs/x"), short)
     assert "--limit 30" in words
     assert "--step-limit 2.5" in words
     assert overrides.of(bare) == {}
@@ -89,9 +89,9 @@ def test_both_are_part_of_a_run_and_of_the_command_that_plays_it() -> None:
 
 
 def test_a_deadline_is_part_of_the_trials_of_submitted_agents_alone() -> None:
-    for who, there in ((submitted(), 2.5), (robot_team.form(["scout"], ["oracle"]), msgspec.UNSET)):
-        trial = sessions.sessions(suite(10), agent=who, human=persons(), step_limit_s=2.5)[0].trials[0]
-        usual = sessions.sessions(suite(10), agent=who, human=persons())[0].trials[0]
+    for who, there in ((submitted(), 2.5), (robot_team.form_team(["scout"], ["oracle"]), msgspec.UNSET)):
+        trial = sessions.make_sessions(suite(10), agent=who, human=persons(), step_limit_s=2.5)[0].trials[0]
+        usual = sessions.make_sessions(suite(10), agent=who, human=persons())[0].trials[0]
         assert trial.step_limit_s == there
         assert usual.step_limit_s is msgspec.UNSET
         assert (trial_record.key(trial) == trial_record.key(usual)) == (there is msgspec.UNSET)
@@ -122,10 +122,10 @@ class Agent:
 @pytest.mark.parametrize("seconds", [0.1, None])
 def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds: float | None) -> None:
     (tmp_path / "slow.py").write_text(SLOW)
-    slow = robot_team.introduce(str(tmp_path / "slow.py"))
-    who = robot_team.form(["scout"], [slow])
-    trials = sessions.sessions(suite(1), agent=who, human="greedy", step_limit_s=seconds)[0].trials
-    with trial_runner.Stage(trial_runner.Sources(minds=who.minds, manifests=who.manifests)).enter(
+    slow = robot_team.load_agent_info(str(tmp_path / "slow.py"))
+    who = robot_team.form_team(["scout"], [slow])
+    trials = sessions.make_sessions(suite(1), agent=who, human="greedy", step_limit_s=seconds)[0].trials
+    with trial_runner.TrialRunner(trial_runner.Sources(minds=who.minds, manifests=who.manifests)).enter(
         Session(participant=0, trials=trials)
     ) as company:
         mind = company.robots()["robot"]
@@ -139,8 +139,8 @@ def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds
 
 
 def test_the_control_of_a_limited_run_has_the_same_tasks(tmp_path: Path) -> None:
-    asked = run_options.settle(
-        run_options.Options(agents=("oracle",), suite="smoke", limit=12, control=True, out=tmp_path / "run")
+    asked = run_options.resolve_options(
+        run_options.RunOptions(agents=("oracle",), suite="smoke", limit=12, control=True, out=tmp_path / "run")
     )
     control = asked.control_of[tmp_path / "run"].plan
     assert control.limit == 12
@@ -154,15 +154,15 @@ def test_the_control_of_a_limited_run_has_the_same_tasks(tmp_path: Path) -> None
 
 def test_a_name_is_a_folder_and_a_heading_and_changes_no_trial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    one = run_options.settle(run_options.Options(agents=("oracle",), control=True, name="first-try"))
-    bare = run_options.settle(run_options.Options(agents=("oracle",)))
+    one = run_options.resolve_options(run_options.RunOptions(agents=("oracle",), control=True, name="first-try"))
+    bare = run_options.resolve_options(run_options.RunOptions(agents=("oracle",)))
     (part,), (plain,) = one.parts, bare.parts
     assert part.folder == Path("runs/first-try")
     assert part.plan.name == part.title == "first-try"
     assert part.plan.crew == plain.plan.name == "oracle"
     assert (part.plan.sha256, part.plan.untitled) == (plain.plan.sha256, plain.plan)
     assert one.control_of[part.folder].folder == Path("runs/first-try/control"), "where it is found again"
-    several = run_options.settle(run_options.Options(agents=("oracle", "frontier"), name="both"))
+    several = run_options.resolve_options(run_options.RunOptions(agents=("oracle", "frontier"), name="both"))
     assert [str(each.folder) for each in several.parts] == ["runs/both/oracle", "runs/both/frontier"]
     assert [each.plan.name for each in several.parts] == ["both-oracle", "both-frontier"]
 

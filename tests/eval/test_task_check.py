@@ -112,7 +112,7 @@ def test_workers_check_what_one_process_checks(task):
 @pytest.mark.parametrize("number", range(0, 12, 3))
 def test_nobody_is_quicker_than_the_least_time_nor_than_their_pace(number):
     task = SMOKE.tasks[number]
-    feat = omniscient_solver.perform(World(task.house), task)
+    feat = omniscient_solver.solve(World(task.house), task)
     assert feat.met
     assert feat.reason == ""
     assert plugins.load("task kind", task.kind).least(task) <= feat.seconds <= rules.TIME_LIMIT_S
@@ -124,8 +124,8 @@ def test_several_jobs_are_done_one_after_the_other_and_what_takes_two_is_left(ta
     world = World("juniper")
     jobs = (Job(target="mug", relation="on", destinations=("dining_table",)), Job(target="book", relation="find"))
     both = changed(task, goal=changed(task.goal, jobs=jobs))
-    feat = omniscient_solver.perform(world, both)
+    feat = omniscient_solver.solve(world, both)
     assert feat.met
     heavy = changed(task, goal=changed(task.goal, jobs=(changed(jobs[0], hands=2),)))
-    assert "2 bodies" in omniscient_solver.perform(world, heavy).reason
+    assert "2 bodies" in omniscient_solver.solve(world, heavy).reason
     assert proof.examine(heavy).seconds == 0.0

@@ -74,7 +74,7 @@ def test_a_served_agent_plays(tmp_path: Path) -> None:
         assert (info.name, info.source, info.privileges) == ("my_agent", url, ("ideal_detector",))
         assert (info.isolation.level, info.persistent) == ("served", True)
         with pytest.raises(IsolationError, match=r"L1 is required, but ws://.* is served"):
-            run_isolation.settle("auto", "L1", [url])
+            run_isolation.resolve_isolation("auto", "L1", [url])
         with Guest(f"{url}/") as other:
             assert other.load().sha256 == info.sha256
             other.begin(BRIEFING)

@@ -54,7 +54,7 @@ def write(
 
 def names(agent: Path | str) -> list[str]:
     """What the agent's manifest lists."""
-    made = robot_team.introduce(str(agent)).manifest
+    made = robot_team.load_agent_info(str(agent)).manifest
     assert made is not None
     return [file.path for file in made.files]
 
@@ -119,10 +119,10 @@ def test_a_file_that_changes_makes_another_agent(tmp_path: Path, where: str, ope
     read = f"import sqlite3\nF = str(HERE / ('net' + '-big.txt'))\n{opens}"
     path = write(tmp_path / "a", **{where: read})
     sqlite3.connect(data).execute("create table t (x)").connection.close()
-    before = robot_team.introduce(str(path)).ref
-    assert robot_team.introduce(str(path)).ref == before
+    before = robot_team.load_agent_info(str(path)).ref
+    assert robot_team.load_agent_info(str(path)).ref == before
     data.write_bytes(data.read_bytes() + b" ")
-    after = robot_team.introduce(str(path)).ref
+    after = robot_team.load_agent_info(str(path)).ref
     assert after.sha256 != before.sha256
     assert after.name == before.name == "agent"
 
@@ -136,10 +136,10 @@ def test_an_agent_is_the_same_wherever_it_lies_and_whatever_holds_it(tmp_path: P
     found = []
     for level in ("L1", at("L2")):
         guest.confine_guests(level)
-        found.append(robot_team.introduce(str(path)).manifest)
+        found.append(robot_team.load_agent_info(str(path)).manifest)
     (tmp_path / "a").rename(tmp_path / "elsewhere")
     guest.confine_guests()
-    found.append(robot_team.introduce(str(tmp_path / "elsewhere" / "agent.py")).manifest)
+    found.append(robot_team.load_agent_info(str(tmp_path / "elsewhere" / "agent.py")).manifest)
     assert found[0] == found[1] == found[2]
 
 
@@ -281,9 +281,9 @@ def test_arguments_are_part_of_who_an_agent_is(taking: Path) -> None:
     found = []
     for words in ([], ["speed=0.1"], ["speed=0.2"], [f"checkpoint={out}"]):
         guest.confine_guests(given=giving.read(words))
-        found.append(robot_team.introduce(str(taking)))
+        found.append(robot_team.load_agent_info(str(taking)))
     out.write_text("more")
-    found.append(robot_team.introduce(str(taking)))
+    found.append(robot_team.load_agent_info(str(taking)))
     assert len({one.ref.sha256 for one in found}) == 5
     assert [one.ref.name for one in found[:4]] == [
         "agent",
@@ -375,7 +375,7 @@ def test_a_served_agent_says_what_it_consists_of_and_that_is_marked(taking: Path
     threading.Thread(target=server.serve_forever, daemon=True).start()
     try:
         url = websocket_server.address(server)
-        first = robot_team.introduce(url)
+        first = robot_team.load_agent_info(url)
         made = first.manifest
         assert made is not None
         assert made.claimed
@@ -385,7 +385,7 @@ def test_a_served_agent_says_what_it_consists_of_and_that_is_marked(taking: Path
             mind.begin(BRIEFING)
             assert getattr(mind.act(look()).say, "text", None) == "learned False"
         out.write_text("more")
-        assert robot_team.introduce(url).ref.sha256 != first.ref.sha256
+        assert robot_team.load_agent_info(url).ref.sha256 != first.ref.sha256
         with pytest.raises(HthorError, match="--agent-args is for 'hthor agent serve' there"):
             Guest(url, given=giving.read(["speed=1"]))
     finally:
@@ -421,12 +421,12 @@ def test_what_no_source_names_can_be_made_part_of_an_agent(tmp_path: Path) -> No
     assert names(path) == ["agent.py", "w/net.bin"]
 
 
-class Quick(trial_runner.Stage):
+class Quick(trial_runner.TrialRunner):
     """Trials of some dozen ticks in a world without an engine."""
 
-    def enter(self, session: Any) -> trial_runner.Company:
+    def enter(self, session: Any) -> trial_runner.Participants:
         make = lambda seat: self._mind(seat, None)  # noqa: E731
-        return trial_runner.Company(test_episode.Mind(), session.trials[0].robots, make)
+        return trial_runner.Participants(test_episode.Mind(), session.trials[0].robots, make)
 
     def world(self, trial: Any) -> Any:
         return guest_fakes.Stage(seen=20 + trial.index)
@@ -436,7 +436,7 @@ class Quick(trial_runner.Stage):
 def evaluate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
     """`hthor eval` with real agents, logs and results, in a world without an engine."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(trial_runner, "Stage", Quick)
+    monkeypatch.setattr(trial_runner, "TrialRunner", Quick)
     monkeypatch.setattr(engines, "find", lambda *_, **__: eval_fakes.Here())
 
     def run(*words: str) -> Any:

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from hthor import tasks
-from hthor.episode import EpisodeLog, play
-from hthor.eval.config.sessions import sessions
+from hthor.episode import EpisodeLog, run_episode
+from hthor.eval.config.sessions import make_sessions
 from hthor.eval.runner import trial_runner
 from hthor.tasks.suites import library
 from hthor.types import Action, Briefing, Event, Observation, TrialSpec
@@ -102,31 +102,33 @@ class Shut:
         return getattr(self._world, name)
 
 
-def trials(agent: str, stage: trial_runner.Stage, *, veiled: bool) -> list[EpisodeLog]:
+def trials(agent: str, stage: trial_runner.TrialRunner, *, veiled: bool) -> list[EpisodeLog]:
     smoke = tasks.suite("smoke")
     few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house in ("alder", "maple")))
-    session, logs = sessions(few, agent=agent, seed=2)[0], []
+    session, logs = make_sessions(few, agent=agent, seed=2)[0], []
     with stage.enter(session) as company:
         for trial in session.trials[:4]:
             logs.append(_one(trial, stage, company, veiled))
     return logs
 
 
-def _one(trial: TrialSpec, stage: trial_runner.Stage, company: trial_runner.Company, veiled: bool) -> EpisodeLog:
+def _one(
+    trial: TrialSpec, stage: trial_runner.TrialRunner, company: trial_runner.Participants, veiled: bool
+) -> EpisodeLog:
     world = stage.world(trial)
     if not veiled:
-        return play(trial, world, company.human, company.robots())
+        return run_episode(trial, world, company.human, company.robots())
     shut = Shut(world)
-    return play(trial, shut, Guarded(company.human, shut), company.robots())  # type: ignore[arg-type]
+    return run_episode(trial, shut, Guarded(company.human, shut), company.robots())  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")
-def stage() -> trial_runner.Stage:
-    return trial_runner.Stage()
+def stage() -> trial_runner.TrialRunner:
+    return trial_runner.TrialRunner()
 
 
 @pytest.mark.parametrize("agent", ["silent", "oracle"])
-def test_a_person_plays_on_without_the_truth(agent: str, stage: trial_runner.Stage) -> None:
+def test_a_person_plays_on_without_the_truth(agent: str, stage: trial_runner.TrialRunner) -> None:
     veiled, plain = trials(agent, stage, veiled=True), trials(agent, stage, veiled=False)
     assert veiled == plain, "what was hidden had been used"
     assert sum(log.ticks for log in veiled) > 4 * 50
@@ -135,7 +137,7 @@ def test_a_person_plays_on_without_the_truth(agent: str, stage: trial_runner.Sta
     assert ("offer" in kinds) == (agent == "oracle")
 
 
-def test_the_veil_holds(stage: trial_runner.Stage) -> None:
+def test_the_veil_holds(stage: trial_runner.TrialRunner) -> None:
     """The guard itself: whoever looks at the truth is caught."""
 
     class Cheat:
@@ -166,7 +168,7 @@ def test_the_veil_holds(stage: trial_runner.Stage) -> None:
 
     smoke = tasks.suite("smoke")
     few = library.frozen("one", 1, smoke.tasks[:1])
-    trial = sessions(few, agent="silent")[0].trials[0]
+    trial = make_sessions(few, agent="silent")[0].trials[0]
     shut = Shut(stage.world(trial))
-    log = play(trial, shut, Guarded(Cheat(), shut), {})  # type: ignore[arg-type]
+    log = run_episode(trial, shut, Guarded(Cheat(), shut), {})  # type: ignore[arg-type]
     assert not log.met

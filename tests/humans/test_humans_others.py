@@ -93,12 +93,12 @@ def log(world, tmp_path_factory) -> Path:
     lines = b""
     for index, support in enumerate(FROM):
         trial = spec(bring(support), index=index)
-        done = umpire.play(
+        done = umpire.run_episode(
             trial, world, person, {"robot": Teller(Send(text="Here.", object="apple", position=at(support)))}
         )
         assert done.met
         assert done.trust is not None
-        lines += trial_record.encode(trial_record.of(trial, done))
+        lines += trial_record.encode(trial_record.make_record(trial, done))
     (folder / "trials.jsonl").write_bytes(lines)
     return folder
 
@@ -133,11 +133,11 @@ def test_plays_whole_trials_in_the_real_world_the_same_twice(name, world, log):
         person, found = model(name, log, state), []
         for index, support in enumerate(FROM):
             trial = spec(bring(support), index=index)
-            done = umpire.play(
+            done = umpire.run_episode(
                 trial, world, person, {"robot": Teller(Send(text="Here.", object="apple", position=at(support)))}
             )
             assert done.trust in range(rules.TRUST_MIN, rules.TRUST_MAX + 1)
-            found.append(trial_record.encode(trial_record.of(trial, done)))
+            found.append(trial_record.encode(trial_record.make_record(trial, done)))
         return person, found
 
     (person, first), (_, second) = session_(), session_()
@@ -148,10 +148,12 @@ def test_plays_whole_trials_in_the_real_world_the_same_twice(name, world, log):
 @pytest.mark.parametrize("name", MODELS)
 def test_goes_on_from_its_state_as_if_never_interrupted(name, world, log):
     def second(person):
-        return umpire.play(spec(bring(COFFEE), index=1), world, person, {"robot": Teller()})
+        return umpire.run_episode(spec(bring(COFFEE), index=1), world, person, {"robot": Teller()})
 
     whole = model(name, log)
-    umpire.play(spec(bring(BED)), world, whole, {"robot": Teller(Send(text="Here.", object="apple", position=at(BED)))})
+    umpire.run_episode(
+        spec(bring(BED)), world, whole, {"robot": Teller(Send(text="Here.", object="apple", position=at(BED)))}
+    )
     state = msgspec.json.decode(msgspec.json.encode(whole.state()))
     assert second(whole) == second(model(name, log, state))
 
@@ -189,8 +191,8 @@ def test_both_ends_play_every_kind_of_task(suite):
     from hthor.eval.runner import trial_runner
 
     task = msgspec.structs.replace(library.suite(suite).tasks[0], time_limit=30.0)
-    one = sessions.sessions(frozen("one", 1, (task,)), agent="oracle", robot="tender", human="greedy")[0]
-    stage = trial_runner.Stage()
+    one = sessions.make_sessions(frozen("one", 1, (task,)), agent="oracle", robot="tender", human="greedy")[0]
+    stage = trial_runner.TrialRunner()
     for made in (greedy.Model, random.Model):
         with stage.enter(one) as company:
             company.human = made(Person(seed=0, participant=0, traits=QUICK))
@@ -293,7 +295,7 @@ def test_a_replay_does_the_same_whatever_the_robot_says(robot, world, log):
     person = model("replay", log)
     for one, support in zip(past_, FROM, strict=True):
         says = [Send(text="Here.", object="apple", position=at(support))] if robot == "same" else []
-        done = umpire.play(one.spec, world, person, {"robot": Teller(*says)})
+        done = umpire.run_episode(one.spec, world, person, {"robot": Teller(*says)})
         assert paths(done) == one.paths["human"]
         wanted = [(e.tick, e.kind, e.data) for e in one.events if e.seat == "human"]
         answered = {"confirmed", "shown"} if robot == "silent" else set()
@@ -306,7 +308,7 @@ def test_a_replay_answers_what_is_shown_when_the_logged_person_answered(world, l
     one = _logged_trials.read(str(log))[0][0]
     (tick, accept), *_ = one.answers()
     says = (Send(text="Look here.", object="apple", position=(9.0, 2.7, 0.5)), Send(text="Or here.", object="apple"))
-    done = umpire.play(one.spec, world, model("replay", log), {"robot": Teller(*says, at=tick - 1)})
+    done = umpire.run_episode(one.spec, world, model("replay", log), {"robot": Teller(*says, at=tick - 1)})
     answered = [event for event in done.events if event.kind in ("confirmed", "declined")]
     assert [(event.tick, event.kind == "confirmed") for event in answered] == [(tick, accept)]
 
@@ -324,10 +326,10 @@ def test_a_replay_waits_for_a_robot_in_its_way_and_catches_up(world, log):
     x, y, _ = next(pose for pose in one.paths["human"] if pose[0] > 5700)
     start = Pose(x=x / 1000.0, y=y / 1000.0, yaw=math.pi / 2)
     task = msgspec.structs.replace(one.spec.task, robot_starts=(start,))
-    done = umpire.play(spec(task), world, model("replay", log), {"robot": Blocker(at=one.ticks)})
+    done = umpire.run_episode(spec(task), world, model("replay", log), {"robot": Blocker(at=one.ticks)})
     assert [kind for _, kind, _ in deeds(done) if kind != "confirmed"] == ["picked", "placed", "success"]
     assert done.ticks > one.ticks
-    blocked = umpire.play(spec(task), world, model("replay", log), {"robot": Blocker(at=10_000)})
+    blocked = umpire.run_episode(spec(task), world, model("replay", log), {"robot": Blocker(at=10_000)})
     assert not blocked.met
     assert blocked.ticks == 900
     assert max(p[0] for p in paths(blocked)) < 1000 * start.x
@@ -336,7 +338,7 @@ def test_a_replay_waits_for_a_robot_in_its_way_and_catches_up(world, log):
 def test_a_replay_stands_still_after_the_end_of_its_log(world, log):
     one = _logged_trials.read(str(log))[0][0]
     task = msgspec.structs.replace(one.spec.task, objects=(on(COUNTER, "apple"),))  # it lies somewhere else now
-    done = umpire.play(spec(task), world, model("replay", log), {"robot": Teller()})
+    done = umpire.run_episode(spec(task), world, model("replay", log), {"robot": Teller()})
     assert not done.met
     assert done.ticks == 900
     assert len(set(paths(done)[one.ticks // 2 + 2 :])) == 1
@@ -352,7 +354,7 @@ def test_a_replay_stands_still_after_the_end_of_its_log(world, log):
 )
 def test_a_log_of_another_task_is_an_error_that_says_so(task, participant, words, world, log):
     with pytest.raises(HthorError) as error:
-        umpire.play(
+        umpire.run_episode(
             spec(task, participant=participant),
             world,
             model("replay", log, participant=participant),

@@ -6,8 +6,8 @@ import msgspec
 import pytest
 
 from hthor import rules, tasks
-from hthor.episode import EpisodeLog, play
-from hthor.eval.config.sessions import sessions
+from hthor.episode import EpisodeLog, run_episode
+from hthor.eval.config.sessions import make_sessions
 from hthor.eval.runner import trial_runner
 from hthor.tasks.suites import library
 from hthor.types import HUMAN, Action, Briefing, Move, Observation, Rotate
@@ -40,24 +40,24 @@ class Spinner:
 
 
 @pytest.fixture(scope="module")
-def stage() -> trial_runner.Stage:
-    return trial_runner.Stage()
+def stage() -> trial_runner.TrialRunner:
+    return trial_runner.TrialRunner()
 
 
 @pytest.fixture(scope="module")
-def alone(stage: trial_runner.Stage) -> list[EpisodeLog]:
+def alone(stage: trial_runner.TrialRunner) -> list[EpisodeLog]:
     return first_trials("silent", stage)
 
 
-def first_trials(agent: str, stage: trial_runner.Stage, mind: object = None) -> list[EpisodeLog]:
+def first_trials(agent: str, stage: trial_runner.TrialRunner, mind: object = None) -> list[EpisodeLog]:
     """The first trials of a few people, in a few houses."""
     smoke, logs = tasks.suite("smoke"), []
     few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house in HOUSES))
-    for session in sessions(few, agent=agent)[:PEOPLE]:
+    for session in make_sessions(few, agent=agent)[:PEOPLE]:
         with stage.enter(session) as company:
             for trial in session.trials[:TRIALS]:
                 robots = {"robot": mind} if mind else company.robots()
-                logs.append(play(trial, stage.world(trial), company.human, robots))
+                logs.append(run_episode(trial, stage.world(trial), company.human, robots))
     return logs
 
 
@@ -74,7 +74,9 @@ def meeting(log: EpisodeLog) -> int:
 
 
 @pytest.mark.parametrize("agent", ["frontier", "oracle"])
-def test_until_they_meet_the_person_is_alone(agent: str, stage: trial_runner.Stage, alone: list[EpisodeLog]) -> None:
+def test_until_they_meet_the_person_is_alone(
+    agent: str, stage: trial_runner.TrialRunner, alone: list[EpisodeLog]
+) -> None:
     apart = 0
     for without, together in zip(alone, first_trials(agent, stage), strict=True):
         until = min(meeting(together), without.ticks)
@@ -87,7 +89,7 @@ def test_until_they_meet_the_person_is_alone(agent: str, stage: trial_runner.Sta
 
 
 def test_a_robot_that_is_never_in_the_way_changes_nothing_at_all(
-    stage: trial_runner.Stage, alone: list[EpisodeLog]
+    stage: trial_runner.TrialRunner, alone: list[EpisodeLog]
 ) -> None:
     undisturbed = 0
     for without, together in zip(alone, first_trials("frontier", stage, Wanderer()), strict=True):
@@ -104,7 +106,9 @@ def person(log: EpisodeLog) -> bytes:
     return msgspec.json.encode((log.paths[HUMAN], events, log.journal, log.ticks, log.met, log.trust, log.idle[HUMAN]))
 
 
-def test_two_robots_that_neither_speak_nor_stand_in_the_way_meet_the_same_person(stage: trial_runner.Stage) -> None:
+def test_two_robots_that_neither_speak_nor_stand_in_the_way_meet_the_same_person(
+    stage: trial_runner.TrialRunner,
+) -> None:
     """Byte for byte: path, stick, pitch, attempts, glimpses, choices, trust."""
     apart = 0
     pairs = zip(first_trials("frontier", stage, Spinner()), first_trials("frontier", stage, Wanderer()), strict=True)
@@ -115,7 +119,7 @@ def test_two_robots_that_neither_speak_nor_stand_in_the_way_meet_the_same_person
     assert apart > 2, "the robots were hardly ever out of the way, so this test showed nothing"
 
 
-def test_the_person_alone_is_the_same_person(stage: trial_runner.Stage, alone: list[EpisodeLog]) -> None:
+def test_the_person_alone_is_the_same_person(stage: trial_runner.TrialRunner, alone: list[EpisodeLog]) -> None:
     """Without a robot nobody is asked how far they trust it; all else is the same, byte for byte."""
     same = 0
     for without, spun in zip(alone, first_trials("frontier", stage, Spinner()), strict=True):

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from hthor import rules, tasks
 from hthor.calibration.from_logs.features import locomotion, manipulation
-from hthor.eval.config.sessions import Session, sessions
+from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
 from hthor.humans.core.behaviour_log import Recorder
 from hthor.tasks.suites import library
@@ -85,15 +85,15 @@ def test_what_was_written_down_stands() -> None:
 
 
 @pytest.fixture(scope="module")
-def played() -> list[Record]:
+def played() -> list[TrialRecord]:
     """A few trials of one person with the oracle, in one house."""
     smoke = tasks.suite("smoke")
     few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house == "alder"))
-    whole = sessions(few, agent="oracle", seed=3)[0]
-    return list(trial_runner.player()(Session(participant=whole.participant, trials=whole.trials[:4])))
+    whole = make_sessions(few, agent="oracle", seed=3)[0]
+    return list(trial_runner.make_runner()(Session(participant=whole.participant, trials=whole.trials[:4])))
 
 
-def test_nobody_goes_farther_than_the_stick_says(played: list[Record]) -> None:
+def test_nobody_goes_farther_than_the_stick_says(played: list[TrialRecord]) -> None:
     went = 0.0
     for one in played:
         stick = locomotion.stick(one)
@@ -107,7 +107,7 @@ def test_nobody_goes_farther_than_the_stick_says(played: list[Record]) -> None:
     assert went > 5.0, "nobody walked, so this test showed nothing"
 
 
-def test_every_deed_of_the_hands_was_an_attempt(played: list[Record]) -> None:
+def test_every_deed_of_the_hands_was_an_attempt(played: list[TrialRecord]) -> None:
     done = {"picked", "placed", "opened"}
     deeds_done = [e for one in played for e in one.events if e.seat == HUMAN and e.kind in done]
     worked = [a for one in played for a in manipulation.of(one) if not a.missed and not a.cut]
@@ -116,7 +116,7 @@ def test_every_deed_of_the_hands_was_an_attempt(played: list[Record]) -> None:
     assert all(a.seconds >= rules.HANDLING_S for a in worked)
 
 
-def test_a_trial_stays_small(played: list[Record]) -> None:
+def test_a_trial_stays_small(played: list[TrialRecord]) -> None:
     """A journal is a few kB, beside paths and events that are more."""
     import msgspec
 

@@ -22,7 +22,7 @@ from hthor import cli, plugins, rules, tasks
 from hthor.errors import HthorError, PeopleError, UnknownName
 from hthor.eval.comparison import population_matrix, robustness
 from hthor.eval.config import human_populations, run_config, sessions
-from hthor.eval.config.human_populations import HumansRef
+from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.results import result_file
 from hthor.eval.runner import experiment, progress, run_options, trial_runner
 from hthor.humans.population import (
@@ -263,8 +263,8 @@ def test_every_robot_meets_the_same_people(files: Path):
         fakes.crew("helper", "other"),
         fakes.crew("none", absent=True),
     ]
-    dealt = [sessions.sessions(suite, agent=crew, human=word, seed=4) for crew in crews]
-    stage = trial_runner.Stage(trial_runner.Sources(people=resolve.find(word).word))
+    dealt = [sessions.make_sessions(suite, agent=crew, human=word, seed=4) for crew in crews]
+    stage = trial_runner.TrialRunner(trial_runner.Sources(people=resolve.find(word).word))
     met = []
     for run in dealt:
         whole = []
@@ -298,19 +298,21 @@ def test_people_who_are_alike_are_the_mean():
 
 def test_a_file_that_changes_during_a_run_stops_it(files: Path):
     found = resolve.find(f"{files}/pop.npz")
-    (one, *_) = sessions.sessions(fakes.suite(10), agent=fakes.crew("helper"), human=found)
+    (one, *_) = sessions.make_sessions(fakes.suite(10), agent=fakes.crew("helper"), human=found)
     small(suite="other").save(files / "pop")  # says something else of the same people
-    assert trial_runner.Stage(trial_runner.Sources(people=found.word))._persons(one.trials[0]).sha256 == found.sha256
+    assert (
+        trial_runner.TrialRunner(trial_runner.Sources(people=found.word))._persons(one.trials[0]).sha256 == found.sha256
+    )
     rows = [[0.4, 0.2]]
     Population.of("pop", rows, names=("v_pace", "sigma"), purpose="", seed=0, command="").save(files / "pop")
     with pytest.raises(HthorError, match=r"pop\.npz was changed while its run was going on"):
-        trial_runner.Stage(trial_runner.Sources(people=found.word))._persons(one.trials[0])
+        trial_runner.TrialRunner(trial_runner.Sources(people=found.word))._persons(one.trials[0])
 
 
 # ---------------------------------------------------------------------------------------------------------- validity
 
 
-def refer(population: Population, count: int = 20, crew: Any = None) -> HumansRef:
+def refer(population: Population, count: int = 20, crew: Any = None) -> HumanModelRef:
     found = msgspec.structs.replace(resolve.find("literature"), population=population, name="pop", word="/dir/pop.npz")
     return human_populations.refer(found, fakes.suite(count), crew or fakes.crew("helper"))
 
@@ -366,20 +368,20 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> None:
     """A suite called ``fake`` of twenty tasks, played in no time."""
     real = tasks.suite
     monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
-    monkeypatch.setattr(trial_runner, "player", fakes.player)
+    monkeypatch.setattr(trial_runner, "make_runner", fakes.player)
 
 
 @pytest.mark.usefixtures("fake")
 def test_each_people_is_a_run_of_its_own(files: Path):
     words = (f"{files}/pop.npz", f"slow@{files}/pop.npz")
-    options = run_options.Options(agents=("none", "frontier"), humans=words, suite="fake", jobs=1, out=files / "out")
+    options = run_options.RunOptions(agents=("none", "frontier"), humans=words, suite="fake", jobs=1, out=files / "out")
     told: list[str] = []
 
     class Watcher(progress.Silent):
         def note(self, text: str) -> None:
             told.append(text)
 
-    done = list(experiment.conduct(options, lambda _: Watcher()))
+    done = list(experiment.run_experiment(options, lambda _: Watcher()))
     assert [(one.plan.humans.name, one.plan.name) for one in done] == [
         *(("pop", "none"), ("pop", "frontier"), ("slow@pop", "none"), ("slow@pop", "frontier")),
     ]
@@ -388,7 +390,7 @@ def test_each_people_is_a_run_of_its_own(files: Path):
     assert told == []
     assert done[2].plan.folder_name.startswith("none-fake-slow@pop-")
     assert done[0].result.hashes.human != done[2].result.hashes.human
-    whole = population_matrix.of([one.result for one in done])
+    whole = population_matrix.make_matrix([one.result for one in done])
     assert whole.agents == ("none", "frontier")
     assert set(whole.cells) == {"pop", "slow@pop"}
     assert whole.cells["pop"]["frontier"].adoption.n > 0
@@ -402,11 +404,13 @@ def test_each_people_is_a_run_of_its_own(files: Path):
 
 @pytest.mark.usefixtures("fake")
 def test_the_bracket_says_what_becomes_of_each_conclusion(files: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(trial_runner, "player", fakes.leaning_player)
+    monkeypatch.setattr(trial_runner, "make_runner", fakes.leaning_player)
     assert human_populations.EXTREMES == robustness.ENDS
     words, agents = (f"bracket@{files}/pop.npz", f"slow@{files}/pop.npz"), ("none", "frontier")
-    options = run_options.Options(agents=agents, humans=words, suite="fake", jobs=1, out=files / "out")
-    whole = population_matrix.of([one.result for one in experiment.conduct(options, lambda _: progress.Silent())])
+    options = run_options.RunOptions(agents=agents, humans=words, suite="fake", jobs=1, out=files / "out")
+    whole = population_matrix.make_matrix(
+        [one.result for one in experiment.run_experiment(options, lambda _: progress.Silent())]
+    )
     assert [ref.name for ref in whole.peoples] == ["greedy@pop", "random@pop", "pop", "slow@pop"]
     assert {(one.better, one.worse, one.metric, one.verdict) for one in whole.conclusions} == {
         *(("frontier", "none", metric, "flips") for metric in ("sr", "twsr"))
@@ -434,10 +438,10 @@ def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
         def note(self, text: str) -> None:
             told.append(text)
 
-    options = run_options.Options(
+    options = run_options.RunOptions(
         agents=("none", "frontier"), humans=(f"{files}/pop.npz",), suite="fake", jobs=1, out=files / "out"
     )
-    done = list(experiment.conduct(options, lambda _: Watcher()))
+    done = list(experiment.run_experiment(options, lambda _: Watcher()))
     assert told == [], "it is said at the end"
     (said,) = result_tables.notes([one.result for one in done])
     assert said.startswith("note: the population pop was calibrated on the tasks of the suite paper, not on those of ")
@@ -459,7 +463,7 @@ def test_a_worker_finds_files_by_path(files: Path):
     (files / "mine.py").write_text('"""Mine."""\n' + model)
     suite = fakes.frozen("one", 1, tasks.suite("smoke").tasks[:1])
     found = resolve.find(f"{files}/mine.py@{files}/pop.npz")
-    (one,) = sessions.sessions(suite, agent="none", human=found, participants=1)
+    (one,) = sessions.make_sessions(suite, agent="none", human=found, participants=1)
     code = (
         "import sys, msgspec\nfrom hthor.eval import cast\nfrom hthor.types import TrialSpec\n"
         "trial = msgspec.json.decode(sys.stdin.buffer.read(), type=TrialSpec)\n"

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from benchmarks import forging
 from hthor import jsonio
 from hthor.eval.config import sessions
-from hthor.eval.runner.messages import Lost
+from hthor.eval.runner.messages import SessionAbandoned
 from hthor.leaderboard import board_check, enter, publish
 from hthor.leaderboard.entries import column_packing, entry_metrics, files, trial_outcomes, trial_tasks, verification
 from hthor.leaderboard.entries.entry import Entry
@@ -231,7 +231,7 @@ class Losing:
     """An engine that loses the sessions of one person, as where an agent's process is killed again and again."""
 
     def perform(self, sessions, make):
-        yield Lost(participant=1, cause="its process was killed by SIGKILL", detail="")
+        yield SessionAbandoned(participant=1, cause="its process was killed by SIGKILL", detail="")
 
 
 def test_a_verification_needs_every_trial_that_was_drawn(whole: Path, monkeypatch: pytest.MonkeyPatch):

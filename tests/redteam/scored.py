@@ -34,7 +34,7 @@ _TASK, _LIMIT_S = "smoke/alder/manipulation-01", 3.0
 _WORLDS: dict[object, Any] = {}
 
 
-class _Stage(trial_runner.Stage):
+class _Stage(trial_runner.TrialRunner):
     """Keeps its world for the next run too, which saves building it for every agent."""
 
     def __init__(self, sources: trial_runner.Sources | None = None) -> None:
@@ -54,7 +54,7 @@ class _Here:
 def main(levels: list[str], wanted: list[str]) -> None:
     """Play the agents of these names, or all, at each level, with one that does nothing first."""
     os.environ["HTHOR_SALT"] = SECRET
-    trial_runner.Stage = _Stage  # type: ignore[misc]
+    trial_runner.TrialRunner = _Stage  # type: ignore[misc]
     cases = [one for one in (*HOSTILE, *HONEST) if not wanted or one.name in wanted]
     told: list[dict[str, Any]] = []
     missing: dict[str, str] = {}
@@ -84,15 +84,15 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
     task = next(task for task in tasks.suite("smoke").tasks if task.id == _TASK)
     suite = library.frozen("short", 1, (msgspec.structs.replace(task, time_limit=_LIMIT_S),))
     ref = AgentRef(name="agent", source="agent.py", sha256=hashlib.sha256(text.encode()).hexdigest())
-    crew = robot_team.form(["scout"], [robot_team.Character(ref=ref, path=str(path))])
-    plan = run_config.settle(suite, crew, human="proxy", seed=0, participants=None)
+    crew = robot_team.form_team(["scout"], [robot_team.AgentInfo(ref=ref, path=str(path))])
+    plan = run_config.build_config(suite, crew, human="proxy", seed=0, participants=None)
     hidden = (str(home / "runs"), str(home / "official.json"))
     make = functools.partial(
         run_isolation.player, trial_runner.Sources(minds=crew.minds, manifests=crew.manifests), held.level, hidden
     )
-    result = run.evaluate(
+    result = run.run_evaluation(
         plan,
-        sessions.sessions(suite, agent=crew),
+        sessions.make_sessions(suite, agent=crew),
         make,
         folder=runs,
         engine=_Here(),

@@ -42,7 +42,7 @@ def run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, count: 
     plan, dealt = fakes.run_of(count, name=name, absent=absent, seed=seed)
     plan = msgspec.structs.replace(plan, humans=msgspec.structs.replace(plan.humans, name=people or plan.humans.name))
     jsonio.write(folder / "run.json", jsonio.pretty(plan))
-    made = [trial_record.of(trial, fakes.episode(trial)) for session in dealt for trial in session.trials]
+    made = [trial_record.make_record(trial, fakes.episode(trial)) for session in dealt for trial in session.trials]
     jsonio.write(folder / "trials.jsonl", b"".join(trial_record.encode(one) for one in made))
     return folder
 
@@ -308,7 +308,7 @@ def test_moments_are_in_order_and_end_at_the_end(folders: list[Path]) -> None:
 def test_a_case_is_drawn_the_same_twice_and_says_who_can_be_drawn(
     folders: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def film(_: Path, wanted: trial_record.Record, ticks: list[int], **more: object) -> camera_frames.Views:
+    def film(_: Path, wanted: trial_record.TrialRecord, ticks: list[int], **more: object) -> camera_frames.Views:
         grey = np.full((24, 32, 3), 128, np.uint8)
         return {tick: dict.fromkeys(wanted.paths, grey) for tick in ticks}
 

@@ -106,7 +106,7 @@ def test_words_of_agents_are_no_formulas(spec: TrialSpec, failed: EpisodeLog, tm
     house = houses.load(TASK.house)
     for suffix in (".png", ".svg", ".pdf"):
         lettering.save(trial_figure.figure(spec, failed, house), tmp_path / f"x{suffix}")
-    one = trial_record.of(spec, failed)
+    one = trial_record.make_record(spec, failed)
     svg = matplotlib_svg.svg(trial_map.figure(one, house, None), "map", HOSTILE)
     assert svg.startswith("<svg")
     short = msgspec.structs.replace(failed, paths={seat: way[:3] for seat, way in failed.paths.items()})

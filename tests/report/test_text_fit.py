@@ -23,7 +23,7 @@ from test_pages import PUBLISHED, run
 
 from hthor import houses
 from hthor.episode import EpisodeLog, Fault
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.analysis import build, load_runs
 from hthor.report.analysis.document import Findings
 from hthor.report.drawing import lettering, render_trial, text_fit, trial_figure, trial_trace
@@ -59,7 +59,7 @@ def found(folders: list[Path]) -> Findings:
 
 
 @pytest.fixture(scope="module")
-def long_trial(folders: list[Path]) -> Record:
+def long_trial(folders: list[Path]) -> TrialRecord:
     """A trial of the robot with the long name, which fails in the middle of it."""
     one = load_runs.runs(folders)[3].records[0]
     robot = one.spec.robots[0]
@@ -115,7 +115,7 @@ def test_names_of_curves_lie_right_of_all_marks_and_apart(found: Findings) -> No
     assert all(within.y0 <= box.y0 and box.y1 <= within.y1 for box in boxes)
 
 
-def test_a_picture_and_a_case_have_their_words_whole(long_trial: Record) -> None:
+def test_a_picture_and_a_case_have_their_words_whole(long_trial: TrialRecord) -> None:
     house, spec = houses.load("hazel"), long_trial.spec
     event = msgspec.structs.replace(
         next(one for one in long_trial.log.events if one.kind == "sent"),
@@ -213,7 +213,7 @@ document.body.append(out);
 });</script>"""
 
 
-def test_hundreds_of_messages_share_few_badges_that_do_not_touch(long_trial: Record) -> None:
+def test_hundreds_of_messages_share_few_badges_that_do_not_touch(long_trial: TrialRecord) -> None:
     """Joining them pair by pair, again from the start after each, took minutes."""
     sent = next(one for one in long_trial.log.events if one.kind == "sent")
     events = [

@@ -55,19 +55,19 @@ def play(base: Path) -> Path:
     return base
 
 
-def character(name: str = "helper", *, absent: bool = False) -> robot_team.Character:
+def character(name: str = "helper", *, absent: bool = False) -> robot_team.AgentInfo:
     """Agents whose code is not the same, as their names are not."""
-    return robot_team.Character(
+    return robot_team.AgentInfo(
         ref=AgentRef(name=name, source=f"{name}.py", sha256=hashlib.sha256(name.encode()).hexdigest()), absent=absent
     )
 
 
-def late(one: trial_record.Record) -> trial_record.Record:
+def late(one: trial_record.TrialRecord) -> trial_record.TrialRecord:
     """The same trial, but what succeeds takes three seconds longer, so that the agent is another."""
     if not one.met or one.ticks > 870:
         return one
     events = (*one.events[:-1], msgspec.structs.replace(one.events[-1], tick=one.ticks + 30))
-    return trial_record.of(one.spec, msgspec.structs.replace(one.log, ticks=one.ticks + 30, events=events))
+    return trial_record.make_record(one.spec, msgspec.structs.replace(one.log, ticks=one.ticks + 30, events=events))
 
 
 def committed(board: Path) -> Path:

@@ -9,7 +9,7 @@ import numpy as np
 from hthor import seeds
 from hthor.calibration.simulation import design_points, studies, trial_table
 from hthor.calibration.simulation.trial_table import CONDITIONS, Table
-from hthor.eval.config.sessions import deal
+from hthor.eval.config.sessions import assign_tasks
 from hthor.humans.population import parameter_registry
 
 NAMES = parameter_registry.names()
@@ -59,7 +59,7 @@ def whole(where, suite, seed, folder, jobs, watch, name, design) -> Table:
 
 def _table(spots, suite, seed, name, study, number, point, condition, person) -> Table:
     chance = np.random.Generator(np.random.Philox(seeds.derive(seed, "fake", name)))
-    dealt = {one: deal(suite.tasks, seed, one) for one in np.unique(person).tolist()}
+    dealt = {one: assign_tasks(suite.tasks, seed, one) for one in np.unique(person).tolist()}
     index = np.tile(np.arange(10), len(point) // 10)
     task = np.array([dealt[one][place] for one, place in zip(person.tolist(), index.tolist(), strict=True)])
     columns = {

@@ -25,10 +25,12 @@ def main(name: str) -> None:
     from hthor.eval.config import robot_team
     from hthor.eval.runner import engines, trial_runner
 
-    real, introduce = tasks.suite, robot_team.introduce
+    real, introduce = tasks.suite, robot_team.load_agent_info
     tasks.suite = lambda word: eval_fakes.suite(20) if word == "fake" else real(word)
-    trial_runner.player = functools.partial(command_fakes.perform, name)
-    robot_team.introduce = lambda word: eval_fakes.character(word) if word in ("helper", "clumsy") else introduce(word)
+    trial_runner.make_runner = functools.partial(command_fakes.perform, name)
+    robot_team.load_agent_info = lambda word: (
+        eval_fakes.character(word) if word in ("helper", "clumsy") else introduce(word)
+    )
     if not name.startswith("slow"):
         engines.find = lambda *_, **__: eval_fakes.Here()  # saves starting other processes
     cli.main()

@@ -21,10 +21,10 @@ from hthor import code_identity, seeds
 from hthor.episode import EpisodeLog, Fault
 from hthor.errors import KILLED, AgentKilled
 from hthor.eval.config import robot_team, run_config, sessions
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import engines, trial_runner, worker
 from hthor.eval.runner.engines import SessionFailed
 from hthor.eval.runner.messages import Failed, News
@@ -76,25 +76,25 @@ def persons(name: str = "proxy", *, calibrated: bool = True) -> People:
     )
 
 
-def character(name: str = "helper", *, absent: bool = False) -> robot_team.Character:
-    return robot_team.Character(ref=AgentRef(name=name, source=f"{name}.py", sha256="cd" * 32), absent=absent)
+def character(name: str = "helper", *, absent: bool = False) -> robot_team.AgentInfo:
+    return robot_team.AgentInfo(ref=AgentRef(name=name, source=f"{name}.py", sha256="cd" * 32), absent=absent)
 
 
-def crew(*names: str, absent: bool = False, detector: str = "own") -> robot_team.Crew:
+def crew(*names: str, absent: bool = False, detector: str = "own") -> robot_team.RobotTeam:
     """Scouts with minds of these names."""
-    return robot_team.form(["scout"] * len(names), [character(name, absent=absent) for name in names], detector)
+    return robot_team.form_team(["scout"] * len(names), [character(name, absent=absent) for name in names], detector)
 
 
 def run_of(
     count: int = 30, *, name: str = "helper", absent: bool = False, seed: int = 0
-) -> tuple[Setup, tuple[Session, ...]]:
+) -> tuple[RunConfig, tuple[Session, ...]]:
     tasks, who = suite(count), crew(*name.split("+"), absent=absent)
     with (
         mock.patch.object(resolve, "find", return_value=persons()),
         mock.patch.object(code_identity, "code_sha256", return_value="34" * 32),
     ):
-        plan = run_config.settle(tasks, who, human="proxy", seed=seed, participants=None)
-        return plan, sessions.sessions(tasks, agent=who, seed=seed)
+        plan = run_config.build_config(tasks, who, human="proxy", seed=seed, participants=None)
+        return plan, sessions.make_sessions(tasks, agent=who, seed=seed)
 
 
 def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
@@ -126,20 +126,20 @@ def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
     )
 
 
-def player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
+def player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[TrialRecord]]:
     """Plays a session in no time; the fake person counts the trials so far, so sessions cannot be cut in pieces."""
 
-    def perform(session_: Session) -> Iterator[Record]:
+    def perform(session_: Session) -> Iterator[TrialRecord]:
         for memory, trial in enumerate(session_.trials):
-            yield trial_record.of(trial, episode(trial, memory))
+            yield trial_record.make_record(trial, episode(trial, memory))
 
     return perform
 
 
-def leaning_player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
+def leaning_player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[TrialRecord]]:
     """Robots help the people they meet, and hinder those called random."""
 
-    def perform(session_: Session) -> Iterator[Record]:
+    def perform(session_: Session) -> Iterator[TrialRecord]:
         for trial in session_.trials:
             chance = 0.5 if not trial.robots else 0.2 if trial.human.startswith("random") else 0.9
             met = seeds.draw(trial.seed, "met", trial.task.id) < chance
@@ -148,23 +148,25 @@ def leaning_player(sources: trial_runner.Sources | None = None) -> Callable[[Ses
             paths = {seat: path[:1] * (ticks // 2) for seat, path in log.paths.items()}
             last = Event(tick=ticks, seat="human", kind="success" if met else "timeout")
             events = (*(event for event in log.events[:-1] if event.tick < ticks), last)
-            yield trial_record.of(trial, msgspec.structs.replace(log, met=met, ticks=ticks, paths=paths, events=events))
+            yield trial_record.make_record(
+                trial, msgspec.structs.replace(log, met=met, ticks=ticks, paths=paths, events=events)
+            )
 
     return perform
 
 
-def forgetful_player() -> Callable[[Session], Iterator[Record]]:
+def forgetful_player() -> Callable[[Session], Iterator[TrialRecord]]:
     """Plays every trial otherwise than `player`."""
 
-    def perform(session_: Session) -> Iterator[Record]:
+    def perform(session_: Session) -> Iterator[TrialRecord]:
         for trial in session_.trials:
-            yield trial_record.of(trial, episode(trial, memory=99))
+            yield trial_record.make_record(trial, episode(trial, memory=99))
 
     return perform
 
 
-def slow_player(seconds: float = 0.05) -> Callable[[Session], Iterator[Record]]:
-    def perform(session_: Session) -> Iterator[Record]:
+def slow_player(seconds: float = 0.05) -> Callable[[Session], Iterator[TrialRecord]]:
+    def perform(session_: Session) -> Iterator[TrialRecord]:
         for played in player()(session_):
             time.sleep(seconds)
             yield played
@@ -172,10 +174,10 @@ def slow_player(seconds: float = 0.05) -> Callable[[Session], Iterator[Record]]:
     return perform
 
 
-def dying_player(folder: str, deaths: int = 1) -> Callable[[Session], Iterator[Record]]:
+def dying_player(folder: str, deaths: int = 1) -> Callable[[Session], Iterator[TrialRecord]]:
     """Kills its own process in the middle of sessions, ``deaths`` times for every session of an even participant."""
 
-    def perform(session_: Session) -> Iterator[Record]:
+    def perform(session_: Session) -> Iterator[TrialRecord]:
         for number, played in enumerate(player()(session_)):
             mark = Path(folder, f"died-{session_.participant}")
             died = len(mark.read_text()) if mark.exists() else 0
@@ -187,10 +189,10 @@ def dying_player(folder: str, deaths: int = 1) -> Callable[[Session], Iterator[R
     return perform
 
 
-def lonely_player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[Record]]:
+def lonely_player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[TrialRecord]]:
     """Participant 1 cannot be played without a robot."""
 
-    def perform(session_: Session) -> Iterator[Record]:
+    def perform(session_: Session) -> Iterator[TrialRecord]:
         if session_.participant == 1 and not session_.trials[0].robots:
             raise ZeroDivisionError("our own")
         yield from player()(session_)
@@ -198,12 +200,12 @@ def lonely_player(sources: trial_runner.Sources | None = None) -> Callable[[Sess
     return perform
 
 
-def hopeless_player() -> Callable[[Session], Iterator[Record]]:
+def hopeless_player() -> Callable[[Session], Iterator[TrialRecord]]:
     raise ModuleNotFoundError("no module named 'mujoco'")
 
 
-def failing_player(error: str) -> Callable[[Session], Iterator[Record]]:
-    def perform(session_: Session) -> Iterator[Record]:
+def failing_player(error: str) -> Callable[[Session], Iterator[TrialRecord]]:
+    def perform(session_: Session) -> Iterator[TrialRecord]:
         yield from list(player()(session_))[:2]
         from hthor.errors import AgentError
 
@@ -212,10 +214,10 @@ def failing_player(error: str) -> Callable[[Session], Iterator[Record]]:
     return perform
 
 
-def sick_player(folder: str, *ills: str) -> Callable[[Session], Iterator[Record]]:
+def sick_player(folder: str, *ills: str) -> Callable[[Session], Iterator[TrialRecord]]:
     """The fourth trial of participant 1 ends the worker, of participant 3 hangs once, of participant 5 has a bug."""
 
-    def perform(session_: Session) -> Iterator[Record]:
+    def perform(session_: Session) -> Iterator[TrialRecord]:
         for number, played in enumerate(player()(session_)):
             ill = {1: "crash", 3: "hang", 5: "bug"}.get(session_.participant) if number == 3 else None
             if ill == "crash" and ill in ills:
@@ -240,10 +242,10 @@ for line in sys.stdin.buffer:
 """
 
 
-def guarded_player(seconds: float = 0.004) -> Callable[[Session], Iterator[Record]]:
+def guarded_player(seconds: float = 0.004) -> Callable[[Session], Iterator[TrialRecord]]:
     """Each session has a guest, a process that has to answer in each trial; if not, the trial has a fault."""
 
-    def perform(session_: Session) -> Iterator[Record]:
+    def perform(session_: Session) -> Iterator[TrialRecord]:
         words = [sys.executable, "-S", "-E", "-c", GUEST, str(os.getpid())]
         with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0) as guest:
             assert guest.stdin is not None
@@ -260,32 +262,32 @@ def guarded_player(seconds: float = 0.004) -> Callable[[Session], Iterator[Recor
                     if not answer:
                         fault = Fault(seat="robot", kind=KILLED, tick=1, detail="killed by SIGKILL")
                         log = msgspec.structs.replace(log, faults=(fault,))
-                    yield trial_record.of(trial, log)
+                    yield trial_record.make_record(trial, log)
             finally:
                 guest.kill()
 
     return perform
 
 
-def killing_player(times: int, plays: dict[int, int]) -> Callable[[Session], Iterator[Record]]:
+def killing_player(times: int, plays: dict[int, int]) -> Callable[[Session], Iterator[TrialRecord]]:
     """The agent of the third trial is killed in the first ``times`` plays of a session, which ``plays`` counts."""
 
-    def perform(session_: Session) -> Iterator[Record]:
+    def perform(session_: Session) -> Iterator[TrialRecord]:
         plays[session_.participant] = plays.get(session_.participant, 0) + 1
         for memory, trial in enumerate(session_.trials):
             log = episode(trial, memory)
             if memory == 2 and plays[session_.participant] <= times:
                 fault = Fault(seat="robot", kind=KILLED, tick=1, detail="killed by SIGKILL")
                 log = msgspec.structs.replace(log, faults=(fault,))
-            yield trial_record.of(trial, log)
+            yield trial_record.make_record(trial, log)
 
     return perform
 
 
-def late_player(times: int, plays: dict[int, int]) -> Callable[[Session], Iterator[Record]]:
+def late_player(times: int, plays: dict[int, int]) -> Callable[[Session], Iterator[TrialRecord]]:
     """The agent of participant 1 is killed before it can say what it is, so many times; ``plays`` counts them."""
 
-    def perform(session_: Session) -> Iterator[Record]:
+    def perform(session_: Session) -> Iterator[TrialRecord]:
         if session_.participant == 1 and plays.get(1, 0) < times:
             plays[1] = plays.get(1, 0) + 1
             raise AgentKilled("helper.py: its process was killed by SIGKILL while it started.")
@@ -343,7 +345,7 @@ def _evaluate(folder: Path, count: int, make, engine: engines.Engine) -> None:
     from hthor.eval.runner import progress, run
 
     plan, dealt = run_of(count)
-    run.evaluate(plan, dealt, make, folder=folder, engine=engine, watch=progress.Silent())
+    run.run_evaluation(plan, dealt, make, folder=folder, engine=engine, watch=progress.Silent())
 
 
 if __name__ == "__main__":

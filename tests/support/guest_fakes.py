@@ -10,10 +10,10 @@ import msgspec
 import test_episode
 
 from hthor import guest
-from hthor.episode import play
+from hthor.episode import run_episode
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
 from hthor.types import HUMAN, RobotSeat, Snapshot
 
@@ -42,22 +42,22 @@ class Stage(test_episode.Stage):
         return Snapshot(tick=self.tick, poses={}, things=self.things, in_view={HUMAN: view}, holding={HUMAN: ""})
 
 
-def player(agent: str, level: str) -> Callable[[Session], Iterator[Record]]:
+def player(agent: str, level: str) -> Callable[[Session], Iterator[TrialRecord]]:
     """Plays sessions of some dozen ticks a trial with the agent of this file, held at this level."""
     guest.confine_guests(level)
 
     def mind(_: RobotSeat) -> guest.Guest:
         return guest.Guest(agent)
 
-    def perform(session: Session) -> Iterator[Record]:
-        with trial_runner.Company(test_episode.Mind(), session.trials[0].robots, mind) as company:
+    def perform(session: Session) -> Iterator[TrialRecord]:
+        with trial_runner.Participants(test_episode.Mind(), session.trials[0].robots, mind) as company:
             for memory, trial in enumerate(session.trials):
                 task = msgspec.structs.replace(trial.task, kind="object_goal_navigation")
                 stage = Stage(seen=fakes.episode(trial, memory).ticks // 10)
-                log = play(msgspec.structs.replace(trial, task=task), stage, company.human, company.robots())
+                log = run_episode(msgspec.structs.replace(trial, task=task), stage, company.human, company.robots())
                 for seat in dict.fromkeys(fault.seat for fault in log.faults):
                     company.dismiss(seat)
-                yield trial_record.of(trial, log)
+                yield trial_record.make_record(trial, log)
 
     return perform
 

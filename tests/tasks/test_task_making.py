@@ -198,12 +198,12 @@ def test_difficulty_is_worked_out_where_a_suite_does_not_tell():
 
 
 def test_the_part_is_in_the_configuration_and_the_command(tmp_path: Path):
-    options = run_options.Options(agents=("frontier",), suite="paper", houses=("alder",), difficulty="easy")
-    plan = run_options.settle(options).parts[0].plan
+    options = run_options.RunOptions(agents=("frontier",), suite="paper", houses=("alder",), difficulty="easy")
+    plan = run_options.resolve_options(options).parts[0].plan
     assert (plan.houses, plan.difficulty) == (("alder",), "easy")
     assert "paper-alder-easy" in plan.folder_name
-    assert "--house alder --difficulty easy" in cli_command.of(tmp_path, plan)
-    whole = run_options.settle(run_options.Options(agents=("frontier",), suite="paper")).parts[0].plan
+    assert "--house alder --difficulty easy" in cli_command.resume_command(tmp_path, plan)
+    whole = run_options.resolve_options(run_options.RunOptions(agents=("frontier",), suite="paper")).parts[0].plan
     assert not whole.houses
     assert run_config.differences(whole, plan)
 
@@ -219,7 +219,7 @@ def test_the_part_is_in_the_configuration_and_the_command(tmp_path: Path):
 )
 def test_what_does_not_go_with_a_house_of_ones_own(options: Any, words: str):
     with pytest.raises(HthorError, match=words):
-        custom_houses.resolve(run_options.Options(agents=("frontier",), **options), lambda _: None)
+        custom_houses.resolve(run_options.RunOptions(agents=("frontier",), **options), lambda _: None)
 
 
 def test_a_house_of_ones_own_is_made_into_a_suite_once(
@@ -228,7 +228,7 @@ def test_a_house_of_ones_own_is_made_into_a_suite_once(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(custom_houses.proved, "columns", lambda recipe, given, jobs: iter([(0, made)]))
     told: list[str] = []
-    options = run_options.Options(agents=("frontier",), houses=(str(home),), jobs=1)
+    options = run_options.RunOptions(agents=("frontier",), houses=(str(home),), jobs=1)
     first = custom_houses.resolve(options, told.append)
     assert custom_houses.resolve(options, told.append) == first
     assert len(told) == 1

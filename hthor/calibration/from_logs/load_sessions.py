@@ -9,13 +9,13 @@ from msgspec import Struct
 
 from hthor.errors import RunError
 from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 
 
 class Trial(Struct, frozen=True, kw_only=True):
     """A trial, and the numbers of its person and of its session among those of a `Sessions`, from 0."""
 
-    record: Record
+    record: TrialRecord
     person: int
     session: int
 
@@ -46,14 +46,14 @@ def read(paths: Sequence[Path]) -> Sessions:
     Raises:
         RunError: when one cannot be read, naming file, line and field.
     """
-    found: dict[str, Record] = {}
+    found: dict[str, TrialRecord] = {}
     for path in paths:
         for one in _records(path):
             found.setdefault(one.key, one)
     return of(found.values())
 
 
-def of(records: Iterable[Record]) -> Sessions:
+def of(records: Iterable[TrialRecord]) -> Sessions:
     """The same, of records at hand."""
     ordered = sorted(records, key=lambda one: (*_person(one), _crew(one), one.spec.index, one.key))
     people: dict[object, int] = {}
@@ -69,15 +69,15 @@ def of(records: Iterable[Record]) -> Sessions:
     return Sessions(trials=trials, people=len(people), sessions=len(sessions))
 
 
-def _person(one: Record) -> tuple[str, str, int, int]:
+def _person(one: TrialRecord) -> tuple[str, str, int, int]:
     return one.spec.human, one.spec.human_sha256, one.spec.seed, one.spec.participant
 
 
-def _crew(one: Record) -> tuple[str, ...]:
+def _crew(one: TrialRecord) -> tuple[str, ...]:
     return tuple(f"{robot.seat} {robot.robot} {robot.agent.name} {robot.agent.sha256}" for robot in one.spec.robots)
 
 
-def _records(path: Path) -> list[Record]:
+def _records(path: Path) -> list[TrialRecord]:
     file = path / "trials.jsonl" if path.is_dir() else path
     if not file.is_file():
         what = "a folder without trials.jsonl" if path.is_dir() else "not there"
@@ -91,7 +91,7 @@ def _records(path: Path) -> list[Record]:
     return [_record(file, number, line + b"\n") for number, line in enumerate(lines[:-1], 1)]
 
 
-def _record(file: Path, number: int, line: bytes) -> Record:
+def _record(file: Path, number: int, line: bytes) -> TrialRecord:
     try:
         return trial_record.decode(line)
     except trial_record.Damaged as damage:

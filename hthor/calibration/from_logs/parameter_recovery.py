@@ -18,11 +18,11 @@ from hthor.calibration.from_logs.models import priors
 from hthor.calibration.from_logs.models.priors import on
 from hthor.calibration.simulation import design_points
 from hthor.calibration.simulation.trial_table import AGENTS
-from hthor.episode import play
+from hthor.episode import run_episode
 from hthor.eval.config.sessions import Session
-from hthor.eval.config.sessions import sessions as deal
+from hthor.eval.config.sessions import make_sessions as deal
 from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
 from hthor.humans.models.proxy import Model
 from hthor.humans.population import parameter_registry, random_effects
@@ -61,23 +61,25 @@ class Recovered(Struct, frozen=True, kw_only=True):
 
 def run(count: int, *, people: int = 12, seed: int = 0, suite: str = "paper", first: int = 0) -> Iterator[Dataset]:
     """Simulate datasets and estimate each."""
-    stage, held = trial_runner.Stage(), tasks.suite(suite)
+    stage, held = trial_runner.TrialRunner(), tasks.suite(suite)
     cube = design_points.spread(first + count, len(parameter_registry.names()), seed, "recovery")[first:]
     for number, point in enumerate(cube, first):
         population = parameter_registry.from_unit(tuple(map(float, point)))
         yield estimated(population, logs(population, held, stage, seeds.derive(seed, "dataset", number), people))
 
 
-def logs(population: Parameters, suite: Suite, stage: trial_runner.Stage, seed: int, people: int) -> list[Record]:
+def logs(
+    population: Parameters, suite: Suite, stage: trial_runner.TrialRunner, seed: int, people: int
+) -> list[TrialRecord]:
     """The records of some people of a population."""
     dealt = {agent: deal(suite, agent=agent, seed=seed, participants=people) for agent in AGENTS}
-    played: list[Record] = []
+    played: list[TrialRecord] = []
     for number in range(people):
         played += _session(population, dealt[AGENTS[number % len(AGENTS)]][number], stage, seed)
     return played
 
 
-def estimated(population: Parameters, records: Sequence[Record]) -> Dataset:
+def estimated(population: Parameters, records: Sequence[TrialRecord]) -> Dataset:
     """What the estimators make of these records, beside the truth."""
     prior = priors.of_registry()
     estimates = estimate_all.everything(load_sessions.of(records), prior)
@@ -103,9 +105,11 @@ def summary(datasets: Sequence[Dataset]) -> tuple[Recovered, ...]:
     return tuple(found)
 
 
-def _session(population: Parameters, session: Session, stage: trial_runner.Stage, seed: int) -> Iterator[Record]:
+def _session(
+    population: Parameters, session: Session, stage: trial_runner.TrialRunner, seed: int
+) -> Iterator[TrialRecord]:
     traits = random_effects.individual(population, root(seed, session.participant))
     human = Model(Person(seed=seed, participant=session.participant, traits=traits))
     minds = {seat.seat: plugins.load("agent", seat.agent.name)() for seat in session.trials[0].robots}
     for trial in session.trials:
-        yield trial_record.of(trial, play(trial, stage.world(trial), human, minds))
+        yield trial_record.make_record(trial, run_episode(trial, stage.world(trial), human, minds))

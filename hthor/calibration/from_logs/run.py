@@ -21,7 +21,7 @@ from hthor.humans.population.resolve import PROXY
 SCHEMA = "hthor.estimates/1"
 
 
-class Row(Struct, frozen=True, kw_only=True):
+class EstimateRow(Struct, frozen=True, kw_only=True):
     """A parameter before and after, medians and 90 % intervals in its unit, and what the logs say of it, if any."""
 
     name: str
@@ -35,7 +35,7 @@ class Row(Struct, frozen=True, kw_only=True):
     estimate: Estimate | None
 
 
-class Found(Struct, frozen=True, kw_only=True):
+class LogEstimates(Struct, frozen=True, kw_only=True):
     """What a calibration with logs gave; ``effective`` old draws stand behind the new ones."""
 
     schema: str = SCHEMA
@@ -45,13 +45,13 @@ class Found(Struct, frozen=True, kw_only=True):
     trials: int
     effective: float
     widening: float
-    rows: tuple[Row, ...]
+    rows: tuple[EstimateRow, ...]
     notes: tuple[str, ...]
 
 
-def conduct(
+def estimate_from_logs(
     logs: Sequence[Path], prior: str, out: Path, tell: Callable[[str], None], *, seed: int = 0
-) -> tuple[Found, Population]:
+) -> tuple[LogEstimates, Population]:
     """Estimate, bring the population ``prior`` up to date, and write both to the folder ``out``.
 
     Raises:
@@ -71,7 +71,7 @@ def conduct(
     tell("updating")
     changed = update(old.names, old.draws, old.weights, before, estimates, seed)
     new = _population(old, changed, estimates, data, logs, out, seed)
-    found = Found(
+    found = LogEstimates(
         prior=old.name,
         people=data.people,
         sessions=data.sessions,
@@ -124,12 +124,12 @@ def _population(
     )
 
 
-def _rows(old: Population, new: Population, estimates: Sequence[Estimate]) -> tuple[Row, ...]:
+def _rows(old: Population, new: Population, estimates: Sequence[Estimate]) -> tuple[EstimateRow, ...]:
     by_name = {one.name: one for one in estimates}
     shares = (0.05, 0.5, 0.95)
     before, after = old.quantiles(shares), new.quantiles(shares)
     return tuple(
-        Row(
+        EstimateRow(
             name=spec.name,
             unit=spec.unit,
             before=float(before[1, k]),

@@ -15,7 +15,7 @@ from hthor.calibration.from_logs.load_sessions import Sessions
 from hthor.calibration.from_logs.models.choice_model import Choice, default_pace
 from hthor.calibration.from_logs.models.detection_model import Exposure
 from hthor.calibration.from_logs.models.trust_model import Experience
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 
 
 class Reduced(Struct, frozen=True, kw_only=True):
@@ -39,7 +39,7 @@ def reduce(sessions: Sessions) -> tuple[Reduced, ...]:
     return tuple(_reduced(one.record, one.person, one.session, one.index) for one in sessions.trials)
 
 
-def _reduced(record: Record, person: int, session: int, index: int) -> Reduced:
+def _reduced(record: TrialRecord, person: int, session: int, index: int) -> Reduced:
     walk = locomotion.of(record)
     pace = walk.pace if walk is not None and not math.isnan(walk.pace) else default_pace()
     return Reduced(
@@ -65,7 +65,7 @@ def _reduced(record: Record, person: int, session: int, index: int) -> Reduced:
     )
 
 
-def _experience(record: Record) -> Experience:
+def _experience(record: TrialRecord) -> Experience:
     confirmed = [event.tick for event in record.journal if event.kind == "offer" and _helps(event.data)]
     misled = [event.tick for event in record.journal if event.kind == "misled"]
     helped = confirmed[0] * rules.TICK_S if confirmed and not misled else math.nan

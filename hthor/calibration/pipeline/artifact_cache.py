@@ -16,7 +16,7 @@ _T = TypeVar("_T")
 _KEY_LENGTH = 64
 
 
-class Shelf:
+class ArtifactCache:
     """Products of one calibration.
 
     Args:

@@ -25,7 +25,7 @@ SIMULATED = ("training", "studies", "correction", "predicted")
 """Stages that simulate, in order; a calibration can be told to stop after one of them."""
 
 
-class Options(Struct, frozen=True, kw_only=True):
+class CalibrationOptions(Struct, frozen=True, kw_only=True):
     """What the user asked for, None where the default holds."""
 
     targets: tuple[str, ...] = ("paper",)
@@ -39,7 +39,7 @@ class Options(Struct, frozen=True, kw_only=True):
     until: str = ""
 
 
-def conduct(options: Options, teller: Teller) -> Summary | None:
+def run_calibration(options: CalibrationOptions, teller: Teller) -> Summary | None:
     """Run a calibration, or what is missing of it; None when it was told to stop before its end.
 
     Raises:
@@ -51,7 +51,7 @@ def conduct(options: Options, teller: Teller) -> Summary | None:
     _need_libraries()
     if options.until and options.until not in SIMULATED:
         raise UnknownName("stage", options.until, SIMULATED, "Choose one with --until, or leave it out.")
-    brief = settle(options)
+    brief = resolve_options(options)
     brief.folder.mkdir(parents=True, exist_ok=True)
     stages = Stages(brief, teller)
     if options.until:
@@ -64,7 +64,7 @@ def conduct(options: Options, teller: Teller) -> Summary | None:
     return finalize.settle(stages, command(options))
 
 
-def settle(options: Options) -> Brief:
+def resolve_options(options: CalibrationOptions) -> Brief:
     """What is to be done, every default resolved."""
     if len(options.targets) != 1:
         raise HthorError("--target takes one set of published results, or any number of logs; not both.")
@@ -84,7 +84,7 @@ def settle(options: Options) -> Brief:
     )
 
 
-def command(options: Options) -> str:
+def command(options: CalibrationOptions) -> str:
     """The command that makes the same again, without where and with how many processes."""
     parts = ["hthor calibrate", *(f"--target {word}" for word in options.targets), f"--suite {options.suite}"]
     parts.append(f"--seed {options.seed}")
@@ -102,4 +102,4 @@ def _need_libraries() -> None:
     del scipy, sklearn
 
 
-__all__ = ["Options", "command", "conduct", "settle"]
+__all__ = ["CalibrationOptions", "command", "resolve_options", "run_calibration"]

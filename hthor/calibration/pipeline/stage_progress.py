@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _WORTH_TELLING_S = 1.0
 
 
-class Silent:
+class SilentProgress:
     """Says nothing."""
 
     @contextmanager
@@ -31,7 +31,7 @@ class Silent:
         yield
 
 
-class Aloud:
+class PrintedProgress:
     """A bar, or lines where nobody can see one, for each stage that simulates, and a line for each that computes."""
 
     def __init__(self, console: Console, *, live: bool) -> None:

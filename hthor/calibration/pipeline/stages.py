@@ -13,7 +13,7 @@ from msgspec import Struct
 
 from hthor import jsonio
 from hthor.calibration.emulator.single_thread import alone
-from hthor.calibration.pipeline.artifact_cache import Shelf
+from hthor.calibration.pipeline.artifact_cache import ArtifactCache
 from hthor.calibration.simulation import design_points, simulate, studies, trial_identity, trial_table
 from hthor.calibration.simulation.budget import Sizes
 from hthor.calibration.simulation.trial_table import Table
@@ -65,16 +65,16 @@ class Stages:
     def __init__(self, brief: Brief, teller: Teller) -> None:
         self.brief, self._teller = brief, teller
         self.t_star = trial_table.t_star(brief.suite)
-        self.known = trial_identity.of(brief.suite)
+        self.known = trial_identity.trials_identity(brief.suite)
         what = (
             self.known,
             brief.targets,
             brief.seed,
             brief.sizes,
             self.t_star.tolist(),
-            trial_identity.of_statistics(),
+            trial_identity.statistics_sha256(),
         )
-        self._shelf = Shelf(brief.folder / "products", jsonio.sha256(what))
+        self._shelf = ArtifactCache(brief.folder / "products", jsonio.sha256(what))
 
     # ------------------------------------------------------------------------------------------------------- simulated
 

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterator
 from msgspec import Struct
 
 from hthor import plugins, rules
-from hthor.episode import EpisodeLog, play
+from hthor.episode import EpisodeLog, run_episode
 from hthor.errors import HthorError
-from hthor.eval.runner.trial_runner import Stage
+from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.humans.models.proxy import Model
 from hthor.humans.population import parameter_registry, random_effects
 from hthor.humans.population.participant import Person, root
@@ -40,7 +40,7 @@ CODE_ROOT = "sessions"
 Row = tuple[int, ...]
 
 
-class Sitting(Struct, frozen=True, kw_only=True):
+class SessionSpec(Struct, frozen=True, kw_only=True):
     """A session to be played.
 
     Attributes:
@@ -58,7 +58,7 @@ class Sitting(Struct, frozen=True, kw_only=True):
     tasks: tuple[int, ...]
 
 
-class Sat(Struct, frozen=True, kw_only=True):
+class SessionOutcome(Struct, frozen=True, kw_only=True):
     """A session that was played: a row of `OUTCOMES` for each trial. One without a key tells of a single trial."""
 
     key: str = ""
@@ -67,7 +67,7 @@ class Sat(Struct, frozen=True, kw_only=True):
     faults: tuple[str, ...] = ()
 
 
-def player(suite: Suite, seats: tuple[tuple[RobotSeat, ...], ...]) -> Callable[[Sitting], Iterator[Sat]]:
+def player(suite: Suite, seats: tuple[tuple[RobotSeat, ...], ...]) -> Callable[[SessionSpec], Iterator[SessionOutcome]]:
     """What a worker does with each sitting: tell of each trial, and in the end of the session.
 
     Called in the worker; keeps worlds for later sittings.
@@ -75,19 +75,19 @@ def player(suite: Suite, seats: tuple[tuple[RobotSeat, ...], ...]) -> Callable[[
     Args:
         seats: the robots of each condition.
     """
-    stage = Stage()
+    stage = TrialRunner()
 
-    def perform(sitting: Sitting) -> Iterator[Sat]:
+    def perform(sitting: SessionSpec) -> Iterator[SessionOutcome]:
         rows = []
         for row in sit(sitting, suite, seats[sitting.condition], stage):
             rows.append(row)
-            yield Sat(rows=(row,))
-        yield Sat(key=sitting.key, rows=tuple(rows))
+            yield SessionOutcome(rows=(row,))
+        yield SessionOutcome(key=sitting.key, rows=tuple(rows))
 
     return perform
 
 
-def sit(sitting: Sitting, suite: Suite, seats: tuple[RobotSeat, ...], stage: Stage) -> Iterator[Row]:
+def sit(sitting: SessionSpec, suite: Suite, seats: tuple[RobotSeat, ...], stage: TrialRunner) -> Iterator[Row]:
     """Play a session from its first trial to its last; a row of `OUTCOMES` for each."""
     chances = root(sitting.seed, sitting.participant)
     traits = random_effects.individual(parameter_registry.from_unit(sitting.point), chances)
@@ -95,13 +95,13 @@ def sit(sitting: Sitting, suite: Suite, seats: tuple[RobotSeat, ...], stage: Sta
     minds = {seat.seat: plugins.load("agent", seat.agent.name)() for seat in seats}
     for index, number in enumerate(sitting.tasks):
         trial = _trial(sitting, suite.tasks[number], seats, index)
-        log = play(trial, stage.world(trial), human, minds)
+        log = run_episode(trial, stage.world(trial), human, minds)
         if log.faults:
             raise HthorError(f"the {log.faults[0].seat} failed in {trial.task.id}: {log.faults[0].detail.strip()}")
         yield _row(number, trial, log)
 
 
-def _trial(sitting: Sitting, task: TaskSpec, seats: tuple[RobotSeat, ...], index: int) -> TrialSpec:
+def _trial(sitting: SessionSpec, task: TaskSpec, seats: tuple[RobotSeat, ...], index: int) -> TrialSpec:
     return TrialSpec(
         task=task,
         robots=seats,

@@ -15,7 +15,7 @@ from types import TracebackType
 import msgspec
 
 from hthor import jsonio
-from hthor.calibration.simulation.session_simulation import Sat
+from hthor.calibration.simulation.session_simulation import SessionOutcome
 from hthor.calibration.simulation.trial_identity import Identity
 from hthor.documents import Unreadable, guarded
 from hthor.documents import read as read_document
@@ -23,13 +23,13 @@ from hthor.errors import RunError
 from hthor.eval.records import trial_log
 
 FILE, IDENTITY = "sessions.jsonl", "identity.json"
-_decoder = msgspec.json.Decoder(Sat)
+_decoder = msgspec.json.Decoder(SessionOutcome)
 _TAIL = b',"check":"%08x"}\n'
 _TAIL_LENGTH = len(_TAIL % 0)
 _NAMED = 6
 
 
-class Ledger:
+class SessionStore:
     """The one writer of a folder of sessions. Use as a context manager.
 
     Args:
@@ -54,7 +54,7 @@ class Ledger:
             raise
         self._file = self.path.open("ab", buffering=0)
 
-    def __enter__(self) -> Ledger:
+    def __enter__(self) -> SessionStore:
         return self
 
     def __exit__(
@@ -64,7 +64,7 @@ class Ledger:
         self._file.close()
         os.close(self._lock)
 
-    def append(self, line: bytes) -> Sat:
+    def append(self, line: bytes) -> SessionOutcome:
         """Keep a session, given as its line, unless it is there; a line without a key is only read."""
         sat = _decoder.decode(line)
         if sat.key and sat.key not in self.held:
@@ -73,7 +73,7 @@ class Ledger:
         return sat
 
 
-def read(path: Path) -> Iterator[Sat]:
+def read(path: Path) -> Iterator[SessionOutcome]:
     """Every session of a file.
 
     Raises:

@@ -13,8 +13,8 @@ from msgspec import Struct
 
 from hthor import jsonio, seeds
 from hthor.calibration.simulation import design_points, session_simulation, trial_identity, trial_table
-from hthor.calibration.simulation.session_simulation import OUTCOMES, Sat, Sitting
-from hthor.calibration.simulation.session_store import Ledger
+from hthor.calibration.simulation.session_simulation import OUTCOMES, SessionOutcome, SessionSpec
+from hthor.calibration.simulation.session_store import SessionStore
 from hthor.calibration.simulation.trial_identity import Identity
 from hthor.calibration.simulation.trial_table import AGENTS, CONDITIONS, Table
 from hthor.errors import RunError
@@ -22,7 +22,7 @@ from hthor.eval.config import robot_team, sessions
 from hthor.eval.runner import local_runner
 from hthor.eval.runner.collector import InternalFailure
 from hthor.eval.runner.interrupt import Interrupted, stoppable
-from hthor.eval.runner.messages import Played
+from hthor.eval.runner.messages import TrialDone
 from hthor.eval.runner.run import Watcher
 from hthor.humans.population import parameter_registry
 from hthor.tasks import Suite
@@ -42,7 +42,7 @@ class Plan(Struct, frozen=True, kw_only=True):
     suite: Suite
     identity: Identity
     points: np.ndarray
-    sittings: tuple[tuple[int, int, int, Sitting], ...]
+    sittings: tuple[tuple[int, int, int, SessionSpec], ...]
 
 
 def training(suite: Suite, seed: int, sessions: int, folder: Path, jobs: int, watch: Watcher) -> Table:
@@ -67,7 +67,7 @@ def at(where: np.ndarray, suite: Suite, seed: int, folder: Path, jobs: int, watc
         Interrupted: on Ctrl-C or SIGTERM.
     """
     spots = design_points.tidy(where)
-    known, own = trial_identity.of(suite), seeds.derive(seed, "calibration", name)
+    known, own = trial_identity.trials_identity(suite), seeds.derive(seed, "calibration", name)
     dealt = tuple(
         (-1, number, number, place(suite, known, own, number, row, turn(number)))
         for number, row in enumerate(spots.tolist())
@@ -83,18 +83,20 @@ def turn(number: int) -> int:
 
 def place(
     suite: Suite, known: Identity, seed: int, participant: int, point: Sequence[float], condition: int
-) -> Sitting:
+) -> SessionSpec:
     """The session of a participant of the study with this seed, drawn from the population at a point."""
-    tasks = tuple(sessions.deal(suite.tasks, seed, participant))
+    tasks = tuple(sessions.assign_tasks(suite.tasks, seed, participant))
     what = [known.sha256, seed, participant, list(point), condition, tasks]
     key = jsonio.sha256(what)[:16]
-    return Sitting(key=key, seed=seed, participant=participant, point=tuple(point), condition=condition, tasks=tasks)
+    return SessionSpec(
+        key=key, seed=seed, participant=participant, point=tuple(point), condition=condition, tasks=tasks
+    )
 
 
-def perform(plan: Plan, folder: Path, jobs: int, watch: Watcher) -> Mapping[str, Sat]:
+def perform(plan: Plan, folder: Path, jobs: int, watch: Watcher) -> Mapping[str, SessionOutcome]:
     """Play what a plan still lacks; every session by its key."""
     wanted = [one for *_, one in plan.sittings]
-    with Ledger(folder, plan.identity) as ledger:
+    with SessionStore(folder, plan.identity) as ledger:
         left = [one for one in wanted if one.key not in ledger.held]
         total, lacking = (sum(len(one.tasks) for one in some) for some in (wanted, left))
         watch.begin(total, total - lacking)
@@ -108,7 +110,7 @@ def perform(plan: Plan, folder: Path, jobs: int, watch: Watcher) -> Mapping[str,
         return {one.key: ledger.held[one.key] for one in wanted}
 
 
-def tabulate(plan: Plan, sats: Mapping[str, Sat], **more: Any) -> Table:
+def tabulate(plan: Plan, sats: Mapping[str, SessionOutcome], **more: Any) -> Table:
     """The table of a plan's sessions.
 
     Args:
@@ -127,18 +129,18 @@ def tabulate(plan: Plan, sats: Mapping[str, Sat], **more: Any) -> Table:
 
 def robots() -> tuple[tuple[RobotSeat, ...], ...]:
     """The robots of each condition."""
-    return tuple(robot_team.form([trial_identity.ROBOT], [agent]).seats for agent in AGENTS)
+    return tuple(robot_team.form_team([trial_identity.ROBOT], [agent]).seats for agent in AGENTS)
 
 
-def _play(suite: Suite, left: Sequence[Sitting], ledger: Ledger, jobs: int, watch: Watcher) -> None:
+def _play(suite: Suite, left: Sequence[SessionSpec], ledger: SessionStore, jobs: int, watch: Watcher) -> None:
     make: Any = functools.partial(
         session_simulation.player, suite, robots()
     )  # what it plays and gives is ours to choose
     some: Any = left
-    with stoppable() as stop, closing(local_runner.perform(some, make, jobs=jobs)) as stream:
+    with stoppable() as stop, closing(local_runner.run_sessions(some, make, jobs=jobs)) as stream:
         try:
             for news in stream:
-                if isinstance(news, Played):
+                if isinstance(news, TrialDone):
                     sat = ledger.append(news.line)
                     if not sat.key:
                         watch.played(bool(sat.rows[0][_MET]), False)

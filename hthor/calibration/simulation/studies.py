@@ -34,7 +34,7 @@ def at(
         RunError: when the folder holds sessions of another world or person.
         Interrupted: on Ctrl-C or SIGTERM.
     """
-    spots, known = design_points.tidy(where), trial_identity.of(suite)
+    spots, known = design_points.tidy(where), trial_identity.trials_identity(suite)
     dealt = []
     for study, point in enumerate(spots.tolist()):
         own = root(seed, name, study)

@@ -32,7 +32,7 @@ class Identity(Struct, frozen=True, kw_only=True):
         return [name for name in names if self.parts.get(name) != other.parts.get(name)]
 
 
-def of(suite: Suite) -> Identity:
+def trials_identity(suite: Suite) -> Identity:
     """What trials of this suite hang on, in this version of everything."""
     numbers = {name: value for name, value in rules.as_dict().items() if not name.startswith(_T_STAR)}
     priors = [(one.name, one.prior, one.effect, one.scale) for one in PARAMETERS]
@@ -64,6 +64,6 @@ def _code(suite: Suite) -> str:
     return code_identity.modules_sha256([*code_identity.roots("trial"), *code_identity.roots("sessions"), *own])
 
 
-def of_statistics() -> str:
+def statistics_sha256() -> str:
     """Hash of the code that turns tables of trials into populations."""
     return code_identity.modules_sha256(code_identity.roots("statistics"))

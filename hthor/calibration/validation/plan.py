@@ -17,7 +17,7 @@ from hthor.eval.config import human_populations
 from hthor.eval.dry_run import forecast
 from hthor.eval.dry_run.forecast import Ahead
 from hthor.eval.runner import experiment, progress, run_options
-from hthor.eval.runner.run_options import RUNS, Intent
+from hthor.eval.runner.run_options import RUNS, ResolvedRuns
 from hthor.humans.population import kinds, resolve
 from hthor.humans.population.resolve import PROXY
 
@@ -29,7 +29,7 @@ _RIVAL_MOST, _KIND_MOST = 30, 20
 """Participants in each condition of a simple model, and of each kind of people, at most."""
 
 
-class Options(Struct, frozen=True, kw_only=True):
+class ValidationOptions(Struct, frozen=True, kw_only=True):
     """What the user asked for.
 
     Attributes:
@@ -66,7 +66,7 @@ class Round(Struct, frozen=True, kw_only=True):
     role: Literal["judged", "rival", "kind", "suite"]
 
 
-def rounds(options: Options) -> tuple[Round, ...]:
+def rounds(options: ValidationOptions) -> tuple[Round, ...]:
     """All that is played, in order.
 
     Raises:
@@ -89,7 +89,7 @@ def rounds(options: Options) -> tuple[Round, ...]:
     )
 
 
-def folder(options: Options) -> Path:
+def folder(options: ValidationOptions) -> Path:
     """Where the report goes."""
     if options.out:
         return options.out
@@ -105,11 +105,11 @@ def folder(options: Options) -> Path:
     return RUNS / f"validation-{found.name}-{jsonio.sha256(what)[:10]}"
 
 
-def asked(options: Options, one: Round) -> run_options.Options:
+def asked(options: ValidationOptions, one: Round) -> run_options.RunOptions:
     """A round as an evaluation, in a folder of its own."""
     suite = tasks.suite(one.suite)
     name = f"{resolve.find(one.word).name}-{Path(suite.name).name}-{one.participants}"
-    return run_options.Options(
+    return run_options.RunOptions(
         agents=AGENTS,
         humans=(one.word,),
         suite=one.suite,
@@ -120,7 +120,7 @@ def asked(options: Options, one: Round) -> run_options.Options:
     )
 
 
-def ahead(options: Options) -> Iterator[tuple[Round, Ahead]]:
+def preview(options: ValidationOptions) -> Iterator[tuple[Round, Ahead]]:
     """Each run that would be played, how far it is, and how long it takes, found out without playing or writing.
 
     Raises:
@@ -129,10 +129,12 @@ def ahead(options: Options) -> Iterator[tuple[Round, Ahead]]:
     for one in rounds(options):
         evaluation, runs = asked(options, one), list[Ahead]()
 
-        def note(wanted: Intent, evaluation: run_options.Options = evaluation, runs: list[Ahead] = runs) -> bool:
+        def note(
+            wanted: ResolvedRuns, evaluation: run_options.RunOptions = evaluation, runs: list[Ahead] = runs
+        ) -> bool:
             runs += forecast.of(evaluation, wanted, {}).runs
             return False
 
-        for _ in experiment.conduct(evaluation, lambda _: progress.Silent(), note):
+        for _ in experiment.run_experiment(evaluation, lambda _: progress.Silent(), note):
             raise AssertionError("a dry run plays nothing")
         yield from ((one, run) for run in runs)

@@ -17,12 +17,12 @@ from hthor.calibration.pipeline.evidence import Evidence
 from hthor.calibration.simulation import trial_table as tables
 from hthor.calibration.simulation.trial_table import AGENTS, CONDITIONS, Table
 from hthor.calibration.validation import plan
-from hthor.calibration.validation.plan import SUITE, Options, Round
+from hthor.calibration.validation.plan import SUITE, Round, ValidationOptions
 from hthor.calibration.validation.report import build, measures, page, trial_tables
 from hthor.calibration.validation.report.findings import Findings, Played, Setting, Subject
 from hthor.eval.config.sessions import people_for
 from hthor.eval.records import reader
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import experiment
 from hthor.eval.runner.experiment import ClosableWatcher
 from hthor.humans.population import resolve
@@ -46,7 +46,7 @@ class Outcome(Struct, frozen=True, kw_only=True):
 Watch = Callable[[str], ClosableWatcher]
 
 
-def conduct(options: Options, watcher: Watch) -> Outcome:
+def run_validation(options: ValidationOptions, watcher: Watch) -> Outcome:
     """Play what is missing, work out everything, and write the report.
 
     Args:
@@ -87,7 +87,7 @@ def conduct(options: Options, watcher: Watch) -> Outcome:
 class _Stage:
     """Plays people in all three conditions, each run in a folder of its own."""
 
-    def __init__(self, options: Options, watcher: Watch) -> None:
+    def __init__(self, options: ValidationOptions, watcher: Watch) -> None:
         self._options, self._watcher = options, watcher
         self.notes: tuple[str, ...] = ()
         """What is known to be unlike the people's calibration, of those that were played first."""
@@ -95,8 +95,8 @@ class _Stage:
     def play(self, one: Round) -> Table:
         """The trials of some people on a suite, in every condition."""
         name = resolve.find(one.word).name
-        runs: dict[str, Sequence[Record]] = {}
-        for done in experiment.conduct(
+        runs: dict[str, Sequence[TrialRecord]] = {}
+        for done in experiment.run_experiment(
             plan.asked(self._options, one), lambda title: self._watcher(f"{name} people, {title}")
         ):
             condition = CONDITIONS[AGENTS.index(plugins.stem("agent", done.plan.name))]
@@ -121,7 +121,7 @@ def _subject(found: People, notes: Sequence[str]) -> Subject:
     )
 
 
-def _setting(found: People, suite: Suite, options: Options, trials: int) -> Setting:
+def _setting(found: People, suite: Suite, options: ValidationOptions, trials: int) -> Setting:
     return Setting(
         suite=suite.name,
         suite_sha256=suite.sha256,

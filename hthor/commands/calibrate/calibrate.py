@@ -62,7 +62,7 @@ def calibrate(
         return
     from hthor.calibration.pipeline import run
 
-    options = run.Options(
+    options = run.CalibrationOptions(
         targets=targets,
         suite=suite,
         out=out,
@@ -74,7 +74,7 @@ def calibrate(
         until=until,
     )
     if dry_run:
-        brief = run.settle(options)
+        brief = run.resolve_options(options)
         sizes = {name: getattr(brief.sizes, name) for name in brief.sizes.__struct_fields__}
         _foretell(
             {
@@ -92,11 +92,11 @@ def calibrate(
     talk = output.console(talk=True)
     from hthor.calibration.pipeline import stage_progress
 
-    teller = stage_progress.Silent() if quiet else stage_progress.Aloud(talk, live=output.live())
-    found = run.conduct(options, teller)
+    teller = stage_progress.SilentProgress() if quiet else stage_progress.PrintedProgress(talk, live=output.live())
+    found = run.run_calibration(options, teller)
     if found is None:
         if json:
-            output.put_json({"folder": str(run.settle(options).folder), "until": until})
+            output.put_json({"folder": str(run.resolve_options(options).folder), "until": until})
         return
     if json:
         output.put_json(found)
@@ -105,7 +105,7 @@ def calibrate(
 
         for part in terminal.parts(found):
             output.console().print(part)
-        folder = run.settle(options).folder
+        folder = run.resolve_options(options).folder
         talk.print(f"files: {folder}/population.json, population.npz, evidence.json, result.json", soft_wrap=True)
     if not found.passed:
         raise typer.Exit(1)

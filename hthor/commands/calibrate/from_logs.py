@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from hthor.console import output
 
 if TYPE_CHECKING:
-    from hthor.calibration.from_logs.run import Found, Row
+    from hthor.calibration.from_logs.run import EstimateRow, LogEstimates
 
 OUT = Path("calibration") / "logs"
 
@@ -25,7 +25,7 @@ def run(targets: Sequence[str], prior: str, out: Path | None, json: bool) -> Non
         if not json:
             talk.print(f"estimating: {what}" if what not in ("reading", "updating") else f"{what} ...", highlight=False)
 
-    found, _ = run.conduct([Path(word) for word in targets], prior, folder, tell)
+    found, _ = run.estimate_from_logs([Path(word) for word in targets], prior, folder, tell)
     if json:
         output.put_json(found)
         return
@@ -33,7 +33,7 @@ def run(targets: Sequence[str], prior: str, out: Path | None, json: bool) -> Non
     _say_rest(found, folder)
 
 
-def _cells(row: Row) -> tuple[str, ...]:
+def _cells(row: EstimateRow) -> tuple[str, ...]:
     one = row.estimate
     name = f"{row.name} [{row.unit}]" if row.unit else row.name
     before, after = (
@@ -59,7 +59,7 @@ def _how(words: str, method: str) -> str:
     return method if words == "estimated" else f"{words}; {method}"
 
 
-def _say_rest(found: Found, folder: Path) -> None:
+def _say_rest(found: LogEstimates, folder: Path) -> None:
     output.put_line(f"{found.trials} trials, {found.sessions} sessions, {found.people} people; before: {found.prior}.")
     for note in found.notes:
         output.put_line(note)

@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from hthor.eval.dry_run.forecast import Ahead, Forecast
     from hthor.eval.dry_run.trial_cost import Pace
     from hthor.eval.runner.experiment import ClosableWatcher
-    from hthor.eval.runner.run_options import Intent, Options
+    from hthor.eval.runner.run_options import ResolvedRuns, RunOptions
 
 _LEFT_OUT = ("json", "quiet", "dry_run", "context")
 _ORIGINS = {"COMMANDLINE": "flag", "ENVIRONMENT": "environment", "DEFAULT": "default", "DEFAULT_MAP": "default"}
 
 
-def show(options: Options, watcher: Callable[[str], ClosableWatcher], context: typer.Context, json: bool) -> None:
+def show(options: RunOptions, watcher: Callable[[str], ClosableWatcher], context: typer.Context, json: bool) -> None:
     """Say what the command would do."""
     from hthor.eval.dry_run import forecast
     from hthor.eval.runner import experiment
@@ -32,11 +32,11 @@ def show(options: Options, watcher: Callable[[str], ClosableWatcher], context: t
     def say(text: str) -> None:
         talk.print(text, markup=False, highlight=False, soft_wrap=True)
 
-    def agree(intent: Intent) -> bool:
+    def agree(intent: ResolvedRuns) -> bool:
         found.append(forecast.of(options, intent, origins, say))
         return False
 
-    for _ in experiment.conduct(options, watcher, agree):
+    for _ in experiment.run_experiment(options, watcher, agree):
         raise AssertionError("a dry run plays nothing")
     if json:
         output.put_json(found[0])

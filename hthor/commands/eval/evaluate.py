@@ -14,8 +14,8 @@ from hthor.console import output
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hthor.eval.comparison.population_matrix import Matrix
-    from hthor.eval.runner.experiment import ClosableWatcher, Done
+    from hthor.eval.comparison.population_matrix import PopulationMatrix
+    from hthor.eval.runner.experiment import ClosableWatcher, FinishedRun
 
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder, such as runs/demo/frontier.")]
 Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output; words go to standard error.")]
@@ -240,7 +240,7 @@ def evaluate(
             return progress.Silent()
         return progress.Live(talk, name) if output.live() else progress.Plain(talk, name)
 
-    options = run_options.Options(
+    options = run_options.RunOptions(
         agents=tuple(agent or ()),
         robots=robots,
         humans=tuple(humans or ("proxy",)),
@@ -279,15 +279,15 @@ def evaluate(
         dry_run_table.show(options, watcher, context, json)
         return
     paper = talk if json else output.console()
-    done: list[Done] = []
+    done: list[FinishedRun] = []
     words = options.humans
     single = len(agent or ()) <= 1 and len(words) == 1 and words[0].partition("@")[0] not in human_populations.WORDS
-    for one in experiment.conduct(options, watcher):
+    for one in experiment.run_experiment(options, watcher):
         done.append(one)
         if single or not quiet:
             _show(paper if single else talk, one)
     results = [one.result for one in done]
-    whole = population_matrix.of(results) if len({result.humans.name for result in results}) > 1 else None
+    whole = population_matrix.make_matrix(results) if len({result.humans.name for result in results}) > 1 else None
     if whole is not None:
         _compare_peoples(paper, whole)
     elif len(done) > 1:
@@ -305,7 +305,7 @@ def evaluate(
         raise typer.Exit(_FAULTS_EXIT)
 
 
-def _show(console: Console, one: Done) -> None:
+def _show(console: Console, one: FinishedRun) -> None:
     """A run's table, its first fault, where its files are, and what to do with them."""
     from hthor.eval.config.shard import whole_folder
     from hthor.eval.records import find
@@ -346,7 +346,7 @@ def _show(console: Console, one: Done) -> None:
         _say(console, line)
 
 
-def _compare_peoples(console: Console, whole: Matrix) -> None:
+def _compare_peoples(console: Console, whole: PopulationMatrix) -> None:
     """All scores, with whom each agent fares worst, and what does not hold for everybody."""
     from hthor.report.terminal import result_tables
 

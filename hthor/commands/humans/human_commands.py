@@ -13,7 +13,7 @@ from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
 
 if TYPE_CHECKING:
-    from hthor.humans.population.describe import Changed, Portrait, Trait
+    from hthor.humans.population.describe import Changed, PopulationDescription, Trait
 
 app = typer.Typer(no_args_is_help=True, help="People: populations, kinds of people, human models.")
 
@@ -60,7 +60,7 @@ def describe(name: Name, json: Json = False) -> None:
     """Every parameter with its prior and source, what the data say of it, and where these people are known to fit."""
     from hthor.humans.population import describe, resolve
 
-    found = describe.of(resolve.find(name))
+    found = describe.describe(resolve.find(name))
     if json:
         output.put_json(found)
         return
@@ -129,7 +129,7 @@ def _default() -> str:
     return resolve.default()
 
 
-def _put_head(found: Portrait) -> None:
+def _put_head(found: PopulationDescription) -> None:
     lines = [f"{found.name}: {found.purpose}" if found.purpose else found.name]
     lines += [found.reason] if found.reason else []
     draws = f"{found.draws} draws, worth {found.effective_draws:g}"
@@ -139,7 +139,7 @@ def _put_head(found: Portrait) -> None:
         output.put_line(line)
 
 
-def _put_foot(found: Portrait) -> None:
+def _put_foot(found: PopulationDescription) -> None:
     its = found.validity
     lines = ["fixed: " + ", ".join(f"{name} {_number(value)}" for name, value in found.fixed.items())]
     if its.suite:

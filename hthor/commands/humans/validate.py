@@ -11,7 +11,7 @@ from hthor.commands.eval.evaluate import Json
 from hthor.console import output
 
 if TYPE_CHECKING:
-    from hthor.calibration.validation.plan import Options
+    from hthor.calibration.validation.plan import ValidationOptions
     from hthor.eval.runner.experiment import ClosableWatcher
 
 
@@ -61,7 +61,7 @@ def validate(
     Exit code 1 when a bar was not cleared.
     """
     from hthor.calibration.validation import run as validation
-    from hthor.calibration.validation.plan import Options
+    from hthor.calibration.validation.plan import ValidationOptions
     from hthor.calibration.validation.report import criteria, terminal
     from hthor.eval.runner import progress
 
@@ -72,7 +72,7 @@ def validate(
             return progress.Silent()
         return progress.Live(talk, title) if output.live() else progress.Plain(talk, title)
 
-    options = Options(
+    options = ValidationOptions(
         name=name,
         calibration=calibration,
         participants=participants,
@@ -86,7 +86,7 @@ def validate(
     if dry_run:
         _foretell(options, json)
         return
-    done = validation.conduct(options, watcher)
+    done = validation.run_validation(options, watcher)
     paper = talk if json else output.console()
     paper.print(terminal.figures(done.findings))
     paper.print(terminal.gates(done.findings))
@@ -103,11 +103,11 @@ def validate(
         raise typer.Exit(1)
 
 
-def _foretell(options: Options, json: bool) -> None:
+def _foretell(options: ValidationOptions, json: bool) -> None:
     from hthor.calibration.validation import plan
     from hthor.commands.eval import dry_run_table
 
-    found = list(plan.ahead(options))
+    found = list(plan.preview(options))
     trials, played = (sum(getattr(run, name) for _, run in found) for name in ("trials", "played"))
     times = [run.seconds for _, run in found]
     seconds = None if None in times else round(sum(filter(None, times)), 1)

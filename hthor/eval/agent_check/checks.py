@@ -16,7 +16,7 @@ from hthor.eval.agent_check import criteria
 from hthor.eval.agent_check.criteria import Finding
 from hthor.eval.agent_check.probe_trials import Rehearsal
 from hthor.eval.config import robot_team
-from hthor.eval.config.robot_team import Character
+from hthor.eval.config.robot_team import AgentInfo
 from hthor.guest import Given, Guest, Isolation, confine_guests
 from hthor.guest.host import snapshot
 from hthor.types.cameras import OWN
@@ -60,7 +60,7 @@ def check(
     confine_guests(isolation, given=given)
     code_identity.keep_compiled()
     try:
-        character = robot_team.introduce(agent)
+        character = robot_team.load_agent_info(agent)
     except AgentError as error:
         broken = Finding(check="loads", status="broken", told=str(error), advice="Mend that, and check again.")
         return _report(agent, [broken], {})
@@ -98,7 +98,7 @@ def _report(
     agent: str,
     findings: list[Finding],
     figures: dict[str, float],
-    character: Character | None = None,
+    character: AgentInfo | None = None,
     persistent: bool = False,
     held: Isolation | None = None,
 ) -> Report:

@@ -12,7 +12,7 @@ from msgspec import Struct
 from hthor import rules
 from hthor.episode import Fault
 from hthor.eval.agent_check.probe_trials import Notes
-from hthor.eval.config.robot_team import Character
+from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.runner import redact
 from hthor.guest import File
 from hthor.humans.population.parameters import Parameters
@@ -47,7 +47,7 @@ class Finding(Struct, frozen=True, kw_only=True):
     advice: str = ""
 
 
-def loads(seconds: float, character: Character) -> Finding:
+def loads(seconds: float, character: AgentInfo) -> Finding:
     """How long it took to load, and the privileges that it asks for."""
     asked = ", ".join(character.ref.privileges) or "no privileges"
     told = f"in {seconds:.2f} s; asks for {asked}"
@@ -57,7 +57,7 @@ def loads(seconds: float, character: Character) -> Finding:
     return Finding(check="loads", status="warning", told=told, advice=advice)
 
 
-def files(character: Character, later: Sequence[File] = ()) -> Finding:
+def files(character: AgentInfo, later: Sequence[File] = ()) -> Finding:
     """Which files it consists of.
 
     Args:
@@ -151,7 +151,7 @@ def speed(notes: Notes) -> Finding:
     return Finding(check="fast enough", status="warning", told=told, advice=advice)
 
 
-def warnings(trials: tuple[Notes, ...], character: Character) -> list[Finding]:
+def warnings(trials: tuple[Notes, ...], character: AgentInfo) -> list[Finding]:
     """What keeps to the contract, but is hardly meant."""
     found: list[tuple[str, str]] = []
     if any(len(one.output) > _LOUD for one in trials):

@@ -9,14 +9,14 @@ import msgspec
 from msgspec import Struct
 
 from hthor import activity, rules, tasks
-from hthor.episode import Fault, play
+from hthor.episode import Fault, run_episode
 from hthor.eval.config import robot_team
-from hthor.eval.config.robot_team import Character
-from hthor.eval.config.sessions import Session, sessions
+from hthor.eval.config.robot_team import AgentInfo
+from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.metrics import conduct
 from hthor.eval.records import trial_record
 from hthor.eval.runner import trial_runner
-from hthor.eval.runner.agent_recorder import Watched
+from hthor.eval.runner.agent_recorder import RecordedAgent
 from hthor.guest import Guest
 from hthor.guest.process_tools import resource_usage
 from hthor.tasks.suites import library
@@ -73,12 +73,12 @@ class Rehearsal:
         robot: the body it is in. camera: its camera, as `hthor.types.cameras.tidy` spells it.
     """
 
-    def __init__(self, character: Character, robot: str, camera: str = OWN) -> None:
-        self._stage = trial_runner.Stage()
-        crew = robot_team.form([robot], [character], camera=camera)
+    def __init__(self, character: AgentInfo, robot: str, camera: str = OWN) -> None:
+        self._stage = trial_runner.TrialRunner()
+        crew = robot_team.form_team([robot], [character], camera=camera)
         known = {task.id: task for task in tasks.suite("smoke").tasks}
         short = [msgspec.structs.replace(known[name], time_limit=_LIMIT_S) for name in _TASKS]
-        dealt = sessions(library.frozen("rehearsal", 1, tuple(short)), agent=crew, participants=1)[0]
+        dealt = make_sessions(library.frozen("rehearsal", 1, tuple(short)), agent=crew, participants=1)[0]
         by_task = {trial.task.id: trial for trial in dealt.trials}
         self.a, self.b = (by_task[name] for name in _TASKS)
 
@@ -94,12 +94,12 @@ class Rehearsal:
         human = self._stage.enter(Session(participant=trial.participant, trials=(trial,))).human
         noted, world = _Noted(guest), self._stage.world(trial)
         seat = trial.robots[0].seat
-        log = play(trial, world, human, {seat: noted})
+        log = run_episode(trial, world, human, {seat: noted})
         done = [(look.tick, action) for look, action in noted.looks if action is not None]
         says = [(action.say, seen) for (_, action), seen in zip(done, noted.seen, strict=False)]
         about = [(say.object, seen) for say, seen in says if isinstance(say, Send) and say.object]
         ended = [look.outcome for look, _ in noted.looks if look.idle and look.outcome is not None]
-        kept = trial_record.of(trial, log)
+        kept = trial_record.make_record(trial, log)
         return Notes(
             line=trial_record.encode(kept),
             faults=log.faults,
@@ -137,7 +137,7 @@ class _Senses(Timed):
         return self.timed("rgb")()
 
 
-class _Noted(Watched):
+class _Noted(RecordedAgent):
     """A guest with a stopwatch beside it."""
 
     def __init__(self, guest: Guest) -> None:

@@ -11,16 +11,16 @@ from msgspec import Struct
 
 from hthor.errors import HthorError
 from hthor.eval.config import run_config
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records import trial_log
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import result_file
 
 SCHEMA = "hthor.runs/1"
 _DEPTH = 6
 
 
-class Seen(Struct, frozen=True, kw_only=True):
+class RunSummary(Struct, frozen=True, kw_only=True):
     """A run as it lies in its folder.
 
     ``folder`` is as seen from the folder that was searched, ``name`` the user's or the agents', ``agents`` and
@@ -49,10 +49,10 @@ class Shelf(Struct, frozen=True, kw_only=True):
     """The document of `hthor runs list`: all runs below a folder, the one that changed last first."""
 
     schema: str = SCHEMA
-    runs: tuple[Seen, ...]
+    runs: tuple[RunSummary, ...]
 
 
-def below(folder: Path) -> Shelf:
+def list_runs(folder: Path) -> Shelf:
     """Every run in and below a folder. One that cannot be read is there too, and says why."""
     found = [_seen(run, folder) for run in _folders(folder, _DEPTH)]
     found.sort(key=lambda one: one.folder)
@@ -74,15 +74,15 @@ def _folders(folder: Path, depth: int) -> Iterator[Path]:
             yield from _folders(path, depth - 1)
 
 
-def _seen(run: Path, root: Path) -> Seen:
+def _seen(run: Path, root: Path) -> RunSummary:
     where = str(run.relative_to(root)) if run != root else str(run)
     when = _when(run)
     try:
         plan = run_config.load(run)
         done, met, faults = _tally(run, plan)
     except (HthorError, OSError, ValueError, RecursionError) as error:
-        return Seen(folder=where, when=when, problem=" ".join(str(error).split()))
-    return Seen(
+        return RunSummary(folder=where, when=when, problem=" ".join(str(error).split()))
+    return RunSummary(
         folder=where,
         name=plan.name,
         agents=tuple(robot.agent.name for robot in plan.robots),
@@ -99,13 +99,13 @@ def _seen(run: Path, root: Path) -> Seen:
     )
 
 
-def _tally(run: Path, plan: Setup) -> tuple[int, float, int]:
+def _tally(run: Path, plan: RunConfig) -> tuple[int, float, int]:
     """Trials played, trials in which the goal was met, and trials with a fault: of the result, or else of the log."""
     result = None if plan.shard or result_file.outdated(run / "result.json") else result_file.load(run)
     if result is not None and result.metrics.sr.mean is not None and result.hashes.run == plan.sha256:
         trials = result.counts.trials
         return trials, result.metrics.sr.mean * trials, result.counts.faults
-    last: dict[str, Record] = {record.key: record for _, record in trial_log.read(run / "trials.jsonl")}
+    last: dict[str, TrialRecord] = {record.key: record for _, record in trial_log.read(run / "trials.jsonl")}
     kept = last.values()
     return len(kept), float(sum(one.met for one in kept)), sum(bool(one.faults) for one in kept)
 

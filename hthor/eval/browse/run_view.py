@@ -10,17 +10,17 @@ from msgspec import Struct
 
 from hthor import rules
 from hthor.eval.config import cli_command, run_config
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records import reader
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, result_file
-from hthor.eval.results.result_file import Result
+from hthor.eval.results.result_file import RunResult
 from hthor.eval.runner import fault_report
 
 SCHEMA = "hthor.run-view/1"
 
 
-class Wanted(Struct, frozen=True, kw_only=True):
+class TrialFilter(Struct, frozen=True, kw_only=True):
     """Which trials are meant; an empty or None field takes all."""
 
     task: str = ""
@@ -30,7 +30,7 @@ class Wanted(Struct, frozen=True, kw_only=True):
     met: bool | None = None
     faulty: bool | None = None
 
-    def fits(self, record: Record) -> bool:
+    def fits(self, record: TrialRecord) -> bool:
         """Whether a trial is meant."""
         task = record.spec.task
         return (
@@ -43,7 +43,7 @@ class Wanted(Struct, frozen=True, kw_only=True):
         )
 
 
-class Line(Struct, frozen=True, kw_only=True):
+class TrialLine(Struct, frozen=True, kw_only=True):
     """A trial in one line. ``number`` is its place in the run, as `hthor replay` takes it; ``fault`` the first one."""
 
     number: int
@@ -59,7 +59,7 @@ class Line(Struct, frozen=True, kw_only=True):
     fault: str
 
 
-class View(Struct, frozen=True, kw_only=True):
+class RunView(Struct, frozen=True, kw_only=True):
     """The document of `hthor runs view`. ``result`` is None while trials are missing or there are none."""
 
     schema: str = SCHEMA
@@ -67,12 +67,12 @@ class View(Struct, frozen=True, kw_only=True):
     name: str
     done: int
     total: int
-    result: Result | None
-    trials: tuple[Line, ...]
+    result: RunResult | None
+    trials: tuple[TrialLine, ...]
     next: tuple[str, ...]
 
 
-def look(folder: Path, wanted: Wanted) -> tuple[View, Result | None]:
+def view_run(folder: Path, wanted: TrialFilter) -> tuple[RunView, RunResult | None]:
     """A run, and its result so far, which is no result yet where trials are missing.
 
     Raises:
@@ -85,7 +85,7 @@ def look(folder: Path, wanted: Wanted) -> tuple[View, Result | None]:
     stored = None if result_file.outdated(folder / "result.json") else result_file.load(folder)
     so_far = stored if whole and stored else aggregate.rescore(folder)[1] if records else None
     lines = tuple(_line(number, one) for number, one in enumerate(records) if wanted.fits(one))
-    view = View(
+    view = RunView(
         folder=str(folder),
         name=plan.name,
         done=len(records),
@@ -97,9 +97,9 @@ def look(folder: Path, wanted: Wanted) -> tuple[View, Result | None]:
     return view, so_far
 
 
-def _line(number: int, record: Record) -> Line:
+def _line(number: int, record: TrialRecord) -> TrialLine:
     spec, first = record.spec, record.faults[0] if record.faults else None
-    return Line(
+    return TrialLine(
         number=number,
         key=record.key,
         task=spec.task.id,
@@ -114,11 +114,11 @@ def _line(number: int, record: Record) -> Line:
     )
 
 
-def _next(folder: Path, plan: Setup, records: Sequence[Record], *, whole: bool) -> Iterator[str]:
+def _next(folder: Path, plan: RunConfig, records: Sequence[TrialRecord], *, whole: bool) -> Iterator[str]:
     """Commands that go on from here."""
     run = shlex.quote(str(folder))
     if not whole:
-        yield cli_command.of(folder, plan)
+        yield cli_command.resume_command(folder, plan)
     faulty = next((number for number, one in enumerate(records) if one.faults), None)
     if faulty is not None and (again := fault_report.command(folder, records[faulty].key)):
         yield again

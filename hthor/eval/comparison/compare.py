@@ -12,8 +12,8 @@ from msgspec import Struct
 
 from hthor.errors import RunError
 from hthor.eval.comparison import better
-from hthor.eval.config.run_config import Setup, SuiteRef
-from hthor.eval.records.trial_record import Record
+from hthor.eval.config.run_config import RunConfig, SuiteRef
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, paired_difference, pairing
 from hthor.eval.results.paired_difference import Difference, McNemar
 from hthor.eval.results.pairing import Pair
@@ -21,7 +21,7 @@ from hthor.eval.statistics import power
 from hthor.eval.statistics.intervals import LEVEL
 
 SCHEMA = "hthor.compare/1"
-_BY: dict[str, Callable[[Record], str]] = {
+_BY: dict[str, Callable[[TrialRecord], str]] = {
     "kind": lambda found: found.spec.task.kind,
     "split": lambda found: found.spec.task.split,
     "difficulty": lambda found: found.spec.task.difficulty,
@@ -108,8 +108,8 @@ class Read(Struct, frozen=True, kw_only=True):
 
     name: str
     folder: Path
-    plan: Setup
-    records: tuple[Record, ...]
+    plan: RunConfig
+    records: tuple[TrialRecord, ...]
 
 
 def runs(folders: Sequence[Path]) -> Comparisons:
@@ -178,7 +178,7 @@ def _pair(one: Read, other: Read) -> Comparison:
     pairs = joined.pairs
     if not pairs:
         raise RunError(f"{one.folder} and {other.folder} have no trial in common yet. Finish both runs.")
-    found = {metric: paired_difference.of(pairs, metric) for metric in paired_difference.UNITS}
+    found = {metric: paired_difference.paired_difference(pairs, metric) for metric in paired_difference.UNITS}
     return Comparison(
         first=one.name,
         second=other.name,
@@ -205,9 +205,12 @@ def _tally(pairs: Sequence[Pair]) -> Tally:
     )
 
 
-def _grouped(pairs: Sequence[Pair], value: Callable[[Record], str]) -> dict[str, Difference]:
+def _grouped(pairs: Sequence[Pair], value: Callable[[TrialRecord], str]) -> dict[str, Difference]:
     names = sorted({value(pair.one) for pair in pairs}, key=lambda name: (_rank(name), name))
-    found = {name: paired_difference.of([pair for pair in pairs if value(pair.one) == name], "sr") for name in names}
+    found = {
+        name: paired_difference.paired_difference([pair for pair in pairs if value(pair.one) == name], "sr")
+        for name in names
+    }
     return {name or "unknown": difference for name, difference in found.items() if difference is not None}
 
 
@@ -220,7 +223,9 @@ def _judged(found: Sequence[tuple[Comparison, Read, Read]]) -> tuple[Comparison,
     successes = [pair.differences["sr"] for pair, _, _ in found]
     judged = []
     for (pair, one, other), verdict in zip(found, better.judge([(s.difference, s.p) for s in successes]), strict=True):
-        wide = paired_difference.of(pairing.join(one.records, other.records).pairs, "sr", level=verdict.level)
+        wide = paired_difference.paired_difference(
+            pairing.join(one.records, other.records).pairs, "sr", level=verdict.level
+        )
         fair = msgspec.structs.replace(
             pair,
             among=verdict.among,

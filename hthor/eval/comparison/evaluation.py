@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from msgspec import Struct
 
-from hthor.eval.comparison.population_matrix import Matrix
-from hthor.eval.results.result_file import Result
+from hthor.eval.comparison.population_matrix import PopulationMatrix
+from hthor.eval.results.result_file import RunResult
 
 SCHEMA = "hthor.eval/1"
 
@@ -14,7 +14,7 @@ class Evaluated(Struct, frozen=True, kw_only=True):
     """A whole run: its folder, and its result as `result.json` has it."""
 
     folder: str
-    result: Result
+    result: RunResult
 
 
 class Evaluation(Struct, frozen=True, kw_only=True):
@@ -25,4 +25,4 @@ class Evaluation(Struct, frozen=True, kw_only=True):
 
     schema: str = SCHEMA
     runs: tuple[Evaluated, ...]
-    peoples: Matrix | None = None
+    peoples: PopulationMatrix | None = None

@@ -9,9 +9,9 @@ from msgspec import Struct
 from hthor.eval.comparison import robustness
 from hthor.eval.comparison.robustness import Conclusion
 from hthor.eval.config import human_populations
-from hthor.eval.config.human_populations import HumansRef
+from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import SuiteRef
-from hthor.eval.results.result_file import Result
+from hthor.eval.results.result_file import RunResult
 from hthor.eval.statistics.intervals import Estimate
 
 SCHEMA = "hthor.peoples/2"
@@ -37,7 +37,7 @@ class Worst(Struct, frozen=True, kw_only=True):
     behind: float
 
 
-class Matrix(Struct, frozen=True, kw_only=True):
+class PopulationMatrix(Struct, frozen=True, kw_only=True):
     """What several peoples in one evaluation say together.
 
     Attributes:
@@ -53,18 +53,18 @@ class Matrix(Struct, frozen=True, kw_only=True):
     seed: int
     trials: int
     agents: tuple[str, ...]
-    peoples: tuple[HumansRef, ...]
+    peoples: tuple[HumanModelRef, ...]
     cells: dict[str, dict[str, Cell]]
     worst: dict[str, Worst]
     conclusions: tuple[Conclusion, ...]
 
 
-def of(results: Sequence[Result]) -> Matrix:
+def make_matrix(results: Sequence[RunResult]) -> PopulationMatrix:
     """What the runs of one evaluation say together: every people with every agent, peoples in turn."""
     whom = {result.humans.name: result.humans for result in results}
     by_people = {name: [result for result in results if result.humans.name == name] for name in whom}
     first = results[0]
-    return Matrix(
+    return PopulationMatrix(
         suite=first.suite,
         seed=first.seed,
         trials=first.counts.trials,
@@ -76,11 +76,11 @@ def of(results: Sequence[Result]) -> Matrix:
     )
 
 
-def _cell(result: Result) -> Cell:
+def _cell(result: RunResult) -> Cell:
     return Cell(sr=result.metrics.sr, twsr=result.metrics.twsr, adoption=result.metrics.adoption)
 
 
-def _worst(results: Sequence[Result]) -> dict[str, Worst]:
+def _worst(results: Sequence[RunResult]) -> dict[str, Worst]:
     """Of those whom somebody may be like; nobody where there is only one such people."""
     found: dict[str, Worst] = {}
     for agent in dict.fromkeys(result.name for result in results):
@@ -101,7 +101,7 @@ def _worst(results: Sequence[Result]) -> dict[str, Worst]:
     return found
 
 
-def _conclusions(by_people: dict[str, list[Result]]) -> tuple[Conclusion, ...]:
+def _conclusions(by_people: dict[str, list[RunResult]]) -> tuple[Conclusion, ...]:
     """Where both extremes are there, and somebody between them: what of it holds for all."""
     models = {held[0].humans.model for held in by_people.values()}
     whole = models.issuperset(human_populations.EXTREMES) and len(models) > len(human_populations.EXTREMES)

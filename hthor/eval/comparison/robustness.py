@@ -16,7 +16,7 @@ from typing import Literal
 from msgspec import Struct
 
 from hthor.errors import HthorError
-from hthor.eval.results.result_file import Result
+from hthor.eval.results.result_file import RunResult
 from hthor.eval.statistics.intervals import Estimate
 
 ENDS = ("greedy", "random")
@@ -69,12 +69,12 @@ class Conclusion(Struct, frozen=True, kw_only=True):
 Flip = Conclusion
 
 
-def flips(results: Mapping[str, Sequence[Result]]) -> tuple[Flip, ...]:
+def flips(results: Mapping[str, Sequence[RunResult]]) -> tuple[Flip, ...]:
     """The conclusions that flip inside the bracket; see `conclusions`."""
     return tuple(found for found in conclusions(results) if found.verdict == "flips")
 
 
-def conclusions(results: Mapping[str, Sequence[Result]]) -> tuple[Conclusion, ...]:
+def conclusions(results: Mapping[str, Sequence[RunResult]]) -> tuple[Conclusion, ...]:
     """Everything that the population's results say of any two robots, in the robots' order.
 
     Args:
@@ -97,7 +97,7 @@ def conclusions(results: Mapping[str, Sequence[Result]]) -> tuple[Conclusion, ..
     return tuple(found)
 
 
-def _check(results: Mapping[str, Sequence[Result]]) -> None:
+def _check(results: Mapping[str, Sequence[RunResult]]) -> None:
     models = {runs[0].humans.model for runs in results.values() if runs}
     if not all(results.values()) or not models.issuperset(ENDS) or len(models) == len(ENDS):
         raise HthorError(
@@ -113,7 +113,7 @@ def _check(results: Mapping[str, Sequence[Result]]) -> None:
             )
 
 
-def _conclusion(runs: Sequence[Result], pair: tuple[int, int], metric: str, gaps: tuple[Gap, ...]) -> Conclusion:
+def _conclusion(runs: Sequence[RunResult], pair: tuple[int, int], metric: str, gaps: tuple[Gap, ...]) -> Conclusion:
     better, worse = (runs[k] for k in pair)
     ends = gaps[1:]
     verdict: Verdict = "holds"
@@ -155,7 +155,7 @@ def _and(gaps: Iterable[Gap]) -> str:
     return " and ".join(gap.people for gap in gaps)
 
 
-def _gap(people: str, runs: Sequence[Result], pair: tuple[int, int], metric: str) -> Gap:
+def _gap(people: str, runs: Sequence[RunResult], pair: tuple[int, int], metric: str) -> Gap:
     better, worse = (runs[k] for k in pair)
     return Gap(
         people=people,
@@ -165,12 +165,12 @@ def _gap(people: str, runs: Sequence[Result], pair: tuple[int, int], metric: str
     )
 
 
-def _estimate(result: Result, metric: str) -> Estimate:
+def _estimate(result: RunResult, metric: str) -> Estimate:
     found: Estimate = getattr(result.metrics, metric)
     return found
 
 
-def _mean(result: Result, metric: str) -> float:
+def _mean(result: RunResult, metric: str) -> float:
     return _estimate(result, metric).mean or 0.0
 
 

@@ -48,7 +48,7 @@ class _Known(Struct, frozen=True):
     shared: int | None = None
 
 
-def plan(
+def plan_study(
     folders: Sequence[Path], rates: str, correlation: float | None, difference: float | None, wanted: float
 ) -> Plan:
     """The plan for two runs, or for two rates as the user typed them.
@@ -118,7 +118,7 @@ def _measured(folders: Sequence[Path]) -> _Known:
     one, other = compare.read(folders)
     pairing.check((one.folder, one.plan), (other.folder, other.plan))
     pairs = pairing.join(one.records, other.records).pairs
-    found = paired_difference.of(pairs, "sr")
+    found = paired_difference.paired_difference(pairs, "sr")
     if found is None:
         raise HthorError(
             f"{one.folder} and {other.folder} have no trials in common yet. Finish both with 'hthor eval'."

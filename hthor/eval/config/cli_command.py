@@ -10,7 +10,7 @@ import msgspec
 
 from hthor import plugins
 from hthor.eval.config.robot_team import NOBODY
-from hthor.eval.config.run_config import PROCEDURAL, Setup
+from hthor.eval.config.run_config import PROCEDURAL, RunConfig
 from hthor.eval.config.shard import whole_folder
 from hthor.guest import Manifest
 from hthor.types import AgentRef, RobotSeat, cameras
@@ -20,7 +20,7 @@ OURS = "hthor.agents."
 """Where built-in agents come from."""
 
 
-def of(folder: Path, plan: Setup, out: Path | None = None) -> str:
+def resume_command(folder: Path, plan: RunConfig, out: Path | None = None) -> str:
     """The command that finishes a run, or a shard of one, as a shell takes it.
 
     Args:
@@ -58,7 +58,7 @@ def _named(agent: Manifest) -> set[str]:
     return {*(value.removeprefix("../") for value in agent.args.values()), *words}
 
 
-def _camera(plan: Setup) -> list[str]:
+def _camera(plan: RunConfig) -> list[str]:
     """The options that name the robots' camera."""
     named = next((robot.camera for robot in plan.seats if robot.camera), cameras.OWN)
     name, _, size = named.partition(":")
@@ -72,10 +72,12 @@ def near(path: Path) -> Path:
     return path.relative_to(here) if path.is_absolute() and path.is_relative_to(here) else path
 
 
-def alone(plan: Setup) -> str:
+def alone(plan: RunConfig) -> str:
     """The command that plays the same people at the same tasks without a robot."""
     nobody = RobotSeat(seat="", robot="", agent=AgentRef(name=NOBODY, source=f"{OURS}{NOBODY}", sha256=""))
-    return of(Path(), msgspec.structs.replace(plan, robots=(nobody,), realtime=msgspec.UNSET)).removesuffix(" --out .")
+    return resume_command(Path(), msgspec.structs.replace(plan, robots=(nobody,), realtime=msgspec.UNSET)).removesuffix(
+        " --out ."
+    )
 
 
 def _who(robots: Sequence[RobotSeat]) -> list[str]:

@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from hthor import plugins, rules
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.config.robot_team import Crew, Shape
+from hthor.eval.config.robot_team import RobotInfo, RobotTeam
 from hthor.humans.population import kinds, parameter_registry, population_file, resolve
 from hthor.humans.population.population import Validity
 from hthor.humans.population.resolve import People
@@ -24,7 +24,7 @@ EXTREMES = ("greedy", "random")
 """Human models that no person is beyond: takes every offer, takes none."""
 
 
-class HumansRef(Struct, frozen=True, kw_only=True):
+class HumanModelRef(Struct, frozen=True, kw_only=True):
     """Who the people of a run are.
 
     Attributes:
@@ -65,14 +65,14 @@ def expand(words: Sequence[str]) -> list[People]:
     return list(found.values())
 
 
-def settings(body: str | Shape, detector: str) -> dict[str, str | float]:
+def settings(body: str | RobotInfo, detector: str) -> dict[str, str | float]:
     """What of a robot bears on how people fare beside it, as a population's file keeps it.
 
     Args:
         body: the robot's name, or a user's own body.
         detector: as `hthor.types.detector_specs.tidy` spells it.
     """
-    shape = Shape(name=body) if isinstance(body, str) else body
+    shape = RobotInfo(name=body) if isinstance(body, str) else body
     spec: RobotSpec = plugins.load("robot", shape.path or shape.name)
     return {
         "robot": shape.name,
@@ -83,11 +83,11 @@ def settings(body: str | Shape, detector: str) -> dict[str, str | float]:
     }
 
 
-def refer(found: People, suite: Suite, crew: Crew) -> HumansRef:
+def refer(found: People, suite: Suite, crew: RobotTeam) -> HumanModelRef:
     """Who they are, and whether they are known to fit this suite, this world and these robots."""
     drawn = not found.source
     notes = tuple(_differences(found, suite, crew)) if drawn else ()
-    return HumansRef(
+    return HumanModelRef(
         name=found.name,
         source=re.sub(r"(^|[:@])[^:@]*/", r"\1", found.word),
         model=Path(found.model).stem if found.model.endswith(".py") else found.model,
@@ -119,7 +119,7 @@ def _find(word: str) -> People:
         raise UnknownName("people", error.given, (*error.valid, *WORDS), error.hint) from None
 
 
-def _differences(found: People, suite: Suite, crew: Crew) -> Iterator[str]:
+def _differences(found: People, suite: Suite, crew: RobotTeam) -> Iterator[str]:
     """What is other than where the population was fitted, a sentence each."""
     name, its = f"the population {population_file.called(found.population.name)}", found.population.validity
     if not its.suite_sha256:
@@ -143,7 +143,7 @@ def _versions(name: str, its: Validity) -> Iterator[str]:
         yield f"{name} was calibrated under other constants of the benchmark"
 
 
-def _robots(name: str, its: dict[str, str | float], crew: Crew) -> Iterator[str]:
+def _robots(name: str, its: dict[str, str | float], crew: RobotTeam) -> Iterator[str]:
     if not its:
         return
     shapes = {shape.name: shape for shape, mind in crew.robots if not mind.absent}

@@ -23,7 +23,7 @@ NOBODY, NO_ROBOT = "none", "no robot"
 _EXAMPLE = "--robots tall:oracle,small:frontier"
 
 
-class Character(Struct, frozen=True, kw_only=True):
+class AgentInfo(Struct, frozen=True, kw_only=True):
     """A robot's mind before the curtain: who it is, and the file it comes from when it is not one of ours.
 
     ``path`` names it as `hthor.guest.agent.reference` reads it, empty for a built-in agent. It stays out of
@@ -41,7 +41,7 @@ class Character(Struct, frozen=True, kw_only=True):
     manifest: Manifest | None = None
 
 
-class Shape(Struct, frozen=True, kw_only=True):
+class RobotInfo(Struct, frozen=True, kw_only=True):
     """A robot's body: its name, the hash of its code, and the path of its file when it is a user's own."""
 
     name: str
@@ -49,13 +49,13 @@ class Shape(Struct, frozen=True, kw_only=True):
     path: str = ""
 
 
-class Crew(Struct, frozen=True, kw_only=True):
+class RobotTeam(Struct, frozen=True, kw_only=True):
     """The robots of a trial: bodies and their minds, in the order of their seats; all have this detector and camera.
 
     A mind that wants no robot is listed too, but has no seat.
     """
 
-    robots: tuple[tuple[Shape, Character], ...]
+    robots: tuple[tuple[RobotInfo, AgentInfo], ...]
     detector: str = OWN
     camera: str = cameras.OWN
 
@@ -113,17 +113,17 @@ class Crew(Struct, frozen=True, kw_only=True):
         return sum(character.gpus for _, (_, character) in self._by_seat)
 
     @property
-    def _by_seat(self) -> list[tuple[str, tuple[Shape, Character]]]:
+    def _by_seat(self) -> list[tuple[str, tuple[RobotInfo, AgentInfo]]]:
         pairs = zip(self.listed, self.robots, strict=True)
         return [(robot.seat, pair) for robot, pair in pairs if robot.seat]
 
 
-def step_limit(crew: Crew, seconds: float | None) -> float | msgspec.UnsetType:
+def step_limit(crew: RobotTeam, seconds: float | None) -> float | msgspec.UnsetType:
     """The deadline of each action as a trial has it: only where an agent is submitted, and not the usual one [s]."""
     return float(seconds) if seconds is not None and crew.minds else msgspec.UNSET
 
 
-def pictures(crew: Crew, pack: str = "") -> str:
+def pictures(crew: RobotTeam, pack: str = "") -> str:
     """Hash of what robots' pictures show and of what draws it; empty where no mind is known to take any.
 
     Every submitted agent may, and whoever was given a camera or a furniture pack, whose own hash is ``pack``.
@@ -132,9 +132,9 @@ def pictures(crew: Crew, pack: str = "") -> str:
     return code_identity.pictures_sha256(pack) if looks else ""
 
 
-def form(
-    bodies: Sequence[str | Shape], minds: Sequence[str | Character], detector: str = OWN, camera: str = cameras.OWN
-) -> Crew:
+def form_team(
+    bodies: Sequence[str | RobotInfo], minds: Sequence[str | AgentInfo], detector: str = OWN, camera: str = cameras.OWN
+) -> RobotTeam:
     """A crew of these bodies and minds, which belong together one by one.
 
     Raises:
@@ -142,18 +142,18 @@ def form(
     """
     robots = []
     for body, mind in zip(bodies, minds, strict=True):
-        character = introduce(mind) if isinstance(mind, str) else mind
-        shape = embody(body) if isinstance(body, str) else body
+        character = load_agent_info(mind) if isinstance(mind, str) else mind
+        shape = load_robot_info(body) if isinstance(body, str) else body
         if character.bodies and shape.name not in character.bodies and not character.absent:
             hint = "Choose one with --robot or --robots."
             raise UnknownName(f"robot for the agent {character.ref.name}", shape.name, character.bodies, hint)
         robots.append((shape, character))
     if all(character.absent for _, character in robots):
         robots = robots[:1]
-    return Crew(robots=tuple(robots), detector=detector, camera=camera)
+    return RobotTeam(robots=tuple(robots), detector=detector, camera=camera)
 
 
-def read(robots: str, agents: Sequence[str], detector: str = OWN, camera: str = cameras.OWN) -> list[Crew]:
+def read(robots: str, agents: Sequence[str], detector: str = OWN, camera: str = cameras.OWN) -> list[RobotTeam]:
     """The crews that ``--robots`` stands for: one, or, where bodies have no mind of their own, one for each agent.
 
     Args:
@@ -171,10 +171,10 @@ def read(robots: str, agents: Sequence[str], detector: str = OWN, camera: str = 
         raise HthorError(f"--robots: '{bare[0]}' has no mind. Write {bare[0]}:AGENT, or name one with --agent.")
     if agents and not bare:
         raise HthorError("--robots names a mind for every robot, so --agent has nobody to be; leave one of them out.")
-    shapes = [embody(body) for body, _ in pairs]
-    known = {mind: introduce(mind) for mind in dict.fromkeys([*(mind for _, mind in pairs if mind), *agents])}
+    shapes = [load_robot_info(body) for body, _ in pairs]
+    known = {mind: load_agent_info(mind) for mind in dict.fromkeys([*(mind for _, mind in pairs if mind), *agents])}
     casts = [[known[mind or agent] for _, mind in pairs] for agent in agents or [""]]
-    return [form(shapes, minds, detector, camera) for minds in casts]
+    return [form_team(shapes, minds, detector, camera) for minds in casts]
 
 
 def _pair(word: str, given: str) -> tuple[str, str]:
@@ -184,7 +184,7 @@ def _pair(word: str, given: str) -> tuple[str, str]:
     return body, mind
 
 
-def embody(robot: str) -> Shape:
+def load_robot_info(robot: str) -> RobotInfo:
     """Find out what a robot's body is.
 
     Args:
@@ -198,16 +198,16 @@ def embody(robot: str) -> Shape:
     known = plugins.names("robot")
     name = ALIASES.get(robot, robot)
     if name in known:
-        return Shape(name=name, sha256=code_identity.robot_sha256(name))
+        return RobotInfo(name=name, sha256=code_identity.robot_sha256(name))
     if not robot.endswith(".py"):
         hint = "Choose one with --robot, or give the path of a Python file, such as my_robot.py."
         raise UnknownName("robot", robot, (*known, *ALIASES), hint)
     from hthor.world.model.bodies import bodies
 
-    return Shape(name=bodies.robot(robot).name, sha256=plugins.sha256(robot), path=str(Path(robot).resolve()))
+    return RobotInfo(name=bodies.robot(robot).name, sha256=plugins.sha256(robot), path=str(Path(robot).resolve()))
 
 
-def introduce(agent: str) -> Character:
+def load_agent_info(agent: str) -> AgentInfo:
     """Find out who an agent is.
 
     Args:
@@ -227,7 +227,7 @@ def label(name: str, robots: Sequence[RobotSeat]) -> str:
     return NO_ROBOT if nobody and name in (NOBODY, *(robot.agent.name for robot in robots)) else name
 
 
-def _own(name: str) -> Character:
+def _own(name: str) -> AgentInfo:
     made: Any = plugins.load("agent", name)
     ref = AgentRef(
         name=name,
@@ -235,7 +235,7 @@ def _own(name: str) -> Character:
         sha256=code_identity.agent_sha256(name),
         privileges=tuple(getattr(made, "privileges", ())),
     )
-    return Character(
+    return AgentInfo(
         ref=ref,
         bodies=tuple(getattr(made, "robots", ())),
         absent=bool(getattr(made, "absent", False)),
@@ -243,7 +243,7 @@ def _own(name: str) -> Character:
     )
 
 
-def _guest(text: str) -> Character:
+def _guest(text: str) -> AgentInfo:
     from hthor.guest import Guest
     from hthor.guest.host import snapshot
 
@@ -252,7 +252,7 @@ def _guest(text: str) -> Character:
         name = _tidy("-".join([info.name, *(_said(*pair) for pair in guest.given.args.items())]))
         made = snapshot.settle(guest, name)
         ref = AgentRef(name=name, source=info.source, sha256=made.sha256, privileges=tuple(info.privileges))
-        return Character(
+        return AgentInfo(
             ref=ref,
             path=guest.reference.text,
             bodies=tuple(info.robots),

@@ -15,8 +15,8 @@ from msgspec import Struct
 from hthor import code_identity, documents, installation, jsonio, rules
 from hthor.errors import HthorError, RunError
 from hthor.eval.config import human_populations, robot_team, sessions
-from hthor.eval.config.human_populations import HumansRef
-from hthor.eval.config.robot_team import Crew
+from hthor.eval.config.human_populations import HumanModelRef
+from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.sessions import people_for
 from hthor.eval.config.shard import Shard
 from hthor.guest.agent.manifest import Manifest
@@ -64,7 +64,7 @@ class KindRef(Struct, frozen=True, kw_only=True):
     sha256: str = ""
 
 
-class Setup(Struct, frozen=True, kw_only=True):
+class RunConfig(Struct, frozen=True, kw_only=True):
     """A run's configuration.
 
     ``title`` is the name that the user gave the run; it changes no trial, and two runs that differ only in it are the
@@ -82,7 +82,7 @@ class Setup(Struct, frozen=True, kw_only=True):
     title: str | msgspec.UnsetType = msgspec.UNSET
     robots: tuple[RobotSeat, ...]
     agents: tuple[Manifest, ...] = ()
-    humans: HumansRef
+    humans: HumanModelRef
     suite: SuiteRef
     kind: KindRef | None = None
     kinds: tuple[str, ...]
@@ -106,12 +106,12 @@ class Setup(Struct, frozen=True, kw_only=True):
         return jsonio.sha256(self.untitled)
 
     @property
-    def untitled(self) -> Setup:
+    def untitled(self) -> RunConfig:
         """The run without its title: all that decides its records."""
         return msgspec.structs.replace(self, title=msgspec.UNSET)
 
     @property
-    def whole(self) -> Setup:
+    def whole(self) -> RunConfig:
         """The run that this is a shard of; an undivided run is its own."""
         return msgspec.structs.replace(self, shard=msgspec.UNSET) if self.shard else self
 
@@ -168,9 +168,9 @@ def crew_name(robots: Sequence[RobotSeat]) -> str:
     return "+".join(names)[:_NAME_MAX]
 
 
-def settle(
+def build_config(
     suite: Suite,
-    crew: Crew,
+    crew: RobotTeam,
     *,
     human: str | People,
     seed: int,
@@ -182,7 +182,7 @@ def settle(
     houses: Sequence[str] = (),
     difficulty: str = "",
     step_limit_s: float | None = None,
-) -> Setup:
+) -> RunConfig:
     """The configuration of a run, every default resolved; ``human`` as `hthor.humans.population.resolve` reads it.
 
     ``assets`` is the furniture pack that pictures show, with its own hash; None for our own furniture.
@@ -196,7 +196,7 @@ def settle(
     count = hands if participants is None else participants
     whole, rest = divmod(count, hands)
     size = len(suite.tasks)
-    return Setup(
+    return RunConfig(
         robots=crew.listed,
         agents=crew.agents,
         humans=human_populations.refer(who, suite, crew),
@@ -221,7 +221,7 @@ def settle(
     )
 
 
-def divide(plan: Setup, part: Shard, tasks: int) -> Setup:
+def divide(plan: RunConfig, part: Shard, tasks: int) -> RunConfig:
     """The configuration of one shard of a run over so many tasks.
 
     Raises:
@@ -236,7 +236,7 @@ def divide(plan: Setup, part: Shard, tasks: int) -> Setup:
     return msgspec.structs.replace(plan, shard=msgspec.structs.replace(part, trials=trials))
 
 
-def load(folder: Path) -> Setup:
+def load(folder: Path) -> RunConfig:
     """The configuration of the run in a folder.
 
     Raises:
@@ -246,7 +246,7 @@ def load(folder: Path) -> Setup:
     if not path.is_file():
         raise RunError(f"{folder} is not a run's folder: it has no run.json.{_guess(folder)} 'hthor eval' makes one.")
     hint = "evaluate it again, into another folder"
-    return documents.read(path, Setup, RunError, schema=SCHEMA, hint=hint)
+    return documents.read(path, RunConfig, RunError, schema=SCHEMA, hint=hint)
 
 
 def _guess(folder: Path) -> str:
@@ -256,7 +256,7 @@ def _guess(folder: Path) -> str:
     return f" Did you mean '{folder.parent / near[0]}'?" if near else ""
 
 
-def examine(folder: Path, plan: Setup) -> None:
+def examine(folder: Path, plan: RunConfig) -> None:
     """See that a folder is free for a run: absent, empty, or holding a part of the same run.
 
     Raises:
@@ -283,7 +283,7 @@ def examine(folder: Path, plan: Setup) -> None:
         raise RunError(f"the run in {folder} {called}; a run keeps the name that it began with. Leave out --name.")
 
 
-def titled(folder: Path, plan: Setup) -> Setup:
+def titled(folder: Path, plan: RunConfig) -> RunConfig:
     """The configuration with the title of the run that lies in the folder already, if one does."""
     if not (folder / "run.json").exists():
         return plan
@@ -304,7 +304,7 @@ def check_title(title: str) -> str:
     return title
 
 
-def write(folder: Path, plan: Setup) -> None:
+def write(folder: Path, plan: RunConfig) -> None:
     """Write `run.json`, unless it is there, and clear away what a killed command left of such a write."""
     for torn in folder.glob(".run.json.*"):
         torn.unlink(missing_ok=True)
@@ -320,7 +320,7 @@ def _has_bytes(path: Path) -> bool:
     return path.exists() and path.stat().st_size > 0
 
 
-def differences(there: Setup, here: Setup) -> list[str]:
+def differences(there: RunConfig, here: RunConfig) -> list[str]:
     """What is not the same in two configurations, in words."""
     before, now = _flat(msgspec.to_builtins(there)), _flat(msgspec.to_builtins(here))
     names = [name for name in {**before, **now} if before.get(name) != now.get(name)]

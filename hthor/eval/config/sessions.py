@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from hthor import code_identity, rules, seeds
 from hthor.eval.config import robot_team
-from hthor.eval.config.robot_team import Crew
+from hthor.eval.config.robot_team import RobotTeam
 from hthor.humans.population import resolve
 from hthor.humans.population.resolve import PROXY, People
 from hthor.tasks import Suite
@@ -30,10 +30,10 @@ def people_for(tasks: int) -> int:
     return max(1, math.ceil(tasks / rules.SESSION_TASKS))
 
 
-def sessions(
+def make_sessions(
     suite: Suite,
     *,
-    agent: str | Crew,
+    agent: str | RobotTeam,
     robot: str = "scout",
     human: str | People = PROXY,
     seed: int = 0,
@@ -60,7 +60,7 @@ def sessions(
         realtime: whether robots' thinking takes time of the trial.
         step_limit_s: seconds that submitted agents have for each action; None for the usual deadline.
     """
-    crew = robot_team.form([robot], [agent], detector) if isinstance(agent, str) else agent
+    crew = robot_team.form_team([robot], [agent], detector) if isinstance(agent, str) else agent
     who = resolve.find(human) if isinstance(human, str) else human
     rules_hash = rules.sha256()
     code_hash = code_identity.code_sha256(who.model, (task.kind for task in suite.tasks))
@@ -107,7 +107,7 @@ def trials_of(tasks: int, participants: Sequence[int]) -> int:
     return sum((hand + 1) * tasks // hands - hand * tasks // hands for hand in places)
 
 
-def deal(tasks: Sequence[TaskSpec], seed: int, participant: int) -> list[int]:
+def assign_tasks(tasks: Sequence[TaskSpec], seed: int, participant: int) -> list[int]:
     """Indices of the tasks that a participant does, in order.
 
     The tasks are a deck, dealt out in hands of at most `rules.SESSION_TASKS`; when it is used up it is mixed anew. The

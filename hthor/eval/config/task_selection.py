@@ -23,7 +23,7 @@ _ROOT = seeds.derive(2, "programme")
 _VERSION = 1
 
 
-class Programme(Struct, frozen=True, kw_only=True):
+class TaskSelection(Struct, frozen=True, kw_only=True):
     """The tasks of a run.
 
     ``kind`` is what the suite was narrowed to, None for all of it; ``path`` the file of a user's own kind, and
@@ -43,7 +43,7 @@ class Programme(Struct, frozen=True, kw_only=True):
     difficulty: str = ""
 
 
-def choose(suite: str, kind: str) -> Programme:
+def choose(suite: str, kind: str) -> TaskSelection:
     """The tasks that are meant.
 
     Args:
@@ -58,17 +58,17 @@ def choose(suite: str, kind: str) -> Programme:
         return _own(kind, suite)
     if not kind:
         return _whole(suite_check.suite(suite or "smoke"))
-    known = find(kind)
+    known = find_kind(kind)
     if not suite and known.short not in tasks.suites():
         raise HthorError(f"there is no suite of tasks of the kind '{known.name}'; name one that has some with --suite.")
     whole = suite_check.suite(suite or known.short)
     chosen = _filtered(whole, known.name)
     if len(chosen.tasks) == len(whole.tasks):
         return _whole(whole)
-    return Programme(suite=chosen, kind=KindRef(name=known.name), crew=tuple(known.crew))
+    return TaskSelection(suite=chosen, kind=KindRef(name=known.name), crew=tuple(known.crew))
 
 
-def narrow(whole: Programme, names: Sequence[str], difficulty: str) -> Programme:
+def narrow(whole: TaskSelection, names: Sequence[str], difficulty: str) -> TaskSelection:
     """The programme with only its tasks in these houses and of this difficulty; all of them where neither is given.
 
     What a suite does not tell of the difficulty of its tasks is worked out.
@@ -110,7 +110,7 @@ def _so_hard(task: TaskSpec, difficulty: str) -> bool:
     return (task.difficulty or difficulties.of(task, houses.load(task.house))) == difficulty
 
 
-def shorten(whole: Programme, limit: int | None) -> Programme:
+def shorten(whole: TaskSelection, limit: int | None) -> TaskSelection:
     """The programme with only so many of its tasks, chosen by `hthor.eval.config.task_subset`; all of them for None.
 
     Raises:
@@ -126,7 +126,7 @@ def shorten(whole: Programme, limit: int | None) -> Programme:
     return msgspec.structs.replace(whole, suite=some, limit=limit, notes=(*whole.notes, note))
 
 
-def find(name: str) -> TaskKind:
+def find_kind(name: str) -> TaskKind:
     """A kind of task by its name or its short name.
 
     Raises:
@@ -141,16 +141,16 @@ def find(name: str) -> TaskKind:
     return kinds.get(name) or shorts[name]
 
 
-def _whole(suite: Suite) -> Programme:
+def _whole(suite: Suite) -> TaskSelection:
     crews = {tuple(plugins.load("task kind", name).crew) for name in sorted({task.kind for task in suite.tasks})}
-    return Programme(suite=suite, crew=crews.pop() if len(crews) == 1 else ())
+    return TaskSelection(suite=suite, crew=crews.pop() if len(crews) == 1 else ())
 
 
-def _own(path: str, suite: str) -> Programme:
+def _own(path: str, suite: str) -> TaskSelection:
     """The tasks of a user's kind: those of a suite, or one in each of the houses that come with hthor."""
     kind = _loaded(path)
     found, missing = (_filtered(suite_check.suite(suite), kind.name), ()) if suite else _drawn(kind, path)
-    return Programme(
+    return TaskSelection(
         suite=found,
         kind=KindRef(name=kind.name, sha256=plugins.sha256(path)),
         path=str(Path(path).resolve()),

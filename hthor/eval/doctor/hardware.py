@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from importlib import util
 from pathlib import Path
 
-from hthor.eval.doctor.result import Finding
+from hthor.eval.doctor.result import CheckResult
 
 _MB = 1e6
 _ROOM_MB, _ROOM_LEAST_MB = 1000.0, 100.0
@@ -29,13 +29,13 @@ _OTHERWISE = (
 _SLOW = "NUMBA_DISABLE_JIT"
 
 
-def findings(runs: Path) -> list[Finding]:
+def findings(runs: Path) -> list[CheckResult]:
     """Look at everything; ``runs`` is where runs are to be written."""
     cores = _cores()
     return [*_disk(runs), _memory(cores), _processors(cores), _environment(), _shm(), _houses()]
 
 
-def _disk(runs: Path) -> Iterator[Finding]:
+def _disk(runs: Path) -> Iterator[CheckResult]:
     """The folder, or the nearest one above it that there is."""
     folder = runs.absolute()
     while not folder.exists():
@@ -44,19 +44,19 @@ def _disk(runs: Path) -> Iterator[Finding]:
     try:
         free, took = shutil.disk_usage(folder).free / _MB, _sync_ms(folder)
     except OSError as error:
-        yield Finding(name="disk", status="fail", says=f"{folder} cannot be written to: {error.strerror}", fix=cure)
+        yield CheckResult(name="disk", status="fail", says=f"{folder} cannot be written to: {error.strerror}", fix=cure)
         return
     says = f"{free / 1000.0:.1f} GB free in {folder}"
     if free < _ROOM_MB:
         fix = f"make room, or {cure}"
-        yield Finding(name="disk", status="fail" if free < _ROOM_LEAST_MB else "warn", says=says, fix=fix)
+        yield CheckResult(name="disk", status="fail" if free < _ROOM_LEAST_MB else "warn", says=says, fix=fix)
     else:
-        yield Finding(name="disk", says=says)
+        yield CheckResult(name="disk", says=says)
     says = f"a record is on the disk after {took:.1f} ms"
     if took > _SYNC_MS:
-        yield Finding(name="disk speed", status="warn", says=says, fix="write runs to a local disk with --out")
+        yield CheckResult(name="disk speed", status="warn", says=says, fix="write runs to a local disk with --out")
     else:
-        yield Finding(name="disk speed", says=says)
+        yield CheckResult(name="disk speed", says=says)
 
 
 def _sync_ms(folder: Path) -> float:
@@ -71,16 +71,16 @@ def _sync_ms(folder: Path) -> float:
     return sorted(times)[_SYNCS // 2]
 
 
-def _memory(cores: float) -> Finding:
+def _memory(cores: float) -> CheckResult:
     free, workers = _free_mb(), max(1, int(cores))
     if free is None:
-        return Finding(name="memory", says="this system does not say how much is free")
+        return CheckResult(name="memory", says="this system does not say how much is free")
     needed = workers * _WORKER_MB
     says = f"{free / 1000.0:.1f} GB free, {needed / 1000.0:.1f} GB needed for {workers} workers and built-in agents"
     fits = max(1, int(free / _WORKER_MB))
     if free < needed:
-        return Finding(name="memory", status="warn", says=says, fix=f"hthor eval --jobs {fits}")
-    return Finding(name="memory", says=says)
+        return CheckResult(name="memory", status="warn", says=says, fix=f"hthor eval --jobs {fits}")
+    return CheckResult(name="memory", says=says)
 
 
 def _free_mb() -> float | None:
@@ -99,13 +99,13 @@ def _free_mb() -> float | None:
     return max(0.0, min(found)) if found else None
 
 
-def _processors(cores: float) -> Finding:
+def _processors(cores: float) -> CheckResult:
     allowed, there = len(os.sched_getaffinity(0)), os.cpu_count() or 1
     says = f"{allowed} of {there} may be used" if allowed < there else f"{there}"
     if cores < allowed:
         says += f", but no more than {cores:g} of them at a time (a container's quota)"
-        return Finding(name="cores", status="warn", says=says, fix=f"hthor eval --jobs {max(1, int(cores))}")
-    return Finding(name="cores", says=f"{says}, one worker each")
+        return CheckResult(name="cores", status="warn", says=says, fix=f"hthor eval --jobs {max(1, int(cores))}")
+    return CheckResult(name="cores", says=f"{says}, one worker each")
 
 
 def _cores() -> float:
@@ -115,14 +115,14 @@ def _cores() -> float:
     return min(allowed, int(quota) / int(period)) if quota.isdecimal() and period.isdecimal() else allowed
 
 
-def _environment() -> Finding:
+def _environment() -> CheckResult:
     name = "environment"
     if os.environ.get(_SLOW, "0") != "0":
         says = f"{_SLOW} is set: a trial takes minutes instead of a tenth of a second"
-        return Finding(name=name, status="warn", says=says, fix=f"unset {_SLOW}")
+        return CheckResult(name=name, status="warn", says=says, fix=f"unset {_SLOW}")
     pinned = [f"{variable}={os.environ[variable]}" for variable in (*_threads(), *_OTHERWISE) if variable in os.environ]
     here = f"; set here: {', '.join(pinned)}" if pinned else ""
-    return Finding(name=name, says=f"workers compute with one thread each{here}")
+    return CheckResult(name=name, says=f"workers compute with one thread each{here}")
 
 
 def _threads() -> tuple[str, ...]:
@@ -131,27 +131,27 @@ def _threads() -> tuple[str, ...]:
     return tuple(worker.ONE_THREAD)
 
 
-def _shm() -> Finding:
+def _shm() -> CheckResult:
     """Only Ray keeps anything there; frames for agents lie in memory of their own."""
     name, folder = "shared memory", Path("/dev/shm")
     if not folder.is_dir():
-        return Finding(name=name, says="there is no /dev/shm; only Ray would use it")
+        return CheckResult(name=name, says="there is no /dev/shm; only Ray would use it")
     free = shutil.disk_usage(folder).free / _MB
     says = f"{free / 1000.0:.1f} GB free in /dev/shm; only Ray uses it"
     if free < _RAY_SHM_MB and util.find_spec("ray") is not None:
-        return Finding(name=name, status="warn", says=says, fix="docker run --shm-size=2g ...")
-    return Finding(name=name, says=says)
+        return CheckResult(name=name, status="warn", says=says, fix="docker run --shm-size=2g ...")
+    return CheckResult(name=name, says=says)
 
 
-def _houses() -> Finding:
+def _houses() -> CheckResult:
     from hthor import houses, tasks
     from hthor.looks import pack
 
     scenes, suites, packs = houses.names(), tasks.suites(), pack.installed()
     says = f"{len(scenes)} houses, {len(suites)} suites, furniture packs: {', '.join(packs) or 'none'}"
     if not scenes or not suites:
-        return Finding(name="houses", status="fail", says=says, fix="pip install --force-reinstall hthor")
-    return Finding(name="houses", says=says)
+        return CheckResult(name="houses", status="fail", says=says, fix="pip install --force-reinstall hthor")
+    return CheckResult(name="houses", says=says)
 
 
 def _read(path: str) -> str:

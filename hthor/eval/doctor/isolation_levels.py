@@ -7,7 +7,7 @@ import platform
 import shutil
 from pathlib import Path
 
-from hthor.eval.doctor.result import Finding
+from hthor.eval.doctor.result import CheckResult
 from hthor.guest import Isolation, IsolationError, in_force
 from hthor.guest.confinement import LEVELS, known, suffices
 
@@ -24,18 +24,18 @@ def check(required: str) -> None:
     known(required, auto=False)
 
 
-def findings(required: str) -> list[Finding]:
+def findings(required: str) -> list[CheckResult]:
     """Start a guest on each level; those up to the required one must come up."""
     return [_finding(level, suffices(required, level)) for level in LEVELS]
 
 
-def _finding(level: str, needed: bool) -> Finding:
+def _finding(level: str, needed: bool) -> CheckResult:
     name = f"isolation {level}"
     try:
-        return Finding(name=name, says=_layers(in_force(level)))
+        return CheckResult(name=name, says=_layers(in_force(level)))
     except IsolationError as error:
         reason = str(error).partition("this machine: ")[2].partition(". 'hthor eval")[0] or str(error)
-        return Finding(name=name, status="fail" if needed else "warn", says=reason, fix=fix(level))
+        return CheckResult(name=name, status="fail" if needed else "warn", says=reason, fix=fix(level))
 
 
 def _layers(held: Isolation) -> str:

@@ -11,7 +11,7 @@ from importlib import metadata
 from packaging.requirements import Requirement
 
 from hthor import code_identity, installation
-from hthor.eval.doctor.result import Finding
+from hthor.eval.doctor.result import CheckResult
 
 _SCORING = ("mujoco", "dm-control", "numba", "numpy")
 """What trials are computed with."""
@@ -25,14 +25,14 @@ _EXTRAS = {
 _GIT_LIMIT_S = 10.0
 
 
-def findings() -> list[Finding]:
+def findings() -> list[CheckResult]:
     """Look at Python, at each library that trials are computed with, at the others, the extras, and the checkout."""
-    found = [Finding(name="python", says=platform.python_version())]
+    found = [CheckResult(name="python", says=platform.python_version())]
     try:
         base, extras = _required()
     except metadata.PackageNotFoundError:
         says = "hthor is not installed, so what it requires is not known"
-        return [*found, Finding(name="libraries", status="warn", says=says, fix="pip install -e ."), *_checkout()]
+        return [*found, CheckResult(name="libraries", status="warn", says=says, fix="pip install -e ."), *_checkout()]
     scoring = [one for one in base if one.name in _SCORING]
     found += [_library(one, pinned()) for one in scoring]
     found.append(_others([one for one in base if one not in scoring]))
@@ -62,59 +62,59 @@ def pinned() -> dict[str, str]:
     return {name.lower().replace("_", "-"): version for name, version in pairs}
 
 
-def _library(wanted: Requirement, pins: dict[str, str]) -> Finding:
+def _library(wanted: Requirement, pins: dict[str, str]) -> CheckResult:
     trouble = _trouble(wanted)
     if trouble:
-        return Finding(name=wanted.name, status="fail", says=trouble, fix=f"pip install '{_bare(wanted)}'")
+        return CheckResult(name=wanted.name, status="fail", says=trouble, fix=f"pip install '{_bare(wanted)}'")
     version, pin = metadata.version(wanted.name), pins.get(wanted.name)
     if pin and pin != version:
         says = f"{version}, but hthor's own results were made with {pin}: records may differ byte for byte"
-        return Finding(name=wanted.name, status="warn", says=says, fix="pip install -c constraints.txt -e .")
-    return Finding(name=wanted.name, says=version)
+        return CheckResult(name=wanted.name, status="warn", says=says, fix="pip install -c constraints.txt -e .")
+    return CheckResult(name=wanted.name, says=version)
 
 
-def _others(wanted: Sequence[Requirement]) -> Finding:
+def _others(wanted: Sequence[Requirement]) -> CheckResult:
     bad = [(one, trouble) for one in wanted if (trouble := _trouble(one))]
     name = "other libraries"
     if not bad:
-        return Finding(name=name, says=f"all {len(wanted)} are installed")
+        return CheckResult(name=name, says=f"all {len(wanted)} are installed")
     says = "; ".join(f"{one.name}: {trouble}" for one, trouble in bad)
     fix = "pip install " + " ".join(f"'{_bare(one)}'" for one, _ in bad)
-    return Finding(name=name, status="fail", says=says, fix=fix)
+    return CheckResult(name=name, status="fail", says=says, fix=fix)
 
 
-def _extra(name: str, parts: Sequence[Requirement]) -> Finding:
+def _extra(name: str, parts: Sequence[Requirement]) -> CheckResult:
     """An extra that is not installed is nothing amiss; a part of another version is."""
     present = {one.name: _installed(one.name) for one in parts}
     title, install = f"extra {name}", f"pip install 'hthor[{name}]'"
     bad = [trouble for one in parts if present[one.name] and (trouble := _trouble(one))]
     if bad:
-        return Finding(name=title, status="warn", says="; ".join(bad), fix=install)
+        return CheckResult(name=title, status="warn", says="; ".join(bad), fix=install)
     if not all(present.values()):
-        return Finding(name=title, says=f"not installed ({_EXTRAS[name]}): {install}")
-    return Finding(name=title, says=", ".join(f"{part} {version}" for part, version in present.items()))
+        return CheckResult(name=title, says=f"not installed ({_EXTRAS[name]}): {install}")
+    return CheckResult(name=title, says=", ".join(f"{part} {version}" for part, version in present.items()))
 
 
-def _checkout() -> Iterator[Finding]:
+def _checkout() -> Iterator[CheckResult]:
     """Which code it is, and whether it is changed."""
     from hthor import __version__
 
     code, root = installation.sha256()[:10], code_identity.PACKAGE.parent
-    yield Finding(name="hthor", says=f"{__version__}, code {code}, {code_identity.PACKAGE}")
+    yield CheckResult(name="hthor", says=f"{__version__}, code {code}, {code_identity.PACKAGE}")
     if not (root / ".git").exists():
         return
     commit, changes = _git("rev-parse", "--short=10", "HEAD"), _git("status", "--porcelain", "--", "hthor")
     if commit is None or changes is None:
-        yield Finding(
+        yield CheckResult(
             name="git", status="warn", says="git does not say what commit this is", fix=f"git -C {root} status"
         )
         return
     changed = changes.splitlines()
     if changed:
         says = f"{commit}, with {len(changed)} changed or new files in hthor/: results cannot be told from a commit's"
-        yield Finding(name="git", status="warn", says=says, fix=f"git -C {root} status, then commit or undo")
+        yield CheckResult(name="git", status="warn", says=says, fix=f"git -C {root} status, then commit or undo")
         return
-    yield Finding(name="git", says=f"{commit}, unchanged")
+    yield CheckResult(name="git", says=f"{commit}, unchanged")
 
 
 def _git(*words: str) -> str | None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from msgspec import Struct
 
-from hthor.eval.doctor.result import Finding
+from hthor.eval.doctor.result import CheckResult
 
 _SIZE = (64, 64)
 _HOUSE = "alder"
@@ -24,27 +24,27 @@ class Drawn(Struct, frozen=True, kw_only=True):
     reason: str = ""
 
 
-def findings(drawn: Drawn | str) -> list[Finding]:
+def findings(drawn: Drawn | str) -> list[CheckResult]:
     """Judge what the process drew."""
     if isinstance(drawn, str):
         says = f"the process that draws a frame failed: {drawn}"
-        return [Finding(name="pictures", status="fail", says=says, fix=f"{_CURE}; or MUJOCO_GL=osmesa")]
+        return [CheckResult(name="pictures", status="fail", says=says, fix=f"{_CURE}; or MUJOCO_GL=osmesa")]
     return [_fast(drawn), _nice(drawn)]
 
 
-def _fast(drawn: Drawn) -> Finding:
+def _fast(drawn: Drawn) -> CheckResult:
     name = "robot's camera"
     if drawn.fast > 1:
-        return Finding(name=name, says=f"draws a frame of {drawn.fast} colours, without OpenGL")
-    return Finding(name=name, status="fail", says="its frame is blank", fix="pip install --force-reinstall hthor")
+        return CheckResult(name=name, says=f"draws a frame of {drawn.fast} colours, without OpenGL")
+    return CheckResult(name=name, status="fail", says="its frame is blank", fix="pip install --force-reinstall hthor")
 
 
-def _nice(drawn: Drawn) -> Finding:
+def _nice(drawn: Drawn) -> CheckResult:
     name = "OpenGL"
     if drawn.nice > 1:
-        return Finding(name=name, says=f"{drawn.backend} draws a frame of {drawn.nice} colours")
+        return CheckResult(name=name, says=f"{drawn.backend} draws a frame of {drawn.nice} colours")
     says = drawn.reason or f"the frame that {drawn.backend} draws is blank"
-    return Finding(name=name, status="warn", says=f"{says} (only pictures in the profile nice need it)", fix=_CURE)
+    return CheckResult(name=name, status="warn", says=f"{says} (only pictures in the profile nice need it)", fix=_CURE)
 
 
 def draw() -> Iterator[Drawn]:

@@ -14,7 +14,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor import jsonio
-from hthor.eval.doctor.result import Finding
+from hthor.eval.doctor.result import CheckResult
 from hthor.eval.records import platform_fingerprint
 
 REFERENCE = Path(__file__).with_name("reference.json")
@@ -39,8 +39,8 @@ def play() -> Course:
     from hthor.eval.records import trial_record
     from hthor.eval.runner import trial_runner
 
-    first = sessions.sessions(tasks.suite(_SUITE), agent=_AGENT, human=_PEOPLE, seed=_SEED)[0]
-    done = next(iter(trial_runner.player()(msgspec.structs.replace(first, trials=first.trials[:1]))))
+    first = sessions.make_sessions(tasks.suite(_SUITE), agent=_AGENT, human=_PEOPLE, seed=_SEED)[0]
+    done = next(iter(trial_runner.make_runner()(msgspec.structs.replace(first, trials=first.trials[:1]))))
     course = msgspec.json.decode(trial_record.encode(done))
     for name in (*_NAMES, "check"):
         del course[name]
@@ -57,24 +57,26 @@ def reference() -> Course:
     return msgspec.json.decode(REFERENCE.read_bytes(), type=Course)
 
 
-def findings(here: Course | str) -> list[Finding]:
+def findings(here: Course | str) -> list[CheckResult]:
     """Judge what the process played."""
     name = "determinism"
     if isinstance(here, str):
         says = f"the process that plays a trial failed: {here}"
-        return [Finding(name=name, status="fail", says=says, fix="hthor eval --agent none --participants 1 --jobs 1")]
+        return [
+            CheckResult(name=name, status="fail", says=says, fix="hthor eval --agent none --participants 1 --jobs 1")
+        ]
     there = reference()
     if here.sha256 == there.sha256:
-        return [Finding(name=name, says=f"{here.trial} goes as in the reference, byte for byte")]
+        return [CheckResult(name=name, says=f"{here.trial} goes as in the reference, byte for byte")]
     other = platform_fingerprint.differences(there.platform, here.platform)
     same = here.outcome == there.outcome and here.trial == there.trial
     if not other:
         says = f"on the very platform of the reference {here.trial} goes otherwise, outcome {_verdict(same)}"
         cure = "git status, and undo what changes trials; if the change is meant: hthor doctor --write-reference"
-        return [Finding(name=name, status="fail", says=says, fix=cure)]
+        return [CheckResult(name=name, status="fail", says=says, fix=cure)]
     says = f"outcome {_verdict(same)}, bytes not: this is another platform than the reference's ({'; '.join(other)})"
     cure = "" if same else "compare only runs that were played on one platform"
-    return [Finding(name=name, status="ok" if same else "warn", says=says, fix=cure)]
+    return [CheckResult(name=name, status="ok" if same else "warn", says=says, fix=cure)]
 
 
 def _verdict(same: bool) -> str:

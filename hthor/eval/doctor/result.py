@@ -9,7 +9,7 @@ from msgspec import Struct
 SCHEMA = "hthor.doctor/1"
 
 
-class Finding(Struct, frozen=True, kw_only=True):
+class CheckResult(Struct, frozen=True, kw_only=True):
     """One thing: ``fail`` where evaluations do not work or cannot be trusted, ``warn`` where something is amiss.
 
     ``fix`` is what to do about it, a command wherever there is one; empty where all is well.
@@ -21,9 +21,9 @@ class Finding(Struct, frozen=True, kw_only=True):
     fix: str = ""
 
 
-class Health(Struct, frozen=True, kw_only=True):
+class DoctorReport(Struct, frozen=True, kw_only=True):
     """All that was found; ``well`` when nothing failed."""
 
     schema: str = SCHEMA
     well: bool
-    findings: tuple[Finding, ...]
+    findings: tuple[CheckResult, ...]

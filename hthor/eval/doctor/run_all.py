@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from hthor.eval.doctor import hardware, isolation_levels, libraries, rendering, reproducibility, subprocess_probe
-from hthor.eval.doctor.result import Health
+from hthor.eval.doctor.result import DoctorReport
 
 
-def examine(runs: Path, required: str = "L1") -> Health:
+def run_all(runs: Path, required: str = "L1") -> DoctorReport:
     """Look at everything.
 
     Args:
@@ -30,4 +30,4 @@ def examine(runs: Path, required: str = "L1") -> Health:
             *reproducibility.findings(course.answer(reproducibility.Course)),
             *rendering.findings(picture.answer(rendering.Drawn)),
         ]
-    return Health(well=all(one.status != "fail" for one in findings), findings=tuple(findings))
+    return DoctorReport(well=all(one.status != "fail" for one in findings), findings=tuple(findings))

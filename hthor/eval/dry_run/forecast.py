@@ -9,10 +9,10 @@ from typing import Any
 
 from msgspec import Struct
 
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.dry_run import trial_cost
 from hthor.eval.records import trial_log
-from hthor.eval.runner.run_options import Intent, Options, Part
+from hthor.eval.runner.run_options import ResolvedRuns, RunJob, RunOptions
 from hthor.guest import Isolation
 
 SCHEMA = "hthor.dry-run/2"
@@ -31,7 +31,7 @@ class Ahead(Struct, frozen=True, kw_only=True):
     control: bool
     seconds: float | None
     pace: trial_cost.Pace | None
-    plan: Setup
+    plan: RunConfig
 
 
 class Setting(Struct, frozen=True, kw_only=True):
@@ -55,7 +55,7 @@ class Forecast(Struct, frozen=True, kw_only=True):
 
 
 def of(
-    options: Options, intent: Intent, origins: Mapping[str, str], say: Callable[[str], None] | None = None
+    options: RunOptions, intent: ResolvedRuns, origins: Mapping[str, str], say: Callable[[str], None] | None = None
 ) -> Forecast:
     """Look ahead.
 
@@ -82,7 +82,7 @@ def of(
     )
 
 
-def _ahead(part: Part, workers: int, houses: int, sampler: trial_cost.Sampler | None, *, control: bool) -> Ahead:
+def _ahead(part: RunJob, workers: int, houses: int, sampler: trial_cost.Sampler | None, *, control: bool) -> Ahead:
     plan = part.plan
     trials = plan.shard.trials if plan.shard else plan.trials
     played = len({record.key for _, record in trial_log.read(part.folder / "trials.jsonl")})
@@ -104,7 +104,7 @@ def _ahead(part: Part, workers: int, houses: int, sampler: trial_cost.Sampler | 
     )
 
 
-def _settings(options: Options, intent: Intent, workers: int, origins: Mapping[str, str]) -> Iterator[Setting]:
+def _settings(options: RunOptions, intent: ResolvedRuns, workers: int, origins: Mapping[str, str]) -> Iterator[Setting]:
     """Every option with what its default stands for."""
     plans = [part.plan for part in intent.parts]
     first = plans[0]

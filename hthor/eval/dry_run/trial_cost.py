@@ -14,12 +14,12 @@ from msgspec import Struct
 
 from hthor.errors import RunError
 from hthor.eval.config import run_config
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records import run_isolation
 from hthor.eval.results import result_file
 from hthor.eval.runner import engines, experiment
-from hthor.eval.runner.messages import Again, Failed, Lost, Played
-from hthor.eval.runner.run_options import RUNS, Intent, Options, Part
+from hthor.eval.runner.messages import Failed, SessionAbandoned, SessionRestarted, TrialDone
+from hthor.eval.runner.run_options import RUNS, ResolvedRuns, RunJob, RunOptions
 
 _TRIALS = 3
 """Trials that are played: one that also loads what is heavy, one that also builds a house, and that one again."""
@@ -48,7 +48,7 @@ class Pace(Struct, frozen=True, kw_only=True):
         return round(self.start_s + mine * self.trial_s + min(mine, houses) * self.house_s, 1)
 
 
-def earlier(part: Part) -> Pace | None:
+def earlier(part: RunJob) -> Pace | None:
     """Of the first finished run with the same robots and people that lies about, of the same suite if there is one."""
     found = []
     for folder in _candidates(part.folder):
@@ -71,11 +71,11 @@ class Sampler:
         say: is told what is played.
     """
 
-    def __init__(self, options: Options, intent: Intent, say: Callable[[str], None]) -> None:
+    def __init__(self, options: RunOptions, intent: ResolvedRuns, say: Callable[[str], None]) -> None:
         self._options, self._intent, self._say = options, intent, say
         self._known: dict[object, Pace | None] = {}
 
-    def play(self, part: Part) -> Pace | None:
+    def play(self, part: RunJob) -> Pace | None:
         """What a trial of this run takes; None when none was over in time, or an agent could not be loaded."""
         same = (tuple(_minds(part.plan)), part.people.model)
         if same not in self._known:
@@ -84,7 +84,7 @@ class Sampler:
                 self._known[same] = _pace(self._played(part, Path(folder)))
         return self._known[same]
 
-    def _played(self, part: Part, folder: Path) -> list[float]:
+    def _played(self, part: RunJob, folder: Path) -> list[float]:
         """When each trial was over, in seconds after the start."""
         options, chosen = self._options, self._intent.chosen
         own = experiment.own_houses(options)
@@ -99,9 +99,9 @@ class Sampler:
         with closing(engine.perform([some], make)) as stream:
             for news in stream:
                 now = time.monotonic() - began
-                if isinstance(news, Played):
+                if isinstance(news, TrialDone):
                     over.append(now)
-                if isinstance(news, (Again, Lost, Failed)) or _enough(over):
+                if isinstance(news, (SessionRestarted, SessionAbandoned, Failed)) or _enough(over):
                     break
         return over
 
@@ -124,7 +124,7 @@ def _pace(over: list[float]) -> Pace | None:
     )
 
 
-def _minds(plan: Setup) -> list[tuple[str, str]]:
+def _minds(plan: RunConfig) -> list[tuple[str, str]]:
     return [(robot.robot, robot.agent.name) for robot in plan.seats]
 
 

@@ -11,13 +11,13 @@ from msgspec import Struct
 from hthor import documents, jsonio
 from hthor.errors import RunError
 from hthor.eval.config import cli_command, run_config
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.shard import Shard, whole_folder
 from hthor.eval.records import opened_files, platform, reader, run_isolation, session_restarts, trial_log, trial_record
-from hthor.eval.records.trial_log import Log, Place
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_log import Place, TrialLog
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, baseline, result_file
-from hthor.eval.results.result_file import Effort, Result
+from hthor.eval.results.result_file import Effort, RunResult
 from hthor.eval.runner.run import EFFORT
 from hthor.guest import Isolation
 
@@ -41,11 +41,11 @@ class Merged(Struct, frozen=True, kw_only=True):
     """What became of a merge: trials that were there before and new ones; the result when nothing is missing."""
 
     folder: str
-    plan: Setup
+    plan: RunConfig
     trials: int
     new: int
     gaps: tuple[Gap, ...]
-    result: Result | None
+    result: RunResult | None
 
 
 class _Part(Struct, frozen=True, kw_only=True):
@@ -55,10 +55,10 @@ class _Part(Struct, frozen=True, kw_only=True):
     """
 
     folder: Path
-    plan: Setup
+    plan: RunConfig
     shard: Shard
     records: dict[tuple[int, int], tuple[Place, str, int]]
-    opened: tuple[Record, ...] = ()
+    opened: tuple[TrialRecord, ...] = ()
 
 
 def merge(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Merged:
@@ -84,7 +84,7 @@ def merge(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Merged:
         more = {key for _, key, _ in found.values()} - there
         return Merged(folder=str(out), plan=plan, trials=len(there) + len(more), new=len(more), gaps=(), result=None)
     new = 0
-    with Log(out) as book:
+    with TrialLog(out) as book:
         run_config.write(out, plan)
         for name, data in _carried(folders).items():
             jsonio.write(out / name, data)
@@ -108,7 +108,7 @@ def _examine(folder: Path) -> _Part:
             f"{folder} holds a run that is not divided: run.json has no shard. 'hthor eval --shard' makes some."
         )
     records: dict[tuple[int, int], tuple[Place, str, int]] = {}
-    told: list[Record] = []
+    told: list[TrialRecord] = []
     for place, line, one in trial_log.places(folder / "trials.jsonl"):
         reader.check_origin(folder, one, plan)
         _check_share(folder, one, plan, plan.shard)
@@ -122,7 +122,7 @@ def _examine(folder: Path) -> _Part:
     return _Part(folder=folder, plan=plan, shard=plan.shard, records=records, opened=tuple(told))
 
 
-def _check_share(folder: Path, one: Record, plan: Setup, mine: Shard) -> None:
+def _check_share(folder: Path, one: TrialRecord, plan: RunConfig, mine: Shard) -> None:
     participant = one.spec.participant
     if participant not in mine.share(range(plan.participants)):
         raise RunError(
@@ -167,24 +167,24 @@ def _gaps(parts: Sequence[_Part], out: Path, missing: int) -> tuple[Gap, ...]:
     first = parts[0]
     of, base = first.shard.of, whole_folder(first.folder)
     if any(part.shard.of != of for part in parts):  # the undivided command plays just what is missing
-        return (Gap(number=1, of=1, trials=missing, command=cli_command.of(out, first.plan.whole)),)
+        return (Gap(number=1, of=1, trials=missing, command=cli_command.resume_command(out, first.plan.whole)),)
     gaps = []
     for number in range(1, of + 1):
         mine = [part for part in parts if part.shard.number == number]
         if not mine:
             absent = Shard(number=number, of=of)
-            words = cli_command.of(absent.folder(base), msgspec.structs.replace(first.plan, shard=absent))
+            words = cli_command.resume_command(absent.folder(base), msgspec.structs.replace(first.plan, shard=absent))
             gaps.append(Gap(number=number, of=of, trials=None, command=words))
             continue
         fullest = max(mine, key=lambda part: len(part.records))
         lacks = fullest.shard.trials - len(set().union(*(part.records for part in mine)))
         if lacks:
-            words = cli_command.of(fullest.folder, fullest.plan)
+            words = cli_command.resume_command(fullest.folder, fullest.plan)
             gaps.append(Gap(number=number, of=of, trials=lacks, command=words))
     return tuple(gaps)
 
 
-def _score(out: Path, plan: Setup, folders: Sequence[Path]) -> Result:
+def _score(out: Path, plan: RunConfig, folders: Sequence[Path]) -> RunResult:
     """The result of the whole, with the effort of the shards: the longest wall time, and all that they cost."""
     there, records = reader.digest(out, plan)
     efforts = [

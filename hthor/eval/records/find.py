@@ -10,13 +10,13 @@ from hthor import rules
 from hthor.errors import RunError, UnknownName
 from hthor.eval.config import run_config
 from hthor.eval.records import reader
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 
 _SHOWN = 10
 _TRACED = 12
 
 
-def trial(folder: Path, name: str) -> Record:
+def trial(folder: Path, name: str) -> TrialRecord:
     """The trial of a run that ``name`` stands for.
 
     Args:
@@ -43,14 +43,14 @@ def trial(folder: Path, name: str) -> Record:
     raise UnknownName("trial", name, near, more if records else "The run has no trials yet.")
 
 
-def _only(found: Sequence[Record], name: str) -> Record:
+def _only(found: Sequence[TrialRecord], name: str) -> TrialRecord:
     if len(found) > 1:
         listed = ", ".join(f"{record.key} (participant {record.spec.participant})" for record in found[:10])
         raise RunError(f"'{name}' stands for {len(found)} trials: {listed}. Give a key, or more of it.")
     return found[0]
 
 
-def first_fault(folder: Path) -> Record:
+def first_fault(folder: Path) -> TrialRecord:
     """The first trial of a run in which the agent failed.
 
     Raises:
@@ -60,13 +60,13 @@ def first_fault(folder: Path) -> Record:
     return next(record for record in records if record.faults)
 
 
-def fault_lines(record: Record) -> list[str]:
+def fault_lines(record: TrialRecord) -> list[str]:
     """The end of the traceback of a trial's first fault; none where it was no exception."""
     lines = record.faults[0].detail.strip().splitlines()
     return lines[-_TRACED:] if len(lines) > 1 else []
 
 
-def fault_words(record: Record) -> str:
+def fault_words(record: TrialRecord) -> str:
     """A trial's first fault in words: whose, of several robots, when, what, and the last line of its detail."""
     fault = record.faults[0]
     last = fault.detail.strip().splitlines()[-1] if fault.detail.strip() else ""

@@ -10,14 +10,14 @@ from collections.abc import Iterable, Mapping, Sequence
 import msgspec
 
 from hthor.errors import AgentError, RunError
-from hthor.eval.config.run_config import Setup
-from hthor.eval.records.trial_record import Record
+from hthor.eval.config.run_config import RunConfig
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.guest import Guest
 from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.host import snapshot
 
 
-def manifests(plan: Setup, records: Iterable[Record]) -> tuple[Manifest, ...]:
+def manifests(plan: RunConfig, records: Iterable[TrialRecord]) -> tuple[Manifest, ...]:
     """What each agent of a run consists of, with all that its trials add; the same in whatever order they come.
 
     Raises:
@@ -43,7 +43,7 @@ def manifests(plan: Setup, records: Iterable[Record]) -> tuple[Manifest, ...]:
     )
 
 
-def check(minds: Mapping[str, str], plan: Setup, records: Sequence[Record]) -> None:
+def check(minds: Mapping[str, str], plan: RunConfig, records: Sequence[TrialRecord]) -> None:
     """See that what a run's trials were played with so far is still there, before more of them are played.
 
     Args:

@@ -8,13 +8,13 @@ from pathlib import Path
 import msgspec
 
 from hthor.errors import RunError
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records import trial_log
 from hthor.eval.records.trial_log import Place
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 
 
-def records(folder: Path, plan: Setup) -> tuple[list[bytes], list[Record]]:
+def records(folder: Path, plan: RunConfig) -> tuple[list[bytes], list[TrialRecord]]:
     """Every line of a run's log and its record, in the order of people and their trials.
 
     Raises:
@@ -29,13 +29,13 @@ def records(folder: Path, plan: Setup) -> tuple[list[bytes], list[Record]]:
     return [line for line, _ in found], [record for _, record in found]
 
 
-def digest(folder: Path, plan: Setup) -> tuple[list[Place], list[Record]]:
+def digest(folder: Path, plan: RunConfig) -> tuple[list[Place], list[TrialRecord]]:
     """As `records`, for runs of any length: lines stay on the disk, and records come without paths and journal.
 
     Raises:
         RunError: as `records`.
     """
-    found: list[tuple[Place, Record]] = []
+    found: list[tuple[Place, TrialRecord]] = []
     for place, _, record in trial_log.places(folder / "trials.jsonl"):
         check_origin(folder, record, plan)
         found.append((place, msgspec.structs.replace(record, paths={}, journal=())))
@@ -50,7 +50,7 @@ def _check_once(folder: Path, keys: Sequence[str]) -> None:
         raise RunError(f"{folder / 'trials.jsonl'}: trial {twice} is there twice. Delete one of the two lines.")
 
 
-def check_origin(folder: Path, record: Record, plan: Setup) -> None:
+def check_origin(folder: Path, record: TrialRecord, plan: RunConfig) -> None:
     """See that a record is one of this run's."""
     spec = record.spec
     pairs = {

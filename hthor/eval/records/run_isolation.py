@@ -17,14 +17,14 @@ from hthor.guest.confinement import known, suffices
 
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
-    from hthor.eval.records.trial_record import Record
+    from hthor.eval.records.trial_record import TrialRecord
     from hthor.eval.runner.trial_runner import Sources
     from hthor.guest import Given
 
 NAME = "isolation.json"
 
 
-def settle(wanted: str, required: str, minds: Collection[str]) -> Isolation | None:
+def resolve_isolation(wanted: str, required: str, minds: Collection[str]) -> Isolation | None:
     """What will hold a run's agents; None when all of them are built in.
 
     Args:
@@ -86,13 +86,13 @@ def load(folder: Path) -> Isolation | None:
 
 def player(
     sources: Sources | None, level: str, hidden: tuple[str, ...], given: Given | None = None
-) -> Callable[[Session], Iterator[Record]]:
+) -> Callable[[Session], Iterator[TrialRecord]]:
     """`cast.player`, whose agents are held at this level, cannot read what is hidden, and are given this."""
     from hthor import guest
     from hthor.eval.runner import trial_runner
 
     guest.confine_guests(level, hidden, given)
-    return trial_runner.player(sources)
+    return trial_runner.make_runner(sources)
 
 
 def _demand(held: Isolation, required: str, whose: str) -> None:

@@ -26,7 +26,7 @@ class Replays(Struct, frozen=True, kw_only=True):
     participants: tuple[int, ...] = ()
 
 
-class DoOvers:
+class SessionRestarts:
     """Those of a run, kept in its folder before they are taken, so that no later command has them again."""
 
     def __init__(self, folder: Path) -> None:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from hthor import jsonio
 from hthor.errors import RunError, RunLocked
 from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner.queue import BEAT_S
 
 SYNC_S = 0.25
@@ -33,7 +33,7 @@ class Place(NamedTuple):
     size: int
 
 
-def read(path: Path) -> Iterator[tuple[bytes, Record]]:
+def read(path: Path) -> Iterator[tuple[bytes, TrialRecord]]:
     """Every whole line of a log and its record; a torn last line, which has no newline, is passed over.
 
     Raises:
@@ -54,7 +54,7 @@ def read(path: Path) -> Iterator[tuple[bytes, Record]]:
                 ) from None
 
 
-def places(path: Path) -> Iterator[tuple[Place, bytes, Record]]:
+def places(path: Path) -> Iterator[tuple[Place, bytes, TrialRecord]]:
     """As `read`, with the place of each line."""
     start = 0
     for line, found in read(path):
@@ -73,7 +73,7 @@ def fetch(wanted: Iterable[Place]) -> Iterator[bytes]:
             yield files[place.path].read(place.size)
 
 
-class Log:
+class TrialLog:
     """The one writer of a run's log. Use as a context manager. ``key in log`` says whether a trial is there.
 
     Of what is written only keys and checksums are kept in memory.
@@ -101,7 +101,7 @@ class Log:
         self._size = os.fstat(self._file).st_size
         self._dirty_since: float | None = None
 
-    def __enter__(self) -> Log:
+    def __enter__(self) -> TrialLog:
         return self
 
     def __exit__(

@@ -23,7 +23,7 @@ _CHECK = b',"check":"%08x"}\n'
 _CHECK_LENGTH = len(_CHECK % 0)
 
 
-class Record(Struct, frozen=True, kw_only=True):
+class TrialRecord(Struct, frozen=True, kw_only=True):
     """A trial's specification, everything that happened in it, and its metrics. ``key`` is the hash of ``spec``.
 
     ``files`` has, by seat, what an agent opened of its own that ``agents`` in `run.json` does not list; it is there
@@ -50,7 +50,7 @@ class Record(Struct, frozen=True, kw_only=True):
         return EpisodeLog(**{name: getattr(self, name) for name in EpisodeLog.__struct_fields__})
 
 
-_decoder = msgspec.json.Decoder(Record)
+_decoder = msgspec.json.Decoder(TrialRecord)
 
 
 Damaged = documents.Unreadable
@@ -62,15 +62,15 @@ def key(spec: TrialSpec) -> str:
     return jsonio.sha256(spec)[:16]
 
 
-def of(spec: TrialSpec, log: EpisodeLog) -> Record:
+def make_record(spec: TrialSpec, log: EpisodeLog) -> TrialRecord:
     """The record of a trial that was played."""
     events, journal = (_all_rounded(some) for some in (log.events, log.journal))
     kept = msgspec.structs.replace(log, events=events, journal=journal)  # what is measured is what is written
     fields = {name: getattr(kept, name) for name in EpisodeLog.__struct_fields__}
-    return Record(key=key(spec), spec=spec, metrics=measure(spec, kept), **fields)
+    return TrialRecord(key=key(spec), spec=spec, metrics=measure(spec, kept), **fields)
 
 
-def encode(record: Record) -> bytes:
+def encode(record: TrialRecord) -> bytes:
     """The record's line, with its checksum as the last field and a newline."""
     body = _encoder.encode(record)[:-1]
     return body + _CHECK % zlib.crc32(body)
@@ -81,7 +81,7 @@ def checksum(line: bytes) -> int:
     return int(line[-_CHECK_LENGTH:][10:18], 16)
 
 
-def decode(line: bytes) -> Record:
+def decode(line: bytes) -> TrialRecord:
     """The record of a whole line.
 
     Raises:

@@ -17,7 +17,7 @@ from hthor import activity, code_identity, guest
 from hthor.errors import HthorError
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import session_history
 from hthor.eval.runner import trial_runner
 from hthor.guest import Given
@@ -89,7 +89,7 @@ class Listened:
 
 
 def listen(
-    folder: Path, wanted: Record, *, agents: Sequence[str] = (), humans: str = "", given: Given | None = None
+    folder: Path, wanted: TrialRecord, *, agents: Sequence[str] = (), humans: str = "", given: Given | None = None
 ) -> Stream:
     """Play a trial of a run again and listen.
 
@@ -106,7 +106,7 @@ def listen(
     spec = wanted.spec
     session = Session(participant=spec.participant, trials=session_history.before(folder, wanted))
     guest.confine_guests(hidden=(str(folder.resolve()),), given=given)
-    stage = trial_runner.Stage(session_history.sources(folder, spec, agents, humans))
+    stage = trial_runner.TrialRunner(session_history.sources(folder, spec, agents, humans))
     with stage.enter(session) as company:
         company.human = person = Listened(company.human)
         if not all(hasattr(type(person.human), name) for name in ("about", "listener")):
@@ -122,7 +122,7 @@ def listen(
     return _stream(wanted, done, person.thoughts, traits)
 
 
-def _stream(wanted: Record, done: Record, thoughts: Sequence[Event], traits: dict[str, float]) -> Stream:
+def _stream(wanted: TrialRecord, done: TrialRecord, thoughts: Sequence[Event], traits: dict[str, float]) -> Stream:
     written = [event for event in done.journal if event.kind in _JOURNAL]
     said = [event for event in done.events if event.kind in ("shown", "confirmed", "declined", "covered")]
     events = sorted([*thoughts, *written, *said], key=lambda event: event.tick)

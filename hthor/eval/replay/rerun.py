@@ -15,13 +15,13 @@ from msgspec import Struct
 from hthor import activity, code_identity, guest, plugins
 from hthor.errors import HthorError
 from hthor.eval.config import robot_team, run_config
-from hthor.eval.config.robot_team import Character
+from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import run_isolation, trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import session_history
 from hthor.eval.runner import fault_report
-from hthor.eval.runner.fault_report import Remains
+from hthor.eval.runner.fault_report import FaultReport
 from hthor.eval.runner.trial_runner import Sources
 from hthor.guest import Given
 from hthor.types import RobotSeat, TrialSpec
@@ -41,14 +41,14 @@ class Rerun(Struct, frozen=True, kw_only=True):
     record came out equal, byte for byte; ``left`` is there when an agent failed.
     """
 
-    record: Record
+    record: TrialRecord
     before: int
     changed: bool
     same: bool
-    left: Remains | None
+    left: FaultReport | None
 
 
-def play(folder: Path, wanted: Record, files: Files, isolation: str = "auto", given: Given | None = None) -> Rerun:
+def play(folder: Path, wanted: TrialRecord, files: Files, isolation: str = "auto", given: Given | None = None) -> Rerun:
     """Play a trial of a run once more.
 
     Raises:
@@ -72,7 +72,7 @@ def play(folder: Path, wanted: Record, files: Files, isolation: str = "auto", gi
     return Rerun(record=done, before=len(trials) - 1, changed=changed, same=same, left=left)
 
 
-def _last(played: Iterator[Record], count: int) -> Record:
+def _last(played: Iterator[TrialRecord], count: int) -> TrialRecord:
     """The last of so many trials, each said before it is played."""
     activity.say(f"playing trial 1 of {count}")
     done = [next(played)]
@@ -82,10 +82,10 @@ def _last(played: Iterator[Record], count: int) -> Record:
     return done[-1]
 
 
-def _minds(spec: TrialSpec, paths: Sequence[str]) -> dict[str, Character]:
+def _minds(spec: TrialSpec, paths: Sequence[str]) -> dict[str, AgentInfo]:
     """For each seat whose agent is not built in, the file that is meant: the very same one, or one of its name."""
-    given = [robot_team.introduce(path) for path in paths]
-    found: dict[str, Character] = {}
+    given = [robot_team.load_agent_info(path) for path in paths]
+    found: dict[str, AgentInfo] = {}
     for seat in spec.robots:
         if seat.agent.name in plugins.names("agent"):
             continue
@@ -98,11 +98,11 @@ def _minds(spec: TrialSpec, paths: Sequence[str]) -> dict[str, Character]:
     return found
 
 
-def _seated(seat: RobotSeat, minds: dict[str, Character]) -> RobotSeat:
+def _seated(seat: RobotSeat, minds: dict[str, AgentInfo]) -> RobotSeat:
     return msgspec.structs.replace(seat, agent=minds[seat.seat].ref) if seat.seat in minds else seat
 
 
-def _sources(folder: Path, spec: TrialSpec, files: Files, minds: dict[str, Character]) -> Sources:
+def _sources(folder: Path, spec: TrialSpec, files: Files, minds: dict[str, AgentInfo]) -> Sources:
     """Where everything lies, looked for before anything is played."""
     if spec.kind_sha256 and not files.kind:
         raise HthorError(f"the kind '{spec.task.kind}' of this trial came from a file of its own. Give it with --kind.")

@@ -8,15 +8,15 @@ from pathlib import Path
 from hthor import code_identity, plugins
 from hthor.errors import HthorError, RunError
 from hthor.eval.config import robot_team, run_config
-from hthor.eval.config.robot_team import Character
+from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.records import reader
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
 from hthor.guest.agent import manifest
 from hthor.types import RobotSeat, TrialSpec
 
 
-def before(folder: Path, wanted: Record) -> tuple[TrialSpec, ...]:
+def before(folder: Path, wanted: TrialRecord) -> tuple[TrialSpec, ...]:
     """The trials of the person's session up to this one.
 
     Raises:
@@ -50,7 +50,7 @@ def sources(folder: Path, spec: TrialSpec, agents: Sequence[str] = (), humans: s
         HthorError: when an agent's file is needed and not given.
     """
     theirs = [seat for seat in spec.robots if seat.agent.name not in plugins.names("agent")]
-    given = [robot_team.introduce(path) for path in agents] if theirs else []
+    given = [robot_team.load_agent_info(path) for path in agents] if theirs else []
     minds = {seat.seat: _same(folder, seat, given) for seat in theirs}
     own = folder / "houses"
     return trial_runner.Sources(
@@ -61,7 +61,7 @@ def sources(folder: Path, spec: TrialSpec, agents: Sequence[str] = (), humans: s
     )
 
 
-def _same(folder: Path, seat: RobotSeat, given: Sequence[Character]) -> Character:
+def _same(folder: Path, seat: RobotSeat, given: Sequence[AgentInfo]) -> AgentInfo:
     """The agent among those that were given which the run was played with."""
     for character in given:
         if character.ref.sha256 == seat.agent.sha256:

@@ -12,13 +12,13 @@ from pathlib import Path
 import msgspec
 
 from hthor.eval.config import run_config
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import bounds, trial_metrics
 from hthor.eval.metrics.trial_metrics import TrialMetrics
 from hthor.eval.records import opened_files, reader, run_isolation, session_restarts
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline, result_file
-from hthor.eval.results.result_file import Counts, Effort, Hashes, Result, Scores
+from hthor.eval.results.result_file import Counts, Effort, Hashes, RunResult, Scores
 from hthor.eval.results.uplift import Uplift, kept
 from hthor.eval.statistics import intervals
 from hthor.eval.statistics.intervals import Estimate
@@ -26,15 +26,15 @@ from hthor.guest import Isolation
 
 
 def summarise(
-    plan: Setup,
+    plan: RunConfig,
     lines: Iterable[bytes],
-    records: Sequence[Record],
+    records: Sequence[TrialRecord],
     effort: Effort | None = None,
     *,
     uplift: Uplift | None = None,
     isolation: Isolation | None = None,
     replays: int = 0,
-) -> Result:
+) -> RunResult:
     """The result of the records of a run, whole or not.
 
     Args:
@@ -49,7 +49,7 @@ def summarise(
         kind: whole if len(kinds) == 1 else scores([record for record in records if record.spec.task.kind == kind])
         for kind in kinds
     }
-    return Result(
+    return RunResult(
         name=plan.name,
         robots=plan.robots,
         agents=opened_files.manifests(plan, records),
@@ -90,13 +90,13 @@ def summarise(
     )
 
 
-def scores(records: Sequence[Record]) -> Scores:
+def scores(records: Sequence[TrialRecord]) -> Scores:
     """Means and intervals of every metric; trials for which a metric has no value do not count for it."""
     single = {name: _score(records, name, attrgetter(name)) for name in trial_metrics.NAMES}
     return Scores(**single, work=_by_name(records, "work"), hindered_by=_by_name(records, "hindered_by"))
 
 
-def by_trial(records: Sequence[Record]) -> tuple[Estimate, ...]:
+def by_trial(records: Sequence[TrialRecord]) -> tuple[Estimate, ...]:
     """Trust after each trial of a session, in their order."""
     rated = [record for record in records if record.metrics.trust is not None]
     last = max((record.spec.index for record in rated), default=-1)
@@ -106,7 +106,7 @@ def by_trial(records: Sequence[Record]) -> tuple[Estimate, ...]:
     )
 
 
-def _by_name(records: Sequence[Record], metric: str) -> dict[str, Estimate]:
+def _by_name(records: Sequence[TrialRecord], metric: str) -> dict[str, Estimate]:
     """An estimate for each name that the metric has values for, in the order in which they first come."""
     names = dict.fromkeys(name for record in records for name in getattr(record.metrics, metric))
     return {name: _score(records, metric, partial(_named, metric, name)) for name in names}
@@ -117,7 +117,7 @@ def _named(metric: str, name: str, one: TrialMetrics) -> float | None:
     return values.get(name)
 
 
-def _score(records: Sequence[Record], name: str, value: Callable[[TrialMetrics], float | None]) -> Estimate:
+def _score(records: Sequence[TrialRecord], name: str, value: Callable[[TrialMetrics], float | None]) -> Estimate:
     measured = [(value(record.metrics), record.spec) for record in records]
     held = [(float(found), spec) for found, spec in measured if found is not None]
     return intervals.estimate(
@@ -128,7 +128,7 @@ def _score(records: Sequence[Record], name: str, value: Callable[[TrialMetrics],
     )
 
 
-def rescore(folder: Path) -> tuple[Setup, Result, Result | None]:
+def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
     """Score a run again from its log alone: its configuration, the new result, and the stored one if there is any.
 
     Every trial's metrics are worked out anew from its events. The stored effort is kept, as no log has it. A stored
@@ -143,11 +143,11 @@ def rescore(folder: Path) -> tuple[Setup, Result, Result | None]:
     return plan, summarise(plan, lines, fresh, effort, uplift=beside, isolation=held, replays=again), stored
 
 
-def measured(folder: Path) -> tuple[Setup, list[Record]]:
+def measured(folder: Path) -> tuple[RunConfig, list[TrialRecord]]:
     """A run's configuration and its records, every trial's metrics worked out anew from its events."""
     plan = run_config.load(folder)
     return plan, _measured(reader.records(folder, plan)[1])
 
 
-def _measured(kept: Iterable[Record]) -> list[Record]:
+def _measured(kept: Iterable[TrialRecord]) -> list[TrialRecord]:
     return [msgspec.structs.replace(record, metrics=trial_metrics.measure(record.spec, record.log)) for record in kept]

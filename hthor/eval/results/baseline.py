@@ -10,10 +10,10 @@ import msgspec
 
 from hthor.errors import RunError
 from hthor.eval.config import run_config
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.records import trial_log
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import pairing, result_file, uplift
 from hthor.eval.results.uplift import Kept, Uplift
 
@@ -21,7 +21,7 @@ FOLDER = "control"
 """Where a run keeps a control of its own."""
 
 
-def beside(folder: Path, plan: Setup, records: Sequence[Record]) -> Kept | None:
+def beside(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> Kept | None:
     """What the run in a folder adds over its control.
 
     Where no control is at hand, as in a folder that was copied elsewhere, what the run's result has recorded is kept,
@@ -30,13 +30,13 @@ def beside(folder: Path, plan: Setup, records: Sequence[Record]) -> Kept | None:
     return uplift.kept(measure(folder, plan, records)) or _recorded(folder, plan)
 
 
-def measure(folder: Path, plan: Setup, records: Sequence[Record]) -> Uplift | None:
+def measure(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> Uplift | None:
     """What the run adds, worked out from its control's log; None where it has no robot or no whole control is found."""
     found = next(_whole(folder, plan, _anywhere(folder)), None)
     return None if found is None else uplift.over(found[2], records, run=found[1].sha256)
 
 
-def find(folder: Path, plan: Setup) -> tuple[Setup, list[Record]] | None:
+def find(folder: Path, plan: RunConfig) -> tuple[RunConfig, list[TrialRecord]] | None:
     """The control of a run and its records: in the run's own folder, or the first in order of names that lies beside.
 
     It counts only when it is whole; its metrics are worked out again from its events.
@@ -44,12 +44,12 @@ def find(folder: Path, plan: Setup) -> tuple[Setup, list[Record]] | None:
     return next(((there, kept) for _, there, kept in _whole(folder, plan, _near(folder))), None)
 
 
-def place(folder: Path, plan: Setup) -> Path | None:
+def place(folder: Path, plan: RunConfig) -> Path | None:
     """Where the control of a run lies: in its folder, beside it, or anywhere else where runs usually are."""
     return next((candidate for candidate, _, _ in _whole(folder, plan, _anywhere(folder))), None)
 
 
-def _recorded(folder: Path, plan: Setup) -> Kept | None:
+def _recorded(folder: Path, plan: RunConfig) -> Kept | None:
     """The uplift that stands in the run's result already."""
     if not plan.seats:
         return None
@@ -57,7 +57,9 @@ def _recorded(folder: Path, plan: Setup) -> Kept | None:
     return None if known is None else msgspec.structs.replace(known, note=uplift.RECORDED)
 
 
-def _whole(folder: Path, plan: Setup, candidates: Iterable[Path]) -> Iterator[tuple[Path, Setup, list[Record]]]:
+def _whole(
+    folder: Path, plan: RunConfig, candidates: Iterable[Path]
+) -> Iterator[tuple[Path, RunConfig, list[TrialRecord]]]:
     """Every whole control of a run among these folders: the one that its result names first."""
     if not plan.seats:
         return
@@ -70,7 +72,7 @@ def _whole(folder: Path, plan: Setup, candidates: Iterable[Path]) -> Iterator[tu
             yield candidate, there, kept
 
 
-def _fits(candidate: Path, plan: Setup) -> Setup | None:
+def _fits(candidate: Path, plan: RunConfig) -> RunConfig | None:
     """The configuration of a run that is a control by what it is: same people, suite, seed, rules and code."""
     try:
         there = run_config.load(candidate)
@@ -107,7 +109,7 @@ def _runs_in(place: Path, patterns: Sequence[str], *, but: Path) -> Iterator[Pat
         yield from sorted(path.parent for path in place.glob(f"{pattern}/run.json") if path.parent.resolve() != but)
 
 
-def _records(folder: Path) -> list[Record]:
+def _records(folder: Path) -> list[TrialRecord]:
     try:
         kept = [_slim(record) for _, record in trial_log.read(folder / "trials.jsonl")]
     except RunError:
@@ -115,7 +117,7 @@ def _records(folder: Path) -> list[Record]:
     return sorted(kept, key=lambda record: (record.spec.participant, record.spec.index))
 
 
-def _slim(record: Record) -> Record:
+def _slim(record: TrialRecord) -> TrialRecord:
     """The record with its metrics worked out anew, and without what only drawing needs."""
     fresh = trial_metrics.measure(record.spec, record.log)
     return msgspec.structs.replace(record, metrics=fresh, paths={}, journal=())

@@ -70,7 +70,7 @@ class McNemar(Struct, frozen=True, kw_only=True):
     p: float
 
 
-def of(pairs: Sequence[Pair], metric: str, *, level: float = intervals.LEVEL) -> Difference | None:
+def paired_difference(pairs: Sequence[Pair], metric: str, *, level: float = intervals.LEVEL) -> Difference | None:
     """The difference in a metric with an interval of this level; None where no trial has it with both."""
     held = [
         (getattr(pair.one.metrics, metric), getattr(pair.other.metrics, metric), pair.one.spec)

@@ -9,9 +9,9 @@ import msgspec
 from msgspec import Struct
 
 from hthor.errors import RunError
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.types import TrialSpec
 
 _SAME = {
@@ -27,8 +27,8 @@ _SAME = {
 class Pair(Struct, frozen=True, kw_only=True):
     """What two runs made of the same occasion."""
 
-    one: Record
-    other: Record
+    one: TrialRecord
+    other: TrialRecord
 
 
 class Joined(Struct, frozen=True, kw_only=True):
@@ -49,12 +49,12 @@ def occasion(spec: TrialSpec) -> str:
     return trial_record.key(msgspec.structs.replace(spec, robots=(), assets_sha256="", **of_robots))
 
 
-def difference(one: Setup, other: Setup) -> str:
+def difference(one: RunConfig, other: RunConfig) -> str:
     """The first field in which two runs differ so that their trials cannot be paired; empty when they can."""
     return next((field for field in _SAME if _value(one, field) != _value(other, field)), "")
 
 
-def check(one: tuple[Path, Setup], other: tuple[Path, Setup]) -> None:
+def check(one: tuple[Path, RunConfig], other: tuple[Path, RunConfig]) -> None:
     """See that two runs can be compared.
 
     Raises:
@@ -70,7 +70,7 @@ def check(one: tuple[Path, Setup], other: tuple[Path, Setup]) -> None:
     )
 
 
-def join(one: Sequence[Record], other: Sequence[Record]) -> Joined:
+def join(one: Sequence[TrialRecord], other: Sequence[TrialRecord]) -> Joined:
     """The trials that both have."""
     first, second = ({occasion(found.spec): found for found in some} for some in (one, other))
     return Joined(
@@ -80,7 +80,7 @@ def join(one: Sequence[Record], other: Sequence[Record]) -> Joined:
     )
 
 
-def _value(plan: Setup, field: str) -> object:
+def _value(plan: RunConfig, field: str) -> object:
     value: object = plan
     for name in field.split("."):
         value = getattr(value, name, "") if value is not None else ""

@@ -9,7 +9,7 @@ from msgspec import Struct
 from hthor import documents, jsonio
 from hthor.errors import RunError
 from hthor.eval.config import robot_team, run_config
-from hthor.eval.config.human_populations import HumansRef
+from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
 from hthor.eval.results.uplift import Kept
 from hthor.eval.statistics.intervals import Estimate
@@ -92,7 +92,7 @@ class Effort(Struct, frozen=True, kw_only=True):
     replays: int = 0
 
 
-class Result(Struct, frozen=True, kw_only=True):
+class RunResult(Struct, frozen=True, kw_only=True):
     """The run's `result.json`.
 
     ``trust_by_trial`` is the rating after the first, second, ... trial of a person's session, empty without a robot.
@@ -105,7 +105,7 @@ class Result(Struct, frozen=True, kw_only=True):
     name: str
     robots: tuple[RobotSeat, ...]
     agents: tuple[Manifest, ...] = ()
-    humans: HumansRef
+    humans: HumanModelRef
     suite: SuiteRef
     kind: KindRef | None = None
     seed: int
@@ -128,7 +128,7 @@ class Result(Struct, frozen=True, kw_only=True):
         return robot_team.label(self.name, self.robots)
 
 
-def load(folder: Path) -> Result | None:
+def load(folder: Path) -> RunResult | None:
     """The stored result of a run, None when there is none.
 
     Raises:
@@ -138,7 +138,7 @@ def load(folder: Path) -> Result | None:
     if not path.is_file():
         return None
     hint = f"delete the file, and 'hthor score {folder}' writes it again"
-    return documents.read(path, Result, RunError, schema=SCHEMA, hint=hint)
+    return documents.read(path, RunResult, RunError, schema=SCHEMA, hint=hint)
 
 
 class _Named(Struct, frozen=True):
@@ -167,6 +167,6 @@ def outdated(path: Path) -> bool:
     return name != SCHEMA and name.startswith(SCHEMA.partition("/")[0])
 
 
-def store(folder: Path, result: Result) -> None:
+def store(folder: Path, result: RunResult) -> None:
     """Write `result.json`."""
     jsonio.write(folder / "result.json", jsonio.pretty(result))

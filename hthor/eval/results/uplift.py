@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import msgspec
 from msgspec import Struct
 
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import paired_difference, pairing
 from hthor.eval.results.paired_difference import Difference
 
@@ -43,10 +43,10 @@ def kept(one: Uplift | None) -> Kept | None:
     return Kept(control=one.control, sr=one.sr, twsr=one.twsr, time_s=one.time_s)
 
 
-def over(control: Sequence[Record], records: Sequence[Record], *, run: str) -> Uplift | None:
+def over(control: Sequence[TrialRecord], records: Sequence[TrialRecord], *, run: str) -> Uplift | None:
     """The uplift of ``records`` over those of a control whose hash is ``run``; None without a trial in common."""
     pairs = pairing.join(control, records).pairs
-    sr, twsr, time_s = (paired_difference.of(pairs, metric) for metric in ("sr", "twsr", "time_s"))
+    sr, twsr, time_s = (paired_difference.paired_difference(pairs, metric) for metric in ("sr", "twsr", "time_s"))
     if sr is None or twsr is None or time_s is None:
         return None
     return Uplift(control=run, sr=sr, twsr=twsr, time_s=time_s)

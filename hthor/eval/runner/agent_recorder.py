@@ -11,7 +11,7 @@ LAST = 20
 """How many of the last times that a mind was asked are kept."""
 
 
-class Watched:
+class RecordedAgent:
     """A mind, and the observations that it was given in the trial with the actions that came of them.
 
     Args:

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 from hthor import jsonio
 from hthor.errors import HthorError, RunError
-from hthor.eval.records.session_restarts import DoOvers
-from hthor.eval.runner.messages import Again, Finished, Lost, Played
+from hthor.eval.records.session_restarts import SessionRestarts
+from hthor.eval.runner.messages import Finished, SessionAbandoned, SessionRestarted, TrialDone
 
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
-    from hthor.eval.records.trial_log import Log
+    from hthor.eval.records.trial_log import TrialLog
     from hthor.eval.runner.engines import Engine, Make
-    from hthor.eval.runner.fault_report import Keeper
+    from hthor.eval.runner.fault_report import FaultArchive
     from hthor.eval.runner.run import Watcher
 
 ERRORS = "error.txt"
@@ -39,7 +39,7 @@ class InternalFailure(HthorError):
 
 
 @dataclass
-class Course:
+class CollectedTrials:
     """What came of playing: CPU time [s], new trials, sessions that began again, and those that were given up.
 
     ``void`` are the participants whose sessions are to be played again: what came of them does not count.
@@ -50,7 +50,7 @@ class Course:
     other: int = 0
     played: int = 0
     replays: int = 0
-    lost: list[Lost] = field(default_factory=list)
+    lost: list[SessionAbandoned] = field(default_factory=list)
     void: set[int] = field(default_factory=set)
 
     @property
@@ -60,22 +60,22 @@ class Course:
 
 
 def play(
-    book: Log,
+    book: TrialLog,
     engine: Engine,
     sessions: Sequence[Session],
     make: Make,
     watch: Watcher,
-    keeper: Keeper,
+    keeper: FaultArchive,
     stop: threading.Event,
     *,
     steady: bool = True,
-) -> Course:
+) -> CollectedTrials:
     """Play sessions and write down what is new, and beside the log what is left of agents that failed.
 
     Args:
         steady: whether a trial that is played again has to go the same way.
     """
-    came, do_overs = Course(), DoOvers(book.path.parent)
+    came, do_overs = CollectedTrials(), SessionRestarts(book.path.parent)
     _listen(book, engine, sessions, make, watch, keeper, stop, came, do_overs)
     if (left := [session for session in sessions if session.participant in came.void]) and not stop.is_set():
         came.void.clear()
@@ -88,21 +88,21 @@ def play(
 
 
 def _listen(
-    book: Log,
+    book: TrialLog,
     engine: Engine,
     sessions: Sequence[Session],
     make: Make,
     watch: Watcher,
-    keeper: Keeper,
+    keeper: FaultArchive,
     stop: threading.Event,
-    came: Course,
-    do_overs: DoOvers,
+    came: CollectedTrials,
+    do_overs: SessionRestarts,
 ) -> None:
-    """Take in what an engine tells of sessions, until all are over; `Course` has what came of it."""
+    """Take in what an engine tells of sessions, until all are over; `CollectedTrials` has what came of it."""
     draining = False
     with closing(engine.perform(sessions, make)) as stream:
         for news in stream:
-            if isinstance(news, Played):
+            if isinstance(news, TrialDone):
                 came.played += 1
                 if _voided(news, came, do_overs, watch, known=news.key in book):
                     continue
@@ -115,10 +115,10 @@ def _listen(
                     came.other += not book.agrees(news.key, news.line)
             elif isinstance(news, Finished):
                 came.cpu_s += news.cpu_s
-            elif isinstance(news, Again):
+            elif isinstance(news, SessionRestarted):
                 came.replays += 1
                 watch.note(f"the session of participant {news.participant} begins again: {news.cause}")
-            elif isinstance(news, Lost) and not _voided(news, came, do_overs, watch):
+            elif isinstance(news, SessionAbandoned) and not _voided(news, came, do_overs, watch):
                 came.lost.append(news)
                 watch.note(f"the session of participant {news.participant} is given up: {news.cause}")
             book.sync(due=True)
@@ -131,7 +131,14 @@ def _listen(
                 watch.note("stopping when the trials that are being played are over; Ctrl-C again stops at once")
 
 
-def _voided(news: Played | Lost, came: Course, do_overs: DoOvers, watch: Watcher, *, known: bool = False) -> bool:
+def _voided(
+    news: TrialDone | SessionAbandoned,
+    came: CollectedTrials,
+    do_overs: SessionRestarts,
+    watch: Watcher,
+    *,
+    known: bool = False,
+) -> bool:
     """Whether news is of a session that is to be played again, as an agent's process was killed in it."""
     if news.participant not in came.void:
         if known or not news.killed or not do_overs.take(news.participant):
@@ -142,7 +149,7 @@ def _voided(news: Played | Lost, came: Course, do_overs: DoOvers, watch: Watcher
     return True
 
 
-def unfinished(folder: Path, lost: Sequence[Lost], missing: int, wanted: int) -> HthorError:
+def unfinished(folder: Path, lost: Sequence[SessionAbandoned], missing: int, wanted: int) -> HthorError:
     """What to tell of sessions that were given up; their tracebacks go to a file."""
     told = "; ".join(f"participant {one.participant}: {one.cause.rstrip('.')}" for one in lost[:_HOPELESS])
     more = f"; and {len(lost) - _HOPELESS} more" if len(lost) > _HOPELESS else ""

@@ -13,17 +13,17 @@ from msgspec import Struct
 
 from hthor import guest, jsonio
 from hthor.eval.config import run_config
-from hthor.eval.config.robot_team import Crew
-from hthor.eval.config.run_config import Setup
-from hthor.eval.config.sessions import Session, sessions
-from hthor.eval.config.task_selection import Programme
+from hthor.eval.config.robot_team import RobotTeam
+from hthor.eval.config.run_config import RunConfig
+from hthor.eval.config.sessions import Session, make_sessions
+from hthor.eval.config.task_selection import TaskSelection
 from hthor.eval.records import opened_files, run_isolation
-from hthor.eval.results.result_file import Result
+from hthor.eval.results.result_file import RunResult
 from hthor.eval.runner import engines, queue, run, run_options, trial_runner
 from hthor.eval.runner.collector import InternalFailure, Unfinished
 from hthor.eval.runner.engines import Make
 from hthor.eval.runner.run import Watcher
-from hthor.eval.runner.run_options import Intent, Options, Part
+from hthor.eval.runner.run_options import ResolvedRuns, RunJob, RunOptions
 from hthor.guest import Isolation
 from hthor.guest.agent import inputs
 from hthor.tasks.suites import library
@@ -36,19 +36,19 @@ class ClosableWatcher(Watcher, Protocol):
         """The run is over."""
 
 
-class Done(Struct, frozen=True, kw_only=True):
+class FinishedRun(Struct, frozen=True, kw_only=True):
     """A run that is whole."""
 
-    plan: Setup
+    plan: RunConfig
     folder: Path
-    result: Result
+    result: RunResult
 
 
-def conduct(
-    options: Options,
+def run_experiment(
+    options: RunOptions,
     watcher: Callable[[str], ClosableWatcher],
-    agree: Callable[[Intent], bool] = lambda _: True,
-) -> Iterator[Done]:
+    agree: Callable[[ResolvedRuns], bool] = lambda _: True,
+) -> Iterator[FinishedRun]:
     """Run every crew's evaluation with every people; each that is whole is given at once, peoples in turn.
 
     Everything that the user can have got wrong is looked at before the first trial is played. A run that lacks
@@ -58,7 +58,7 @@ def conduct(
         watcher: makes who follows the run of this name.
         agree: is told what will be done before anything is; nothing is where it says no.
     """
-    asked = run_options.settle(options)
+    asked = run_options.resolve_options(options)
     for part in (*asked.parts, *asked.control_of.values()):
         run_config.examine(part.folder, part.plan)
         _engine(options, asked.chosen, part.crew)  # is there such an engine?
@@ -70,7 +70,7 @@ def conduct(
     told: set[str] = set()
     unfinished: list[Unfinished | InternalFailure] = []
 
-    def perform(part: Part) -> Result | None:
+    def perform(part: RunJob) -> RunResult | None:
         watch = watcher(part.title)
         try:
             return _perform(
@@ -82,7 +82,7 @@ def conduct(
         finally:
             watch.close()
 
-    early: dict[Path, Result | None] = {}
+    early: dict[Path, RunResult | None] = {}
     for part in asked.parts:
         first = asked.control_of.get(part.folder)
         if first is not None and first.folder not in early:
@@ -90,24 +90,24 @@ def conduct(
         result = early[part.folder] if part.folder in early else perform(part)
         early[part.folder] = result
         if result is not None:
-            yield Done(plan=part.plan, folder=part.folder, result=result)
+            yield FinishedRun(plan=part.plan, folder=part.folder, result=result)
     if unfinished:
         raise unfinished[0] if len(unfinished) == 1 else Unfinished(" ".join(map(str, unfinished)))
 
 
-def _engine(options: Options, chosen: Programme, crew: Crew) -> engines.Engine:
+def _engine(options: RunOptions, chosen: TaskSelection, crew: RobotTeam) -> engines.Engine:
     limit_s = options.trial_limit or queue.limit(chosen.suite.tasks, len(crew.minds), options.step_limit)
     return engines.find(options.engine, jobs=options.jobs, address=options.address, gpus=crew.gpus, limit_s=limit_s)
 
 
 def _perform(
-    options: Options,
-    chosen: Programme,
-    part: Part,
+    options: RunOptions,
+    chosen: TaskSelection,
+    part: RunJob,
     watch: ClosableWatcher,
     told: set[str],
     held: Isolation | None,
-) -> Result:
+) -> RunResult:
     """One run. What was ``told`` of an earlier one is not told again."""
     crew, plan, folder = part.crew, part.plan, part.folder
     for note in chosen.notes:
@@ -120,7 +120,7 @@ def _perform(
         extra["suite.json"] = library.encode(chosen.suite)
     if held is not None:
         extra[run_isolation.NAME] = jsonio.pretty(run_isolation.weakest(folder, held, options.require_isolation))
-    return run.evaluate(
+    return run.run_evaluation(
         plan,
         deal(options, chosen, part),
         maker(options, chosen, part, held, houses=folder / "houses" if own else None),
@@ -133,10 +133,10 @@ def _perform(
     )
 
 
-def deal(options: Options, chosen: Programme, part: Part) -> tuple[Session, ...]:
+def deal(options: RunOptions, chosen: TaskSelection, part: RunJob) -> tuple[Session, ...]:
     """The sessions of a run, or of its shard."""
     plan = part.plan
-    dealt = sessions(
+    dealt = make_sessions(
         chosen.suite,
         agent=part.crew,
         human=part.people,
@@ -150,7 +150,9 @@ def deal(options: Options, chosen: Programme, part: Part) -> tuple[Session, ...]
     return plan.shard.share(dealt) if plan.shard else dealt
 
 
-def maker(options: Options, chosen: Programme, part: Part, held: Isolation | None, houses: Path | None) -> Make:
+def maker(
+    options: RunOptions, chosen: TaskSelection, part: RunJob, held: Isolation | None, houses: Path | None
+) -> Make:
     """What makes a worker's player.
 
     Args:
@@ -167,19 +169,19 @@ def maker(options: Options, chosen: Programme, part: Part, held: Isolation | Non
         people=part.people.word,
     )
     if held is None:
-        return functools.partial(trial_runner.player, sources)
+        return functools.partial(trial_runner.make_runner, sources)
     hidden = (*run_options.hidden(options), str(part.folder.resolve()))
     level = options.isolation if held.level == guest.SERVED else held.level  # of whoever is beside the served one
     more = inputs.read(options.agent_args, options.readable)
     return functools.partial(run_isolation.player, sources, level, hidden, more)
 
 
-def own_houses(options: Options) -> dict[str, bytes]:
+def own_houses(options: RunOptions) -> dict[str, bytes]:
     """The house files that the suite brings with it, by name; none for a suite of ours."""
     return library.own_houses(options.suite) if options.suite and Path(options.suite).exists() else {}
 
 
-def _again(options: Options, chosen: Programme, part: Part) -> str:
+def _again(options: RunOptions, chosen: TaskSelection, part: RunJob) -> str:
     """The command that plays a trial of a run once more, but for the trial's key, with its author looking on."""
     words = ["hthor", "agent", "run"]
     files = [("--agent", path) for path in dict.fromkeys(part.crew.minds.values())]

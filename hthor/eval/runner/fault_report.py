@@ -17,7 +17,7 @@ from msgspec import Struct
 from hthor import documents, jsonio, rules
 from hthor.episode import Fault
 from hthor.errors import HthorError, RunError
-from hthor.eval.runner.agent_recorder import Watched
+from hthor.eval.runner.agent_recorder import RecordedAgent
 from hthor.types import Action, Observation, TrialSpec
 
 SCHEMA = "hthor.faults/1"
@@ -48,7 +48,7 @@ class Failure(Struct, frozen=True, kw_only=True):
     looks: tuple[Look, ...] = ()
 
 
-class Remains(Struct, frozen=True, kw_only=True):
+class FaultReport(Struct, frozen=True, kw_only=True):
     """A trial in which agents failed. ``again`` is the command that plays it once more."""
 
     schema: str = SCHEMA
@@ -60,13 +60,13 @@ class Remains(Struct, frozen=True, kw_only=True):
     again: str = ""
 
 
-def of(key: str, trial: TrialSpec, faults: Sequence[Fault], minds: Mapping[str, Any]) -> Remains:
+def of(key: str, trial: TrialSpec, faults: Sequence[Fault], minds: Mapping[str, Any]) -> FaultReport:
     """What is left of the agents that failed in a trial; of those that were not watched only the fault."""
     names = {robot.seat: robot.agent.name for robot in trial.robots}
     failures = []
     for fault in faults:
         mind = minds.get(fault.seat)
-        output, looks = (mind.output, tuple(mind.looks)) if isinstance(mind, Watched) else ("", ())
+        output, looks = (mind.output, tuple(mind.looks)) if isinstance(mind, RecordedAgent) else ("", ())
         failures.append(
             Failure(
                 seat=fault.seat,
@@ -79,7 +79,7 @@ def of(key: str, trial: TrialSpec, faults: Sequence[Fault], minds: Mapping[str, 
                 looks=tuple(_look(*pair) for pair in looks),
             )
         )
-    return Remains(
+    return FaultReport(
         key=key, task=trial.task.id, participant=trial.participant, index=trial.index, failures=tuple(failures)
     )
 
@@ -92,20 +92,20 @@ def _look(observation: Observation, action: Action | None) -> Look:
     return Look(tick=observation.tick, observation=told, action=action)
 
 
-_box: dict[str, Remains] = {}
+_box: dict[str, FaultReport] = {}
 
 
-def leave(left: Remains) -> None:
+def leave(left: FaultReport) -> None:
     """Lay it down in this process until whoever sends the trial's record takes it along."""
     _box[left.key] = left
 
 
-def take(key: str) -> Remains | None:
+def take(key: str) -> FaultReport | None:
     """What was laid down of a trial, which is then gone from here."""
     return _box.pop(key, None)
 
 
-class Keeper:
+class FaultArchive:
     """Writes remains into a run's folder, as many as there is room for.
 
     Args:
@@ -116,7 +116,7 @@ class Keeper:
         self._folder, self._again = folder / FOLDER, again
         self._kinds: dict[str, int] | None = None
 
-    def keep(self, left: Remains) -> None:
+    def keep(self, left: FaultReport) -> None:
         """Write a trial's remains, unless there are enough of its kind."""
         if self._kinds is None:
             self._kinds = self._counted()
@@ -138,13 +138,13 @@ class Keeper:
         return kinds
 
 
-def load(path: Path) -> Remains:
+def load(path: Path) -> FaultReport:
     """What a file says.
 
     Raises:
         RunError: when it cannot be read.
     """
-    return documents.read(path, Remains, RunError, hint="it only describes faults: delete it, and go on")
+    return documents.read(path, FaultReport, RunError, hint="it only describes faults: delete it, and go on")
 
 
 def command(folder: Path, key: str) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from hthor.errors import HthorError
 from hthor.eval.runner.engines import Make, SessionFailed
 from hthor.eval.runner.engines.local import Engine
-from hthor.eval.runner.messages import Lost, News
+from hthor.eval.runner.messages import News, SessionAbandoned
 
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 class SessionLost(HthorError):
     """A session could not be played. ``detail`` is the traceback of a bug, empty when there is none."""
 
-    def __init__(self, lost: Lost) -> None:
+    def __init__(self, lost: SessionAbandoned) -> None:
         self.exit_code, self.detail = 1 if lost.detail else HthorError.exit_code, lost.detail
         super().__init__(lost.cause if lost.detail else f"the session of participant {lost.participant}: {lost.cause}")
 
 
-def perform(sessions: Sequence[Session], make: Make, *, jobs: int) -> Generator[News | None, None, None]:
+def run_sessions(sessions: Sequence[Session], make: Make, *, jobs: int) -> Generator[News | None, None, None]:
     """Play sessions in ``jobs`` worker processes; see `hthor.eval.runner.engines.Engine`.
 
     Raises:
@@ -31,9 +31,9 @@ def perform(sessions: Sequence[Session], make: Make, *, jobs: int) -> Generator[
     """
     with closing(Engine(jobs=jobs).perform(sessions, make)) as stream:
         for news in stream:
-            if isinstance(news, Lost):
+            if isinstance(news, SessionAbandoned):
                 raise SessionLost(news)
             yield news
 
 
-__all__ = ["Make", "SessionFailed", "SessionLost", "perform"]
+__all__ = ["Make", "SessionFailed", "SessionLost", "run_sessions"]

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from msgspec import Struct
 
 if TYPE_CHECKING:
-    from hthor.eval.runner.fault_report import Remains
+    from hthor.eval.runner.fault_report import FaultReport
 
 
-class Played(Struct, frozen=True, kw_only=True):
+class TrialDone(Struct, frozen=True, kw_only=True):
     """A trial is over. ``line`` is its whole record, ``left`` what is left of agents that failed in it.
 
     ``killed`` says that an agent's process was ended as if from outside; its session may be played again.
@@ -21,7 +21,7 @@ class Played(Struct, frozen=True, kw_only=True):
     line: bytes
     met: bool
     faulty: bool
-    left: Remains | None = None
+    left: FaultReport | None = None
     killed: bool = False
 
 
@@ -31,14 +31,14 @@ class Finished(Struct, frozen=True, kw_only=True):
     cpu_s: float
 
 
-class Again(Struct, frozen=True, kw_only=True):
+class SessionRestarted(Struct, frozen=True, kw_only=True):
     """A session begins again, as its worker was lost."""
 
     participant: int
     cause: str
 
 
-class Lost(Struct, frozen=True, kw_only=True):
+class SessionAbandoned(Struct, frozen=True, kw_only=True):
     """A session was given up; the others go on. ``detail`` is the traceback of a bug, empty when there is none.
 
     ``killed`` says that an agent's process was ended as if from outside before it could say what it is.
@@ -57,4 +57,4 @@ class Failed(Struct, frozen=True, kw_only=True):
     message: str
 
 
-News = Played | Finished | Again | Lost | Failed
+News = TrialDone | Finished | SessionRestarted | SessionAbandoned | Failed

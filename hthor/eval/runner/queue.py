@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hthor import rules
-from hthor.eval.runner.messages import Again, Lost
+from hthor.eval.runner.messages import SessionAbandoned, SessionRestarted
 
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
@@ -49,12 +49,14 @@ class Queue:
         """The next session, and the number of this attempt."""
         return self._waiting.popleft()
 
-    def again(self, session: Session, attempt: int, cause: str) -> Again | Lost:
+    def again(self, session: Session, attempt: int, cause: str) -> SessionRestarted | SessionAbandoned:
         """A worker was lost with this session in hand; it comes next, unless it has cost too many."""
         if attempt >= ATTEMPTS:
-            return Lost(participant=session.participant, cause=f"it ended {ATTEMPTS} workers, the last by {cause}")
+            return SessionAbandoned(
+                participant=session.participant, cause=f"it ended {ATTEMPTS} workers, the last by {cause}"
+            )
         self._waiting.appendleft((session, attempt + 1))
-        return Again(participant=session.participant, cause=f"its worker was ended by {cause}")
+        return SessionRestarted(participant=session.participant, cause=f"its worker was ended by {cause}")
 
     def clear(self) -> None:
         """Hand out no more."""

@@ -10,16 +10,16 @@ from typing import Protocol
 
 from hthor import jsonio
 from hthor.eval.config import run_config
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import platform, reader, run_isolation, session_restarts, trial_log, trial_record
-from hthor.eval.records.trial_log import Log
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_log import TrialLog
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, baseline, result_file
-from hthor.eval.results.result_file import Effort, Result
+from hthor.eval.results.result_file import Effort, RunResult
 from hthor.eval.runner import collector, engines
 from hthor.eval.runner.engines import Engine, Make
-from hthor.eval.runner.fault_report import Keeper
+from hthor.eval.runner.fault_report import FaultArchive
 from hthor.eval.runner.interrupt import Interrupted, stoppable
 
 EFFORT = "effort.json"
@@ -42,8 +42,8 @@ class Watcher(Protocol):
         """Something that the user should read."""
 
 
-def evaluate(
-    plan: Setup,
+def run_evaluation(
+    plan: RunConfig,
     sessions: Sequence[Session],
     make: Make,
     *,
@@ -53,8 +53,8 @@ def evaluate(
     watch: Watcher,
     extra: Mapping[str, bytes] | None = None,
     again: str = "",
-    check: Callable[[Setup, Sequence[Record]], None] | None = None,
-) -> Result:
+    check: Callable[[RunConfig, Sequence[TrialRecord]], None] | None = None,
+) -> RunResult:
     """Play what a run still lacks, and score it.
 
     Args:
@@ -82,7 +82,7 @@ def evaluate(
 
 
 def _evaluate(
-    plan: Setup,
+    plan: RunConfig,
     sessions: Sequence[Session],
     make: Make,
     folder: Path,
@@ -90,13 +90,13 @@ def _evaluate(
     watch: Watcher,
     extra: Mapping[str, bytes] | None,
     again: str,
-    check: Callable[[Setup, Sequence[Record]], None] | None,
+    check: Callable[[RunConfig, Sequence[TrialRecord]], None] | None,
     stop: threading.Event,
-) -> Result:
+) -> RunResult:
     began = time.monotonic()
     run_config.examine(folder, plan)
     plan = run_config.titled(folder, plan)
-    with Log(folder) as book:
+    with TrialLog(folder) as book:
         run_config.write(folder, plan)
         for name, data in (extra or {}).items():
             jsonio.write(folder / name, data)
@@ -108,7 +108,7 @@ def _evaluate(
         watch.begin(len(wanted), sum(key in book for key in wanted))
         if book.torn:
             watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")
-        keeper = Keeper(folder, again)
+        keeper = FaultArchive(folder, again)
         if left:
             platform.note(folder)
         came = collector.play(book, engine, left, make, watch, keeper, stop, steady=not plan.realtime) if left else None
@@ -128,7 +128,7 @@ def _evaluate(
     return _finish(folder, plan, effort)
 
 
-def _finish(folder: Path, plan: Setup, effort: Effort | None) -> Result:
+def _finish(folder: Path, plan: RunConfig, effort: Effort | None) -> RunResult:
     """Score what is there, and store that: a whole run's result, or what a shard took."""
     there, records = reader.digest(folder, plan)
     if plan.shard:

@@ -11,9 +11,9 @@ from msgspec import Struct
 from hthor import code_identity, guest
 from hthor.errors import HthorError
 from hthor.eval.config import human_populations, robot_team, run_config, shard, task_selection
-from hthor.eval.config.robot_team import Crew
-from hthor.eval.config.run_config import Setup
-from hthor.eval.config.task_selection import Programme
+from hthor.eval.config.robot_team import RobotTeam
+from hthor.eval.config.run_config import RunConfig
+from hthor.eval.config.task_selection import TaskSelection
 from hthor.eval.records import run_isolation
 from hthor.eval.results import baseline
 from hthor.eval.runner import engines, trial_runner
@@ -26,7 +26,7 @@ from hthor.types import cameras, detector_specs
 RUNS = Path("runs")
 
 
-class Options(Struct, frozen=True, kw_only=True):
+class RunOptions(Struct, frozen=True, kw_only=True):
     """What the user asked for, empty where the default depends on the rest. ``name`` is the user's own for the run.
 
     With ``control``, the same people also do the same tasks without a robot, unless such a run lies there already.
@@ -64,35 +64,35 @@ class Options(Struct, frozen=True, kw_only=True):
     readable: tuple[Path, ...] = ()
 
 
-class Part(Struct, frozen=True, kw_only=True):
+class RunJob(Struct, frozen=True, kw_only=True):
     """One run of several: who is evaluated with whom, and where that is written."""
 
-    crew: Crew
+    crew: RobotTeam
     people: People
-    plan: Setup
+    plan: RunConfig
     folder: Path
     title: str
 
 
-class Intent(Struct, frozen=True, kw_only=True):
+class ResolvedRuns(Struct, frozen=True, kw_only=True):
     """What a command stands for, when everything is settled and before anything is written: the tasks, the runs that
     were asked for, and what will hold agents of the user's own. ``control_of`` has, for the folder of each run that has
     no control yet, the run that becomes it, which may be one that was asked for.
     """
 
-    chosen: Programme
-    parts: tuple[Part, ...]
-    control_of: dict[Path, Part]
+    chosen: TaskSelection
+    parts: tuple[RunJob, ...]
+    control_of: dict[Path, RunJob]
     held: Isolation | None
 
     @property
-    def controls(self) -> tuple[Part, ...]:
+    def controls(self) -> tuple[RunJob, ...]:
         """Runs that nobody asked for, played as the control of others."""
         asked = {part.folder for part in self.parts}
         return tuple({part.folder: part for part in self.control_of.values() if part.folder not in asked}.values())
 
 
-def settle(options: Options) -> Intent:
+def resolve_options(options: RunOptions) -> ResolvedRuns:
     """Find out what is asked for. Nothing is written.
 
     Raises:
@@ -114,14 +114,14 @@ def settle(options: Options) -> Intent:
     parts = _parts(options, chosen, _crews(options, chosen, detector, camera), whom, shown)
     controls = _controls(options, chosen, parts) if options.control and not options.shard else {}
     minds = sorted({mind for part in parts for mind in part.crew.minds.values()})
-    held = run_isolation.settle(options.isolation, options.require_isolation, minds)
-    return Intent(chosen=chosen, parts=tuple(parts), control_of=controls, held=held)
+    held = run_isolation.resolve_isolation(options.isolation, options.require_isolation, minds)
+    return ResolvedRuns(chosen=chosen, parts=tuple(parts), control_of=controls, held=held)
 
 
-def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dict[Path, Part]:
+def _controls(options: RunOptions, chosen: TaskSelection, parts: Sequence[RunJob]) -> dict[Path, RunJob]:
     """For the folder of each run with robots that has no control yet, the run that is its control."""
-    crew = robot_team.form(["scout"], [robot_team.NOBODY])
-    found: dict[Path, Part] = {}
+    crew = robot_team.form_team(["scout"], [robot_team.NOBODY])
+    found: dict[Path, RunJob] = {}
     for part in parts:
         if not part.plan.seats or baseline.find(part.folder, part.plan) is not None:
             continue
@@ -131,7 +131,7 @@ def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dic
             found[part.folder] = asked
             continue
         assets = part.plan.assets if options.assets else None
-        plan = run_config.settle(
+        plan = run_config.build_config(
             chosen.suite,
             crew,
             human=part.people,
@@ -148,22 +148,22 @@ def _controls(options: Options, chosen: Programme, parts: Sequence[Part]) -> dic
         else:
             folder = part.folder / baseline.FOLDER if len(same) == 1 else part.folder.parent / plan.crew
         title = part.title.replace(part.plan.name, robot_team.NO_ROBOT, 1)
-        found[part.folder] = Part(crew=crew, people=part.people, plan=plan, folder=folder, title=title)
+        found[part.folder] = RunJob(crew=crew, people=part.people, plan=plan, folder=folder, title=title)
     return found
 
 
 def _parts(
-    options: Options,
-    chosen: Programme,
-    found: Sequence[Crew],
+    options: RunOptions,
+    chosen: TaskSelection,
+    found: Sequence[RobotTeam],
     whom: Sequence[People],
     shown: run_config.AssetsRef | None,
-) -> list[Part]:
+) -> list[RunJob]:
     """Every run, each with a folder of its own."""
-    parts: list[Part] = []
+    parts: list[RunJob] = []
     for people in whom:
         for crew in found:
-            plan = run_config.settle(
+            plan = run_config.build_config(
                 chosen.suite,
                 crew,
                 human=people,
@@ -186,7 +186,7 @@ def _parts(
                 plan = run_config.divide(plan, shard.read(options.shard), len(chosen.suite.tasks))
                 assert plan.shard
                 title, folder = f"{title}, shard {plan.shard.words}", plan.shard.folder(folder)
-            parts.append(Part(crew=crew, people=people, plan=plan, folder=folder, title=title))
+            parts.append(RunJob(crew=crew, people=people, plan=plan, folder=folder, title=title))
     names = [part.plan.name for part in parts[: len(found)]]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
@@ -194,7 +194,7 @@ def _parts(
     return parts
 
 
-def hidden(options: Options) -> tuple[str, ...]:
+def hidden(options: RunOptions) -> tuple[str, ...]:
     """What no agent may read, even if it lies in its own folder: runs, tasks and people."""
     words = (*options.humans, options.suite, options.kind, str(options.out or ""))
     places = [RUNS, *(Path(word.rpartition("@")[2]) for word in words if word)]
@@ -203,7 +203,7 @@ def hidden(options: Options) -> tuple[str, ...]:
     return tuple(str(path.resolve()) for path in places if path.exists())
 
 
-def _crews(options: Options, chosen: Programme, detector: str, camera: str) -> list[Crew]:
+def _crews(options: RunOptions, chosen: TaskSelection, detector: str, camera: str) -> list[RobotTeam]:
     """Who is evaluated, one run each."""
     if options.robots:
         if options.robot:
@@ -215,12 +215,12 @@ def _crews(options: Options, chosen: Programme, detector: str, camera: str) -> l
             f"the kinds of task in the suite '{chosen.suite.name}' want different robots; name them with --robots, "
             "or choose one kind with --kind."
         )
-    shapes = [robot_team.embody(body) for body in bodies]
-    minds = [robot_team.introduce(agent) for agent in options.agents]
-    return [robot_team.form(shapes, [mind] * len(shapes), detector, camera) for mind in minds]
+    shapes = [robot_team.load_robot_info(body) for body in bodies]
+    minds = [robot_team.load_agent_info(agent) for agent in options.agents]
+    return [robot_team.form_team(shapes, [mind] * len(shapes), detector, camera) for mind in minds]
 
 
-def _folder(options: Options, plan: Setup, crews: int, whom: int) -> Path:
+def _folder(options: RunOptions, plan: RunConfig, crews: int, whom: int) -> Path:
     """Where a run is written: peoples have folders of their own, and agents have theirs in these."""
     base = options.out or (RUNS / options.name if options.name else None)
     if base is None:

@@ -12,7 +12,7 @@ from msgspec import Struct
 
 from hthor import code_identity, gc_freeze, plugins
 from hthor.errors import AgentError, HthorError
-from hthor.eval.runner.agent_recorder import Watched
+from hthor.eval.runner.agent_recorder import RecordedAgent
 from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.host import snapshot
 from hthor.types import Mind, RobotSeat, TrialSpec
@@ -23,7 +23,7 @@ CODE_ROOT = "trial"
 if TYPE_CHECKING:
     from hthor.episode import EpisodeLog
     from hthor.eval.config.sessions import Session
-    from hthor.eval.records.trial_record import Record
+    from hthor.eval.records.trial_record import TrialRecord
     from hthor.humans.model import HumanModel
     from hthor.humans.population.resolve import People
     from hthor.looks.pack import Pack
@@ -58,7 +58,7 @@ def furnish(assets: str) -> Pack | None:
     return pack.load(assets)
 
 
-class Stage:
+class TrialRunner:
     """Makes worlds and companies, and keeps worlds for the next trial in the same house.
 
     Args:
@@ -78,11 +78,11 @@ class Stage:
         if self._sources.kind:
             plugins.load("task kind", self._sources.kind)
 
-    def enter(self, session: Session) -> Company:
+    def enter(self, session: Session) -> Participants:
         """The person and the robots of a session, new to one another."""
         first = session.trials[0]
         mind = functools.partial(self._mind, step_limit_s=first.step_limit_s or None)
-        return Company(self._persons(first).make(first.seed, first.participant), first.robots, mind)
+        return Participants(self._persons(first).make(first.seed, first.participant), first.robots, mind)
 
     def world(self, trial: TrialSpec) -> World:
         """The world of a trial: that of an earlier one where house, objects, robots and senses are the same."""
@@ -115,7 +115,7 @@ class Stage:
             gc_freeze.keep()
         return self._worlds[key]
 
-    def play(self, company: Company, trial: TrialSpec, world: Any = None) -> Record:
+    def play(self, company: Participants, trial: TrialSpec, world: Any = None) -> TrialRecord:
         """The company's next trial. A mind that failed is let go, and what is left of it laid down.
 
         Args:
@@ -130,28 +130,28 @@ class Stage:
         self._examine(company)  # before its record is written: what was played halfway with another file is no trial
         opened = self._opened(company)
         if not log.faults:
-            return msgspec.structs.replace(trial_record.of(trial, log), files=opened or msgspec.UNSET)
+            return msgspec.structs.replace(trial_record.make_record(trial, log), files=opened or msgspec.UNSET)
         files = self._sources.minds.values()
         told = (msgspec.structs.replace(one, detail=redact.words(one.detail, files)) for one in log.faults)
-        done = trial_record.of(trial, msgspec.structs.replace(log, faults=tuple(told)))
+        done = trial_record.make_record(trial, msgspec.structs.replace(log, faults=tuple(told)))
         done = msgspec.structs.replace(done, files=opened or msgspec.UNSET)
         fault_report.leave(fault_report.of(done.key, trial, done.faults, company.minds))
         for seat in dict.fromkeys(fault.seat for fault in log.faults):
             company.dismiss(seat)
         return done
 
-    def _examine(self, company: Company) -> None:
+    def _examine(self, company: Participants) -> None:
         """See that the agents' files are the ones that the run began with."""
         for seat, mind in company.minds.items():
-            if isinstance(mind, Watched) and seat in self._sources.manifests:
+            if isinstance(mind, RecordedAgent) and seat in self._sources.manifests:
                 snapshot.check(self._sources.manifests[seat], mind.mind.grounds)
                 snapshot.examine(self._seen.get(seat, ()), mind.mind.grounds)
 
-    def _opened(self, company: Company) -> dict[str, tuple[File, ...]]:
+    def _opened(self, company: Participants) -> dict[str, tuple[File, ...]]:
         """What agents opened of their own in the trial that was played, and no manifest lists."""
         found: dict[str, tuple[File, ...]] = {}
         for seat, mind in company.minds.items():
-            if isinstance(mind, Watched) and seat in self._sources.manifests:
+            if isinstance(mind, RecordedAgent) and seat in self._sources.manifests:
                 known, grounds = self._sources.manifests[seat], mind.mind.grounds
                 if files := snapshot.later(mind.mind.take_opened(), known, grounds, mind.mind.reference.path):
                     found[seat] = files
@@ -190,11 +190,11 @@ class Stage:
         try:
             changed = guest.load().sha256 != seat.agent.sha256
         except Unreachable:  # a server that is gone for a while costs its trials, not the run
-            return Watched(guest)
+            return RecordedAgent(guest)
         if changed and known is not None and known.claimed:
             guest.close()
             raise AgentError(_changed(path))
-        return Watched(guest)
+        return RecordedAgent(guest)
 
 
 def _unchanged(path: str, sha256: str) -> None:
@@ -210,7 +210,7 @@ def _changed(path: str) -> str:
     )
 
 
-class Company:
+class Participants:
     """One session's person and minds. Use as a context manager: guests are processes and must be let go."""
 
     def __init__(self, human: HumanModel, seats: Sequence[RobotSeat], make: Callable[[RobotSeat], Mind]) -> None:
@@ -219,7 +219,7 @@ class Company:
         self._make = make
         self._minds: dict[str, Mind] = {}
 
-    def __enter__(self) -> Company:
+    def __enter__(self) -> Participants:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -251,14 +251,14 @@ class Company:
             mind.close()
 
 
-def player(sources: Sources | None = None) -> Callable[[Session], Iterator[Record]]:
+def make_runner(sources: Sources | None = None) -> Callable[[Session], Iterator[TrialRecord]]:
     """What a worker does with each session: play its trials in order. Called in the worker; imports what is heavy."""
     from hthor.guest.host import process_pool
 
     process_pool.keep()
-    stage = Stage(sources)
+    stage = TrialRunner(sources)
 
-    def perform(session: Session) -> Iterator[Record]:
+    def perform(session: Session) -> Iterator[TrialRecord]:
         with stage.enter(session) as company:
             for trial in session.trials:
                 yield stage.play(company, trial)
@@ -266,12 +266,12 @@ def player(sources: Sources | None = None) -> Callable[[Session], Iterator[Recor
     return perform
 
 
-def _play(world: Any, company: Company, trial: TrialSpec) -> EpisodeLog:
+def _play(world: Any, company: Participants, trial: TrialSpec) -> EpisodeLog:
     """One trial; a failure in a plug-in of the user's is theirs to mend, and told as such."""
-    from hthor.episode import play
+    from hthor.episode import run_episode
 
     try:
-        return play(trial, world, company.human, company.robots())
+        return run_episode(trial, world, company.human, company.robots())
     except (Exception, SystemExit) as error:
         if (own := plugins.blamed(error)) is None:
             raise

@@ -13,21 +13,21 @@ from contextlib import closing
 from typing import TYPE_CHECKING, cast
 
 from hthor.errors import KILLED, AgentKilled, HthorError
-from hthor.eval.runner.messages import Failed, Finished, Lost, News, Played
+from hthor.eval.runner.messages import Failed, Finished, News, SessionAbandoned, TrialDone
 
 if TYPE_CHECKING:
     from collections.abc import Generator
     from multiprocessing.connection import Connection
 
     from hthor.eval.config.sessions import Session
-    from hthor.eval.records.trial_record import Record
+    from hthor.eval.records.trial_record import TrialRecord
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 """One thread a worker: more would only fight over the cores, and sums of floats would depend on their number."""
 _MENDABLE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 
 
-def work(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Record]]], parent: int) -> None:
+def work(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[TrialRecord]]], parent: int) -> None:
     """Play every session that comes through the pipe, until it says None or closes.
 
     Args:
@@ -44,7 +44,7 @@ def work(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Recor
         return  # the parent is gone, and so is the reason to go on
 
 
-def _serve(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Record]]]) -> None:
+def _serve(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[TrialRecord]]]) -> None:
     player = Player(make)
     for session in iter(pipe.recv, None):
         for news in player.play(session):
@@ -54,9 +54,9 @@ def _serve(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Rec
 class Player:
     """What every worker does with sessions, whoever started it and wherever it sends what it tells."""
 
-    def __init__(self, make: Callable[[], Callable[[Session], Iterator[Record]]]) -> None:
+    def __init__(self, make: Callable[[], Callable[[Session], Iterator[TrialRecord]]]) -> None:
         self._make = make
-        self._perform: Callable[[Session], Iterator[Record]] | None = None
+        self._perform: Callable[[Session], Iterator[TrialRecord]] | None = None
         self._cpu_s = _cpu_s()
 
     def play(self, session: Session) -> Iterator[News]:
@@ -67,10 +67,10 @@ class Player:
         try:
             if self._perform is None:
                 self._perform = self._make()
-            with closing(cast("Generator[Record, None, None]", self._perform(session))) as trials:
+            with closing(cast("Generator[TrialRecord, None, None]", self._perform(session))) as trials:
                 for done in trials:
                     left, faulty = fault_report.take(done.key), bool(done.faults)  # it may be of a start before this
-                    yield Played(
+                    yield TrialDone(
                         key=done.key,
                         participant=session.participant,
                         line=trial_record.encode(done),
@@ -86,16 +86,16 @@ class Player:
         yield Finished(cpu_s=self._cpu_s - before)
 
 
-def _failure(participant: int, error: Exception) -> Failed | Lost:
+def _failure(participant: int, error: Exception) -> Failed | SessionAbandoned:
     """What the user can mend ends the run; a bug, or a machine that kills agents, costs the session alone."""
     if isinstance(error, AgentKilled):
-        return Lost(participant=participant, cause=str(error), killed=True)
+        return SessionAbandoned(participant=participant, cause=str(error), killed=True)
     if isinstance(error, HthorError):
         return Failed(exit_code=error.exit_code, message=str(error))
     if isinstance(error, OSError) and error.errno in _MENDABLE:
         return Failed(exit_code=HthorError.exit_code, message=f"{error.filename or 'a file'}: {error.strerror}.")
     summary = "".join(traceback.format_exception_only(error)).strip()
-    return Lost(participant=participant, cause=summary, detail="".join(traceback.format_exception(error)))
+    return SessionAbandoned(participant=participant, cause=summary, detail="".join(traceback.format_exception(error)))
 
 
 def end_with(parent: int) -> None:

@@ -12,7 +12,7 @@ import msgspec
 from hthor import code_identity, houses, installation, jsonio
 from hthor.errors import HthorError
 from hthor.eval.config import task_selection
-from hthor.eval.runner.run_options import Options
+from hthor.eval.runner.run_options import RunOptions
 from hthor.eval.task_check import make_suite as proved
 from hthor.tasks.suites import custom_suite, suite_files
 from hthor.tasks.suites.custom_suite import Recipe
@@ -23,7 +23,7 @@ TASKS = 10
 _FORBIDDEN = re.compile(r"[^A-Za-z0-9_.-]+")
 
 
-def resolve(options: Options, tell: Callable[[str], None]) -> Options:
+def resolve(options: RunOptions, tell: Callable[[str], None]) -> RunOptions:
     """The options with a suite of tasks in the house files that are given; unchanged where none is given.
 
     Args:
@@ -46,9 +46,9 @@ def resolve(options: Options, tell: Callable[[str], None]) -> Options:
     return msgspec.structs.replace(options, suite=str(path), houses=(), difficulty="", kind="")
 
 
-def _suite(options: Options, found: tuple[Source, ...], tell: Callable[[str], None]) -> Path:
+def _suite(options: RunOptions, found: tuple[Source, ...], tell: Callable[[str], None]) -> Path:
     """The folder of the suite, made unless it is there."""
-    kinds = (task_selection.find(options.kind).name,) if options.kind else ()
+    kinds = (task_selection.find_kind(options.kind).name,) if options.kind else ()
     recipe = Recipe(name=_name(found), tasks=TASKS, kinds=kinds, difficulty=options.difficulty)  # type: ignore[arg-type]
     specs = [houses.load(one.given) for one in found]
     key = jsonio.sha256([custom_suite.VERSION, recipe, specs, code_identity.makers_sha256()])

@@ -39,7 +39,7 @@ _POINTS, _EDGE_M, _OFF_M = 3, 0.12, 0.03
 _TURN_RAD, _EPS = 1e-3, 1e-9
 
 
-class Feat(Struct, frozen=True, kw_only=True):
+class Solution(Struct, frozen=True, kw_only=True):
     """How it went: whether the goal was met, after how long [s] and how long a walk [m], and why it was not.
 
     ``way`` [m] is the walk with all its bends, from the start.
@@ -56,7 +56,7 @@ class _Over(Exception):
     """The goal is met, or time is up."""
 
 
-def perform(world: World, task: TaskSpec, *, limit_s: float | None = None) -> Feat:
+def solve(world: World, task: TaskSpec, *, limit_s: float | None = None) -> Solution:
     """Do a task from its start to its end.
 
     Args:
@@ -77,7 +77,7 @@ class _Performance:
         self.met, self.reason = False, ""
         self.way: list[Vec2] = []
 
-    def run(self) -> Feat:
+    def run(self) -> Solution:
         self.world.reset(self.task)
         self.way = [self._here()]
         try:
@@ -89,7 +89,7 @@ class _Performance:
             late = self.world.tick >= self.limit
             self.reason = "time is up" if late else "all is done that the goal names, and yet it is not met"
         way = (*self.way, self._here())
-        return Feat(
+        return Solution(
             met=self.met,
             seconds=round(self.world.tick * rules.TICK_S, 1),
             metres=round(sum(math.dist(a, b) for a, b in pairwise(way)), 3),

@@ -241,7 +241,7 @@ def _played(world: World, task: TaskSpec) -> tuple[float, float, list[tuple[str,
     kind = plugins.load("task kind", task.kind)
     if kind.met(task, world.snapshot(), world.house):
         return 0.0, 0.0, [("human_start", "the goal is met before anybody has moved")]
-    feat = omniscient_solver.perform(world, task, limit_s=_PATIENCE * task.time_limit if many else None)
+    feat = omniscient_solver.solve(world, task, limit_s=_PATIENCE * task.time_limit if many else None)
     faults = []
     if not feat.met:
         faults.append(("goal", f"a person who knows everything does not meet it: {feat.reason}"))

@@ -117,7 +117,7 @@ class Process:
         return True
 
     def write(self, body: bytes, end: float) -> None:
-        """As `Line` says."""
+        """As `TrialLine` says."""
         left = memoryview(wire.framed(body))
         while left:
             try:
@@ -128,7 +128,7 @@ class Process:
                 raise HungUp from None
 
     def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
-        """As `Line` says; a message of a trial comes before one of the keeper."""
+        """As `TrialLine` says; a message of a trial comes before one of the keeper."""
         both = (self._channel.words, self._keeper)
         while True:
             for handle in both:

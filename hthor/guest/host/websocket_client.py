@@ -121,7 +121,7 @@ class Served:
         self._alarm = Alarm(self._hang_up)
 
     def write(self, body: bytes, end: float) -> None:
-        """As `Line` says."""
+        """As `TrialLine` says."""
         self._alarm.set(end)
         try:
             self._connection.send(body)
@@ -132,7 +132,7 @@ class Served:
             self._alarm.set()
 
     def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
-        """As `Line` says; here is no keeper."""
+        """As `TrialLine` says; here is no keeper."""
         self._alarm.set(end + _LOOK_S)
         try:
             body = self._connection.recv(timeout=max(0.0, end - time.monotonic()), decode=False)
@@ -150,11 +150,11 @@ class Served:
         return False, body
 
     def obituary(self) -> tuple[str, str]:
-        """As `Line` says."""
+        """As `TrialLine` says."""
         return "died", f"the server closed the connection: {self._end or 'without a word'}"
 
     def kill(self) -> None:
-        """As `Line` says; the server goes on."""
+        """As `TrialLine` says; the server goes on."""
         self._alarm.set(time.monotonic() + _CLOSING_S)
         with contextlib.suppress(Exception):
             self._connection.__exit__(None, None, None)

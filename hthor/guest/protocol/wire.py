@@ -136,7 +136,7 @@ class Ask(Struct, tag="ask", frozen=True, kw_only=True):
 
 
 class Acted(Struct, tag="acted", frozen=True, kw_only=True):
-    """Guest: its action, and what it has read of what was sent ahead; ``files`` as in `Done`."""
+    """Guest: its action, and what it has read of what was sent ahead; ``files`` as in `FinishedRun`."""
 
     action: Action
     read: tuple[str, ...] = ()
@@ -148,7 +148,7 @@ class Over(Struct, tag="over", frozen=True, kw_only=True):
 
 
 class Failed(Struct, tag="failed", frozen=True, kw_only=True):
-    """Guest or keeper: something went wrong; ``kind`` as in `GuestFault`, ``files`` as in `Done`."""
+    """Guest or keeper: something went wrong; ``kind`` as in `GuestFault`, ``files`` as in `FinishedRun`."""
 
     kind: str
     detail: str

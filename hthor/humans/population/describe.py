@@ -55,7 +55,7 @@ class Changed(Struct, frozen=True, kw_only=True):
     reason: str
 
 
-class Portrait(Struct, frozen=True, kw_only=True):
+class PopulationDescription(Struct, frozen=True, kw_only=True):
     """People in a document."""
 
     name: str
@@ -80,10 +80,10 @@ class Portrait(Struct, frozen=True, kw_only=True):
     command: str
 
 
-def of(found: People) -> Portrait:
+def describe(found: People) -> PopulationDescription:
     """Everything about these people."""
     whom = _turned(found)
-    return Portrait(
+    return PopulationDescription(
         name=found.name,
         purpose=found.purpose,
         sha256=found.sha256,

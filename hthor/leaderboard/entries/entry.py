@@ -7,7 +7,7 @@ from typing import Annotated, Final, Literal
 from msgspec import UNSET, Meta, Struct, UnsetType
 
 from hthor import jsonio
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records.platform import Platform
 from hthor.eval.results.uplift import Uplift
 from hthor.eval.statistics.intervals import Estimate
@@ -159,7 +159,7 @@ class Entry(Struct, frozen=True, kw_only=True):
     submission: Annotated[str, Meta(pattern="^([a-z0-9][a-z0-9_-]{0,39})?$")] = ""
     files: tuple[File, ...] = ()
     agents: tuple[Manifest, ...] = ()
-    run: Setup
+    run: RunConfig
     hashes: Hashes
     harness: Harness
     mode: Literal["lockstep", "realtime"] = LOCKSTEP

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from hthor import plugins, tasks
-from hthor.eval.config.run_config import PROCEDURAL, Setup
+from hthor.eval.config.run_config import PROCEDURAL, RunConfig
 from hthor.eval.config.sessions import people_for
 from hthor.tasks.suites import library
 from hthor.types.detector_specs import OWN
 
 
-def of(plan: Setup, crew: tuple[str, ...] = (), played: int | None = None) -> dict[str, str]:
+def of(plan: RunConfig, crew: tuple[str, ...] = (), played: int | None = None) -> dict[str, str]:
     """What is set otherwise, and how.
 
     Args:
@@ -48,7 +48,7 @@ def of(plan: Setup, crew: tuple[str, ...] = (), played: int | None = None) -> di
     return found
 
 
-def refusal(folder: Path, plan: Setup, found: Mapping[str, str]) -> str:
+def refusal(folder: Path, plan: RunConfig, found: Mapping[str, str]) -> str:
     """Why such a run does not go on the board, and what would."""
     options = [f"--{name.replace('_', '-')} {value}" for name, value in found.items()]
     listed = f"{', '.join(options[:-1])} and {options[-1]}" if len(options) > 1 else options[0]
@@ -62,7 +62,7 @@ def refusal(folder: Path, plan: Setup, found: Mapping[str, str]) -> str:
     )
 
 
-def tasks_of(plan: Setup) -> int | None:
+def tasks_of(plan: RunConfig) -> int | None:
     """How many tasks the suite has; None of one that does not ship with hthor in this version."""
     if plan.suite.name not in tasks.suites():
         return None

@@ -12,7 +12,7 @@ from msgspec import UNSET, Struct
 
 from hthor import rules
 from hthor.eval.metrics import bounds
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.leaderboard.entries import column_packing, merkle
 from hthor.leaderboard.entries.entry import Labels, Trials
 from hthor.types import TaskSpec
@@ -83,7 +83,7 @@ def outcome(row: bytes) -> bytes:
     return row[:-LEAF]
 
 
-def of(records: Sequence[Record], leaves: Iterable[bytes]) -> Outcomes:
+def of(records: Sequence[TrialRecord], leaves: Iterable[bytes]) -> Outcomes:
     """The columns of records, whose lines have these hashes."""
     values = [one.metrics for one in records]
     return Outcomes(

@@ -62,7 +62,7 @@ def verify(
         chosen = task_selection.choose(folder, "")
         crew, who = replay.crew_of(entry, agent), resolve.find(entry.run.humans.source)
         clock = {name: value for name, value in replay.dealt(entry).items() if name != "participants"}
-        whole = sessions.sessions(chosen.suite, agent=crew, human=who, **clock)
+        whole = sessions.make_sessions(chosen.suite, agent=crew, human=who, **clock)
         played = replay.perform(entry, whole, replay.player(folder, crew, who, required, given), jobs)
     records = sorted((one for one, _ in played), key=lambda one: (one.spec.participant, one.spec.index))
     owners = [one.spec.participant for one in records]

@@ -15,14 +15,14 @@ import msgspec
 
 from hthor import code_identity, guest
 from hthor.eval.config import robot_team, run_config, sessions, task_selection
-from hthor.eval.config.robot_team import Crew
+from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.sessions import Session
-from hthor.eval.config.task_selection import Programme
+from hthor.eval.config.task_selection import TaskSelection
 from hthor.eval.records import run_isolation, trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import engines, trial_runner
 from hthor.eval.runner.engines import Make
-from hthor.eval.runner.messages import Lost, Played
+from hthor.eval.runner.messages import SessionAbandoned, TrialDone
 from hthor.guest import Given
 from hthor.humans.population import resolve
 from hthor.humans.population.resolve import People
@@ -43,7 +43,7 @@ def play(
     jobs: int | None = None,
     require_isolation: str = "",
     given: Given | None = None,
-) -> dict[int, tuple[Record, bytes]]:
+) -> dict[int, tuple[TrialRecord, bytes]]:
     """The records of the trials at these places, and of those that had to be played with them, with their lines.
 
     Args:
@@ -59,25 +59,25 @@ def play(
     chosen = task_selection.choose(suite or entry.run.suite.name, "")
     crew, who = crew_of(entry, agent), resolve.find(entry.run.humans.source)
     _same(entry, chosen, crew, who)
-    whole = sessions.sessions(chosen.suite, agent=crew, human=who, **dealt(entry))
+    whole = sessions.make_sessions(chosen.suite, agent=crew, human=who, **dealt(entry))
     wanted, seats = _cut(whole, places)
     played = perform(entry, wanted, player(suite, crew, who, require_isolation, given), jobs)
     return {seats[one.spec.participant, one.spec.index]: (one, line) for one, line in played}
 
 
-def perform(entry: Entry, wanted: Sequence[Session], make: Make, jobs: int | None) -> list[tuple[Record, bytes]]:
+def perform(entry: Entry, wanted: Sequence[Session], make: Make, jobs: int | None) -> list[tuple[TrialRecord, bytes]]:
     """The records of these sessions, every trial of them, with their lines.
 
     Raises:
         BoardError: when a trial could not be played, with the cause.
     """
-    found: list[tuple[Record, bytes]] = []
+    found: list[tuple[TrialRecord, bytes]] = []
     lost: list[str] = []
     with closing(engines.find(engines.LOCAL, jobs=jobs).perform(wanted, make)) as stream:
         for news in stream:
-            if isinstance(news, Played):
+            if isinstance(news, TrialDone):
                 found.append((trial_record.decode(news.line), news.line))
-            elif isinstance(news, Lost):
+            elif isinstance(news, SessionAbandoned):
                 lost.append(f"participant {news.participant}: {news.cause.rstrip('.')}")
     asked = {(one.participant, index) for one in wanted for index in range(len(one.trials))}
     missing = asked - {(one.spec.participant, one.spec.index) for one, _ in found}
@@ -91,7 +91,7 @@ def perform(entry: Entry, wanted: Sequence[Session], make: Make, jobs: int | Non
     return found
 
 
-def crew_of(entry: Entry, agent: str) -> Crew:
+def crew_of(entry: Entry, agent: str) -> RobotTeam:
     """The robots of an entry, with the submitted agent from its file."""
     minds: list[str] = []
     for robot in entry.run.robots:
@@ -101,12 +101,12 @@ def crew_of(entry: Entry, agent: str) -> Crew:
         minds.append(robot.agent.name if ours else agent)
     bodies = [robot.robot or "scout" for robot in entry.run.robots]  # a mind that wants no robot has no body either
     first = entry.run.robots[0]
-    return robot_team.form(bodies, minds, first.detector or "own", first.camera or "own")
+    return robot_team.form_team(bodies, minds, first.detector or "own", first.camera or "own")
 
 
-def _same(entry: Entry, chosen: Programme, crew: Crew, who: People) -> None:
+def _same(entry: Entry, chosen: TaskSelection, crew: RobotTeam, who: People) -> None:
     """See that the same configuration comes out; versions of libraries belong to the platform."""
-    here = run_config.settle(chosen.suite, crew, human=who, **dealt(entry))
+    here = run_config.build_config(chosen.suite, crew, human=who, **dealt(entry))
     there, here = (msgspec.structs.replace(plan, versions={}) for plan in (entry.run, here))
     if there != here:
         told = "; ".join(run_config.differences(there, here))
@@ -134,7 +134,7 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
     return wanted, seats
 
 
-def player(suite: str, crew: Crew, who: People, required: str, given: Given | None = None) -> Make:
+def player(suite: str, crew: RobotTeam, who: People, required: str, given: Given | None = None) -> Make:
     """What plays a session, as in the run that the entry is of.
 
     Args:
@@ -148,9 +148,9 @@ def player(suite: str, crew: Crew, who: People, required: str, given: Given | No
     sources = trial_runner.Sources(
         minds=crew.minds, manifests=crew.manifests, bodies=crew.bodies, houses=houses, people=who.word
     )
-    held = run_isolation.settle("auto", required, sorted(set(crew.minds.values())))
+    held = run_isolation.resolve_isolation("auto", required, sorted(set(crew.minds.values())))
     if held is None:
-        return functools.partial(trial_runner.player, sources)
+        return functools.partial(trial_runner.make_runner, sources)
     hidden = (str(folder.resolve()),) if suite else ()
     guest.confine_guests(held.level, hidden, given)
     return functools.partial(run_isolation.player, sources, held.level, hidden, given)

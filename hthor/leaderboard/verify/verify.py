@@ -12,7 +12,7 @@ from hthor import jsonio
 from hthor.errors import HthorError
 from hthor.eval.config import task_selection
 from hthor.eval.records import platform_fingerprint
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.guest import Given
 from hthor.leaderboard import board_check
 from hthor.leaderboard.entries import entry_metrics, files, invariants, trial_outcomes, trial_tasks, verification
@@ -89,7 +89,7 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
     return entry, msgspec.structs.replace(found, fresh=fresh)
 
 
-def replayed(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[Record, bytes]]) -> Replayed:
+def replayed(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[TrialRecord, bytes]]) -> Replayed:
     """The verdict over these records, and how surely it would have been another over a forged entry."""
     here = platform_fingerprint.here()
     by = tier(entry)
@@ -146,7 +146,7 @@ def _sorts(path: Path, entry: Entry, request: Request) -> None:
         files.refuse(Problem(file=str(path), field=field, problem=problem) for field, problem in laws)
 
 
-def _again(entry: Entry, drawn: Sequence[int], request: Request) -> dict[int, tuple[Record, bytes]]:
+def _again(entry: Entry, drawn: Sequence[int], request: Request) -> dict[int, tuple[TrialRecord, bytes]]:
     return replay.play(
         entry,
         drawn,

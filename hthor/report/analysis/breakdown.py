@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.statistics import intervals
 from hthor.eval.statistics.intervals import Estimate
 from hthor.report.analysis.document import Group, Split
@@ -40,7 +40,7 @@ def by_people(runs: Sequence[Run]) -> Split | None:
     return Split(word="kind of person", groups=groups) if len(groups) > 1 else None
 
 
-def _split(word: str, runs: Sequence[Run], part: Callable[[Record], str], order: Sequence[str] = ()) -> Split:
+def _split(word: str, runs: Sequence[Run], part: Callable[[TrialRecord], str], order: Sequence[str] = ()) -> Split:
     names = sorted({part(record) for run in runs for record in run.records} - {""})
     names.sort(key=lambda name: order.index(name) if name in order else len(order))
     groups = (
@@ -53,7 +53,7 @@ def _split(word: str, runs: Sequence[Run], part: Callable[[Record], str], order:
     return Split(word=word, groups=tuple(groups))
 
 
-def rate(records: Sequence[Record]) -> Estimate:
+def rate(records: Sequence[TrialRecord]) -> Estimate:
     """Success rate with its interval."""
     return intervals.estimate(
         [float(one.metrics.sr) for one in records],

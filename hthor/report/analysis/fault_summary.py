@@ -8,7 +8,7 @@ from msgspec import Struct
 
 from hthor import documents, rules
 from hthor.eval.config import cli_command
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.analysis import trial_selection
 from hthor.report.analysis.example_trials import Failure
 from hthor.report.analysis.load_runs import Run
@@ -34,7 +34,7 @@ class _Remains(Struct):
 def of(run: Run) -> list[Failure]:
     """One entry for each seat and sort of fault, by the first trial that it came in, the most frequent first."""
     agents = {robot.seat: robot.agent.name for robot in run.plan.seats}
-    cases: dict[tuple[str, str], list[Record]] = {}
+    cases: dict[tuple[str, str], list[TrialRecord]] = {}
     for record in run.records:
         for seat, kind in dict.fromkeys((fault.seat, fault.kind) for fault in record.faults):
             cases.setdefault((seat, kind), []).append(record)
@@ -42,7 +42,7 @@ def of(run: Run) -> list[Failure]:
     return sorted(found, key=lambda one: -one.trials)
 
 
-def _failure(run: Run, seat: str, agent: str, kind: str, held: list[Record]) -> Failure:
+def _failure(run: Run, seat: str, agent: str, kind: str, held: list[TrialRecord]) -> Failure:
     first = held[0]
     fault = next(one for one in first.faults if (one.seat, one.kind) == (seat, kind))
     remains = _remains(run, first)
@@ -75,7 +75,7 @@ def _here(again: str, run: Run) -> str:
     return shlex.join([*words, str(cli_command.near(run.folder)), key])
 
 
-def _remains(run: Run, record: Record) -> _Remains:
+def _remains(run: Run, record: TrialRecord) -> _Remains:
     """What the run kept of a trial; nothing where it kept none, or what nobody can read: no number depends on it."""
     path = run.folder / _FOLDER / f"{record.key}.json"
     try:

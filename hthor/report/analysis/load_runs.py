@@ -12,10 +12,10 @@ from msgspec import Struct
 from hthor.errors import RunError
 from hthor.eval.config import run_config
 from hthor.eval.config.robot_team import NO_ROBOT
-from hthor.eval.config.run_config import Setup
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.records import reader
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline
 
 NONE = NO_ROBOT
@@ -33,20 +33,20 @@ class Run(Struct, frozen=True, kw_only=True, eq=False):
 
     folder: Path
     name: str
-    plan: Setup
-    records: tuple[Record, ...]
+    plan: RunConfig
+    records: tuple[TrialRecord, ...]
     sha256: str
     label: str
     condition: str
     beside: bool = False
 
     @property
-    def by_pair(self) -> dict[Pair, Record]:
+    def by_pair(self) -> dict[Pair, TrialRecord]:
         """The trials by what they share with those of other robots."""
         return {pair(record): record for record in self.records}
 
 
-def pair(record: Record) -> Pair:
+def pair(record: TrialRecord) -> Pair:
     """What a trial shares with that of the same person at the same task with other robots."""
     spec = record.spec
     return (spec.seed, spec.participant, spec.index, spec.task.id)
@@ -94,7 +94,7 @@ def _read(folder: Path) -> Run:
     )
 
 
-def _condition(plan: Setup) -> str:
+def _condition(plan: RunConfig) -> str:
     """The condition of the published study that these robots are, if any."""
     if not plan.seats:
         return "none"

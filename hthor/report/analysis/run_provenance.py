@@ -7,7 +7,7 @@ from msgspec import Struct
 from hthor import documents
 from hthor.errors import RunError
 from hthor.eval.config import cli_command
-from hthor.eval.config.human_populations import HumansRef
+from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
 from hthor.eval.records import run_isolation
 from hthor.guest import Isolation
@@ -42,7 +42,7 @@ class Origin(Struct, frozen=True, kw_only=True):
     beside: bool
     agent: str
     robots: tuple[RobotSeat, ...]
-    humans: HumansRef
+    humans: HumanModelRef
     suite: SuiteRef
     kind: KindRef | None
     seed: int
@@ -90,7 +90,7 @@ def of(run: Run) -> Origin:
         isolation=run_isolation.load(run.folder),
         platforms=_platforms(run),
         alone=cli_command.alone(plan),
-        command=cli_command.of(run.folder, plan, cli_command.near(run.folder)),
+        command=cli_command.resume_command(run.folder, plan, cli_command.near(run.folder)),
         run_sha256=plan.sha256,
         rules_sha256=plan.rules_sha256,
         code_sha256=plan.code_sha256,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 
 from hthor.eval.config import cli_command
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.analysis.example_trials import Shown
 from hthor.report.analysis.load_runs import Run, pair
 
@@ -22,7 +22,7 @@ def extremes(run: Run, alone: Run | None, each: int = EACH) -> list[Shown]:
     others = alone.by_pair if alone is not None else {}
     ranked = [record for record in run.records if alone is None or pair(record) in others]
 
-    def worth(record: Record) -> tuple[float, float, str]:
+    def worth(record: TrialRecord) -> tuple[float, float, str]:
         other, own = others.get(pair(record)), record.metrics
         if other is None:
             return (own.twsr, -own.time_s, record.key)
@@ -37,7 +37,7 @@ def extremes(run: Run, alone: Run | None, each: int = EACH) -> list[Shown]:
     ]
 
 
-def _shown(run: Run, rank: str, record: Record, other: Record | None) -> Shown:
+def _shown(run: Run, rank: str, record: TrialRecord, other: TrialRecord | None) -> Shown:
     task = record.spec.task
     return Shown(
         arm=run.label,
@@ -58,6 +58,6 @@ def _shown(run: Run, rank: str, record: Record, other: Record | None) -> Shown:
     )
 
 
-def replay(run: Run, record: Record) -> str:
+def replay(run: Run, record: TrialRecord) -> str:
     """The command that draws a trial, as it can be typed where the report was written."""
     return shlex.join(["hthor", "replay", str(cli_command.near(run.folder)), record.key])

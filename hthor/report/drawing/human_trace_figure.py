@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon, Wedge
 
 from hthor import rules
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay.human_trace import Stream
 from hthor.geometry import plane
 from hthor.report.drawing import floor_plan, human_trace_timeline, lettering, text_fit, trial_trace
@@ -40,7 +40,7 @@ _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidt
 
 
 @lettering.plain()
-def figure(record: Record, house: HouseSpec, stream: Stream) -> Figure:
+def figure(record: TrialRecord, house: HouseSpec, stream: Stream) -> Figure:
     """Draw a mind, 11 inches wide, 14 where the house is deep."""
     moments = _moments(stream.events)
     wide, deep = _extent(house)
@@ -78,7 +78,9 @@ def _moments(events: Sequence[Event]) -> list[tuple[Event, Event]]:
     return [pairs[round(k * (len(pairs) - 1) / (_MOMENTS - 1))] for k in range(_MOMENTS)]
 
 
-def _draw_moment(ax: Axes, record: Record, house: HouseSpec, beliefs: Event, choice: Event, stream: Stream) -> None:
+def _draw_moment(
+    ax: Axes, record: TrialRecord, house: HouseSpec, beliefs: Event, choice: Event, stream: Stream
+) -> None:
     floor_plan.draw_house(ax, house)
     chances, ahead = posterior(beliefs)
     exposures = {place["id"]: place["exposure"] for place in beliefs.data["places"]}
@@ -105,7 +107,7 @@ def _draw_moment(ax: Axes, record: Record, house: HouseSpec, beliefs: Event, cho
     ax.set_title(title, fontsize=8, loc="left", color=trial_trace.INK)
 
 
-def _draw_end(ax: Axes, record: Record, house: HouseSpec, stream: Stream) -> None:
+def _draw_end(ax: Axes, record: TrialRecord, house: HouseSpec, stream: Stream) -> None:
     """The whole way, and what was noticed, of a trial in which nothing had to be searched for."""
     floor_plan.draw_house(ax, house)
     noticed = {event.data["object"] for event in stream.events if event.kind == "noticed"}
@@ -117,7 +119,7 @@ def _draw_end(ax: Axes, record: Record, house: HouseSpec, stream: Stream) -> Non
     ax.set_title("nothing had to be searched for", fontsize=8.5, loc="left", color=trial_trace.INK)
 
 
-def _draw_targets(ax: Axes, record: Record) -> None:
+def _draw_targets(ax: Axes, record: TrialRecord) -> None:
     wanted = {job.target for job in record.spec.task.goal.todo}
     for placed in record.spec.task.objects:
         if placed.id in wanted:
@@ -144,7 +146,7 @@ def _draw_place(ax: Axes, thing: Any, chance: float, exposure: float) -> None:
         _say(ax, (thing.centre[0], thing.centre[1]), f"{100 * chance:.0f} %", trial_trace.INK)
 
 
-def _draw_way(ax: Axes, record: Record, until: int) -> None:
+def _draw_way(ax: Axes, record: TrialRecord, until: int) -> None:
     path = record.paths[HUMAN][: until // rules.LOG_EVERY_TICKS + 1]
     xs, ys = [x / 1000 for x, _, _ in path], [y / 1000 for _, y, _ in path]
     ax.plot(xs, ys, color=trial_trace.PERSON, lw=1.4, alpha=0.75, zorder=8)
@@ -166,7 +168,7 @@ def _spots(house: HouseSpec) -> Mapping[str, Vec2]:
     return spots
 
 
-def _sought(record: Record, aim: str) -> str:
+def _sought(record: TrialRecord, aim: str) -> str:
     """What is looked for, in words."""
     goal = record.spec.task.goal
     kinds = {placed.id: placed.kind for placed in record.spec.task.objects}

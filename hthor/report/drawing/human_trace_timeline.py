@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from hthor import rules
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay.human_trace import Stream
 from hthor.report.drawing import trial_trace
 from hthor.types import Event
@@ -52,7 +52,7 @@ def chances(choice: Event, beta: float) -> dict[str, float]:
     return {name: weight / total for name, weight in zip(choice.data["options"], weights, strict=True)}
 
 
-def draw(ax: Axes, record: Record, stream: Stream) -> None:
+def draw(ax: Axes, record: TrialRecord, stream: Stream) -> None:
     """Draw the lanes, trust lowest."""
     events, end, limit = stream.events, record.ticks * rules.TICK_S, record.spec.task.time_limit
     names = lanes(stream)

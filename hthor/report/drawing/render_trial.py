@@ -6,14 +6,14 @@ from pathlib import Path
 
 from hthor import houses
 from hthor.errors import HthorError
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.drawing import lettering
 from hthor.types import HouseSpec
 
 PICTURES = (".png", ".svg", ".pdf")
 
 
-def draw(record: Record, path: Path, *, video: bool) -> None:
+def draw(record: TrialRecord, path: Path, *, video: bool) -> None:
     """Write the picture or the film of a trial.
 
     Raises:
@@ -43,7 +43,7 @@ def check_name(path: Path, *, video: bool) -> None:
         raise HthorError(f"{path}: the name of a {'film' if video else 'picture'} must end in {' or '.join(valid)}.")
 
 
-def house(record: Record) -> HouseSpec:
+def house(record: TrialRecord) -> HouseSpec:
     """The house of a trial, as it was then.
 
     Raises:

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from hthor import catalog
 from hthor.errors import HthorError
-from hthor.eval.task_check.omniscient_solver import PACE_M_S, Feat
+from hthor.eval.task_check.omniscient_solver import PACE_M_S, Solution
 from hthor.report.drawing import floor_plan, lettering, text_fit, trial_trace
 from hthor.report.drawing.render_trial import PICTURES
 from hthor.types import HouseSpec, Placement, Pose, TaskSpec
@@ -27,7 +27,7 @@ _WIDE_IN, _TITLE_PT = 8.0, 10.0
 """Inches of the figure, and points of its title's letters."""
 
 
-def draw(task: TaskSpec, house: HouseSpec, feat: Feat, path: Path) -> None:
+def draw(task: TaskSpec, house: HouseSpec, feat: Solution, path: Path) -> None:
     """Write the picture of a task.
 
     Args:
@@ -43,7 +43,7 @@ def draw(task: TaskSpec, house: HouseSpec, feat: Feat, path: Path) -> None:
 
 
 @lettering.plain()
-def figure(task: TaskSpec, house: HouseSpec, feat: Feat) -> Figure:
+def figure(task: TaskSpec, house: HouseSpec, feat: Solution) -> Figure:
     """Draw a task, about 8 inches wide."""
     xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
     sheet = Figure(figsize=(_WIDE_IN, max(3.6, 6.0 * (max(ys) - min(ys)) / (max(xs) - min(xs)) + 1.0)), dpi=200)
@@ -105,7 +105,7 @@ def _draw_start(ax: Axes, pose: Pose, number: int) -> None:
         ax.text(pose.x, pose.y, str(number), fontsize=6, color=shade, ha="center", va="center_baseline", zorder=12)
 
 
-def _headline(task: TaskSpec, feat: Feat) -> tuple[str, str]:
+def _headline(task: TaskSpec, feat: Solution) -> tuple[str, str]:
     how = f"{feat.seconds:.1f} s at {PACE_M_S:g} m/s" if feat.met else "not done alone"
     level = f", {task.difficulty}" if task.difficulty else ""
     return f"“{task.instruction}”", f"{task.id}: T* {task.t_star:.1f} s{level}; all-knowing person {how}"

@@ -15,7 +15,7 @@ from hthor import activity, guest
 from hthor.errors import RunError
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import session_history
 from hthor.eval.runner import trial_runner
 from hthor.guest import Given
@@ -62,7 +62,7 @@ class Filmed:
 
 def film(
     folder: Path,
-    wanted: Record,
+    wanted: TrialRecord,
     ticks: Collection[int],
     *,
     profile: str = "fast",
@@ -85,7 +85,7 @@ def film(
     spec = wanted.spec
     guest.confine_guests(hidden=(str(folder.resolve()),), given=given)
     session = Session(participant=spec.participant, trials=session_history.before(folder, wanted))
-    stage = trial_runner.Stage(session_history.sources(folder, spec, agents, humans))
+    stage = trial_runner.TrialRunner(session_history.sources(folder, spec, agents, humans))
     with stage.enter(session) as company:
         for number, trial in enumerate(session.trials, 1):
             activity.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")
@@ -108,7 +108,7 @@ def _averaged(picture: Any) -> Any:
     return parts.mean(axis=(1, 3)).round().astype("uint8")
 
 
-def _course(done: Record) -> bytes:
+def _course(done: TrialRecord) -> bytes:
     """Everything that happened, but for the words of a fault, which are the agent's own."""
     plain = tuple(msgspec.structs.replace(fault, detail="") for fault in done.faults)
     return trial_record.encode(msgspec.structs.replace(done, faults=plain))

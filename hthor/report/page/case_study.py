@@ -8,7 +8,7 @@ from pathlib import Path
 
 from hthor import houses, jsonio
 from hthor.errors import HthorError, RunError, UnknownName
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.guest import Given
 from hthor.report.analysis import load_runs
 from hthor.report.analysis.load_runs import Run
@@ -83,7 +83,7 @@ def _same_people(runs: Sequence[Run]) -> None:
             )
 
 
-def _records(runs: Sequence[Run], task: str, person: int | None) -> list[Record]:
+def _records(runs: Sequence[Run], task: str, person: int | None) -> list[TrialRecord]:
     """The trials of the task, of one person, a run each."""
     tables = [run.by_pair for run in runs]
     shared = sorted(pair for pair in tables[0] if all(pair in table for table in tables[1:]))

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from matplotlib.figure import Figure
 from msgspec import Struct
 
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.analysis.document import Findings
 from hthor.report.drawing import trial_trace
 from hthor.report.page.figures import breakdown, communication, comparison, scores, time_spent, trial_map, trust
@@ -28,8 +28,8 @@ class Drawing(Struct, frozen=True, kw_only=True, eq=False):
 class Scene(Struct, frozen=True, kw_only=True, eq=False):
     """What a map is drawn of: a trial, the same person's without a robot if there is one, and the house."""
 
-    record: Record
-    alone: Record | None
+    record: TrialRecord
+    alone: TrialRecord | None
     house: HouseSpec
 
 

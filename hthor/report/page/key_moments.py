@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from msgspec import Struct
 
 from hthor import rules
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.geometry import plane
 from hthor.report.drawing import trial_trace
 from hthor.types import HUMAN, Event, HouseSpec
@@ -27,7 +27,7 @@ class Moment(Struct, frozen=True, kw_only=True):
     words: str
 
 
-def of(record: Record, house: HouseSpec | None = None) -> list[Moment]:
+def of(record: TrialRecord, house: HouseSpec | None = None) -> list[Moment]:
     """Up to `MANY` moments in order, the last of them the end.
 
     First come the sending of the first message that the person confirmed (else of the first), the answer to it, and the
@@ -45,7 +45,7 @@ def of(record: Record, house: HouseSpec | None = None) -> list[Moment]:
     return sorted(found, key=lambda one: one.tick)
 
 
-def _candidates(record: Record) -> Iterator[Moment]:
+def _candidates(record: TrialRecord) -> Iterator[Moment]:
     """What happened, the most telling first."""
     sent = trial_trace.messages(record.log)
     if sent:
@@ -60,7 +60,7 @@ def _candidates(record: Record) -> Iterator[Moment]:
             yield Moment(tick=event.tick, words=f"person {trial_trace.ACTS[kind][1]}")
 
 
-def _answer(record: Record, message: Event) -> Iterator[Moment]:
+def _answer(record: TrialRecord, message: Event) -> Iterator[Moment]:
     for event in record.events:
         if event.kind in _ANSWERS and event.data.get("message") == message.data["message"]:
             yield Moment(tick=event.tick, words=_ANSWERS[event.kind])
@@ -74,7 +74,7 @@ def _longest_wait(found: list[Moment], least: int) -> int:
     return -first + wait // 2 if wait >= least else 0
 
 
-def _room(record: Record, tick: int, house: HouseSpec | None) -> str:
+def _room(record: TrialRecord, tick: int, house: HouseSpec | None) -> str:
     place = trial_trace.at(record.log, HUMAN, tick)
     rooms = house.rooms if house is not None else ()
     return next((room.name for room in rooms if plane.inside(place, room.polygon)), "")

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 from hthor.eval.config.robot_team import NO_ROBOT, NOBODY
 from hthor.eval.config.run_config import REALTIME
 from hthor.eval.results.paired_difference import Difference
-from hthor.eval.results.result_file import Result, Scores
+from hthor.eval.results.result_file import RunResult, Scores
 from hthor.eval.statistics.intervals import Estimate
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from hthor.eval.comparison.population_matrix import Matrix
+    from hthor.eval.comparison.population_matrix import PopulationMatrix
 
 Row = tuple[str, str, Estimate]
 """Title, unit and value."""
@@ -53,7 +53,7 @@ MAIN = tuple(name for name, _, _ in _MAIN)
 """The metrics that every table of results has."""
 
 
-def result_table(result: Result, *, everything: bool = False) -> Table:
+def result_table(result: RunResult, *, everything: bool = False) -> Table:
     """One run: a row a metric.
 
     Args:
@@ -76,7 +76,7 @@ def result_table(result: Result, *, everything: bool = False) -> Table:
     return table
 
 
-def notes(results: Iterable[Result]) -> Iterator[str]:
+def notes(results: Iterable[RunResult]) -> Iterator[str]:
     """What a reader of these results' tables has to know beside their numbers, each thing once."""
     held = list(results)
     outside = dict.fromkeys(note for result in held for note in result.humans.notes)
@@ -90,7 +90,7 @@ def notes(results: Iterable[Result]) -> Iterator[str]:
             yield f"note: uplift of {result.label}: {result.uplift.note}."
 
 
-def kinds_table(result: Result) -> Table:
+def kinds_table(result: RunResult) -> Table:
     """One run of several kinds of task: a column a kind, the main metrics with their intervals below."""
     table = _table(f"{result.label}: by kind of task (95 % interval)")
     for kind in result.by_kind:
@@ -102,7 +102,7 @@ def kinds_table(result: Result) -> Table:
     return table
 
 
-def comparison_table(results: Sequence[Result]) -> Table:
+def comparison_table(results: Sequence[RunResult]) -> Table:
     """Several runs: a column a run, the mean with its interval below."""
     first = results[0]
     title = f"{first.suite.name}, {first.counts.trials} trials, {first.humans.name} people (95 % interval)"
@@ -120,7 +120,7 @@ def comparison_table(results: Sequence[Result]) -> Table:
     return table
 
 
-def peoples_table(matrix: Matrix) -> Table:
+def peoples_table(matrix: PopulationMatrix) -> Table:
     """Agents with several peoples: a row a people, three columns an agent, the worst of each agent marked."""
     table = _table(f"{matrix.suite.name}, {matrix.trials} trials with each people")
     for agent in map(_called, matrix.agents):
@@ -136,7 +136,7 @@ def peoples_table(matrix: Matrix) -> Table:
     return table
 
 
-def worst_lines(matrix: Matrix) -> Iterator[str]:
+def worst_lines(matrix: PopulationMatrix) -> Iterator[str]:
     """With whom each agent fares worst, a line an agent."""
     for name, worst in matrix.worst.items():
         agent = _called(name)
@@ -204,7 +204,7 @@ def _cell(estimate: Estimate, unit: str) -> str:
     return "–" if estimate.mean is None else f"{number(estimate, unit)}\n{interval(estimate, unit)}"
 
 
-def _uplift_cell(result: Result) -> str:
+def _uplift_cell(result: RunResult) -> str:
     if result.uplift is None or result.uplift.sr.ci95 is None:
         return "–"
     gain = result.uplift.sr

@@ -15,7 +15,7 @@ from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.config import cli_command, robot_team, sessions
 from hthor.eval.config.run_config import crew_name
 from hthor.eval.records import find, trial_record
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate
 from hthor.eval.runner import experiment, progress, run, run_options, trial_runner
 from hthor.guest.host import isolation_level
@@ -41,7 +41,7 @@ TALKS = "if self.step % 9 == 1: return Action(say=Send(text=f'{{self.seat}} of {
 FAILS = "assert observation.tick < 40, 'tired'"
 
 
-def pairs(crew: robot_team.Crew) -> list[tuple[str, str, str]]:
+def pairs(crew: robot_team.RobotTeam) -> list[tuple[str, str, str]]:
     return [(robot.seat, robot.robot, robot.agent.name) for robot in crew.listed]
 
 
@@ -69,11 +69,11 @@ def test_bodies_without_a_mind_take_the_agents_in_turn():
 def test_a_comma_within_an_agent_is_escaped(monkeypatch: pytest.MonkeyPatch):
     heard: list[str] = []
 
-    def introduce(agent: str) -> robot_team.Character:
+    def introduce(agent: str) -> robot_team.AgentInfo:
         heard.append(agent)
         return fakes.character()
 
-    monkeypatch.setattr(robot_team, "introduce", introduce)
+    monkeypatch.setattr(robot_team, "load_agent_info", introduce)
     robot_team.read(r"tall:cmd:tool --at 1\,2,small:oracle", ())
     assert heard == ["cmd:tool --at 1,2", "oracle"]
 
@@ -102,9 +102,9 @@ def test_wrong_crews_are_told_what_is_right(robots: str, agents: tuple[str, ...]
 
 
 def test_a_mind_made_for_other_bodies_is_refused():
-    picky = robot_team.Character(ref=fakes.character().ref, bodies=("porter",))
+    picky = robot_team.AgentInfo(ref=fakes.character().ref, bodies=("porter",))
     with pytest.raises(UnknownName, match="unknown robot for the agent helper 'puck'"):
-        robot_team.form(["puck"], [picky])
+        robot_team.form_team(["puck"], [picky])
 
 
 # ------------------------------------------------------------------------------------------------------------- playing
@@ -120,16 +120,16 @@ def guests(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return {name: str(folder / f"{name}.py") for name in files}
 
 
-def played(robots: str, count: int = 1) -> list[Record]:
+def played(robots: str, count: int = 1) -> list[TrialRecord]:
     """The first trials of one person in a small house."""
     (crew,) = robot_team.read(robots, ())
     few = library.frozen("few", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == HOUSE))
-    whole = sessions.sessions(few, agent=crew, participants=1)[0]
-    perform = trial_runner.player(trial_runner.Sources(minds=crew.minds, bodies=crew.bodies))
+    whole = sessions.make_sessions(few, agent=crew, participants=1)[0]
+    perform = trial_runner.make_runner(trial_runner.Sources(minds=crew.minds, bodies=crew.bodies))
     return list(perform(msgspec.structs.replace(whole, trials=whole.trials[:count])))
 
 
-def said(record_: Record, seat: str) -> list[str]:
+def said(record_: TrialRecord, seat: str) -> list[str]:
     return [event.data["text"] for event in record_.events if event.kind == "sent" and event.seat == seat]
 
 
@@ -187,16 +187,16 @@ def test_a_run_of_several_robots_is_resumed_and_told_from_others(tmp_path: Path)
     plan, dealt = fakes.run_of(20, name="helper+other")
     assert plan.name == "scout-helper+scout-other"
     assert plan.folder_name.startswith("scout-helper+scout-other-fake-")
-    whole = run.evaluate(plan, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
+    whole = run.run_evaluation(plan, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
     before = _lines(tmp_path)
     (tmp_path / "trials.jsonl").write_bytes(b"".join(before[::2]))
-    again = run.evaluate(plan, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
+    again = run.run_evaluation(plan, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
     assert _lines(tmp_path) == before
     assert again.metrics == whole.metrics
     assert whole.counts.faults_by_seat == {"robot": 0, "robot2": 0}
     other, _ = fakes.run_of(20, name="other+helper")
     with pytest.raises(RunError, match=r"robots\.0\.agent\.name is helper there and other here"):
-        run.evaluate(other, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
+        run.run_evaluation(other, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
     (tmp_path / "run.json").unlink()
     run.setup.write(tmp_path, other)
     with pytest.raises(RunError, match=r"spec\.robots is not the one in run\.json"):
@@ -205,9 +205,9 @@ def test_a_run_of_several_robots_is_resumed_and_told_from_others(tmp_path: Path)
 
 def test_the_command_that_finishes_a_run_names_every_robot(tmp_path: Path):
     plan, _ = fakes.run_of(20, name="helper+other")
-    told = cli_command.of(tmp_path, plan)
+    told = cli_command.resume_command(tmp_path, plan)
     assert " --robots scout:helper.py,scout:other.py --humans proxy --suite fake --seed 0 " in told
-    assert shlex.split(cli_command.of(tmp_path / "my run", plan))[-2:] == ["--out", str(tmp_path / "my run")]
+    assert shlex.split(cli_command.resume_command(tmp_path / "my run", plan))[-2:] == ["--out", str(tmp_path / "my run")]
 
 
 def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):
@@ -216,14 +216,14 @@ def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):
     suite.write_bytes(library.encode(library.frozen("brief", 1, tuple(chosen))))
     results = []
     for jobs in (1, 2):
-        options = run_options.Options(
+        options = run_options.RunOptions(
             robots="tall:oracle,small:frontier",
             suite=str(suite),
             participants=2,
             jobs=jobs,
             out=tmp_path / str(jobs),
         )
-        (done,) = experiment.conduct(options, lambda _: progress.Silent())
+        (done,) = experiment.run_experiment(options, lambda _: progress.Silent())
         results.append(done.result)
     assert _lines(tmp_path / "1") == _lines(tmp_path / "2")
     assert len(_lines(tmp_path / "1")) == 4

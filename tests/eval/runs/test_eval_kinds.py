@@ -12,7 +12,7 @@ from hthor import houses, tasks
 from hthor.console import exit_status
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.config import task_selection
-from hthor.eval.config.sessions import sessions
+from hthor.eval.config.sessions import make_sessions
 from hthor.eval.records import trial_record
 from hthor.eval.results import aggregate
 from hthor.eval.runner import experiment, progress, run_options
@@ -37,8 +37,8 @@ def _forget():
             del sys.modules[name]
 
 
-def conducted(**asked) -> experiment.Done:
-    (done,) = experiment.conduct(run_options.Options(**asked), lambda _: progress.Silent())
+def conducted(**asked) -> experiment.FinishedRun:
+    (done,) = experiment.run_experiment(run_options.RunOptions(**asked), lambda _: progress.Silent())
     return done
 
 
@@ -73,8 +73,8 @@ def test_a_kind_with_a_suite_of_its_own_needs_no_other(name: str):
         pytest.skip(f"no suite '{name}' yet")
     chosen = task_selection.choose("", name)
     assert chosen.kind is None, "it is all of that suite"
-    assert {task.kind for task in chosen.suite.tasks} == {task_selection.find(name).name}
-    assert chosen.crew == tuple(task_selection.find(name).crew)
+    assert {task.kind for task in chosen.suite.tasks} == {task_selection.find_kind(name).name}
+    assert chosen.crew == tuple(task_selection.find_kind(name).crew)
 
 
 # --------------------------------------------------------------------------------------------------- a user's own kind
@@ -190,8 +190,8 @@ def test_a_kind_that_changes_during_its_run_ends_it(few: None, tmp_path: Path):
 
     file = written(tmp_path, "fickle")
     chosen = task_selection.choose("", str(file))
-    (dealt,) = sessions(chosen.suite, agent="silent", participants=1, kind_sha256=chosen.kind.sha256)
-    perform = trial_runner.player(trial_runner.Sources(kind=chosen.path))
+    (dealt,) = make_sessions(chosen.suite, agent="silent", participants=1, kind_sha256=chosen.kind.sha256)
+    perform = trial_runner.make_runner(trial_runner.Sources(kind=chosen.path))
     written(tmp_path, "fickle", met="return False")
     with pytest.raises(HthorError, match=r"fickle\.py was changed while its run was going on"):
         next(perform(dealt))

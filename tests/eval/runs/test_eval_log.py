@@ -18,12 +18,12 @@ from hthor.eval.runner import queue
 
 def _lines(count: int = 4) -> list[tuple[str, bytes]]:
     trials = fakes.run_of(10)[1][0].trials[:count]
-    made = [trial_record.of(trial, fakes.episode(trial)) for trial in trials]
+    made = [trial_record.make_record(trial, fakes.episode(trial)) for trial in trials]
     return [(one.key, trial_record.encode(one)) for one in made]
 
 
 def _written(folder: Path) -> Path:
-    with trial_log.Log(folder) as book:
+    with trial_log.TrialLog(folder) as book:
         for key, line in _lines():
             assert book.append(key, line)
     return folder / "trials.jsonl"
@@ -31,7 +31,7 @@ def _written(folder: Path) -> Path:
 
 def test_a_trial_is_written_once(tmp_path: Path):
     path = _written(tmp_path)
-    with trial_log.Log(tmp_path) as book:
+    with trial_log.TrialLog(tmp_path) as book:
         assert not any(book.append(key, line) for key, line in _lines())
     assert path.read_bytes() == b"".join(line for _, line in _lines())
 
@@ -42,7 +42,7 @@ def test_a_torn_last_line_is_cut(tmp_path: Path, cut: int):
     whole = path.read_bytes()
     path.write_bytes(whole[:-cut])
     assert len(list(trial_log.read(path))) == 3
-    with trial_log.Log(tmp_path) as book:
+    with trial_log.TrialLog(tmp_path) as book:
         assert book.torn == len(_lines()[-1][1]) - cut
         assert book.append(*_lines()[-1])
     assert path.read_bytes() == whole
@@ -56,7 +56,7 @@ def test_a_hole_of_zeros_is_cut_with_what_follows(tmp_path: Path, first: int):
     with path.open("r+b") as file:
         file.seek(start + 20)
         file.write(bytes(300))
-    with trial_log.Log(tmp_path) as book:
+    with trial_log.TrialLog(tmp_path) as book:
         assert len(book) == first
         assert book.torn == sum(map(len, lines[first:]))
         assert [book.append(key, line) for key, line in _lines()].count(True) == 4 - first
@@ -69,7 +69,7 @@ def test_damage_in_the_middle_names_file_line_and_field(tmp_path: Path):
     lines[1] = lines[1].replace(b'"met":', b'"mat":')
     path.write_bytes(b"".join(lines))
     with pytest.raises(RunError, match=r"trials\.jsonl, line 2: \$: .*met.*Delete that line"):
-        trial_log.Log(tmp_path)
+        trial_log.TrialLog(tmp_path)
     with pytest.raises(RunError, match="line 2"):
         list(trial_log.read(path))
 
@@ -80,7 +80,7 @@ def test_a_damaged_log_is_not_touched_and_not_left_locked(tmp_path: Path):
     path.write_bytes(data)
     for _ in range(2):
         with pytest.raises(RunError):
-            trial_log.Log(tmp_path)
+            trial_log.TrialLog(tmp_path)
     assert path.read_bytes() == data
 
 
@@ -102,17 +102,17 @@ def test_a_second_writer_is_refused_with_the_first_ones_number(tmp_path: Path):
         assert other.stdout is not None
         assert other.stdout.readline() == "locked\n"
         with pytest.raises(RunLocked, match=f"process {other.pid} on ") as caught:
-            trial_log.Log(tmp_path)
+            trial_log.TrialLog(tmp_path)
         assert caught.value.exit_code == 75
         other.communicate()
-    trial_log.Log(tmp_path).close()
+    trial_log.TrialLog(tmp_path).close()
 
 
 def test_what_is_written_is_on_the_disk_within_a_quarter_of_a_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     now, synced = [100.0], []
     monkeypatch.setattr(trial_log.time, "monotonic", lambda: now[0])
     monkeypatch.setattr(trial_log.os, "fdatasync", lambda _: synced.append(now[0]))
-    with trial_log.Log(tmp_path) as book:
+    with trial_log.TrialLog(tmp_path) as book:
         book.append(*_lines()[0])
         while not synced:
             now[0] += queue.BEAT_S  # how often whoever writes looks whether it is time
@@ -132,7 +132,7 @@ def test_folders_are_known_to_the_disk_before_what_is_in_them(tmp_path: Path, mo
             known.append((path.name, {entry.name for entry in path.iterdir()}))
 
     monkeypatch.setattr(os, "fsync", fsync)
-    with trial_log.Log(tmp_path / "runs" / "mine") as book:
+    with trial_log.TrialLog(tmp_path / "runs" / "mine") as book:
         jsonio.write(book.path.with_name("run.json"), b"{}")
     steps = [
         (tmp_path.name, {"runs"}),

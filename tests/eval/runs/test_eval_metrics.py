@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hthor.comms import claims
 from hthor.episode import EpisodeLog
 from hthor.eval.metrics import contribution, interference, trial_metrics
-from hthor.eval.records.trial_record import of
+from hthor.eval.records.trial_record import make_record
 from hthor.eval.results import aggregate
 from hthor.types import HUMAN, Event, Goal, HouseSpec, Job, Placement, Pose, Room, Send, Snapshot, Thing, ThingState
 
@@ -261,7 +261,7 @@ def test_without_a_robot_only_what_concerns_the_person_has_a_value():
 
 def test_scores_have_every_seat_and_every_pair():
     trials = fakes.run_of(10, name="tall+small")[1][0].trials
-    found = aggregate.scores([of(trial, fakes.episode(trial)) for trial in trials])
+    found = aggregate.scores([make_record(trial, fakes.episode(trial)) for trial in trials])
     assert set(found.work) == {HUMAN, "robot", "robot2"}
     assert len(found.hindered_by) == 6
     assert found.work[HUMAN].n == sum(fakes.episode(trial).met for trial in trials)

@@ -61,7 +61,7 @@ class Agent:
 @pytest.mark.parametrize(("line", "gpus"), [("gpus = 0.25", 0.25), ("gpus: int = 1", 1.0), ("pass", 0.0)])
 def test_a_class_says_how_much_of_a_gpu_it_wants(line: str, gpus: float, tmp_path: Path):
     (tmp_path / "agent.py").write_text(AGENT.format(line=line))
-    assert robot_team.form(["scout"] * 2, [str(tmp_path / "agent.py"), "silent"]).gpus == gpus
+    assert robot_team.form_team(["scout"] * 2, [str(tmp_path / "agent.py"), "silent"]).gpus == gpus
 
 
 def test_a_wish_that_is_no_number_is_refused(tmp_path: Path):
@@ -69,7 +69,7 @@ def test_a_wish_that_is_no_number_is_refused(tmp_path: Path):
     with pytest.raises(
         AgentError, match=r"agent\.py: Agent\.gpus must be a number from 0 on, such as 0\.25 or 1, got 'all'"
     ):
-        robot_team.introduce(str(tmp_path / "agent.py"))
+        robot_team.load_agent_info(str(tmp_path / "agent.py"))
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +119,7 @@ def _actors() -> list[int]:
 @needs_ray
 def test_two_nodes_give_the_local_records_though_actors_are_killed(address: str, tmp_path: Path):
     plan, dealt = fakes.run_of(200)
-    local = run.evaluate(
+    local = run.run_evaluation(
         plan, dealt, fakes.player, folder=tmp_path / "local", engine=fakes.Here(), watch=progress.Silent()
     )
     with _start(tmp_path / "ray", 200, address) as process:
@@ -142,7 +142,7 @@ def test_a_node_that_is_lost_costs_guests_nothing(nodes: subprocess.Popen[str], 
     plan, dealt = fakes.run_of(60)
     make = functools.partial(guest_fakes.player, str(agent), "auto")
     local = engines.find("local", jobs=2)
-    run.evaluate(plan, dealt, make, folder=tmp_path / "local", engine=local, watch=progress.Silent())
+    run.run_evaluation(plan, dealt, make, folder=tmp_path / "local", engine=local, watch=progress.Silent())
     with _start(tmp_path / "ray", 60, address, str(agent)) as process:
         end = time.monotonic() + 120
         while len(_lines(tmp_path / "ray")) < 15 and time.monotonic() < end and process.poll() is None:

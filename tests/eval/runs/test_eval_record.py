@@ -18,7 +18,7 @@ def _trial(index: int = 0, seed: int = 0):
 
 def _line() -> bytes:
     trial = _trial()
-    return trial_record.encode(trial_record.of(trial, fakes.episode(trial)))
+    return trial_record.encode(trial_record.make_record(trial, fakes.episode(trial)))
 
 
 def test_the_key_is_fixed_by_the_trial_alone():
@@ -44,7 +44,7 @@ def test_a_line_comes_back_as_it_was():
     line = _line()
     back = trial_record.decode(line)
     assert trial_record.encode(back) == line
-    assert trial_record.of(back.spec, back.log) == back
+    assert trial_record.make_record(back.spec, back.log) == back
 
 
 def test_a_line_holds_no_newline_but_its_last():
@@ -78,10 +78,10 @@ def test_floats_in_events_are_rounded_once(value: float, text: str):
         fakes.episode(trial),
         events=(Event(tick=1, seat="robot", kind="sent", data={"message": 0, "text": "", "p": (value, text)}),),
     )
-    line = trial_record.encode(trial_record.of(trial, log))
+    line = trial_record.encode(trial_record.make_record(trial, log))
     back = trial_record.decode(line)
     assert back.events[0].data["p"][0] == pytest.approx(value, abs=1e-4)
-    assert trial_record.encode(trial_record.of(trial, back.log)) == line
+    assert trial_record.encode(trial_record.make_record(trial, back.log)) == line
 
 
 @pytest.mark.parametrize(

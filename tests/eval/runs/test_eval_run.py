@@ -20,7 +20,7 @@ from hthor.errors import KILLED, RunError
 from hthor.eval.config import run_config
 from hthor.eval.records import session_restarts, trial_log
 from hthor.eval.results import aggregate, result_file
-from hthor.eval.results.result_file import Result
+from hthor.eval.results.result_file import RunResult
 from hthor.eval.runner import (
     collector,
     engines,
@@ -50,9 +50,9 @@ class Notes(progress.Silent):
         self.notes.append(text)
 
 
-def _run(folder: Path, make=fakes.player, *, jobs: int = 2, count: int = 30, watch=None, **how) -> Result:
+def _run(folder: Path, make=fakes.player, *, jobs: int = 2, count: int = 30, watch=None, **how) -> RunResult:
     plan, dealt = fakes.run_of(count, **how)
-    return run.evaluate(plan, dealt, make, folder=folder, jobs=jobs, watch=watch or progress.Silent())
+    return run.run_evaluation(plan, dealt, make, folder=folder, jobs=jobs, watch=watch or progress.Silent())
 
 
 def _lines(folder: Path) -> list[bytes]:
@@ -128,7 +128,7 @@ def test_a_worker_that_hangs_is_ended_and_its_session_played_again(tmp_path: Pat
     plan, dealt = fakes.run_of(60)
     engine = engines.find("local", jobs=2, limit_s=6.0)
     make, watch = functools.partial(fakes.sick_player, str(tmp_path), "hang"), Notes()
-    result = run.evaluate(plan, dealt, make, folder=tmp_path / "run", engine=engine, watch=watch)
+    result = run.run_evaluation(plan, dealt, make, folder=tmp_path / "run", engine=engine, watch=watch)
     assert "participant 3 begins again: its worker was ended by the limit of 6 s for a trial" in watch.notes[0]
     assert result.effort.replays == 1
     assert _lines(tmp_path / "run") == _lines(reference)
@@ -153,16 +153,16 @@ def test_a_run_of_which_nothing_can_be_played_ends_soon(tmp_path: Path):
 def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path: Path, monkeypatch):
     real = tasks.suite
     monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
-    monkeypatch.setattr(trial_runner, "player", fakes.lonely_player)
-    options = run_options.Options(agents=("none", "frontier"), suite="fake", jobs=1, out=tmp_path)
+    monkeypatch.setattr(trial_runner, "make_runner", fakes.lonely_player)
+    options = run_options.RunOptions(agents=("none", "frontier"), suite="fake", jobs=1, out=tmp_path)
     with pytest.raises(
         collector.InternalFailure, match=r"participant 1: ZeroDivisionError.* 10 of 20 trials are missing"
     ):
-        list(experiment.conduct(options, lambda _: progress.Silent()))
+        list(experiment.run_experiment(options, lambda _: progress.Silent()))
     assert result_file.load(tmp_path / "frontier").counts.trials == 20
     assert result_file.load(tmp_path / "none") is None
-    monkeypatch.setattr(trial_runner, "player", fakes.player)
-    done = [one.plan.name for one in experiment.conduct(options, lambda _: progress.Silent())]
+    monkeypatch.setattr(trial_runner, "make_runner", fakes.player)
+    done = [one.plan.name for one in experiment.run_experiment(options, lambda _: progress.Silent())]
     assert done == ["none", "frontier"]
     assert result_file.load(tmp_path / "frontier").uplift is not None
 
@@ -184,7 +184,7 @@ def test_a_run_has_one_do_over_for_killed_agents(tmp_path: Path, times: int, fau
     """Of three sessions in which an agent is killed one is played again; whatever comes of that stands."""
     plan, dealt = fakes.run_of(30)
     make = functools.partial(fakes.killing_player, times, {})
-    result = run.evaluate(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
+    result = run.run_evaluation(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
     again = int(times > 0)
     assert (result.counts.trials, result.counts.faults, result.counts.replays) == (30, faults, again)
     assert result.effort is not None
@@ -196,19 +196,19 @@ def test_no_later_command_has_another_do_over(tmp_path: Path):
     plan, dealt = fakes.run_of(30)
     make = functools.partial(fakes.killing_player, 1, {})
     run_config.write(tmp_path, plan)
-    assert session_restarts.DoOvers(tmp_path).take(7)
-    result = run.evaluate(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
+    assert session_restarts.SessionRestarts(tmp_path).take(7)
+    result = run.run_evaluation(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
     assert (result.counts.faults_by_kind, result.counts.replays) == ({KILLED: 3}, 1)
 
 
 def test_what_was_played_beside_a_killed_agent_does_not_count(tmp_path: Path):
     """Trials after the one that is played again went otherwise: their person had another trial before."""
     plan, dealt = fakes.run_of(10)
-    calm = run.evaluate(
+    calm = run.run_evaluation(
         plan, dealt, fakes.player, folder=tmp_path / "calm", engine=fakes.Here(), watch=progress.Silent()
     )
     make = functools.partial(fakes.killing_player, 1, {})
-    other = run.evaluate(plan, dealt, make, folder=tmp_path / "killed", engine=fakes.Here(), watch=progress.Silent())
+    other = run.run_evaluation(plan, dealt, make, folder=tmp_path / "killed", engine=fakes.Here(), watch=progress.Silent())
     assert other.hashes.trials == calm.hashes.trials
     assert session_restarts.load(tmp_path / "killed").participants == (dealt[0].participant,)
 
@@ -218,8 +218,8 @@ def test_an_agent_that_is_killed_while_it_starts_is_started_once_more(tmp_path: 
     plan, dealt = fakes.run_of(30)
     make, watch = functools.partial(fakes.late_player, times, {}), Notes()
 
-    def whole() -> Result:
-        return run.evaluate(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=watch)
+    def whole() -> RunResult:
+        return run.run_evaluation(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=watch)
 
     if times == 2:
         with pytest.raises(collector.Unfinished, match=r"participant 1: helper\.py: its process was killed.*10 of 30"):
@@ -244,13 +244,13 @@ def test_a_full_disk_leaves_whole_lines(tmp_path: Path, monkeypatch: pytest.Monk
 
     monkeypatch.setattr(trial_log.os, "write", write)
     with pytest.raises(RunError, match=r"trials\.jsonl: No space left on device\. The \d+ trials .* are kept"):
-        run.evaluate(plan, dealt, fakes.player, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
+        run.run_evaluation(plan, dealt, fakes.player, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
     monkeypatch.undo()
     held = _lines(tmp_path)
     assert 0 < len(held) < 30
     assert all(line.endswith(b"\n") for line in held)
     watch = Notes()
-    run.evaluate(plan, dealt, fakes.player, folder=tmp_path, engine=fakes.Here(), watch=watch)
+    run.run_evaluation(plan, dealt, fakes.player, folder=tmp_path, engine=fakes.Here(), watch=watch)
     assert (watch.kept, watch.new, watch.notes) == (len(held), 30 - len(held), [])
 
 

@@ -45,7 +45,7 @@ def test_a_small_log_worked_out_by_hand():
     trials = [trial for trial in TRIALS if trial.task.t_star == 8.0][:1] * 3
     made = [
         msgspec.structs.replace(
-            trial_record.of(trial, _log(*case)), spec=msgspec.structs.replace(trial, participant=number)
+            trial_record.make_record(trial, _log(*case)), spec=msgspec.structs.replace(trial, participant=number)
         )
         for number, (trial, case) in enumerate(zip(trials, GOLDEN, strict=True))
     ]
@@ -90,7 +90,7 @@ def test_only_a_robots_confirmed_message_is_adopted():
 
 def test_without_a_robot_there_is_neither_adoption_nor_trust():
     plan, dealt = fakes.run_of(10, absent=True)
-    made = [trial_record.of(trial, fakes.episode(trial)) for trial in dealt[0].trials]
+    made = [trial_record.make_record(trial, fakes.episode(trial)) for trial in dealt[0].trials]
     found = aggregate.summarise(plan, [trial_record.encode(one) for one in made], made)
     assert (found.metrics.adoption.mean, found.metrics.adoption.ci95, found.metrics.adoption.n) == (None, None, 0)
     assert found.metrics.trust.n == 0
@@ -101,7 +101,7 @@ def test_without_a_robot_there_is_neither_adoption_nor_trust():
 
 def _played(folder, name: str = "helper"):
     plan, dealt = fakes.run_of(20, name=name)
-    return run.evaluate(plan, dealt, fakes.player, folder=folder, jobs=1, watch=progress.Silent())
+    return run.run_evaluation(plan, dealt, fakes.player, folder=folder, jobs=1, watch=progress.Silent())
 
 
 def test_scoring_again_gives_the_stored_result(tmp_path):
@@ -136,7 +136,7 @@ def test_a_line_of_another_run_is_refused(tmp_path):
     _played(tmp_path)
     other = fakes.run_of(20, seed=1)[1][0].trials[0]
     with (tmp_path / "trials.jsonl").open("ab") as file:
-        file.write(trial_record.encode(trial_record.of(other, fakes.episode(other))))
+        file.write(trial_record.encode(trial_record.make_record(other, fakes.episode(other))))
     with pytest.raises(RunError, match=r"spec\.seed is not the one in run\.json"):
         aggregate.rescore(tmp_path)
 

@@ -16,7 +16,7 @@ from hthor.eval.config import sessions
 @given(st.integers(1, 130), st.integers(-(2**40), 2**40))
 def test_by_default_every_task_is_done_once(count: int, seed: int):
     tasks = [fakes.task(number) for number in range(count)]
-    hands = [sessions.deal(tasks, seed, participant) for participant in range(sessions.people_for(count))]
+    hands = [sessions.assign_tasks(tasks, seed, participant) for participant in range(sessions.people_for(count))]
     assert sorted(number for hand in hands for number in hand) == list(range(count))
     assert max(map(len, hands)) <= rules.SESSION_TASKS
     assert max(map(len, hands)) - min(map(len, hands)) <= 1
@@ -25,7 +25,7 @@ def test_by_default_every_task_is_done_once(count: int, seed: int):
 @given(st.integers(0, 50), st.integers(0, 2**40))
 def test_houses_are_mixed_in_every_hand(participant: int, seed: int):
     tasks = [fakes.task(number) for number in range(60)]
-    hand = sessions.deal(tasks, seed, participant)
+    hand = sessions.assign_tasks(tasks, seed, participant)
     homes = Counter(tasks[number].house for number in hand)
     assert set(homes) == set(fakes.HOUSES)
     assert max(homes.values()) <= 4
@@ -33,7 +33,7 @@ def test_houses_are_mixed_in_every_hand(participant: int, seed: int):
 
 def test_more_people_cycle_through_the_tasks_in_other_orders():
     tasks = [fakes.task(number) for number in range(60)]
-    hands = [sessions.deal(tasks, 0, participant) for participant in range(18)]
+    hands = [sessions.assign_tasks(tasks, 0, participant) for participant in range(18)]
     assert set(Counter(number for hand in hands for number in hand).values()) == {3}
     assert len({tuple(hand) for hand in hands}) == 18
     assert {frozenset(hand) for hand in hands[:6]} != {frozenset(hand) for hand in hands[6:12]}
@@ -58,12 +58,12 @@ def test_the_plan_knows_how_many_trials_there_are(people: int):
     from hthor.eval.config import run_config
 
     suite, who = fakes.suite(57), fakes.crew("helper")
-    plan = run_config.settle(suite, who, human="proxy", seed=3, participants=people)
-    dealt = sessions.sessions(suite, agent=who, seed=3, participants=people)
+    plan = run_config.build_config(suite, who, human="proxy", seed=3, participants=people)
+    dealt = sessions.make_sessions(suite, agent=who, seed=3, participants=people)
     assert plan.trials == sum(len(one.trials) for one in dealt)
     assert plan.participants == len(dealt) == people
 
 
 def test_seeds_deal_differently():
     tasks = [fakes.task(number) for number in range(60)]
-    assert sessions.deal(tasks, 0, 0) != sessions.deal(tasks, 1, 0)
+    assert sessions.assign_tasks(tasks, 0, 0) != sessions.assign_tasks(tasks, 1, 0)

@@ -31,7 +31,7 @@ def _play(folder: Path, words: str = "", *, make=fakes.player, **how) -> Path:
     if words:
         plan = run_config.divide(plan, shard.read(words), COUNT)
         folder, dealt = plan.shard.folder(folder), plan.shard.share(dealt)
-    run.evaluate(plan, dealt, make, folder=folder, engine=fakes.Here(), watch=progress.Silent())
+    run.run_evaluation(plan, dealt, make, folder=folder, engine=fakes.Here(), watch=progress.Silent())
     return folder
 
 
@@ -64,7 +64,7 @@ def test_shards_are_a_partition_and_know_their_size(tasks: int, people: int, of:
     parts = [run_config.divide(plan, shard.Shard(number=number, of=of), tasks).shard for number in range(1, of + 1)]
     held = [participant for part in parts for participant in part.share(range(people))]
     assert sorted(held) == list(range(people))
-    hands = [sessions.deal([fakes.task(number) for number in range(tasks)], 0, person) for person in range(people)]
+    hands = [sessions.assign_tasks([fakes.task(number) for number in range(tasks)], 0, person) for person in range(people)]
     assert [part.trials for part in parts] == [sum(map(len, part.share(hands))) for part in parts]
 
 

@@ -143,26 +143,28 @@ def test_more_cameras_than_robots_are_refused() -> None:
 # --------------------------------------------------------------------------------------------------------- runs
 
 
-def plan(camera: str) -> run_config.Setup:
-    crew = robot_team.form(["scout"], ["frontier"], camera=camera)
-    return run_config.settle(suite(30), crew, human=persons(), seed=0, participants=None)
+def plan(camera: str) -> run_config.RunConfig:
+    crew = robot_team.form_team(["scout"], ["frontier"], camera=camera)
+    return run_config.build_config(suite(30), crew, human=persons(), seed=0, participants=None)
 
 
 def test_a_run_knows_its_camera(tmp_path: Path) -> None:
     usual, other = plan("own"), plan("thor:64x48")
     assert b"camera" not in jsonio.pretty(usual)
-    assert msgspec.json.decode(jsonio.pretty(other), type=run_config.Setup).seats[0].camera == "thor:64x48"
+    assert msgspec.json.decode(jsonio.pretty(other), type=run_config.RunConfig).seats[0].camera == "thor:64x48"
     assert other.sha256 != usual.sha256
     assert overrides.of(other) == {"camera": "thor:64x48"}
     assert overrides.of(usual) == {}
-    assert "--camera thor --camera-size 64x48" in cli_command.of(tmp_path, other)
-    assert "--camera" not in cli_command.of(tmp_path, usual)
-    assert "--camera-size 64x48" in cli_command.of(tmp_path, plan("own:64x48"))
+    assert "--camera thor --camera-size 64x48" in cli_command.resume_command(tmp_path, other)
+    assert "--camera" not in cli_command.resume_command(tmp_path, usual)
+    assert "--camera-size 64x48" in cli_command.resume_command(tmp_path, plan("own:64x48"))
 
 
 def test_every_trial_s_key_knows_the_camera() -> None:
     trials = [
-        sessions.sessions(suite(10), agent=robot_team.form(["scout"], ["frontier"], camera=camera))[0].trials[0]
+        sessions.make_sessions(suite(10), agent=robot_team.form_team(["scout"], ["frontier"], camera=camera))[0].trials[
+            0
+        ]
         for camera in ("own", "own:64x48")
     ]
     assert [trial.robots[0].camera for trial in trials] == [msgspec.UNSET, "own:64x48"]
@@ -170,7 +172,7 @@ def test_every_trial_s_key_knows_the_camera() -> None:
 
 
 def test_the_options_reach_the_seats() -> None:
-    options = run_options.Options(agents=("frontier",), camera="thor", camera_size="32x32")
+    options = run_options.RunOptions(agents=("frontier",), camera="thor", camera_size="32x32")
     chosen = task_selection.choose("smoke", "")
     (crew,) = run_options._crews(options, chosen, "own", cameras.tidy(options.camera, options.camera_size))
     assert [seat.camera for seat in crew.seats] == ["thor:32x32"]

@@ -269,7 +269,7 @@ def trial_with_pictures() -> str:
     hashes = dict.fromkeys(("human_sha256", "suite_sha256", "rules_sha256", "code_sha256"), "0")
     robots = (RobotSeat(seat="robot", robot="scout", agent=agent),)
     trial = TrialSpec(task=short, robots=robots, human="x", participant=0, index=0, seed=0, **hashes)
-    log = episode.play(trial, World(tiny.house(), robots=("scout",)), Mind(), {"robot": Mind()})
+    log = episode.run_episode(trial, World(tiny.house(), robots=("scout",)), Mind(), {"robot": Mind()})
     assert not log.faults, log.faults
     assert (104, 160, 3) in seen
     assert all(all(one) for one in seen)

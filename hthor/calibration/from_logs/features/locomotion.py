@@ -10,7 +10,7 @@ import numpy as np
 from msgspec import Struct
 
 from hthor import rules
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.types import HUMAN
 
 Array = Any
@@ -47,7 +47,7 @@ class Walk(Struct, frozen=True, kw_only=True):
     stops: tuple[float, ...]
 
 
-def of(record: Record) -> Walk | None:
+def of(record: TrialRecord) -> Walk | None:
     """The walk of a trial, None when its log holds no stick."""
     pushed = stick(record)
     if pushed is None:
@@ -72,7 +72,7 @@ def of(record: Record) -> Walk | None:
     )
 
 
-def stick(record: Record) -> Array | None:
+def stick(record: TrialRecord) -> Array | None:
     """(ticks,) deflection in thousandths at each tick; None where the log holds none."""
     runs = next((event.data["runs"] for event in record.journal if event.kind == "stick"), None)
     if runs is None:
@@ -81,7 +81,7 @@ def stick(record: Record) -> Array | None:
     return np.repeat(value, np.diff(np.append(at, max(record.ticks, at[-1]))))[: record.ticks]
 
 
-def _reading(record: Record) -> Array:
+def _reading(record: TrialRecord) -> Array:
     """(ticks,) bool, whether a message was shown and not yet answered; one left alone counts for a while only."""
     mask = np.zeros(record.ticks, dtype=bool)
     for event in record.events:
@@ -95,7 +95,7 @@ def _reading(record: Record) -> Array:
     return mask
 
 
-def _guided(record: Record) -> Array:
+def _guided(record: TrialRecord) -> Array:
     """(ticks,) bool, whether a message was confirmed and nothing picked since."""
     mask, since = np.zeros(record.ticks, dtype=bool), -1
     for event in record.events:
@@ -109,7 +109,7 @@ def _guided(record: Record) -> Array:
     return mask
 
 
-def _slower(record: Record, pushed: Array, reading: Array, usual: float) -> tuple[float, ...]:
+def _slower(record: TrialRecord, pushed: Array, reading: Array, usual: float) -> tuple[float, ...]:
     """How many times slower than usual each walk after a confirmed message was, by its commonest deflection."""
     found = []
     for event in record.events:
@@ -145,7 +145,7 @@ def _start(path: Array, turned: Array, turns: tuple[float, ...]) -> float:
     return (first + 1) * _SAMPLE_S - busy
 
 
-def _stops(record: Record, on: Array, yaw: Array, turned: Array, rate: float) -> tuple[float, ...]:
+def _stops(record: TrialRecord, on: Array, yaw: Array, turned: Array, rate: float) -> tuple[float, ...]:
     """Lengths of the time without stick or turn, where the walk went on in the direction in which it had stopped.
 
     Not where hands were at work. What was turned is taken off at the ``rate`` of the trial's turns [rad/s].

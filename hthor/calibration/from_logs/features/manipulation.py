@@ -5,7 +5,7 @@ from __future__ import annotations
 from msgspec import Struct
 
 from hthor import rules
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 
 
 class Attempt(Struct, frozen=True, kw_only=True):
@@ -16,7 +16,7 @@ class Attempt(Struct, frozen=True, kw_only=True):
     cut: bool
 
 
-def of(record: Record) -> tuple[Attempt, ...]:
+def of(record: TrialRecord) -> tuple[Attempt, ...]:
     """The attempts of a trial in order; one without an end was cut short when the person went on, or by the end."""
     walked = [
         tick

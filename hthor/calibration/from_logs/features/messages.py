@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from hthor import rules
 from hthor.calibration.from_logs.features import locomotion
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.humans.communication.message_reading import same
 from hthor.types import Event, Message
 
@@ -41,7 +41,7 @@ class Offer(Struct, frozen=True, kw_only=True):
     confirmed: bool
 
 
-def readings(record: Record) -> tuple[Reading, ...]:
+def readings(record: TrialRecord) -> tuple[Reading, ...]:
     """Every message that was shown; one that only repeats the one before it while that is read goes on with it."""
     sent = _messages(record)
     found: list[Reading] = []
@@ -60,7 +60,7 @@ def readings(record: Record) -> tuple[Reading, ...]:
     return (*found, *_left(begun, record.ticks))
 
 
-def noticings(record: Record) -> tuple[tuple[float, bool], ...]:
+def noticings(record: TrialRecord) -> tuple[tuple[float, bool], ...]:
     """For each message that came while the person walked: seconds until they slowed down, and whether they did.
 
     Who let go of the stick first was not seen to slow down; what they did later tells nothing.
@@ -84,7 +84,7 @@ def noticings(record: Record) -> tuple[tuple[float, bool], ...]:
     return tuple(pair for pair in found if pair[0] > 0.0)
 
 
-def offers(record: Record) -> tuple[Offer, ...]:
+def offers(record: TrialRecord) -> tuple[Offer, ...]:
     """The messages about the task that were read, in order."""
     return tuple(
         Offer(
@@ -104,13 +104,13 @@ def _kept(stick: Any) -> Any:
     return np.abs(follows - stick) <= 0.02 * stick
 
 
-def _answer(record: Record, shown: Event) -> int:
+def _answer(record: TrialRecord, shown: Event) -> int:
     number = shown.data["message"]
     ends = (e.tick for e in record.events if e.kind in (*_ANSWERS, "covered") and e.data["message"] == number)
     return min(next(ends, record.ticks), record.ticks)
 
 
-def _messages(record: Record) -> dict[int, Message]:
+def _messages(record: TrialRecord) -> dict[int, Message]:
     return {event.data["message"]: _message(event) for event in record.events if event.kind == "sent"}
 
 

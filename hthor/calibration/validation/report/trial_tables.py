@@ -9,14 +9,14 @@ import numpy as np
 from hthor import rules
 from hthor.calibration.simulation import trial_table as tables
 from hthor.calibration.simulation.trial_table import CONDITIONS, Table
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.tasks import Suite
 from hthor.types import HUMAN
 
 _FIRST = ("sent", "shown", "confirmed", "declined", "picked")
 
 
-def table(runs: dict[str, Sequence[Record]], suite: Suite) -> Table:
+def table(runs: dict[str, Sequence[TrialRecord]], suite: Suite) -> Table:
     """The trials of one human model in every condition.
 
     Args:
@@ -32,7 +32,7 @@ def table(runs: dict[str, Sequence[Record]], suite: Suite) -> Table:
     return tables.build(("none",), np.zeros((1, 1)), columns)
 
 
-def _row(condition: int, numbers: dict[str, int], record: Record) -> dict[str, int]:
+def _row(condition: int, numbers: dict[str, int], record: TrialRecord) -> dict[str, int]:
     first = dict.fromkeys(_FIRST, -1)
     messages, target = 0, record.spec.task.goal.target
     for event in record.events:

@@ -17,11 +17,11 @@ from hthor.eval.runner.queue import LIMIT_S
 
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
-    from hthor.eval.records.trial_record import Record
+    from hthor.eval.records.trial_record import TrialRecord
 
 LOCAL = "local"
 
-Make = Callable[[], "Callable[[Session], Iterator[Record]]"]
+Make = Callable[[], "Callable[[Session], Iterator[TrialRecord]]"]
 """Picklable; called once in each worker, gives what plays a session."""
 
 
@@ -37,7 +37,7 @@ class Engine(Protocol):
     def perform(self, sessions: Sequence[Session], make: Make) -> Generator[News | None, None, None]:
         """Play sessions and tell what happens; None when nothing does. Closing the generator ends the workers.
 
-        A session that costs `hthor.eval.runner.queue.ATTEMPTS` workers is `Lost`, and the others go on.
+        A session that costs `hthor.eval.runner.queue.ATTEMPTS` workers is `SessionAbandoned`, and the others go on.
 
         Raises:
             SessionFailed: when there is something that the user has to mend first.

@@ -14,7 +14,7 @@ from hthor import code_identity
 from hthor.errors import HthorError
 from hthor.eval.runner import worker
 from hthor.eval.runner.engines import Make, SessionFailed
-from hthor.eval.runner.messages import Failed, Finished, Lost, News, Played
+from hthor.eval.runner.messages import Failed, Finished, News, SessionAbandoned, TrialDone
 from hthor.eval.runner.queue import BEAT_S, LIMIT_S, Clock, Queue
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ class Engine:
             elif hand.task:
                 yield queue.again(*hand.task, hand.cause)
                 hand.task = None
-            if self._draining and isinstance(news, Played):
+            if self._draining and isinstance(news, TrialDone):
                 hand.end()
 
 
@@ -118,7 +118,7 @@ class _Hand:
             self.pipe.close()
             self.process.join()
             return None
-        if isinstance(news, (Finished, Lost)):
+        if isinstance(news, (Finished, SessionAbandoned)):
             self.task = None
         return news
 

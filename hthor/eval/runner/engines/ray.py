@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from hthor import code_identity, installation
 from hthor.errors import HthorError, MissingExtra
 from hthor.eval.runner.engines import Make, SessionFailed
-from hthor.eval.runner.messages import Failed, Finished, Lost, News, Played
+from hthor.eval.runner.messages import Failed, Finished, News, SessionAbandoned, TrialDone
 from hthor.eval.runner.queue import ATTEMPTS, BEAT_S, LIMIT_S, Clock, Queue
 from hthor.eval.runner.worker import ONE_THREAD, Player
 
@@ -96,7 +96,7 @@ class Engine:
             elif hand.dead and hand.task:
                 yield queue.again(*hand.task, hand.cause)
                 hand.task = None
-            if self._draining and isinstance(news, Played):
+            if self._draining and isinstance(news, TrialDone):
                 hand.task, hand.dead = None, True
                 hand.end()
             self._stillborn = self._stillborn + 1 if hand.dead and not hand.ready else 0
@@ -191,7 +191,7 @@ class _Hand:
             self.cause = self.cause or f"{type(error).__name__} of Ray: {told[0][:200]}".rstrip(": ")
             self.end()
             return None
-        if isinstance(news, (Finished, Lost)):
+        if isinstance(news, (Finished, SessionAbandoned)):
             self.task = self.awaited = None
         return news
 

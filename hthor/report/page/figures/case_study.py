@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from msgspec import Struct
 
 from hthor import rules
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.drawing import floor_plan, text_fit, trial_figure, trial_trace
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.camera_frames import Views
@@ -39,7 +39,7 @@ class Row(Struct, frozen=True, kw_only=True, eq=False):
     """One robot's trial: what to call it, its moments, and what was seen at them."""
 
     label: str
-    record: Record
+    record: TrialRecord
     moments: Sequence[Moment]
     views: Views
 
@@ -177,7 +177,7 @@ def _headline(row: Row) -> str:
     return "; ".join([f"{row.label}: {end}", *failed, *said[:1]])
 
 
-def _task(record: Record) -> str:
+def _task(record: TrialRecord) -> str:
     spec = record.spec
     whose = f"{spec.task.id}, person {spec.participant}, trial {spec.index + 1}, T* {spec.task.t_star:.1f} s"
     return f"“{spec.task.instruction}”  {whose}"

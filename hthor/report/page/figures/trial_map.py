@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hthor.eval.records.trial_record import Record
+from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.drawing import floor_plan, text_fit, trial_figure, trial_trace
 from hthor.report.html import matplotlib_svg
 from hthor.types import HUMAN, HouseSpec
@@ -19,7 +19,7 @@ _WIDE, _HIGH = 3.5, 2.75
 _DASH = (0, (2, 2))
 
 
-def figure(record: Record, house: HouseSpec, alone: Record | None) -> Figure:
+def figure(record: TrialRecord, house: HouseSpec, alone: TrialRecord | None) -> Figure:
     """A small plan; all are of one size, whatever the house.
 
     Args:
