@@ -40,7 +40,7 @@ def player(path: Path) -> Callable[[Session], Iterator[TrialRecord]]:
 
 def sessions(folder: Path) -> list[Session]:
     """The sessions of a finished run, from its log."""
-    _, records = reader.digest(folder, run_config.load(folder))
+    _, records = reader.digest(folder, run_config.load_config(folder))
     people = itertools.groupby(records, key=lambda one: one.spec.participant)
     return [Session(participant=who, trials=tuple(one.spec for one in mine)) for who, mine in people]
 
@@ -50,8 +50,8 @@ def main() -> None:
     options = argparse.ArgumentParser(prog="python -m benchmarks.keeping", description=__doc__.split("\n\n")[0])
     options.add_argument("run", type=Path, help="the folder of a finished run")
     folder = options.parse_args().run
-    plan, dealt, stored = run_config.load(folder), sessions(folder), result_file.load(folder)
-    engine = engines.find("local", jobs=2)
+    plan, dealt, stored = run_config.load_config(folder), sessions(folder), result_file.load(folder)
+    engine = engines.find_engine("local", jobs=2)
     scoring = 0.0
     real = aggregate.summarise
 

@@ -104,7 +104,7 @@ def make(wanted: Sequence[str], folder: Path = FOLDER) -> None:
 
 def played(task_id: str) -> TrialRecord:
     """The trial of a task with the oracle, as `hthor eval` plays it with the seed 0."""
-    chosen = task_selection.choose(task_id.partition("/")[0], "")
+    chosen = task_selection.select_tasks(task_id.partition("/")[0], "")
     suite, crew = chosen.suite, robot_team.form_team(chosen.crew, ["oracle"] * len(chosen.crew))
     for one in sessions.make_sessions(suite, agent=crew):
         ids = [trial.task.id for trial in one.trials]

@@ -41,7 +41,7 @@ def rows(suite: str, each: int) -> Iterator[Row]:
             faster = 90000.0 / row.value
             yield Row(part="trials", what="the same, times real time", value=faster, unit="x", bar=1000, at_least=True)
     for name, robots in CREWS.items():
-        (crew,) = robot_team.read(robots, ())
+        (crew,) = robot_team.parse_teams(robots, ())
         yield _row(f"{name}: {robots} and proxy, 90 s", name, crew, each, CREW_BAR_MS)
 
 

@@ -77,7 +77,7 @@ def decode(data: bytes, kind: type[_T], *, schema: str = "") -> _T:
     Raises:
         Unreadable: when they are not such a record, or its ``schema`` is another.
     """
-    with guarded():
+    with reading_errors():
         if schema and (found := msgspec.json.decode(data, type=_Versioned).schema) != schema:
             raise Unreadable("schema", f"is '{found}', this version reads '{schema}'")
         return msgspec.json.decode(data, type=kind)
@@ -92,7 +92,7 @@ def schema_of(path: Path) -> str:
 
 
 @contextmanager
-def guarded() -> Iterator[None]:
+def reading_errors() -> Iterator[None]:
     """Turn everything that decoding JSON can raise into `Unreadable`; for those who have a decoder of their own."""
     try:
         yield

@@ -67,7 +67,7 @@ class TaskError(FileError):
     """A suite or task file that cannot be used."""
 
 
-class PeopleError(FileError):
+class PopulationError(FileError):
     """A file of people, a population or a kind, that cannot be used."""
 
 

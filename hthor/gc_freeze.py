@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def uncollected() -> Iterator[None]:
+def collection_paused() -> Iterator[None]:
     """Look for no garbage meanwhile: with several worlds in memory that takes a third of the time to build another."""
     was = gc.isenabled()
     gc.disable()
@@ -20,11 +20,11 @@ def uncollected() -> Iterator[None]:
             gc.enable()
 
 
-def keep() -> None:
+def freeze_existing() -> None:
     """Do not look through what there is by now any more: it will stay as long as its owner, see `release_with`."""
     gc.freeze()
 
 
-def release_with(owner: object) -> None:
+def unfreeze_after(owner: object) -> None:
     """Look through everything again once ``owner`` is gone."""
     weakref.finalize(owner, gc.unfreeze).atexit = False

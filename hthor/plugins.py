@@ -39,28 +39,28 @@ def names(sort: str) -> tuple[str, ...]:
     package, _ = _PACKAGES[sort]
     folder = Path(__file__).parent.joinpath(*package.split(".")[1:])
     stems = (path.stem for path in folder.glob("*.py") if not path.stem.startswith("_"))
-    return tuple(sorted(called(sort, stem) for stem in stems))
+    return tuple(sorted(plugin_name(sort, stem) for stem in stems))
 
 
-def called(sort: str, file: str) -> str:
+def plugin_name(sort: str, file: str) -> str:
     """What the plug-in in the file of this name is called, mostly the same."""
     return next((name for (one, name), stem in _FILES.items() if (one, stem) == (sort, file)), file)
 
 
-def stem(sort: str, name: str) -> str:
+def file_stem(sort: str, name: str) -> str:
     """The name of a plug-in's file."""
     return _FILES.get((sort, name), name)
 
 
-def ships(sort: str, name: str) -> bool:
+def is_built_in(sort: str, name: str) -> bool:
     """Whether a plug-in of this name ships with hthor; one of a user's own never has the same name."""
-    return called(sort, name) in names(sort)
+    return plugin_name(sort, name) in names(sort)
 
 
-def module(sort: str, name: str) -> str:
+def module_name(sort: str, name: str) -> str:
     """The module's name of a plug-in that ships with hthor."""
     package, _ = _PACKAGES[sort]
-    return f"{package}.{stem(sort, name)}"
+    return f"{package}.{file_stem(sort, name)}"
 
 
 def load(sort: str, name: str) -> Any:
@@ -75,8 +75,8 @@ def load(sort: str, name: str) -> Any:
     """
     package, attribute = _PACKAGES[sort]
     known = names(sort)
-    if called(sort, name) in known:
-        module = importlib.import_module(f"{package}.{stem(sort, name)}")
+    if plugin_name(sort, name) in known:
+        module = importlib.import_module(f"{package}.{file_stem(sort, name)}")
     elif name.endswith(_SUFFIX):
         module = _from_file(sort, Path(name))
     elif (there := loaded(sort, name)) is not None:
@@ -92,18 +92,18 @@ def load(sort: str, name: str) -> Any:
 def loaded(sort: str, name: str) -> ModuleType | None:
     """The plug-in's module if it was loaded before, from wherever it lies."""
     package, _ = _PACKAGES[sort]
-    return sys.modules.get(f"{package}.{stem(sort, name)}")
+    return sys.modules.get(f"{package}.{file_stem(sort, name)}")
 
 
 @functools.cache
-def purpose(sort: str, name: str) -> str:
+def summary(sort: str, name: str) -> str:
     """The first sentence of a plug-in's file, up to a semicolon; read without importing it.
 
     Args:
         name: its name, or the path of a user's file.
     """
     package, _ = _PACKAGES[sort]
-    own = Path(__file__).parent.joinpath(*package.split(".")[1:]) / f"{stem(sort, name)}{_SUFFIX}"
+    own = Path(__file__).parent.joinpath(*package.split(".")[1:]) / f"{file_stem(sort, name)}{_SUFFIX}"
     file = Path(name) if name.endswith(_SUFFIX) else own
     text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
     return " ".join(text.split("\n\n")[0].split()).split("; ")[0].rstrip(".")
@@ -114,7 +114,7 @@ def sha256(path: str) -> str:
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
-def blamed(error: BaseException) -> HthorError | None:
+def user_error(error: BaseException) -> HthorError | None:
     """The error as one for the user to mend, where it passed through a plug-in of theirs: file, line, function, words.
 
     None when no file of the user's that was loaded had a part in it.
@@ -139,7 +139,7 @@ def _from_file(sort: str, path: Path) -> ModuleType:
     package, _ = _PACKAGES[sort]
     if not path.is_file():
         raise UnknownName(sort, str(path), names(sort), "A path must lead to a Python file.")
-    if called(sort, path.stem) in names(sort) or not path.stem.isidentifier():
+    if plugin_name(sort, path.stem) in names(sort) or not path.stem.isidentifier():
         raise HthorError(f"{path}: a {sort}'s file name must be a Python name that no {sort} of ours has; rename it.")
     name, place = f"{package}.{path.stem}", path.resolve()
     there = sys.modules.get(name)

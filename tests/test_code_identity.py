@@ -22,9 +22,9 @@ from hthor.eval.runner import trial_runner
 _OWN = (("human model", "proxy"), ("agent", "frontier"), ("robot", "scout"))
 ROOTS = (
     *(trial_runner.__name__, trial_metrics.__name__, trial_record.__name__),
-    *(plugins.module("task kind", name) for name in ("mobile_manipulation", "object_goal_navigation")),
+    *(plugins.module_name("task kind", name) for name in ("mobile_manipulation", "object_goal_navigation")),
     *(
-        plugins.module(sort, name)
+        plugins.module_name(sort, name)
         for sort, name in (("human model", "proxy"), ("agent", "frontier"), ("robot", "scout"))
     ),
 )
@@ -252,7 +252,7 @@ def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent
         called = _called(lambda: stage.play(company, trial, world))
     roots = [trial_runner.__name__, trial_metrics.__name__, trial_record.__name__]
     own = (("human model", model), ("agent", agent), ("robot", robot), ("task kind", trial.task.kind))
-    counted = set(sources.closure([*roots, *(plugins.module(sort, name) for sort, name in own)]))
+    counted = set(sources.closure([*roots, *(plugins.module_name(sort, name) for sort, name in own)]))
     assert called > {"hthor.episode", "hthor.world.world"}
     assert called <= counted
 

@@ -21,7 +21,7 @@ from hthor.calibration import targets
 from hthor.calibration.pipeline import evidence
 from hthor.calibration.simulation import session_store
 from hthor.catalog import procthor
-from hthor.errors import HouseError, HthorError, PeopleError, RunError, TaskError
+from hthor.errors import HouseError, HthorError, PopulationError, RunError, TaskError
 from hthor.eval.config import run_config
 from hthor.eval.records import platform, run_isolation, trial_log
 from hthor.eval.results import result_file
@@ -65,16 +65,16 @@ def _lines(read: Callable[[Path], Any]) -> Callable[[Path], Any]:
 
 
 READERS: dict[str, tuple[str, type[HthorError], Callable[[Path], Any]]] = {
-    "run": ("run.json", RunError, lambda path: run_config.load(path.parent)),
+    "run": ("run.json", RunError, lambda path: run_config.load_config(path.parent)),
     "result": ("result.json", RunError, lambda path: result_file.load(path.parent)),
     "trials": ("trials.jsonl", RunError, _lines(lambda path: list(trial_log.read(path)))),
-    "isolation": ("isolation.json", RunError, lambda path: run_isolation.load(path.parent)),
+    "isolation": ("isolation.json", RunError, lambda path: run_isolation.load_isolation(path.parent)),
     "platform": ("platform.json", RunError, lambda path: platform.load(path.parent)),
     "platform of a report": ("platform.json", RunError, lambda path: run_provenance._platforms(_Run(path.parent))),
-    "faults": ("faults.json", RunError, fault_report.load),
-    "population": ("pop.json", PeopleError, lambda path: population_file._document(path)),
+    "faults": ("faults.json", RunError, fault_report.load_fault_report),
+    "population": ("pop.json", PopulationError, lambda path: population_file._document(path)),
     "people": ("pop.json", HthorError, lambda path: resolve.find(str(path))),
-    "kind of people": ("quick.json", PeopleError, kinds.load),
+    "kind of people": ("quick.json", PopulationError, kinds.load),
     "past trials": ("past.jsonl", HthorError, _lines(lambda path: _logged_trials._read(str(path)))),
     "suite": ("suite.json", TaskError, library.read),
     "commitment": ("commitment.json", TaskError, commitment.load),
@@ -131,16 +131,16 @@ def test_damage_that_is_only_looked_at_raises_nothing(damage: str, tmp_path: Pat
 def test_a_level_of_isolation_that_does_not_exist_is_refused(tmp_path: Path):
     (tmp_path / "isolation.json").write_text('{"level": "L9"}')
     with pytest.raises(RunError, match=r"isolation\.json: .*level is 'L9', valid are served, L1, L2, L3"):
-        run_isolation.load(tmp_path)
+        run_isolation.load_isolation(tmp_path)
     with pytest.raises(RunError, match="L9"):
-        run_isolation.weakest(tmp_path, Isolation(level="L1"), "L2")
+        run_isolation.weakest_isolation(tmp_path, Isolation(level="L1"), "L2")
 
 
 def test_the_error_names_file_and_field(tmp_path: Path):
     path = tmp_path / "kind.json"
     path.write_text('{"schema": "hthor.kind/1", "name": 3}')
-    with pytest.raises(PeopleError) as caught:
-        documents.read(path, kinds.Kind, PeopleError)
+    with pytest.raises(PopulationError) as caught:
+        documents.read(path, kinds.Kind, PopulationError)
     assert caught.value.file == str(path)
     assert caught.value.field == "name"
     assert re.search("Expected `str`", caught.value.problem)

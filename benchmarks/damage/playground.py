@@ -45,8 +45,8 @@ def make(folder: Path) -> Path:
 
 def _faults(run: Path) -> None:
     """What a run keeps of a trial in which an agent failed."""
-    spec = find.trial(run, "0").spec
-    key = find.trial(run, "0").key
+    spec = find.find_trial(run, "0").spec
+    key = find.find_trial(run, "0").key
     failure = fault_report.Failure(seat="robot", agent="oracle", kind="raised", tick=3, time_s=0.3, detail="lost")
     left = fault_report.FaultReport(
         key=key, task=spec.task.id, participant=spec.participant, index=spec.index, failures=(failure,)

@@ -29,12 +29,12 @@ def code_sha256(model: str, kinds: Iterable[str]) -> str:
 
 def agent_sha256(name: str) -> str:
     """Hash of the code of an agent that ships with hthor."""
-    return modules_sha256([plugins.module("agent", name)])
+    return modules_sha256([plugins.module_name("agent", name)])
 
 
 def robot_sha256(name: str) -> str:
     """Hash of a robot's body that ships with hthor."""
-    return modules_sha256([plugins.module("robot", name)])
+    return modules_sha256([plugins.module_name("robot", name)])
 
 
 def pictures_sha256(pack: str = "") -> str:
@@ -45,7 +45,7 @@ def pictures_sha256(pack: str = "") -> str:
 
 def makers_sha256() -> str:
     """Hash of the code that makes houses and tasks, and proves them sound."""
-    kinds = [plugins.module("task kind", name) for name in plugins.names("task kind")]
+    kinds = [plugins.module_name("task kind", name) for name in plugins.names("task kind")]
     return modules_sha256([*roots(_MAKERS), *kinds], (SIMULATION, TOOLS))
 
 
@@ -75,4 +75,6 @@ def modules_sha256(names: Sequence[str], parts: Sequence[str] = (SIMULATION,)) -
 
 def _modules(sort: str, name: str) -> list[str]:
     """The module of a plug-in; of the user's own, all that it may build on."""
-    return [plugins.module(sort, one) for one in ([name] if plugins.ships(sort, name) else plugins.names(sort))]
+    return [
+        plugins.module_name(sort, one) for one in ([name] if plugins.is_built_in(sort, name) else plugins.names(sort))
+    ]

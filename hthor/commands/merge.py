@@ -28,7 +28,7 @@ def merge(
     """
     from hthor.eval.merge import merge_shards as merging
 
-    done = merging.merge(folders, out, dry=dry_run)
+    done = merging.merge_shards(folders, out, dry=dry_run)
     if json:
         output.put_json(done)
     elif done.result is not None:

@@ -23,9 +23,9 @@ def replay(
     from hthor.report.drawing import human_trace_figure, lettering, render_trial
 
     houses.shelve(run / "houses")  # where the suite brought its own
-    record = find.trial(run, trial)
+    record = find.find_trial(run, trial)
     house = render_trial.house(record)
-    stream = human_trace.listen(run, record, agents=agents, humans=humans, given=given)
+    stream = human_trace.trace_human(run, record, agents=agents, humans=humans, given=given)
     if not stream.same:
         talk = output.console(talk=True)
         talk.print(

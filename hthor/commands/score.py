@@ -117,7 +117,7 @@ def replay(
     from hthor.report.drawing import render_trial
 
     houses.shelve(run / "houses")  # where the suite brought its own
-    record = find.trial(run, trial)
+    record = find.find_trial(run, trial)
     path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'webm' if video else 'png'}"
     render_trial.draw(record, path, video=video)
     output.put_files([path], json, key=record.key, task=record.spec.task.id)

@@ -80,7 +80,7 @@ def _perform(command: Callable[[], Any]) -> Any:
 
 
 def _blame(error: BaseException) -> None:
-    if (own := plugins.blamed(error)) is not None:
+    if (own := plugins.user_error(error)) is not None:
         _fail(str(own), own.exit_code)
 
 

@@ -43,7 +43,7 @@ def add(folder: Path, board: Path, submission: Submission | None = None) -> list
     """
     made: dict[Path, Entry] = {}
     for run in _runs(folder):
-        plan = run_config.load(run)
+        plan = run_config.load_config(run)
         beside = baseline.place(run, plan)
         for each in (run, *([beside] if beside else [])):
             made[each] = made.get(each) or of(each, submission if each == run else None)
@@ -60,7 +60,7 @@ def add(folder: Path, board: Path, submission: Submission | None = None) -> list
 
 def of(folder: Path, submission: Submission | None = None) -> Entry:
     """The entry of one run."""
-    plan = run_config.load(folder)
+    plan = run_config.load_config(folder)
     lines, kept = reader.records(folder, plan)
     _whole(folder, plan, len(kept))
     found = overrides.of(plan, _crew(plan), len({one.spec.task.id for one in kept}))
@@ -70,7 +70,7 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
     gain = baseline.measure(folder, plan, records)
     if gain is None and plan.seats:
         raise RunError(f"{folder} has no run without a robot beside it. 'hthor eval' plays it without --no-control.")
-    held = run_isolation.load(folder)
+    held = run_isolation.load_isolation(folder)
     result = aggregate.summarise(
         plan, lines, records, uplift=gain, isolation=held, replays=session_restarts.count(folder)
     )
@@ -145,7 +145,7 @@ def _whole(folder: Path, plan: RunConfig, there: int) -> None:
 def _crew(plan: RunConfig) -> tuple[str, ...]:
     """The bodies that the suite is made for; official ones have searches and deliveries, which are the scout's."""
     try:
-        chosen = task_selection.choose(plan.suite.name, "")
+        chosen = task_selection.select_tasks(plan.suite.name, "")
     except HthorError:
         return ("scout",)
     return chosen.crew

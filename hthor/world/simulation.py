@@ -8,7 +8,7 @@ from typing import Any
 
 from hthor import houses
 from hthor.errors import HthorError, PhysicsError, TaskError, UnknownName
-from hthor.gc_freeze import uncollected
+from hthor.gc_freeze import collection_paused
 from hthor.houses.space.free_space import FreeSpace
 from hthor.types import (
     BodySpec,
@@ -87,7 +87,7 @@ class TickedWorld:
         self.space = {seat: FreeSpace.of(self.house, spec.radius, spec.height) for seat, spec in self.bodies.items()}
         self.detectors = detector_noise.assign(self.seats[1:], self.bodies, detectors)
         self._contents = inventory.split(self.house, objects)
-        with uncollected():
+        with collection_paused():
             self._task = HouseTask(self.house, self._contents, self.bodies)
             self._env = FastEnv(self._task)
             self._assemble()

@@ -198,7 +198,7 @@ def test_what_is_offered_is_what_there_is(tmp_path: Path, monkeypatch: pytest.Mo
     assert completion_values.agents() == list(plugins.names("agent"))
     assert completion_values.suites() == list(tasks.suites())
     assert completion_values.houses() == list(houses.names())
-    assert completion_values.engines() == sorted(engines.names())
+    assert completion_values.engines() == sorted(engines.engine_names())
     assert completion_values.robots() == sorted((*plugins.names("robot"), *robot_team.ALIASES))
     assert completion_values.levels() == ["auto", *LEVELS]
     loaded = [plugins.load("task kind", name) for name in plugins.names("task kind")]

@@ -425,11 +425,11 @@ def test_less_isolation_than_required(
 
 def test_a_run_has_the_weakest_isolation_of_its_commands(tmp_path: Path):
     held = {level: guest.Isolation(level=level) for level in ("L1", "L2", "L3")}
-    assert run_isolation.weakest(tmp_path, held["L2"], "L2") == held["L2"]
+    assert run_isolation.weakest_isolation(tmp_path, held["L2"], "L2") == held["L2"]
     jsonio.write(tmp_path / run_isolation.NAME, jsonio.pretty(held["L1"]))
-    assert run_isolation.weakest(tmp_path, held["L3"], "") == held["L1"]
+    assert run_isolation.weakest_isolation(tmp_path, held["L3"], "") == held["L1"]
     with pytest.raises(guest.IsolationError, match="has trials played at L1"):
-        run_isolation.weakest(tmp_path, held["L3"], "L2")
+        run_isolation.weakest_isolation(tmp_path, held["L3"], "L2")
 
 
 def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
@@ -549,7 +549,7 @@ def test_leaderboard(
     control, true = files.read(alone), files.read(entry)
     lie = forging.forged(true, 1.0, control, brief)
     elsewhere = ({**lie.platforms[0], "libc": "another"},)
-    monkeypatch.setattr(engines, "find", lambda *_, **__: fakes.Here())
+    monkeypatch.setattr(engines, "find_engine", lambda *_, **__: fakes.Here())
     for platforms, tier in ((lie.platforms, "V1"), (elsewhere, "V2")):
         files.write(entry, msgspec.structs.replace(lie, platforms=platforms))
         assert say("leaderboard", "validate", *on).code == 0  # all of it follows from its trials, which never were
@@ -576,8 +576,8 @@ def test_leaderboard(
 
 
 def test_a_trial_is_found_by_any_of_its_names(reference: Path, say: Callable[..., Said]):
-    record = find.trial(reference, "3")
-    assert find.trial(reference, record.key[:8]) == find.trial(reference, record.spec.task.id) == record
+    record = find.find_trial(reference, "3")
+    assert find.find_trial(reference, record.key[:8]) == find.find_trial(reference, record.spec.task.id) == record
     for wrong in (record.spec.task.id[:-1], record.spec.task.id.split("/")[-1]):
         said = say("replay", reference, wrong)
         assert said.code == 2

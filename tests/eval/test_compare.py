@@ -193,7 +193,7 @@ def test_other_conditions_are_refused_by_name(runs: Path, tmp_path: Path):
     other = _run(tmp_path, "helper", seed=1, count=10)
     with pytest.raises(RunError, match=r"suite\.sha256 is .* other tasks"):
         compare.runs([runs / "helper", other])
-    plan = run_config.load(runs / "helper")
+    plan = run_config.load_config(runs / "helper")
     changes = {
         "seed": msgspec.structs.replace(plan, seed=9),
         "humans.sha256": msgspec.structs.replace(plan, humans=msgspec.structs.replace(plan.humans, sha256="0" * 64)),
@@ -269,12 +269,12 @@ def test_of_several_controls_it_is_the_one_that_the_result_names(tmp_path: Path,
     whole = _better(tmp_path / "runs")
     named = result_file.load(whole).uplift.control
     other = shutil.copytree(tmp_path / "runs" / "alone", tmp_path / "runs" / "aaa")
-    plan = run_config.load(other)
+    plan = run_config.load_config(other)
     assert plan.sha256 == named
     (other / "run.json").write_bytes(jsonio.pretty(msgspec.structs.replace(plan, versions={"hthor": "another"})))
-    assert run_config.load(other).sha256 != named
+    assert run_config.load_config(other).sha256 != named
     assert aggregate.rescore(whole)[1].uplift.control == named
-    assert baseline.place(whole, run_config.load(whole)).name == "alone"
+    assert baseline.place(whole, run_config.load_config(whole)).name == "alone"
 
 
 def test_a_result_of_another_run_lends_no_uplift(tmp_path: Path, monkeypatch):
@@ -283,16 +283,16 @@ def test_a_result_of_another_run_lends_no_uplift(tmp_path: Path, monkeypatch):
     shutil.rmtree(tmp_path / "runs" / "alone")
     assert result_file.uplift(whole, run="0" * 64) is None
     (whole / "result.json").write_text("[" * 100_000, encoding="utf-8")
-    assert result_file.uplift(whole, run=run_config.load(whole).sha256) is None
+    assert result_file.uplift(whole, run=run_config.load_config(whole).sha256) is None
 
 
 def test_half_a_control_is_none(tmp_path: Path):
     folder = _run(tmp_path, "helper", count=20)
     alone = _run(tmp_path, "alone", absent=True, count=20)
-    assert baseline.find(folder, run_config.load(folder)) is not None
+    assert baseline.find(folder, run_config.load_config(folder)) is not None
     lines = (alone / "trials.jsonl").read_bytes().splitlines(keepends=True)
     (alone / "trials.jsonl").write_bytes(b"".join(lines[:-1]))
-    assert baseline.find(folder, run_config.load(folder)) is None
+    assert baseline.find(folder, run_config.load_config(folder)) is None
 
 
 # -------------------------------------------------------------------------------------------------------------- power

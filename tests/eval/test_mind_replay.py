@@ -17,7 +17,7 @@ from hthor.errors import HthorError, RunError
 from hthor.eval.records import find, trial_log
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import human_trace, session_history
-from hthor.eval.replay.human_trace import Stream
+from hthor.eval.replay.human_trace import HumanTrace
 from hthor.eval.runner import experiment, progress, run_options
 from hthor.report.drawing import human_trace_figure, human_trace_timeline, render_trial
 from hthor.report.page import camera_frames
@@ -42,19 +42,19 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def heard(run: Path) -> list[tuple[TrialRecord, Stream]]:
-    records = [find.trial(run, str(number)) for number in range(3)]
-    return [(one, human_trace.listen(run, one)) for one in records]
+def heard(run: Path) -> list[tuple[TrialRecord, HumanTrace]]:
+    records = [find.find_trial(run, str(number)) for number in range(3)]
+    return [(one, human_trace.trace_human(run, one)) for one in records]
 
 
-def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[TrialRecord, Stream]]) -> None:
+def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     assert [stream.same for _, stream in heard] == [True] * 3
     assert all(stream.key == record.key for record, stream in heard)
     assert all([e.tick for e in s.events] == sorted(e.tick for e in s.events) for _, s in heard)
 
 
 def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run: Path) -> None:
-    one = find.trial(run, "1")
+    one = find.find_trial(run, "1")
     views = camera_frames.film(run, one, [0, one.ticks])
     assert sorted(views) == [0, one.ticks]
     for seen in views.values():
@@ -64,7 +64,7 @@ def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run
         camera_frames.film(run, msgspec.structs.replace(one, ticks=one.ticks - 1), [0])
 
 
-def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[TrialRecord, Stream]]) -> None:
+def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     for record, stream in heard:
         logged = [event.tick for event in record.journal if event.kind == "choice" and event.data["aim"] == "target"]
         thought = [event.tick for event in stream.events if event.kind == "choice" and event.data["aim"] == "target"]
@@ -78,7 +78,7 @@ def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[TrialRecor
     assert {"beliefs", "choice", "noticed", "aim", "trust", "weighed", "offer", "shown"} <= kinds
 
 
-def test_beliefs_and_chances_add_up(heard: list[tuple[TrialRecord, Stream]]) -> None:
+def test_beliefs_and_chances_add_up(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     seen = 0
     for _, stream in heard:
         for event in stream.events:
@@ -93,7 +93,7 @@ def test_beliefs_and_chances_add_up(heard: list[tuple[TrialRecord, Stream]]) -> 
     assert seen
 
 
-def test_the_terms_of_an_answer_are_its_chance(heard: list[tuple[TrialRecord, Stream]]) -> None:
+def test_the_terms_of_an_answer_are_its_chance(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     weighed = [event.data for _, stream in heard for event in stream.events if event.kind == "weighed"]
     assert weighed
     for data in weighed:
@@ -102,13 +102,13 @@ def test_the_terms_of_an_answer_are_its_chance(heard: list[tuple[TrialRecord, St
         assert data["share"] == pytest.approx(share, abs=1e-3)
 
 
-def test_trust_at_the_end_is_what_the_next_trial_begins_with(heard: list[tuple[TrialRecord, Stream]]) -> None:
+def test_trust_at_the_end_is_what_the_next_trial_begins_with(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     courses = [[e.data["mean"] for e in stream.events if e.kind == "trust"] for _, stream in heard]
     for before, after in pairwise(courses):
         assert before[-1] == after[0]
 
 
-def test_it_is_drawn(heard: list[tuple[TrialRecord, Stream]], tmp_path: Path) -> None:
+def test_it_is_drawn(heard: list[tuple[TrialRecord, HumanTrace]], tmp_path: Path) -> None:
     record, stream = max(heard, key=lambda pair: len(pair[1].events))
     figure = human_trace_figure.figure(record, render_trial.house(record), stream)
     figure.savefig(tmp_path / "mind.png", dpi=40)
@@ -118,7 +118,7 @@ def test_it_is_drawn(heard: list[tuple[TrialRecord, Stream]], tmp_path: Path) ->
     assert human_trace_timeline.lanes(quiet) == ["is about"]
 
 
-def test_the_command_prints_thoughts_or_draws_them(run: Path, heard: list[tuple[TrialRecord, Stream]]) -> None:
+def test_the_command_prints_thoughts_or_draws_them(run: Path, heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     found = CliRunner().invoke(app, ["replay", str(run), "1", "--mind", "--json"])
     assert found.exit_code == 0, found.output
     told = json.loads(found.stdout)
@@ -132,12 +132,12 @@ def test_a_damaged_past_is_no_past(run: Path, tmp_path: Path) -> None:
         (tmp_path / name).write_bytes((run / name).read_bytes())
     lines = (run / "trials.jsonl").read_bytes().splitlines(keepends=True)
     (tmp_path / "trials.jsonl").write_bytes(b"".join(lines[1:]))
-    wanted = find.trial(tmp_path, "1")
+    wanted = find.find_trial(tmp_path, "1")
     with pytest.raises(RunError, match="lacks some of the trials that participant 0 did before"):
-        human_trace.listen(tmp_path, wanted)
+        human_trace.trace_human(tmp_path, wanted)
     other = msgspec.structs.replace(wanted, spec=msgspec.structs.replace(wanted.spec, code_sha256="0" * 64))
     with pytest.raises(RunError, match="another version of hthor"):
-        human_trace.listen(run, other)
+        human_trace.trace_human(run, other)
 
 
 def test_whose_agent_is_a_file_needs_the_file(run: Path) -> None:
@@ -146,7 +146,7 @@ def test_whose_agent_is_a_file_needs_the_file(run: Path) -> None:
     agent = msgspec.structs.replace(seat.agent, name="mine", source="my_agent.py")
     spec = msgspec.structs.replace(record.spec, robots=(msgspec.structs.replace(seat, agent=agent),))
     with pytest.raises(HthorError, match=r"came from the file my_agent\.py\. Give that file, unchanged, with --agent"):
-        session_history.sources(run, spec, (), "")
+        session_history.replay_sources(run, spec, (), "")
 
 
 def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> None:
@@ -163,10 +163,10 @@ def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> N
         agents=(str(agent),), suite=str(tmp_path / "one.json"), jobs=1, out=tmp_path / "run", max_faults="100%"
     )
     list(experiment.run_experiment(options, lambda _: progress.Silent()))
-    faulty = find.trial(tmp_path / "run", "0")
+    faulty = find.find_trial(tmp_path / "run", "0")
     assert "clumsy.py" in faulty.faults[0].detail
     assert str(tmp_path) not in faulty.faults[0].detail
-    assert human_trace.listen(tmp_path / "run", faulty, agents=(str(agent),)).same
+    assert human_trace.trace_human(tmp_path / "run", faulty, agents=(str(agent),)).same
     assert camera_frames.film(tmp_path / "run", faulty, [0], agents=(str(agent),)).keys() == {0}
 
 
@@ -177,6 +177,6 @@ def test_forgetting_and_misses_have_their_marks() -> None:
         Event(tick=9, seat=HUMAN, kind="forgot", data={"object": "sofa"}),
         Event(tick=20, seat=HUMAN, kind="attempt", data={"what": "pick", "ok": False, "seconds": 1.0}),
     )
-    stream = Stream(key="", same=True, traits={"beta": 1.0}, events=events)
+    stream = HumanTrace(key="", same=True, traits={"beta": 1.0}, events=events)
     assert human_trace_timeline.lanes(stream) == ["hands", "noticed", "is about"]
     assert human_trace_timeline.offers(stream) == []

@@ -40,21 +40,21 @@ def left(key: str, kind: str = "raised") -> fault_report.FaultReport:
         mind.act(look(30))
     trial = fakes.run_of()[1][0].trials[0]
     fault = Fault(seat="robot", kind=kind, tick=30, detail="ValueError: tired")
-    return fault_report.of(key, trial, [fault], {"robot": mind})
+    return fault_report.describe_faults(key, trial, [fault], {"robot": mind})
 
 
 def test_the_last_looks_and_the_last_words_are_kept_and_read_again(tmp_path: Path):
     fault_report.FaultArchive(tmp_path, "hthor agent run x").keep(left("ab"))
-    (failure,) = fault_report.load(tmp_path / "faults" / "ab.json").failures
+    (failure,) = fault_report.load_fault_report(tmp_path / "faults" / "ab.json").failures
     assert [one.tick for one in failure.looks] == list(range(11, 31))
     assert [one.action is None for one in failure.looks] == [False] * 19 + [True]
     assert failure.output.endswith("last words")
     assert len(failure.output) == 8000
-    assert fault_report.command(tmp_path, "ab") == "hthor agent run x ab"
-    assert fault_report.command(tmp_path, "none") == ""
+    assert fault_report.rerun_command(tmp_path, "ab") == "hthor agent run x ab"
+    assert fault_report.rerun_command(tmp_path, "none") == ""
     (tmp_path / "faults" / "ab.json").write_text("{}")
     with pytest.raises(RunError, match=r"ab\.json.*delete it"):
-        fault_report.load(tmp_path / "faults" / "ab.json")
+        fault_report.load_fault_report(tmp_path / "faults" / "ab.json")
 
 
 def test_a_thousand_faults_fill_no_disk(tmp_path: Path):
@@ -62,7 +62,7 @@ def test_a_thousand_faults_fill_no_disk(tmp_path: Path):
         keeper = fault_report.FaultArchive(tmp_path)
         for number in range(500):
             keeper.keep(left(f"{command}-{number}", "raised" if number % 5 else f"odd{number}"))
-    kept = [fault_report.load(path).failures[0].kind for path in (tmp_path / "faults").glob("*.json")]
+    kept = [fault_report.load_fault_report(path).failures[0].kind for path in (tmp_path / "faults").glob("*.json")]
     assert kept.count("raised") == fault_report.MOST_OF_A_KIND
     assert len(kept) == fault_report.MOST
     assert sum(path.stat().st_size for path in (tmp_path / "faults").iterdir()) < 8 << 20
@@ -83,6 +83,6 @@ def test_a_faults_words_are_the_same_wherever_the_file_lies(tmp_path: Path):
     ):
         file = tmp_path / folder / "agent.py"
         words = text.format(file.parent, address, scratch, scratch)
-        told.add(redact.words(words, [str(file), f"{tmp_path}/else.py:Agent"]))
-        told.add(redact.words(words, [os.path.relpath(file) + ":Agent"]))
+        told.add(redact.redact(words, [str(file), f"{tmp_path}/else.py:Agent"]))
+        told.add(redact.redact(words, [os.path.relpath(file) + ":Agent"]))
     assert told == {'File "lib/a.py", line 3\n<Thing object at 0x...> not in $TMPDIR/x and "$TMPDIR"'}

@@ -37,7 +37,7 @@ SMOKE = tasks.suite("smoke").tasks
 @settings(deadline=None)
 @given(st.integers(1, len(SMOKE) - 1))
 def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
-    some, more = task_subset.choose(SMOKE, count), task_subset.choose(SMOKE, count + 1)
+    some, more = task_subset.choose_subset(SMOKE, count), task_subset.choose_subset(SMOKE, count + 1)
     assert len(some) == count
     assert set(some) < set(more)
     assert list(some) == [task for task in SMOKE if task in some], "in the suite's order"
@@ -45,7 +45,7 @@ def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
 
 @pytest.mark.parametrize("count", [10, 20, 30])
 def test_a_choice_is_spread_over_houses_and_kinds(count: int) -> None:
-    whole, some = tasks.suite("standard").tasks, task_subset.choose(tasks.suite("standard").tasks, count)
+    whole, some = tasks.suite("standard").tasks, task_subset.choose_subset(tasks.suite("standard").tasks, count)
     for field in ("house", "kind"):
         every = Counter(getattr(task, field) for task in whole)
         here = Counter(getattr(task, field) for task in some)
@@ -54,16 +54,16 @@ def test_a_choice_is_spread_over_houses_and_kinds(count: int) -> None:
 
 
 def test_a_limited_run_has_other_tasks_and_says_so() -> None:
-    whole = task_selection.choose("smoke", "")
-    some = task_selection.shorten(whole, 10)
+    whole = task_selection.select_tasks("smoke", "")
+    some = task_selection.limit_selection(whole, 10)
     assert some.limit == 10
     assert len(some.suite.tasks) == 10
     assert some.suite.name == "smoke"
     assert some.suite.sha256 != whole.suite.sha256
     assert "no result for the leaderboard" in some.notes[-1]
-    assert task_selection.shorten(whole, len(whole.suite.tasks)) is whole, "all of them is the whole suite"
+    assert task_selection.limit_selection(whole, len(whole.suite.tasks)) is whole, "all of them is the whole suite"
     with pytest.raises(HthorError, match=rf"--limit 999: the suite 'smoke' has {len(SMOKE)} tasks"):
-        task_selection.shorten(whole, 999)
+        task_selection.limit_selection(whole, 999)
 
 
 def submitted() -> robot_team.RobotTeam:
@@ -100,8 +100,8 @@ def test_a_deadline_is_part_of_the_trials_of_submitted_agents_alone() -> None:
 
 def test_a_worker_is_given_the_time_that_its_agents_have() -> None:
     one = suite(1).tasks
-    assert queue.limit(one, 1, 60.0) >= queue.limit(one, 1) + 55.0 * one[0].time_limit / 0.1
-    assert queue.limit(one, 1, 0.5) == queue.limit(one, 1)
+    assert queue.trial_limit_s(one, 1, 60.0) >= queue.trial_limit_s(one, 1) + 55.0 * one[0].time_limit / 0.1
+    assert queue.trial_limit_s(one, 1, 0.5) == queue.trial_limit_s(one, 1)
 
 
 SLOW = """
@@ -175,11 +175,11 @@ def test_a_name_that_is_no_folders_is_refused(name: str) -> None:
 
 def test_a_run_keeps_the_name_that_it_began_with(tmp_path: Path) -> None:
     named = msgspec.structs.replace(plan(), title="first")
-    run_config.write(tmp_path / "run", named)
-    run_config.examine(tmp_path / "run", plan())
-    assert run_config.titled(tmp_path / "run", plan()) == named
+    run_config.write_config(tmp_path / "run", named)
+    run_config.check_folder(tmp_path / "run", plan())
+    assert run_config.with_stored_title(tmp_path / "run", plan()) == named
     with pytest.raises(RunError, match="is called 'first'"):
-        run_config.examine(tmp_path / "run", msgspec.structs.replace(plan(), title="second"))
+        run_config.check_folder(tmp_path / "run", msgspec.structs.replace(plan(), title="second"))
 
 
 @pytest.fixture(scope="module")
@@ -276,9 +276,9 @@ def test_a_slow_first_trial_is_followed_by_a_second() -> None:
 
 
 def test_a_pace_counts_starts_and_houses_once() -> None:
-    known = trial_cost._pace([5.0, 7.0, 7.5])
-    assert known == trial_cost.Pace(trial_s=0.5, start_s=3.0, house_s=1.5, played=3)
+    known = trial_cost._cost_of([5.0, 7.0, 7.5])
+    assert known == trial_cost.TrialCost(trial_s=0.5, start_s=3.0, house_s=1.5, played=3)
     assert known.seconds(100, workers=2, houses=10) == 3.0 + 50 * 0.5 + 10 * 1.5
     assert known.seconds(4, workers=2, houses=10) == 3.0 + 2 * 0.5 + 2 * 1.5
-    assert trial_cost._pace([4.0]) == trial_cost.Pace(trial_s=4.0, played=1)
-    assert trial_cost._pace([]) is None
+    assert trial_cost._cost_of([4.0]) == trial_cost.TrialCost(trial_s=4.0, played=1)
+    assert trial_cost._cost_of([]) is None

@@ -437,7 +437,7 @@ def evaluate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., A
     """`hthor eval` with real agents, logs and results, in a world without an engine."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(trial_runner, "TrialRunner", Quick)
-    monkeypatch.setattr(engines, "find", lambda *_, **__: eval_fakes.Here())
+    monkeypatch.setattr(engines, "find_engine", lambda *_, **__: eval_fakes.Here())
 
     def run(*words: str) -> Any:
         fixed = ["--kind", "object_goal_navigation", "--limit", "3", "--participants", "2", "--isolation", "L1"]
@@ -599,4 +599,4 @@ def test_two_contents_of_one_file_are_no_manifest() -> None:
         for number, one in enumerate(lines[:2])
     ]
     with pytest.raises(RunError, match="w was not the same in all trials"):
-        opened_files.manifests(plan, mixed)
+        opened_files.complete_manifests(plan, mixed)

@@ -196,7 +196,7 @@ def test_both_ends_play_every_kind_of_task(suite):
     for made in (greedy.Model, random.Model):
         with stage.enter(one) as company:
             company.human = made(Person(seed=0, participant=0, traits=QUICK))
-            done = trial_runner._play(stage.world(one.trials[0]), company, one.trials[0])
+            done = trial_runner._run_trial(stage.world(one.trials[0]), company, one.trials[0])
         assert done.met or done.ticks == round(task.time_limit / rules.TICK_S)
         assert not done.faults
         answers = {event.kind for event in done.events if event.kind in ("confirmed", "declined")}

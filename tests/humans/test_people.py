@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from hthor import cli, plugins, rules, tasks
-from hthor.errors import HthorError, PeopleError, UnknownName
+from hthor.errors import HthorError, PopulationError, UnknownName
 from hthor.eval.comparison import population_matrix, robustness
 from hthor.eval.config import human_populations, run_config, sessions
 from hthor.eval.config.human_populations import HumanModelRef
@@ -51,7 +51,7 @@ def small(**validity: Any) -> Population:
     its = {
         "suite": "fake",
         "suite_sha256": fakes.suite(20).sha256,
-        "settings": human_populations.settings("scout", "own"),
+        "settings": human_populations.robot_settings("scout", "own"),
         **validity,
     }
     rows = [[0.4, 0.2], [0.6, 0.3]]
@@ -182,9 +182,9 @@ def test_a_model_that_is_made_from_something_else_has_no_population(files: Path)
         patch.setitem(sys.modules, module.__name__, module)
         patch.setattr(plugins, "names", lambda _: ("fed", "proxy"))
         patch.setattr(plugins, "load", lambda *_: module.Model)
-        patch.setattr(plugins, "purpose", lambda *_: "a test")
+        patch.setattr(plugins, "summary", lambda *_: "a test")
         found = resolve.find(f"fed:{files}/log")
-        ref = human_populations.refer(found, fakes.suite(20), crew)
+        ref = human_populations.human_model_ref(found, fakes.suite(20), crew)
         assert found.make(0, 0).source == str(files / "log")
         assert resolve.find(found.word).sha256 == found.sha256 != resolve.find(f"fed:{files}/pop").sha256
     assert (ref.name, ref.source, ref.population, ref.valid) == ("fed-log", "fed:log", "", True)
@@ -235,7 +235,7 @@ def test_a_kind_that_is_no_good_is_named_with_its_field(files: Path):
 
     def refused(document: Any, *words: str) -> None:
         path.write_text(document if isinstance(document, str) else json.dumps(document))
-        with pytest.raises(PeopleError) as caught:
+        with pytest.raises(PopulationError) as caught:
             resolve.find(str(path))
         for word in words:
             assert word in str(caught.value)
@@ -314,7 +314,7 @@ def test_a_file_that_changes_during_a_run_stops_it(files: Path):
 
 def refer(population: Population, count: int = 20, crew: Any = None) -> HumanModelRef:
     found = msgspec.structs.replace(resolve.find("literature"), population=population, name="pop", word="/dir/pop.npz")
-    return human_populations.refer(found, fakes.suite(count), crew or fakes.crew("helper"))
+    return human_populations.human_model_ref(found, fakes.suite(count), crew or fakes.crew("helper"))
 
 
 def test_people_are_valid_where_they_were_calibrated():
@@ -336,7 +336,7 @@ def test_elsewhere_they_are_not_and_it_says_where():
     noted(small(simulation=rules.SIMULATION + 1), f"version {rules.SIMULATION + 1} of the world")
     noted(small(mind=parameter_registry.MIND + 1), f"version {parameter_registry.MIND + 1} of the proxy's mind")
     noted(small(rules_sha256="ab" * 32), "other constants of the benchmark")
-    noted(small(settings={**human_populations.settings("scout", "own"), "speed_m_s": 9.0}), "speed_m_s 9, not")
+    noted(small(settings={**human_populations.robot_settings("scout", "own"), "speed_m_s": 9.0}), "speed_m_s 9, not")
     noted(small(), "detector own, not noisy", crew=fakes.crew("helper", detector="noisy"))
     noted(msgspec.structs.replace(small(), missing=("wings",)), "made before there was wings")
     noted(resolve.find("literature").population, "fitted to no data")
@@ -346,21 +346,25 @@ def test_elsewhere_they_are_not_and_it_says_where():
 
 
 def test_words_for_several_peoples(files: Path):
-    assert [one.name for one in human_populations.expand(["kinds"])] == [resolve.default(), *KINDS]
-    assert [one.name for one in human_populations.expand(["bracket"])] == ["greedy", "random", resolve.default()]
-    named = human_populations.expand([f"kinds@{files}/pop.npz"])
+    assert [one.name for one in human_populations.find_populations(["kinds"])] == [resolve.default(), *KINDS]
+    assert [one.name for one in human_populations.find_populations(["bracket"])] == [
+        "greedy",
+        "random",
+        resolve.default(),
+    ]
+    named = human_populations.find_populations([f"kinds@{files}/pop.npz"])
     assert [one.name for one in named] == ["pop", *(f"{kind}@pop" for kind in KINDS)]
     assert {one.population.sha256 for one in named} == {small().sha256}
-    assert [one.name for one in human_populations.expand(["proxy", resolve.default(), "slow", "slow"])] == [
+    assert [one.name for one in human_populations.find_populations(["proxy", resolve.default(), "slow", "slow"])] == [
         "proxy",
         "slow",
     ]
     (files / "sub").mkdir()
     Population.of("pop", [[0.5]], names=["v_pace"], purpose="", seed=0, command="").save(files / "sub" / "pop")
     with pytest.raises(HthorError, match="two different peoples are called 'pop'"):
-        human_populations.expand([f"{files}/pop.npz", f"{files}/sub/pop.npz"])
+        human_populations.find_populations([f"{files}/pop.npz", f"{files}/sub/pop.npz"])
     with pytest.raises(UnknownName, match="'kinds'"):
-        human_populations.expand(["kindz"])
+        human_populations.find_populations(["kindz"])
 
 
 @pytest.fixture
@@ -450,7 +454,7 @@ def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
     assert stored["humans"]["valid"] is False
     assert [one in said for one in stored["humans"]["notes"]] == [True]
     assert stored["humans"]["population_sha256"] == small().sha256
-    assert run_config.load(done[0].folder).humans == done[0].result.humans
+    assert run_config.load_config(done[0].folder).humans == done[0].result.humans
     console = Console(record=True, width=150, file=io.StringIO())
     console.print(result_tables.result_table(done[0].result))
     console.print(result_tables.comparison_table([one.result for one in done]))

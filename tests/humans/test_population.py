@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hthor import seeds
-from hthor.errors import HthorError, PeopleError, UnknownName
+from hthor.errors import HthorError, PopulationError, UnknownName
 from hthor.humans.population import (
     bounds,
     distributions,
@@ -233,7 +233,7 @@ def test_a_damaged_file_is_named_with_its_field(tmp_path: Path):
     def refused(spoil: Callable[[Path], object], *words: str) -> None:
         path = made().save(tmp_path / "pop")
         spoil(path)
-        with pytest.raises(PeopleError) as caught:
+        with pytest.raises(PopulationError) as caught:
             Population.load(path)
         for word in words:
             assert word in str(caught.value)
@@ -277,7 +277,7 @@ def test_what_a_newer_version_added_is_at_its_default_and_said(tmp_path: Path):
 def test_unknown_names_are_answered_with_the_nearest():
     with pytest.raises(UnknownName, match=r"unknown population 'litrature'\. Did you mean 'literature'"):
         Population.load("litrature")
-    assert issubclass(PeopleError, HthorError)
+    assert issubclass(PopulationError, HthorError)
 
 
 @pytest.mark.parametrize(

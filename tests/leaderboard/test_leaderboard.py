@@ -389,7 +389,7 @@ def test_names_of_submissions(handed_in: Path):
 def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path, tmp_path: Path):
     played = submission.listed(handed_in)
     mine = shutil.copytree(runs, tmp_path / "runs") / "helper"
-    plan = run_config.load(mine)
+    plan = run_config.load_config(mine)
     ref = plan.robots[0].agent
     about = manifest.of(ref.name, ref.source, {}, [one for one in played if one.path == "agent.py"])
     plan = msgspec.structs.replace(plan, agents=(msgspec.structs.replace(about, sha256=ref.sha256),))

@@ -238,7 +238,7 @@ def test_a_verification_needs_every_trial_that_was_drawn(whole: Path, monkeypatc
     entry = files.read(entry_of(whole, "helper"))
     trial = sessions.Session(participant=1, trials=())
     wanted = [msgspec.structs.replace(trial, trials=(None,) * 4)]  # type: ignore[arg-type]
-    monkeypatch.setattr(replay.engines, "find", lambda *_, **__: Losing())
+    monkeypatch.setattr(replay.engines, "find_engine", lambda *_, **__: Losing())
     with pytest.raises(
         BoardError, match=r"4 of the 4 trials.*could not be played \(participant 1: its process was killed"
     ):

@@ -46,7 +46,7 @@ class _Here:
     """An engine that plays in this process."""
 
     def perform(self, sessions: Any, make: Any) -> Generator[News | None, None, None]:
-        player = worker.Player(make)
+        player = worker.SessionPlayer(make)
         for one in sessions:
             yield from player.play(one)
 
@@ -119,7 +119,7 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
 def _breached(detail: str, key: str, runs: Path) -> bool:
     """Whether it says so with its last words; a traceback may also show the line that would have said it."""
     left = runs / fault_report.FOLDER / f"{key}.json"
-    output = fault_report.load(left).failures[0].output if left.exists() else ""
+    output = fault_report.load_fault_report(left).failures[0].output if left.exists() else ""
     return any("BREACH" in line for line in (*detail.strip().splitlines()[-1:], *output.splitlines()))
 
 

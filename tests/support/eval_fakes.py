@@ -306,7 +306,7 @@ class Here:
         pass
 
     def perform(self, sessions, make) -> Generator[News | None, None, None]:
-        player = worker.Player(make)
+        player = worker.SessionPlayer(make)
         for one in sessions:
             for news in player.play(one):
                 if isinstance(news, Failed):
@@ -316,12 +316,12 @@ class Here:
 
 def run_in(folder: Path, *, count: int = 60, jobs: int = 2, seconds: float = 0.02) -> None:
     """A whole run as a command does it."""
-    _evaluate(folder, count, functools.partial(slow_player, seconds), engines.find("local", jobs=jobs))
+    _evaluate(folder, count, functools.partial(slow_player, seconds), engines.find_engine("local", jobs=jobs))
 
 
 def guarded(folder: str, count: str) -> None:
     """A whole run with guests."""
-    _evaluate(Path(folder), int(count), guarded_player, engines.find("local", jobs=2))
+    _evaluate(Path(folder), int(count), guarded_player, engines.find_engine("local", jobs=2))
 
 
 def hosted(folder: str, count: str, agent: str, level: str) -> None:
@@ -329,7 +329,7 @@ def hosted(folder: str, count: str, agent: str, level: str) -> None:
     import guest_fakes
 
     make = functools.partial(guest_fakes.player, agent, level)
-    _evaluate(Path(folder), int(count), make, engines.find("local", jobs=2))
+    _evaluate(Path(folder), int(count), make, engines.find_engine("local", jobs=2))
 
 
 def clustered(folder: str, count: str, address: str, agent: str = "") -> None:
@@ -337,7 +337,7 @@ def clustered(folder: str, count: str, address: str, agent: str = "") -> None:
     import guest_fakes
 
     make = functools.partial(guest_fakes.player, agent, "auto") if agent else functools.partial(slow_player, 0.01)
-    _evaluate(Path(folder), int(count), make, engines.find("ray", address=address))
+    _evaluate(Path(folder), int(count), make, engines.find_engine("ray", address=address))
     sys.stdout.write(f"{resource.getrusage(resource.RUSAGE_SELF).ru_maxrss}\n")
 
 

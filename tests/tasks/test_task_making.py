@@ -135,7 +135,7 @@ def test_every_unsound_task_is_named(suite: Path):
     found = library.read(broken(suite, 0, 2))
     assert {one.index for one in unsound(found)} == {0, 2}
     with pytest.raises(TaskError) as error:
-        task_selection.choose(str(suite), "")
+        task_selection.select_tasks(str(suite), "")
     assert "2 of the suite's 3 tasks cannot be run as they are" in str(error.value)
     assert all(found.tasks[number].id in str(error.value) for number in (0, 2))
     assert "hthor tasks check" in str(error.value)
@@ -154,17 +154,17 @@ def test_the_check_lists_every_task(suite: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_one_fault_is_told_as_it_is(suite: Path):
     with pytest.raises(TaskError, match=r"mine\.json: tasks\[1\]\.objects\[0\]\.position: .* rests on no surface"):
-        suite_check.suite(str(broken(suite, 1)))
+        suite_check.checked_suite(str(broken(suite, 1)))
 
 
 def test_that_a_suite_is_sound_is_remembered_until_it_changes(suite: Path, monkeypatch: pytest.MonkeyPatch):
     looked: list[str] = []
     monkeypatch.setattr(suite_check, "validate", lambda found, file: looked.append(file))
-    assert suite_check.suite(str(suite)) == suite_check.suite(str(suite))
+    assert suite_check.checked_suite(str(suite)) == suite_check.checked_suite(str(suite))
     assert len(looked) == 1
     house = suite.with_suffix(".houses") / "my home.json"
     house.write_bytes(house.read_bytes() + b" ")
-    suite_check.suite(str(suite))
+    suite_check.checked_suite(str(suite))
     assert len(looked) == 2, "the houses count, too"
 
 
@@ -180,20 +180,20 @@ def test_a_kind_that_is_not_there_is_a_fault_and_no_end(made: tuple[TaskSpec, ..
 
 
 def test_a_suite_is_narrowed_to_houses_and_difficulty():
-    whole = task_selection.choose("paper", "")
-    some = task_selection.narrow(whole, ("birch", "alder"), "easy")
+    whole = task_selection.select_tasks("paper", "")
+    some = task_selection.narrow_selection(whole, ("birch", "alder"), "easy")
     assert {(task.house, task.difficulty) for task in some.suite.tasks} == {("alder", "easy"), ("birch", "easy")}
     assert some.houses == ("alder", "birch"), "in the suite's order, so that the same choice is the same run"
     assert some.suite.sha256 != whole.suite.sha256
     assert "no result for the leaderboard" in some.notes[-1]
-    assert task_selection.narrow(whole, (), "") is whole
+    assert task_selection.narrow_selection(whole, (), "") is whole
     with pytest.raises(UnknownName, match=r"unknown house of the suite .paper. .aldr.*alder"):
-        task_selection.narrow(whole, ("aldr",), "")
+        task_selection.narrow_selection(whole, ("aldr",), "")
 
 
 def test_difficulty_is_worked_out_where_a_suite_does_not_tell():
-    whole = task_selection.narrow(task_selection.choose("smoke", ""), ("alder",), "")
-    parts = [len(task_selection.narrow(whole, (), level).suite.tasks) for level in ("easy", "medium")]
+    whole = task_selection.narrow_selection(task_selection.select_tasks("smoke", ""), ("alder",), "")
+    parts = [len(task_selection.narrow_selection(whole, (), level).suite.tasks) for level in ("easy", "medium")]
     assert 0 < sum(parts) <= len(whole.suite.tasks)
 
 

@@ -66,7 +66,7 @@ def population(stages: Stages, command: str) -> Population:
             suite_sha256=brief.suite.sha256,
             targets=brief.targets.name,
             targets_sha256=brief.targets.sha256,
-            settings=human_populations.settings(trial_identity.ROBOT, detector_specs.OWN),
+            settings=human_populations.robot_settings(trial_identity.ROBOT, detector_specs.OWN),
         ),
     )
 

@@ -17,7 +17,7 @@ import msgspec
 from hthor import jsonio
 from hthor.calibration.simulation.session_simulation import SessionOutcome
 from hthor.calibration.simulation.trial_identity import Identity
-from hthor.documents import Unreadable, guarded
+from hthor.documents import Unreadable, reading_errors
 from hthor.documents import read as read_document
 from hthor.errors import RunError
 from hthor.eval.records import trial_log
@@ -87,7 +87,7 @@ def read(path: Path) -> Iterator[SessionOutcome]:
             try:
                 if tail != _TAIL % zlib.crc32(body):
                     raise Unreadable("check", "is not the line's checksum")
-                with guarded():
+                with reading_errors():
                     session = _decoder.decode(line)
             except Unreadable as error:
                 raise RunError(

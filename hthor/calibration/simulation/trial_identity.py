@@ -57,9 +57,9 @@ def _course(task: object) -> dict[str, object]:
 def _code(suite: Suite) -> str:
     """Hash of the code that plays sessions: the world, the proxy, the article's three robots, the suite's kinds."""
     own = [
-        *(plugins.module("agent", name) for name in AGENTS),
-        plugins.module("robot", ROBOT),
-        *(plugins.module("task kind", kind) for kind in {task.kind for task in suite.tasks}),
+        *(plugins.module_name("agent", name) for name in AGENTS),
+        plugins.module_name("robot", ROBOT),
+        *(plugins.module_name("task kind", kind) for kind in {task.kind for task in suite.tasks}),
     ]
     return code_identity.modules_sha256([*code_identity.roots("trial"), *code_identity.roots("sessions"), *own])
 

@@ -15,7 +15,7 @@ from hthor.calibration.validation.report.study_groups import PEOPLE
 from hthor.errors import HthorError
 from hthor.eval.config import human_populations
 from hthor.eval.dry_run import forecast
-from hthor.eval.dry_run.forecast import Ahead
+from hthor.eval.dry_run.forecast import RunForecast
 from hthor.eval.runner import experiment, progress, run_options
 from hthor.eval.runner.run_options import RUNS, ResolvedRuns
 from hthor.humans.population import kinds, resolve
@@ -120,19 +120,19 @@ def asked(options: ValidationOptions, one: Round) -> run_options.RunOptions:
     )
 
 
-def preview(options: ValidationOptions) -> Iterator[tuple[Round, Ahead]]:
+def preview(options: ValidationOptions) -> Iterator[tuple[Round, RunForecast]]:
     """Each run that would be played, how far it is, and how long it takes, found out without playing or writing.
 
     Raises:
         HthorError: as `rounds`.
     """
     for one in rounds(options):
-        evaluation, runs = asked(options, one), list[Ahead]()
+        evaluation, runs = asked(options, one), list[RunForecast]()
 
         def note(
-            wanted: ResolvedRuns, evaluation: run_options.RunOptions = evaluation, runs: list[Ahead] = runs
+            wanted: ResolvedRuns, evaluation: run_options.RunOptions = evaluation, runs: list[RunForecast] = runs
         ) -> bool:
-            runs += forecast.of(evaluation, wanted, {}).runs
+            runs += forecast.make_forecast(evaluation, wanted, {}).runs
             return False
 
         for _ in experiment.run_experiment(evaluation, lambda _: progress.Silent(), note):

@@ -20,7 +20,7 @@ from hthor.calibration.validation import plan
 from hthor.calibration.validation.plan import SUITE, Round, ValidationOptions
 from hthor.calibration.validation.report import build, measures, page, trial_tables
 from hthor.calibration.validation.report.findings import Findings, Played, Setting, Subject
-from hthor.eval.config.sessions import people_for
+from hthor.eval.config.sessions import participants_needed
 from hthor.eval.records import reader
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import experiment
@@ -66,7 +66,7 @@ def run_validation(options: ValidationOptions, watcher: Watch) -> Outcome:
     made = build.Materials(
         trials=own,
         least=tables.t_star(suite),
-        hands=people_for(len(suite.tasks)),
+        hands=participants_needed(len(suite.tasks)),
         rivals={one.word: stage.play(one) for one in planned if one.role == "rival"},
     )
     findings = build.findings(
@@ -99,7 +99,7 @@ class _Stage:
         for done in experiment.run_experiment(
             plan.asked(self._options, one), lambda title: self._watcher(f"{name} people, {title}")
         ):
-            condition = CONDITIONS[AGENTS.index(plugins.stem("agent", done.plan.name))]
+            condition = CONDITIONS[AGENTS.index(plugins.file_stem("agent", done.plan.name))]
             runs[condition] = reader.records(done.folder, done.plan)[1]
             self.notes = self.notes or done.plan.humans.notes
         return trial_tables.table(runs, tasks.suite(one.suite))

@@ -54,9 +54,9 @@ def run(
     from hthor.guest.agent import inputs
 
     houses.shelve(run / "houses")  # where the suite brought its own
-    wanted = find.trial(run, trial)
-    files = rerun.Files(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
-    done = rerun.play(run, wanted, files, isolation, inputs.read(agent_args or (), readable or ()))
+    wanted = find.find_trial(run, trial)
+    files = rerun.RunFiles(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
+    done = rerun.rerun_trial(run, wanted, files, isolation, inputs.read(agent_args or (), readable or ()))
     if json:
         output.put_json(done)
     else:

@@ -32,7 +32,7 @@ def list_agents(shape: Shape = Format.TABLE, json: Json = False) -> None:
 
     rows = []
     for name in plugins.names("agent"):
-        row: dict[str, Any] = {"name": name, "privileges": [], "purpose": plugins.purpose("agent", name)}
+        row: dict[str, Any] = {"name": name, "privileges": [], "purpose": plugins.summary("agent", name)}
         made = _loaded("agent", name)
         row["privileges"] = list(getattr(made, "privileges", ()))
         rows.append(row)

@@ -10,8 +10,8 @@ from hthor.console import output
 if TYPE_CHECKING:
     import typer
 
-    from hthor.eval.dry_run.forecast import Ahead, Forecast
-    from hthor.eval.dry_run.trial_cost import Pace
+    from hthor.eval.dry_run.forecast import Forecast, RunForecast
+    from hthor.eval.dry_run.trial_cost import TrialCost
     from hthor.eval.runner.experiment import ClosableWatcher
     from hthor.eval.runner.run_options import ResolvedRuns, RunOptions
 
@@ -33,7 +33,7 @@ def show(options: RunOptions, watcher: Callable[[str], ClosableWatcher], context
         talk.print(text, markup=False, highlight=False, soft_wrap=True)
 
     def agree(intent: ResolvedRuns) -> bool:
-        found.append(forecast.of(options, intent, origins, say))
+        found.append(forecast.make_forecast(options, intent, origins, say))
         return False
 
     for _ in experiment.run_experiment(options, watcher, agree):
@@ -64,14 +64,14 @@ def _put(found: Forecast) -> None:
     output.put_line(f"{left} of {found.trials} trials would be played{about}; nothing was written.")
 
 
-def _source(pace: Pace) -> str:
+def _source(pace: TrialCost) -> str:
     """How it is known what a trial takes."""
     if pace.folder:
         return f"as in {pace.folder}/"
     return f"estimated from {pace.played} trial{'s' * (pace.played != 1)} played for it, which are kept nowhere"
 
 
-def _row(one: Ahead) -> tuple[object, ...]:
+def _row(one: RunForecast) -> tuple[object, ...]:
     return one.name, f"{one.folder}/", one.trials, one.played, time(one.seconds) or "unknown"
 
 

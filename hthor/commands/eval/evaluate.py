@@ -232,7 +232,7 @@ def evaluate(
     from hthor.eval.task_check import custom_houses
     from hthor.report.terminal import result_tables
 
-    allowed = fault_report.allowance(max_faults)
+    allowed = fault_report.parse_max_faults(max_faults)
     talk = output.console(talk=True)
 
     def watcher(name: str) -> ClosableWatcher:
@@ -326,7 +326,7 @@ def _show(console: Console, one: FinishedRun) -> None:
         _say(console, f"First in trial {faulty.key} ({faulty.spec.task.id}), {find.fault_words(faulty)}")
         for line in find.fault_lines(faulty):
             _say(console, f"    {line}")
-        if again := fault_report.command(folder, faulty.key):
+        if again := fault_report.rerun_command(folder, faulty.key):
             _say(console, f"look:  {again}")
     more = ", suite.json" if (folder / "suite.json").exists() else ""
     if one.plan.shard:

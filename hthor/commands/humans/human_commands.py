@@ -113,7 +113,7 @@ def _everybody() -> list[dict[str, Any]]:
         try:
             found = resolve.find(name)
         except HthorError:
-            return {"name": name, "sort": sort, "purpose": plugins.purpose("human model", name), "sha256": ""}
+            return {"name": name, "sort": sort, "purpose": plugins.summary("human model", name), "sha256": ""}
         return {"name": name, "sort": sort, "purpose": found.purpose, "sha256": found.sha256}
 
     return [

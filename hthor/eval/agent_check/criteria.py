@@ -95,7 +95,7 @@ def plays(notes: Notes, agent: str) -> list[Finding]:
 
 def _broken(name: str, fault: Fault, agent: str, step: int) -> Finding:
     when = f"step {step}, after {fault.tick * rules.TICK_S:.1f} s" if name == "acts" else "in begin"
-    detail = redact.words(fault.detail.strip(), [agent])
+    detail = redact.redact(fault.detail.strip(), [agent])
     return Finding(
         check=name, status="broken", told=f"{fault.kind}, {when}\n{detail}", advice=_ADVICE.get(fault.kind, "")
     )

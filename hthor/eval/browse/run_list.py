@@ -78,7 +78,7 @@ def _seen(run: Path, root: Path) -> RunSummary:
     where = str(run.relative_to(root)) if run != root else str(run)
     when = _when(run)
     try:
-        plan = run_config.load(run)
+        plan = run_config.load_config(run)
         done, met, faults = _tally(run, plan)
     except (HthorError, OSError, ValueError, RecursionError) as error:
         return RunSummary(folder=where, when=when, problem=" ".join(str(error).split()))

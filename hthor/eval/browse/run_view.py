@@ -78,7 +78,7 @@ def view_run(folder: Path, wanted: TrialFilter) -> tuple[RunView, RunResult | No
     Raises:
         RunError: when the folder holds no run, or the run cannot be read.
     """
-    plan = run_config.load(folder)
+    plan = run_config.load_config(folder)
     _, records = reader.digest(folder, plan)
     total = plan.shard.trials if plan.shard else plan.trials
     whole = len(records) >= total
@@ -120,7 +120,7 @@ def _next(folder: Path, plan: RunConfig, records: Sequence[TrialRecord], *, whol
     if not whole:
         yield cli_command.resume_command(folder, plan)
     faulty = next((number for number, one in enumerate(records) if one.faults), None)
-    if faulty is not None and (again := fault_report.command(folder, records[faulty].key)):
+    if faulty is not None and (again := fault_report.rerun_command(folder, records[faulty].key)):
         yield again
     if records:
         yield f"hthor replay {run} {0 if faulty is None else faulty}"

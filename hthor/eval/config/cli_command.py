@@ -9,14 +9,14 @@ from pathlib import Path
 import msgspec
 
 from hthor import plugins
-from hthor.eval.config.robot_team import NOBODY
+from hthor.eval.config.robot_team import NO_ROBOT_AGENT
 from hthor.eval.config.run_config import PROCEDURAL, RunConfig
 from hthor.eval.config.shard import whole_folder
 from hthor.guest import Manifest
 from hthor.types import AgentRef, RobotSeat, cameras
 from hthor.types.detector_specs import OWN
 
-OURS = "hthor.agents."
+BUILT_IN_AGENTS = "hthor.agents."
 """Where built-in agents come from."""
 
 
@@ -27,7 +27,7 @@ def resume_command(folder: Path, plan: RunConfig, out: Path | None = None) -> st
         out: the folder that it names, when that is not the run's own.
     """
     out = out or folder
-    words = ["hthor", "eval", *_who(plan.robots), "--humans", plan.humans.source]
+    words = ["hthor", "eval", *_robot_options(plan.robots), "--humans", plan.humans.source]
     if plan.kind is not None and plan.kind.sha256:
         words += ["--kind", f"{plan.kind.name}.py"]
         words += [] if (folder / "suite.json").exists() else ["--suite", plan.suite.name]
@@ -36,7 +36,7 @@ def resume_command(folder: Path, plan: RunConfig, out: Path | None = None) -> st
     words += [] if plan.assets.name == PROCEDURAL else ["--assets", plan.assets.name]
     detector = next((robot.detector for robot in plan.seats), OWN)
     words += [] if detector == OWN else ["--detector", detector]
-    words += _camera(plan)
+    words += _camera_options(plan)
     words += ["--name", plan.title] if plan.title else []
     words += ["--realtime"] if plan.realtime else []
     words += [word for name in plan.houses or () for word in ("--house", name)]
@@ -46,19 +46,19 @@ def resume_command(folder: Path, plan: RunConfig, out: Path | None = None) -> st
     for one in plan.agents[:1]:  # all agents of a command are given the same
         words += [word for key, value in one.args.items() for word in ("--agent-args", f"{key}={value}")]
         beyond = dict.fromkeys(file.path.split("/")[1] for file in one.files if file.path.startswith("../"))
-        words += [word for name in beyond if name not in _named(one) for word in ("--readable", name)]
+        words += [word for name in beyond if name not in _listed_files(one) for word in ("--readable", name)]
     words += ["--seed", str(plan.seed), "--participants", str(plan.participants)]
     words += ["--shard", plan.shard.words] if plan.shard else []
     return shlex.join([*words, "--out", str(whole_folder(out) if plan.shard else out)])
 
 
-def _named(agent: Manifest) -> set[str]:
+def _listed_files(agent: Manifest) -> set[str]:
     """What lies outside an agent's folder and needs no option of its own: arguments, and the words of a command."""
     words = shlex.split(agent.source[len("cmd:") :]) if agent.source.startswith("cmd:") else []
     return {*(value.removeprefix("../") for value in agent.args.values()), *words}
 
 
-def _camera(plan: RunConfig) -> list[str]:
+def _camera_options(plan: RunConfig) -> list[str]:
     """The options that name the robots' camera."""
     named = next((robot.camera for robot in plan.seats if robot.camera), cameras.OWN)
     name, _, size = named.partition(":")
@@ -66,25 +66,29 @@ def _camera(plan: RunConfig) -> list[str]:
     return [*words, "--camera-size", size] if size else words
 
 
-def near(path: Path) -> Path:
+def relative_path(path: Path) -> Path:
     """A folder as it can be typed from here: below the current folder without that, elsewhere as it was given."""
     here = Path.cwd()
     return path.relative_to(here) if path.is_absolute() and path.is_relative_to(here) else path
 
 
-def alone(plan: RunConfig) -> str:
+def baseline_command(plan: RunConfig) -> str:
     """The command that plays the same people at the same tasks without a robot."""
-    nobody = RobotSeat(seat="", robot="", agent=AgentRef(name=NOBODY, source=f"{OURS}{NOBODY}", sha256=""))
+    nobody = RobotSeat(
+        seat="", robot="", agent=AgentRef(name=NO_ROBOT_AGENT, source=f"{BUILT_IN_AGENTS}{NO_ROBOT_AGENT}", sha256="")
+    )
     return resume_command(Path(), msgspec.structs.replace(plan, robots=(nobody,), realtime=msgspec.UNSET)).removesuffix(
         " --out ."
     )
 
 
-def _who(robots: Sequence[RobotSeat]) -> list[str]:
+def _robot_options(robots: Sequence[RobotSeat]) -> list[str]:
     """The options that name these robots."""
-    minds = [robot.agent.name if robot.agent.source.startswith(OURS) else robot.agent.source for robot in robots]
+    minds = [
+        robot.agent.name if robot.agent.source.startswith(BUILT_IN_AGENTS) else robot.agent.source for robot in robots
+    ]
     bodies = [
-        robot.robot if not robot.robot or plugins.ships("robot", robot.robot) else f"{robot.robot}.py"
+        robot.robot if not robot.robot or plugins.is_built_in("robot", robot.robot) else f"{robot.robot}.py"
         for robot in robots
     ]
     if len(robots) == 1:

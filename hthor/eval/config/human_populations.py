@@ -46,7 +46,7 @@ class HumanModelRef(Struct, frozen=True, kw_only=True):
     notes: tuple[str, ...]
 
 
-def expand(words: Sequence[str]) -> list[People]:
+def find_populations(words: Sequence[str]) -> list[People]:
     """The peoples that the words of ``--humans`` stand for, each once.
 
     Raises:
@@ -55,7 +55,7 @@ def expand(words: Sequence[str]) -> list[People]:
         HthorError: when two different peoples are called the same.
     """
     found: dict[str, People] = {}
-    for word in dict.fromkeys(word for several in words for word in _several(several)):
+    for word in dict.fromkeys(word for several in words for word in _expand_word(several)):
         one = _find(word)
         if one.sha256 in {other.sha256 for other in found.values()}:
             continue
@@ -65,7 +65,7 @@ def expand(words: Sequence[str]) -> list[People]:
     return list(found.values())
 
 
-def settings(body: str | RobotInfo, detector: str) -> dict[str, str | float]:
+def robot_settings(body: str | RobotInfo, detector: str) -> dict[str, str | float]:
     """What of a robot bears on how people fare beside it, as a population's file keeps it.
 
     Args:
@@ -83,7 +83,7 @@ def settings(body: str | RobotInfo, detector: str) -> dict[str, str | float]:
     }
 
 
-def refer(found: People, suite: Suite, crew: RobotTeam) -> HumanModelRef:
+def human_model_ref(found: People, suite: Suite, crew: RobotTeam) -> HumanModelRef:
     """Who they are, and whether they are known to fit this suite, this world and these robots."""
     drawn = not found.source
     notes = tuple(_differences(found, suite, crew)) if drawn else ()
@@ -100,7 +100,7 @@ def refer(found: People, suite: Suite, crew: RobotTeam) -> HumanModelRef:
     )
 
 
-def _several(word: str) -> tuple[str, ...]:
+def _expand_word(word: str) -> tuple[str, ...]:
     head, at, base = word.partition("@")
     population = base or resolve.default()
     if head == KINDS:
@@ -148,7 +148,7 @@ def _robots(name: str, its: dict[str, str | float], crew: RobotTeam) -> Iterator
         return
     shapes = {shape.name: shape for shape, mind in crew.robots if not mind.absent}
     for shape in shapes.values():
-        here = settings(shape, crew.detector)
+        here = robot_settings(shape, crew.detector)
         other = [key for key in here if key in its and its[key] != here[key]]
         if other:
             told = ", ".join(f"{key} {_short(its[key])}, not {_short(here[key])}" for key in other)

@@ -18,7 +18,7 @@ from hthor.types.detector_specs import OWN
 
 ALIASES = {"tall": "tender", "small": "puck"}
 """Other words for robots: what the article's figure calls them."""
-NOBODY, NO_ROBOT = "none", "no robot"
+NO_ROBOT_AGENT, NO_ROBOT = "none", "no robot"
 """The agent that stands for no robot, and what tables and sentences call it."""
 _EXAMPLE = "--robots tall:oracle,small:frontier"
 
@@ -118,12 +118,12 @@ class RobotTeam(Struct, frozen=True, kw_only=True):
         return [(robot.seat, pair) for robot, pair in pairs if robot.seat]
 
 
-def step_limit(crew: RobotTeam, seconds: float | None) -> float | msgspec.UnsetType:
+def step_limit_of(crew: RobotTeam, seconds: float | None) -> float | msgspec.UnsetType:
     """The deadline of each action as a trial has it: only where an agent is submitted, and not the usual one [s]."""
     return float(seconds) if seconds is not None and crew.minds else msgspec.UNSET
 
 
-def pictures(crew: RobotTeam, pack: str = "") -> str:
+def team_pictures_sha256(crew: RobotTeam, pack: str = "") -> str:
     """Hash of what robots' pictures show and of what draws it; empty where no mind is known to take any.
 
     Every submitted agent may, and whoever was given a camera or a furniture pack, whose own hash is ``pack``.
@@ -153,7 +153,7 @@ def form_team(
     return RobotTeam(robots=tuple(robots), detector=detector, camera=camera)
 
 
-def read(robots: str, agents: Sequence[str], detector: str = OWN, camera: str = cameras.OWN) -> list[RobotTeam]:
+def parse_teams(robots: str, agents: Sequence[str], detector: str = OWN, camera: str = cameras.OWN) -> list[RobotTeam]:
     """The crews that ``--robots`` stands for: one, or, where bodies have no mind of their own, one for each agent.
 
     Args:
@@ -165,7 +165,7 @@ def read(robots: str, agents: Sequence[str], detector: str = OWN, camera: str = 
         HthorError: when it cannot be read, or a name in it is unknown.
     """
     words = [word.replace("\\,", ",").strip() for word in re.split(r"(?<!\\),", robots)]
-    pairs = [_pair(word, robots) for word in words]
+    pairs = [_body_and_agent(word, robots) for word in words]
     bare = [body for body, mind in pairs if not mind]
     if bare and not agents:
         raise HthorError(f"--robots: '{bare[0]}' has no mind. Write {bare[0]}:AGENT, or name one with --agent.")
@@ -177,7 +177,7 @@ def read(robots: str, agents: Sequence[str], detector: str = OWN, camera: str = 
     return [form_team(shapes, minds, detector, camera) for minds in casts]
 
 
-def _pair(word: str, given: str) -> tuple[str, str]:
+def _body_and_agent(word: str, given: str) -> tuple[str, str]:
     body, colon, mind = word.partition(":")
     if not body or bool(colon) != bool(mind):
         raise HthorError(f"--robots '{given}': '{word}' is not BODY:AGENT; expected something like {_EXAMPLE}.")
@@ -217,21 +217,21 @@ def load_agent_info(agent: str) -> AgentInfo:
         UnknownName: when it is neither.
         AgentError: when it does not load.
     """
-    name = plugins.called("agent", agent)
-    return _own(name) if name in plugins.names("agent") else _guest(agent)
+    name = plugins.plugin_name("agent", agent)
+    return _built_in_agent(name) if name in plugins.names("agent") else _submitted_agent(agent)
 
 
-def label(name: str, robots: Sequence[RobotSeat]) -> str:
+def display_name(name: str, robots: Sequence[RobotSeat]) -> str:
     """What tables and sentences call a run: its name, or "no robot" where it has none and nobody named it."""
     nobody = not any(robot.seat for robot in robots)
-    return NO_ROBOT if nobody and name in (NOBODY, *(robot.agent.name for robot in robots)) else name
+    return NO_ROBOT if nobody and name in (NO_ROBOT_AGENT, *(robot.agent.name for robot in robots)) else name
 
 
-def _own(name: str) -> AgentInfo:
+def _built_in_agent(name: str) -> AgentInfo:
     made: Any = plugins.load("agent", name)
     ref = AgentRef(
         name=name,
-        source=plugins.module("agent", name),
+        source=plugins.module_name("agent", name),
         sha256=code_identity.agent_sha256(name),
         privileges=tuple(getattr(made, "privileges", ())),
     )
@@ -243,13 +243,13 @@ def _own(name: str) -> AgentInfo:
     )
 
 
-def _guest(text: str) -> AgentInfo:
+def _submitted_agent(text: str) -> AgentInfo:
     from hthor.guest import Guest
     from hthor.guest.host import snapshot
 
     with Guest(text) as guest:
         info = guest.load()
-        name = _tidy("-".join([info.name, *(_said(*pair) for pair in guest.given.args.items())]))
+        name = _file_safe("-".join([info.name, *(_argument_text(*pair) for pair in guest.given.args.items())]))
         made = snapshot.settle(guest, name)
         ref = AgentRef(name=name, source=info.source, sha256=made.sha256, privileges=tuple(info.privileges))
         return AgentInfo(
@@ -262,11 +262,11 @@ def _guest(text: str) -> AgentInfo:
         )
 
 
-def _said(key: str, value: str) -> str:
+def _argument_text(key: str, value: str) -> str:
     """An argument as a part of an agent's name."""
     return f"{key}-{Path(value).name if Path(value).is_absolute() else value}"
 
 
-def _tidy(name: str) -> str:
+def _file_safe(name: str) -> str:
     """A name that can be part of a file's name."""
     return re.sub(r"[^A-Za-z0-9_+-]+", "-", name).strip("-")[:60] or "agent"

@@ -17,7 +17,7 @@ from hthor.errors import HthorError, RunError
 from hthor.eval.config import human_populations, robot_team, sessions
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.robot_team import RobotTeam
-from hthor.eval.config.sessions import people_for
+from hthor.eval.config.sessions import participants_needed
 from hthor.eval.config.shard import Shard
 from hthor.guest.agent.manifest import Manifest
 from hthor.humans.population import resolve
@@ -133,12 +133,12 @@ class RunConfig(Struct, frozen=True, kw_only=True):
     @property
     def label(self) -> str:
         """What tables and sentences call the run."""
-        return robot_team.label(self.name, self.robots)
+        return robot_team.display_name(self.name, self.robots)
 
     @property
     def crew(self) -> str:
         """What to call the robots and their minds."""
-        return crew_name(self.robots)
+        return team_name(self.robots)
 
     @property
     def folder_name(self) -> str:
@@ -160,7 +160,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
         return f"{self.crew}-{played}{whose}-{self.whole.sha256[:10]}"
 
 
-def crew_name(robots: Sequence[RobotSeat]) -> str:
+def team_name(robots: Sequence[RobotSeat]) -> str:
     """The agent's name, of a single robot; "tender-oracle+puck-frontier" of several."""
     if len(robots) == 1:
         return robots[0].agent.name
@@ -192,14 +192,14 @@ def build_config(
     an action [s]; it makes no difference where all agents are built in.
     """
     who = resolve.find(human) if isinstance(human, str) else human
-    hands = people_for(len(suite.tasks))
+    hands = participants_needed(len(suite.tasks))
     count = hands if participants is None else participants
     whole, rest = divmod(count, hands)
     size = len(suite.tasks)
     return RunConfig(
         robots=crew.listed,
         agents=crew.agents,
-        humans=human_populations.refer(who, suite, crew),
+        humans=human_populations.human_model_ref(who, suite, crew),
         suite=SuiteRef(name=suite.name, version=str(suite.version), sha256=suite.sha256),
         kind=kind,
         kinds=tuple(sorted({task.kind for task in suite.tasks})),
@@ -211,17 +211,17 @@ def build_config(
         versions=installation.versions(),
         assets=AssetsRef(
             name=assets.name if assets else PROCEDURAL,
-            sha256=robot_team.pictures(crew, assets.sha256 if assets else ""),
+            sha256=robot_team.team_pictures_sha256(crew, assets.sha256 if assets else ""),
         ),
         realtime=(realtime and bool(crew.seats)) or msgspec.UNSET,
         limit=limit or msgspec.UNSET,
         houses=tuple(houses) or msgspec.UNSET,
         difficulty=difficulty or msgspec.UNSET,
-        step_limit_s=robot_team.step_limit(crew, step_limit_s),
+        step_limit_s=robot_team.step_limit_of(crew, step_limit_s),
     )
 
 
-def divide(plan: RunConfig, part: Shard, tasks: int) -> RunConfig:
+def shard_config(plan: RunConfig, part: Shard, tasks: int) -> RunConfig:
     """The configuration of one shard of a run over so many tasks.
 
     Raises:
@@ -232,11 +232,11 @@ def divide(plan: RunConfig, part: Shard, tasks: int) -> RunConfig:
             f"--shard {part.words}: this run has {plan.participants} people of ten tasks each, who are not divided, so "
             f"there can be {plan.participants} shards at most."
         )
-    trials = sessions.trials_of(tasks, part.share(range(plan.participants)))
+    trials = sessions.count_trials(tasks, part.share(range(plan.participants)))
     return msgspec.structs.replace(plan, shard=msgspec.structs.replace(part, trials=trials))
 
 
-def load(folder: Path) -> RunConfig:
+def load_config(folder: Path) -> RunConfig:
     """The configuration of the run in a folder.
 
     Raises:
@@ -256,7 +256,7 @@ def _guess(folder: Path) -> str:
     return f" Did you mean '{folder.parent / near[0]}'?" if near else ""
 
 
-def examine(folder: Path, plan: RunConfig) -> None:
+def check_folder(folder: Path, plan: RunConfig) -> None:
     """See that a folder is free for a run: absent, empty, or holding a part of the same run.
 
     Raises:
@@ -272,7 +272,7 @@ def examine(folder: Path, plan: RunConfig) -> None:
             listed = strangers[0] if strangers else "trials.jsonl"
             raise RunError(f"{folder} is not empty and holds no run ({listed}). Choose another folder with --out.")
         return
-    there = load(folder)
+    there = load_config(folder)
     if there.untitled != plan.untitled:
         raise RunError(
             f"{folder} holds another run: {'; '.join(differences(there.untitled, plan.untitled))}. "
@@ -283,11 +283,11 @@ def examine(folder: Path, plan: RunConfig) -> None:
         raise RunError(f"the run in {folder} {called}; a run keeps the name that it began with. Leave out --name.")
 
 
-def titled(folder: Path, plan: RunConfig) -> RunConfig:
+def with_stored_title(folder: Path, plan: RunConfig) -> RunConfig:
     """The configuration with the title of the run that lies in the folder already, if one does."""
     if not (folder / "run.json").exists():
         return plan
-    return msgspec.structs.replace(plan, title=load(folder).title)
+    return msgspec.structs.replace(plan, title=load_config(folder).title)
 
 
 def check_title(title: str) -> str:
@@ -304,7 +304,7 @@ def check_title(title: str) -> str:
     return title
 
 
-def write(folder: Path, plan: RunConfig) -> None:
+def write_config(folder: Path, plan: RunConfig) -> None:
     """Write `run.json`, unless it is there, and clear away what a killed command left of such a write."""
     for torn in folder.glob(".run.json.*"):
         torn.unlink(missing_ok=True)
@@ -324,23 +324,23 @@ def differences(there: RunConfig, here: RunConfig) -> list[str]:
     """What is not the same in two configurations, in words."""
     before, now = _flat(msgspec.to_builtins(there)), _flat(msgspec.to_builtins(here))
     names = [name for name in {**before, **now} if before.get(name) != now.get(name)]
-    return [f"{name} is {_short(before.get(name))} there and {_short(now.get(name))} here" for name in names]
+    return [f"{name} is {_shortened(before.get(name))} there and {_shortened(now.get(name))} here" for name in names]
 
 
 def _flat(document: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     flat: dict[str, Any] = {}
     for name, value in document.items():
         if isinstance(value, (list, tuple)) and any(isinstance(part, dict) for part in value):
-            value = {str(_named(part, number)): part for number, part in enumerate(value)}
+            value = {str(_list_key(part, number)): part for number, part in enumerate(value)}
         flat |= _flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value}
     return flat
 
 
-def _named(part: Any, number: int) -> object:
+def _list_key(part: Any, number: int) -> object:
     """What to call a member of a list: a file by its path, all others by their number."""
     return part.get("path", number) if isinstance(part, dict) else number
 
 
-def _short(value: object) -> str:
+def _shortened(value: object) -> str:
     text = "absent" if value is None else str(value)
     return text[:10] if len(text) == 64 else text

@@ -25,7 +25,7 @@ class Session(Struct, frozen=True, kw_only=True):
     trials: tuple[TrialSpec, ...]
 
 
-def people_for(tasks: int) -> int:
+def participants_needed(tasks: int) -> int:
     """How many people it takes for everyone to do `rules.SESSION_TASKS` tasks and every task to be done once."""
     return max(1, math.ceil(tasks / rules.SESSION_TASKS))
 
@@ -77,32 +77,32 @@ def make_sessions(
             suite_sha256=suite.sha256,
             rules_sha256=rules_hash,
             code_sha256=code_hash,
-            assets_sha256=robot_team.pictures(crew) if assets_sha256 is None else assets_sha256,
+            assets_sha256=robot_team.team_pictures_sha256(crew) if assets_sha256 is None else assets_sha256,
             kind_sha256=kind_sha256,
             realtime=realtime or msgspec.UNSET,
-            step_limit_s=robot_team.step_limit(crew, step_limit_s),
+            step_limit_s=robot_team.step_limit_of(crew, step_limit_s),
         )
 
-    count = people_for(len(suite.tasks)) if participants is None else participants
+    count = participants_needed(len(suite.tasks)) if participants is None else participants
     return tuple(
         Session(
             participant=participant,
             trials=tuple(trial(suite.tasks[number], participant, index) for index, number in enumerate(hand)),
         )
-        for participant, hand in enumerate(hands(suite.tasks, seed, range(count)))
+        for participant, hand in enumerate(assign_many(suite.tasks, seed, range(count)))
     )
 
 
-def hands(tasks: Sequence[TaskSpec], seed: int, participants: Sequence[int]) -> list[list[int]]:
+def assign_many(tasks: Sequence[TaskSpec], seed: int, participants: Sequence[int]) -> list[list[int]]:
     """Indices of the tasks that each of these participants does, in order: `deal` for many, each deck mixed once."""
-    count = people_for(len(tasks))
+    count = participants_needed(len(tasks))
     decks = {round_: _deck(tasks, seed, round_) for round_ in {participant // count for participant in participants}}
-    return [_hand(decks[participant // count], seed, participant) for participant in participants]
+    return [_hand_of(decks[participant // count], seed, participant) for participant in participants]
 
 
-def trials_of(tasks: int, participants: Sequence[int]) -> int:
+def count_trials(tasks: int, participants: Sequence[int]) -> int:
     """How many trials these participants have, with so many tasks in the suite."""
-    hands = people_for(tasks)
+    hands = participants_needed(tasks)
     places = (participant % hands for participant in participants)
     return sum((hand + 1) * tasks // hands - hand * tasks // hands for hand in places)
 
@@ -113,12 +113,12 @@ def assign_tasks(tasks: Sequence[TaskSpec], seed: int, participant: int) -> list
     The tasks are a deck, dealt out in hands of at most `rules.SESSION_TASKS`; when it is used up it is mixed anew. The
     houses alternate in the deck, so that each hand has its share of every house.
     """
-    return _hand(_deck(tasks, seed, participant // people_for(len(tasks))), seed, participant)
+    return _hand_of(_deck(tasks, seed, participant // participants_needed(len(tasks))), seed, participant)
 
 
-def _hand(deck: Sequence[int], seed: int, participant: int) -> list[int]:
+def _hand_of(deck: Sequence[int], seed: int, participant: int) -> list[int]:
     """What a participant is dealt from the deck of their round."""
-    hands = people_for(len(deck))
+    hands = participants_needed(len(deck))
     hand = participant % hands
     held = deck[hand * len(deck) // hands : (hand + 1) * len(deck) // hands]
     return [held[place] for place in seeds.shuffled(len(held), seed, "order", participant)]

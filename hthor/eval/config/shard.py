@@ -36,7 +36,7 @@ class Shard(Struct, frozen=True, kw_only=True):
         return run.with_name(f"{run.name}-shard-{self.number}-of-{self.of}")
 
 
-def read(text: str) -> Shard:
+def parse_shard(text: str) -> Shard:
     """The shard that the user named, such as "3/16".
 
     Raises:

@@ -11,7 +11,7 @@ from hthor.tasks.suites.library import Suite
 from hthor.tasks.validate import validate
 
 
-def suite(name_or_path: str) -> Suite:
+def checked_suite(name_or_path: str) -> Suite:
     """A suite by name, or from a file; no task of it is found wrong by its house's floor plan and the catalogue.
 
     That a file is sound is remembered in the user's cache by the hash of its tasks, of its houses and of hthor's code.

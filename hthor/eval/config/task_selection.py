@@ -43,7 +43,7 @@ class TaskSelection(Struct, frozen=True, kw_only=True):
     difficulty: str = ""
 
 
-def choose(suite: str, kind: str) -> TaskSelection:
+def select_tasks(suite: str, kind: str) -> TaskSelection:
     """The tasks that are meant.
 
     Args:
@@ -55,20 +55,20 @@ def choose(suite: str, kind: str) -> TaskSelection:
         HthorError: when the two do not fit together, or a user's kind does not work.
     """
     if kind.endswith(".py"):
-        return _own(kind, suite)
+        return _from_user_kind(kind, suite)
     if not kind:
-        return _whole(suite_check.suite(suite or "smoke"))
+        return _whole_suite(suite_check.checked_suite(suite or "smoke"))
     known = find_kind(kind)
     if not suite and known.short not in tasks.suites():
         raise HthorError(f"there is no suite of tasks of the kind '{known.name}'; name one that has some with --suite.")
-    whole = suite_check.suite(suite or known.short)
-    chosen = _filtered(whole, known.name)
+    whole = suite_check.checked_suite(suite or known.short)
+    chosen = _only_kind(whole, known.name)
     if len(chosen.tasks) == len(whole.tasks):
-        return _whole(whole)
+        return _whole_suite(whole)
     return TaskSelection(suite=chosen, kind=KindRef(name=known.name), crew=tuple(known.crew))
 
 
-def narrow(whole: TaskSelection, names: Sequence[str], difficulty: str) -> TaskSelection:
+def narrow_selection(whole: TaskSelection, names: Sequence[str], difficulty: str) -> TaskSelection:
     """The programme with only its tasks in these houses and of this difficulty; all of them where neither is given.
 
     What a suite does not tell of the difficulty of its tasks is worked out.
@@ -81,7 +81,9 @@ def narrow(whole: TaskSelection, names: Sequence[str], difficulty: str) -> TaskS
     for name in names:
         if name not in there:
             raise UnknownName(f"house of the suite '{suite.name}'", name, there)
-    chosen = tuple(task for task in suite.tasks if (not names or task.house in names) and _so_hard(task, difficulty))
+    chosen = tuple(
+        task for task in suite.tasks if (not names or task.house in names) and _has_difficulty(task, difficulty)
+    )
     if not chosen:
         where = f" in {', '.join(names)}" if names else ""
         raise HthorError(
@@ -102,7 +104,7 @@ def narrow(whole: TaskSelection, names: Sequence[str], difficulty: str) -> TaskS
     )
 
 
-def _so_hard(task: TaskSpec, difficulty: str) -> bool:
+def _has_difficulty(task: TaskSpec, difficulty: str) -> bool:
     from hthor.tasks.generation import difficulty as difficulties
 
     if not difficulty:
@@ -110,7 +112,7 @@ def _so_hard(task: TaskSpec, difficulty: str) -> bool:
     return (task.difficulty or difficulties.of(task, houses.load(task.house))) == difficulty
 
 
-def shorten(whole: TaskSelection, limit: int | None) -> TaskSelection:
+def limit_selection(whole: TaskSelection, limit: int | None) -> TaskSelection:
     """The programme with only so many of its tasks, chosen by `hthor.eval.config.task_subset`; all of them for None.
 
     Raises:
@@ -121,7 +123,7 @@ def shorten(whole: TaskSelection, limit: int | None) -> TaskSelection:
     if limit > len(whole.suite.tasks):
         raise HthorError(f"--limit {limit}: the suite '{whole.suite.name}' has {len(whole.suite.tasks)} tasks here.")
     suite = whole.suite
-    some = library.frozen(suite.name, suite.version, task_subset.choose(suite.tasks, limit))
+    some = library.frozen(suite.name, suite.version, task_subset.choose_subset(suite.tasks, limit))
     note = f"{limit} of the {len(suite.tasks)} tasks of '{suite.name}' are played: no result for the leaderboard."
     return msgspec.structs.replace(whole, suite=some, limit=limit, notes=(*whole.notes, note))
 
@@ -141,15 +143,17 @@ def find_kind(name: str) -> TaskKind:
     return kinds.get(name) or shorts[name]
 
 
-def _whole(suite: Suite) -> TaskSelection:
+def _whole_suite(suite: Suite) -> TaskSelection:
     crews = {tuple(plugins.load("task kind", name).crew) for name in sorted({task.kind for task in suite.tasks})}
     return TaskSelection(suite=suite, crew=crews.pop() if len(crews) == 1 else ())
 
 
-def _own(path: str, suite: str) -> TaskSelection:
+def _from_user_kind(path: str, suite: str) -> TaskSelection:
     """The tasks of a user's kind: those of a suite, or one in each of the houses that come with hthor."""
-    kind = _loaded(path)
-    found, missing = (_filtered(suite_check.suite(suite), kind.name), ()) if suite else _drawn(kind, path)
+    kind = _load_user_kind(path)
+    found, missing = (
+        (_only_kind(suite_check.checked_suite(suite), kind.name), ()) if suite else _generated_tasks(kind, path)
+    )
     return TaskSelection(
         suite=found,
         kind=KindRef(name=kind.name, sha256=plugins.sha256(path)),
@@ -160,7 +164,7 @@ def _own(path: str, suite: str) -> TaskSelection:
     )
 
 
-def _filtered(whole: Suite, kind: str) -> Suite:
+def _only_kind(whole: Suite, kind: str) -> Suite:
     """The suite's tasks of one kind, under the suite's own name."""
     chosen = tuple(task for task in whole.tasks if task.kind == kind)
     if not chosen:
@@ -169,7 +173,7 @@ def _filtered(whole: Suite, kind: str) -> Suite:
     return library.frozen(whole.name, whole.version, chosen)
 
 
-def _drawn(kind: TaskKind, path: str) -> tuple[Suite, tuple[str, ...]]:
+def _generated_tasks(kind: TaskKind, path: str) -> tuple[Suite, tuple[str, ...]]:
     """A task in each house that has what it takes, and why the others have none."""
     from hthor.tasks.generation import generate
 
@@ -184,7 +188,7 @@ def _drawn(kind: TaskKind, path: str) -> tuple[Suite, tuple[str, ...]]:
     return library.frozen(kind.short, _VERSION, tuple(made)), tuple(missing)
 
 
-def _loaded(path: str) -> TaskKind:
+def _load_user_kind(path: str) -> TaskKind:
     kind: Any = plugins.load("task kind", path)
     if not isinstance(kind, TaskKind):
         raise HthorError(f"{path}: KIND must be an instance of a subclass of hthor.tasks.kind.TaskKind, got {kind!r}.")

@@ -12,7 +12,7 @@ _ROOT = seeds.derive(3, "selection")
 """Of all choices: the same suite always gives the same tasks, whatever the run's seed."""
 
 
-def choose(tasks: Sequence[TaskSpec], count: int) -> tuple[TaskSpec, ...]:
+def choose_subset(tasks: Sequence[TaskSpec], count: int) -> tuple[TaskSpec, ...]:
     """So many tasks, in the suite's order.
 
     Every house, and in it every kind of task, has about its share. A larger choice contains every

@@ -48,7 +48,7 @@ def play() -> Course:
         trial=done.spec.task.id,
         sha256=jsonio.sha256(course),
         outcome={"met": done.met, "ticks": done.ticks, "trust": done.trust, "events": len(done.events)},
-        platform=platform_fingerprint.here(),
+        platform=platform_fingerprint.this_platform(),
     )
 
 
@@ -68,7 +68,7 @@ def findings(here: Course | str) -> list[CheckResult]:
     there = reference()
     if here.sha256 == there.sha256:
         return [CheckResult(name=name, says=f"{here.trial} goes as in the reference, byte for byte")]
-    other = platform_fingerprint.differences(there.platform, here.platform)
+    other = platform_fingerprint.platform_differences(there.platform, here.platform)
     same = here.outcome == there.outcome and here.trial == there.trial
     if not other:
         says = f"on the very platform of the reference {here.trial} goes otherwise, outcome {_verdict(same)}"

@@ -18,7 +18,7 @@ from hthor.guest import Isolation
 SCHEMA = "hthor.dry-run/2"
 
 
-class Ahead(Struct, frozen=True, kw_only=True):
+class RunForecast(Struct, frozen=True, kw_only=True):
     """A run that would be played: ``played`` of its ``trials`` are there already; ``seconds`` for the rest of them.
 
     ``pace`` is what a trial takes, and how that is known; ``seconds`` is None where nothing tells.
@@ -30,7 +30,7 @@ class Ahead(Struct, frozen=True, kw_only=True):
     played: int
     control: bool
     seconds: float | None
-    pace: trial_cost.Pace | None
+    pace: trial_cost.TrialCost | None
     plan: RunConfig
 
 
@@ -48,13 +48,13 @@ class Forecast(Struct, frozen=True, kw_only=True):
     schema: str = SCHEMA
     settings: tuple[Setting, ...]
     isolation: Isolation | None
-    runs: tuple[Ahead, ...]
+    runs: tuple[RunForecast, ...]
     trials: int
     played: int
     seconds: float | None
 
 
-def of(
+def make_forecast(
     options: RunOptions, intent: ResolvedRuns, origins: Mapping[str, str], say: Callable[[str], None] | None = None
 ) -> Forecast:
     """Look ahead.
@@ -65,11 +65,11 @@ def of(
             before, to see what one takes; they are kept nowhere.
     """
     workers = options.jobs or len(os.sched_getaffinity(0))
-    sampler = trial_cost.Sampler(options, intent, say) if say is not None else None
+    sampler = trial_cost.CostSampler(options, intent, say) if say is not None else None
     worlds = len({(one.house, tuple((it.id, it.kind) for it in one.objects)) for one in intent.chosen.suite.tasks})
     runs = [
-        *(_ahead(part, workers, worlds, sampler, control=True) for part in intent.controls),
-        *(_ahead(part, workers, worlds, sampler, control=False) for part in intent.parts),
+        *(_run_forecast(part, workers, worlds, sampler, control=True) for part in intent.controls),
+        *(_run_forecast(part, workers, worlds, sampler, control=False) for part in intent.parts),
     ]
     left = [one.seconds for one in runs]
     return Forecast(
@@ -82,17 +82,19 @@ def of(
     )
 
 
-def _ahead(part: RunJob, workers: int, houses: int, sampler: trial_cost.Sampler | None, *, control: bool) -> Ahead:
+def _run_forecast(
+    part: RunJob, workers: int, houses: int, sampler: trial_cost.CostSampler | None, *, control: bool
+) -> RunForecast:
     plan = part.plan
     trials = plan.shard.trials if plan.shard else plan.trials
     played = len({record.key for _, record in trial_log.read(part.folder / "trials.jsonl")})
     left = trials - played
-    known = trial_cost.earlier(part)
+    known = trial_cost.measured_cost(part)
     if known is None and left and sampler is not None:
         known = sampler.play(part)
     busy = max(1, min(workers, math.ceil(left / 10)))  # a session's ten trials are played by one worker
     seconds = 0.0 if not left else None if known is None else known.seconds(left, workers=busy, houses=houses)
-    return Ahead(
+    return RunForecast(
         name=part.title,
         folder=str(part.folder),
         trials=trials,

@@ -25,7 +25,7 @@ _CARRIED = ("suite.json", "houses/*.json", "faults/*.json")
 """What else a run's folder may hold that others need to read it."""
 
 
-class Gap(Struct, frozen=True, kw_only=True):
+class MissingTrials(Struct, frozen=True, kw_only=True):
     """What a run lacks of one shard, and the command that plays it. ``trials`` is None when all of it is missing.
 
     Shards of several divisions have one gap, of the whole run, as if it were shard 1 of 1.
@@ -37,18 +37,18 @@ class Gap(Struct, frozen=True, kw_only=True):
     command: str
 
 
-class Merged(Struct, frozen=True, kw_only=True):
+class MergeResult(Struct, frozen=True, kw_only=True):
     """What became of a merge: trials that were there before and new ones; the result when nothing is missing."""
 
     folder: str
     plan: RunConfig
     trials: int
     new: int
-    gaps: tuple[Gap, ...]
+    gaps: tuple[MissingTrials, ...]
     result: RunResult | None
 
 
-class _Part(Struct, frozen=True, kw_only=True):
+class _ShardLog(Struct, frozen=True, kw_only=True):
     """A shard's folder, its configuration, and where its records lie, by person and trial.
 
     ``opened`` are the records, without what is long in them, that tell of files which agents opened only then.
@@ -61,7 +61,7 @@ class _Part(Struct, frozen=True, kw_only=True):
     opened: tuple[TrialRecord, ...] = ()
 
 
-def merge(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Merged:
+def merge_shards(folders: Sequence[Path], out: Path, *, dry: bool = False) -> MergeResult:
     """Join shards, all of them or those that there are so far, in a folder that is then like an undivided run's.
 
     They may overlap, and be of several divisions: thirds with a half. Records lie there in the order of people and
@@ -77,16 +77,18 @@ def merge(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Merged:
     for part in parts[1:]:
         _same_run(first, part)
     plan, found = first.plan.whole, _join(parts)
-    opened_files.manifests(plan, [one for part in parts for one in part.opened])
-    run_config.examine(out, plan)
+    opened_files.complete_manifests(plan, [one for part in parts for one in part.opened])
+    run_config.check_folder(out, plan)
     if dry:  # only count; what is missing is named by the merge itself
         there = {one.key for _, one in trial_log.read(out / "trials.jsonl")}
         more = {key for _, key, _ in found.values()} - there
-        return Merged(folder=str(out), plan=plan, trials=len(there) + len(more), new=len(more), gaps=(), result=None)
+        return MergeResult(
+            folder=str(out), plan=plan, trials=len(there) + len(more), new=len(more), gaps=(), result=None
+        )
     new = 0
     with TrialLog(out) as book:
-        run_config.write(out, plan)
-        for name, data in _carried(folders).items():
+        run_config.write_config(out, plan)
+        for name, data in _other_files(folders).items():
             jsonio.write(out / name, data)
         wanted = [found[place] for place in sorted(found)]
         for (_, key, _), line in zip(wanted, trial_log.fetch(place for place, _, _ in wanted), strict=True):
@@ -98,11 +100,11 @@ def merge(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Merged:
         trials = len(book)
     result = _score(out, plan, [part.folder for part in parts]) if trials == plan.trials else None
     gaps = () if result else _gaps(parts, out, plan.trials - trials)
-    return Merged(folder=str(out), plan=plan, trials=trials, new=new, gaps=gaps, result=result)
+    return MergeResult(folder=str(out), plan=plan, trials=trials, new=new, gaps=gaps, result=result)
 
 
-def _examine(folder: Path) -> _Part:
-    plan = run_config.load(folder)
+def _examine(folder: Path) -> _ShardLog:
+    plan = run_config.load_config(folder)
     if not plan.shard:
         raise RunError(
             f"{folder} holds a run that is not divided: run.json has no shard. 'hthor eval --shard' makes some."
@@ -119,7 +121,7 @@ def _examine(folder: Path) -> _Part:
             raise RunError(
                 f"{place.path}: trial {one.key} is there twice and not the same. Delete one of the two lines."
             )
-    return _Part(folder=folder, plan=plan, shard=plan.shard, records=records, opened=tuple(told))
+    return _ShardLog(folder=folder, plan=plan, shard=plan.shard, records=records, opened=tuple(told))
 
 
 def _check_share(folder: Path, one: TrialRecord, plan: RunConfig, mine: Shard) -> None:
@@ -131,14 +133,14 @@ def _check_share(folder: Path, one: TrialRecord, plan: RunConfig, mine: Shard) -
         )
 
 
-def _same_run(first: _Part, part: _Part) -> None:
+def _same_run(first: _ShardLog, part: _ShardLog) -> None:
     there, here = first.plan, part.plan
     if there.whole.untitled != here.whole.untitled:
         told = "; ".join(run_config.differences(there.whole.untitled, here.whole.untitled))
         raise RunError(f"{part.folder} is a shard of another run than {first.folder}: {told}.")
 
 
-def _join(parts: Sequence[_Part]) -> dict[tuple[int, int], tuple[Place, str, int]]:
+def _join(parts: Sequence[_ShardLog]) -> dict[tuple[int, int], tuple[Place, str, int]]:
     """Every record once, by person and trial; a shard may be there twice, played on two machines."""
     found: dict[tuple[int, int], tuple[Place, str, int]] = {}
     for part in parts:
@@ -152,7 +154,7 @@ def _join(parts: Sequence[_Part]) -> dict[tuple[int, int], tuple[Place, str, int
     return found
 
 
-def _carried(folders: Sequence[Path]) -> dict[str, bytes]:
+def _other_files(folders: Sequence[Path]) -> dict[str, bytes]:
     paths = {
         path.relative_to(folder).as_posix(): path
         for folder in folders
@@ -162,25 +164,27 @@ def _carried(folders: Sequence[Path]) -> dict[str, bytes]:
     return {name: path.read_bytes() for name, path in paths.items()}
 
 
-def _gaps(parts: Sequence[_Part], out: Path, missing: int) -> tuple[Gap, ...]:
+def _gaps(parts: Sequence[_ShardLog], out: Path, missing: int) -> tuple[MissingTrials, ...]:
     """What each shard lacks. The fullest folder of a shard is the one to go on with."""
     first = parts[0]
     of, base = first.shard.of, whole_folder(first.folder)
     if any(part.shard.of != of for part in parts):  # the undivided command plays just what is missing
-        return (Gap(number=1, of=1, trials=missing, command=cli_command.resume_command(out, first.plan.whole)),)
+        return (
+            MissingTrials(number=1, of=1, trials=missing, command=cli_command.resume_command(out, first.plan.whole)),
+        )
     gaps = []
     for number in range(1, of + 1):
         mine = [part for part in parts if part.shard.number == number]
         if not mine:
             absent = Shard(number=number, of=of)
             words = cli_command.resume_command(absent.folder(base), msgspec.structs.replace(first.plan, shard=absent))
-            gaps.append(Gap(number=number, of=of, trials=None, command=words))
+            gaps.append(MissingTrials(number=number, of=of, trials=None, command=words))
             continue
         fullest = max(mine, key=lambda part: len(part.records))
         lacks = fullest.shard.trials - len(set().union(*(part.records for part in mine)))
         if lacks:
             words = cli_command.resume_command(fullest.folder, fullest.plan)
-            gaps.append(Gap(number=number, of=of, trials=lacks, command=words))
+            gaps.append(MissingTrials(number=number, of=of, trials=lacks, command=words))
     return tuple(gaps)
 
 
@@ -203,7 +207,7 @@ def _score(out: Path, plan: RunConfig, folders: Sequence[Path]) -> RunResult:
         )
     platform.join(out, folders)
     session_restarts.join(out, folders)
-    beside, held = baseline.beside(out, plan, records), _held(out, folders)
+    beside, held = baseline.beside(out, plan, records), _store_isolation(out, folders)
     result = aggregate.summarise(
         plan,
         trial_log.fetch(there),
@@ -217,11 +221,11 @@ def _score(out: Path, plan: RunConfig, folders: Sequence[Path]) -> RunResult:
     return result
 
 
-def _held(out: Path, folders: Sequence[Path]) -> Isolation | None:
+def _store_isolation(out: Path, folders: Sequence[Path]) -> Isolation | None:
     """How agents were held at the least, over all shards; kept with the whole run."""
-    held = run_isolation.load(out)
+    held = run_isolation.load_isolation(out)
     for folder in folders:
-        held = run_isolation.weakest(folder, held, "")
+        held = run_isolation.weakest_isolation(folder, held, "")
     if held is not None:
         jsonio.write(out / run_isolation.NAME, jsonio.pretty(held))
     return held

@@ -37,7 +37,7 @@ class _Data(Struct):
     bearers: tuple[str, ...] | UnsetType = UNSET
 
 
-def check(events: Sequence[Event]) -> None:
+def check_events(events: Sequence[Event]) -> None:
     """See that all data can be read.
 
     Raises:
@@ -45,7 +45,7 @@ def check(events: Sequence[Event]) -> None:
     """
     for number, event in enumerate(events):
         try:
-            with documents.guarded():
+            with documents.reading_errors():
                 msgspec.convert(event.data, _Data)
         except Unreadable as error:
             raise Unreadable(f"events[{number}].data.{error.field}", error.problem) from None

@@ -16,7 +16,7 @@ _SHOWN = 10
 _TRACED = 12
 
 
-def trial(folder: Path, name: str) -> TrialRecord:
+def find_trial(folder: Path, name: str) -> TrialRecord:
     """The trial of a run that ``name`` stands for.
 
     Args:
@@ -26,7 +26,7 @@ def trial(folder: Path, name: str) -> TrialRecord:
         UnknownName: when nothing answers to it.
         RunError: when more than one trial does, or the run cannot be read.
     """
-    _, records = reader.records(folder, run_config.load(folder))
+    _, records = reader.records(folder, run_config.load_config(folder))
     by_task = [record for record in records if record.spec.task.id == name]
     if by_task:
         return _only(by_task, name)
@@ -56,7 +56,7 @@ def first_fault(folder: Path) -> TrialRecord:
     Raises:
         LookupError: when it never did.
     """
-    _, records = reader.digest(folder, run_config.load(folder))
+    _, records = reader.digest(folder, run_config.load_config(folder))
     return next(record for record in records if record.faults)
 
 

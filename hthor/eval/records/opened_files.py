@@ -17,7 +17,7 @@ from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.host import snapshot
 
 
-def manifests(plan: RunConfig, records: Iterable[TrialRecord]) -> tuple[Manifest, ...]:
+def complete_manifests(plan: RunConfig, records: Iterable[TrialRecord]) -> tuple[Manifest, ...]:
     """What each agent of a run consists of, with all that its trials add; the same in whatever order they come.
 
     Raises:
@@ -43,7 +43,7 @@ def manifests(plan: RunConfig, records: Iterable[TrialRecord]) -> tuple[Manifest
     )
 
 
-def check(minds: Mapping[str, str], plan: RunConfig, records: Sequence[TrialRecord]) -> None:
+def check_opened_files(minds: Mapping[str, str], plan: RunConfig, records: Sequence[TrialRecord]) -> None:
     """See that what a run's trials were played with so far is still there, before more of them are played.
 
     Args:
@@ -52,7 +52,7 @@ def check(minds: Mapping[str, str], plan: RunConfig, records: Sequence[TrialReco
     Raises:
         AgentError: names the file that is not as it was. RunError: as `manifests`.
     """
-    manifests(plan, records)
+    complete_manifests(plan, records)
     for seat, mind in minds.items():
         used = {file for record in records for file in (record.files or {}).get(seat, ())}
         if used:

@@ -20,7 +20,7 @@ Platform = dict[str, str]
 
 def note(folder: Path) -> None:
     """Add this machine to those that played a part of the run in a folder."""
-    join(folder, (), (platform_fingerprint.here(),))
+    join(folder, (), (platform_fingerprint.this_platform(),))
 
 
 def join(out: Path, folders: Iterable[Path], more: Iterable[Platform] = ()) -> None:

@@ -7,7 +7,7 @@ import platform
 from hthor import installation
 
 
-def here() -> dict[str, str]:
+def this_platform() -> dict[str, str]:
     """The platform that this process computes on: where all of it is equal, records are equal byte for byte."""
     import llvmlite.binding
     import numpy
@@ -23,7 +23,7 @@ def here() -> dict[str, str]:
     }
 
 
-def differences(there: dict[str, str], now: dict[str, str]) -> list[str]:
+def platform_differences(there: dict[str, str], now: dict[str, str]) -> list[str]:
     """What is not the same, in words."""
     names = [name for name in sorted({*there, *now}) if there.get(name) != now.get(name)]
     return [f"{name} {now.get(name, 'unknown')} here, {there.get(name, 'unknown')} there" for name in names]

@@ -48,20 +48,20 @@ def resolve_isolation(wanted: str, required: str, minds: Collection[str]) -> Iso
     return held
 
 
-def weakest(folder: Path, held: Isolation | None, required: str) -> Isolation | None:
+def weakest_isolation(folder: Path, held: Isolation | None, required: str) -> Isolation | None:
     """The weaker of what holds the agents now and what held them when an earlier command played a part of the run.
 
     Raises:
         IsolationError: when the earlier command had less than is required now.
     """
-    before = load(folder)
+    before = load_isolation(folder)
     if before is None:
         return held
     _demand(before, required, f"{folder} has trials played at")
     return before if held is None or suffices(held.level, before.level) else held
 
 
-def of(held: Isolation | None, minds: Collection[str]) -> Isolation | None:
+def isolation_of(held: Isolation | None, minds: Collection[str]) -> Isolation | None:
     """What holds the agents of one of several runs: nothing where one is served; None when all are built in."""
     from hthor import guest
     from hthor.guest.host import websocket_client
@@ -71,7 +71,7 @@ def of(held: Isolation | None, minds: Collection[str]) -> Isolation | None:
     return held if minds else None
 
 
-def load(folder: Path) -> Isolation | None:
+def load_isolation(folder: Path) -> Isolation | None:
     """What held a run's agents at the least; None when all were built in.
 
     Raises:

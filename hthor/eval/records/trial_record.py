@@ -88,13 +88,13 @@ def decode(line: bytes) -> TrialRecord:
         Damaged: names the field that is not as it was written.
     """
     body, check = line[:-_CHECK_LENGTH], line[-_CHECK_LENGTH:]
-    with documents.guarded():
+    with documents.reading_errors():
         record = _decoder.decode(line)
     if check != _CHECK % zlib.crc32(body):
         raise Damaged("check", f"{check[10:18].decode('ascii', 'replace')} is not the line's checksum")
     if record.key != key(record.spec):
         raise Damaged("key", f"'{record.key}' is not the key of the trial in 'spec', '{key(record.spec)}'")
-    event_data.check(record.events)
+    event_data.check_events(record.events)
     return record
 
 

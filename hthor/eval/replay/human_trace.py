@@ -27,7 +27,7 @@ SCHEMA = "hthor.mind/1"
 _JOURNAL = ("attempt", "exposure", "offer")
 
 
-class Stream(Struct, frozen=True, kw_only=True):
+class HumanTrace(Struct, frozen=True, kw_only=True):
     """What was thought in one trial, as `docs/logs.md` lists it, and the numbers of who thought it.
 
     ``same`` says whether the trial went as it was logged.
@@ -40,7 +40,7 @@ class Stream(Struct, frozen=True, kw_only=True):
     events: tuple[Event, ...]
 
 
-class Listened:
+class TracedHuman:
     """A human model of which somebody listens to the thoughts, in the trials that begin while ``listening``."""
 
     def __init__(self, human: Any) -> None:
@@ -88,9 +88,9 @@ class Listened:
         self.thoughts.append(Event(tick=tick, seat=HUMAN, kind=kind, data=data))
 
 
-def listen(
+def trace_human(
     folder: Path, wanted: TrialRecord, *, agents: Sequence[str] = (), humans: str = "", given: Given | None = None
-) -> Stream:
+) -> HumanTrace:
     """Play a trial of a run again and listen.
 
     Args:
@@ -104,11 +104,11 @@ def listen(
     """
     code_identity.keep_compiled()
     spec = wanted.spec
-    session = Session(participant=spec.participant, trials=session_history.before(folder, wanted))
+    session = Session(participant=spec.participant, trials=session_history.session_before(folder, wanted))
     guest.confine_guests(hidden=(str(folder.resolve()),), given=given)
-    stage = trial_runner.TrialRunner(session_history.sources(folder, spec, agents, humans))
+    stage = trial_runner.TrialRunner(session_history.replay_sources(folder, spec, agents, humans))
     with stage.enter(session) as company:
-        company.human = person = Listened(company.human)
+        company.human = person = TracedHuman(company.human)
         if not all(hasattr(type(person.human), name) for name in ("about", "listener")):
             raise HthorError(
                 f"the people of this run, '{spec.human}', have no mind to look into. --mind takes runs whose people "
@@ -122,9 +122,9 @@ def listen(
     return _stream(wanted, done, person.thoughts, traits)
 
 
-def _stream(wanted: TrialRecord, done: TrialRecord, thoughts: Sequence[Event], traits: dict[str, float]) -> Stream:
+def _stream(wanted: TrialRecord, done: TrialRecord, thoughts: Sequence[Event], traits: dict[str, float]) -> HumanTrace:
     written = [event for event in done.journal if event.kind in _JOURNAL]
     said = [event for event in done.events if event.kind in ("shown", "confirmed", "declined", "covered")]
     events = sorted([*thoughts, *written, *said], key=lambda event: event.tick)
     same = trial_record.encode(done) == trial_record.encode(wanted)
-    return Stream(key=wanted.key, same=same, traits=traits, events=tuple(events))
+    return HumanTrace(key=wanted.key, same=same, traits=traits, events=tuple(events))

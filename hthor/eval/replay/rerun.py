@@ -27,7 +27,7 @@ from hthor.guest import Given
 from hthor.types import RobotSeat, TrialSpec
 
 
-class Files(Struct, frozen=True, kw_only=True):
+class RunFiles(Struct, frozen=True, kw_only=True):
     """Where that lies which a trial needs and a run's folder does not hold, as the user typed it."""
 
     agents: tuple[str, ...] = ()
@@ -48,7 +48,9 @@ class Rerun(Struct, frozen=True, kw_only=True):
     left: FaultReport | None
 
 
-def play(folder: Path, wanted: TrialRecord, files: Files, isolation: str = "auto", given: Given | None = None) -> Rerun:
+def rerun_trial(
+    folder: Path, wanted: TrialRecord, files: RunFiles, isolation: str = "auto", given: Given | None = None
+) -> Rerun:
     """Play a trial of a run once more.
 
     Raises:
@@ -57,7 +59,7 @@ def play(folder: Path, wanted: TrialRecord, files: Files, isolation: str = "auto
     """
     guest.confine_guests(isolation, (str(folder.resolve()),), given)
     code_identity.keep_compiled()
-    specs = session_history.before(folder, wanted)
+    specs = session_history.session_before(folder, wanted)
     minds = _minds(wanted.spec, files.agents)
     robots = tuple(_seated(seat, minds) for seat in wanted.spec.robots)
     trials = tuple(msgspec.structs.replace(spec, robots=robots) for spec in specs)
@@ -102,13 +104,13 @@ def _seated(seat: RobotSeat, minds: dict[str, AgentInfo]) -> RobotSeat:
     return msgspec.structs.replace(seat, agent=minds[seat.seat].ref) if seat.seat in minds else seat
 
 
-def _sources(folder: Path, spec: TrialSpec, files: Files, minds: dict[str, AgentInfo]) -> Sources:
+def _sources(folder: Path, spec: TrialSpec, files: RunFiles, minds: dict[str, AgentInfo]) -> Sources:
     """Where everything lies, looked for before anything is played."""
     if spec.kind_sha256 and not files.kind:
         raise HthorError(f"the kind '{spec.task.kind}' of this trial came from a file of its own. Give it with --kind.")
     bodies: dict[str, str] = {}
     for seat in spec.robots:
-        if plugins.ships("robot", seat.robot):
+        if plugins.is_built_in("robot", seat.robot):
             continue
         fits = [path for path in files.robots if plugins.sha256(path) == seat.robot_sha256]
         if not fits:
@@ -116,7 +118,7 @@ def _sources(folder: Path, spec: TrialSpec, files: Files, minds: dict[str, Agent
                 f"the body '{seat.robot}' of this run came from a file of its own. Give it, unchanged, with --robot."
             )
         bodies[seat.seat] = str(Path(fits[0]).resolve())
-    own, shown = folder / "houses", run_config.load(folder).assets.name
+    own, shown = folder / "houses", run_config.load_config(folder).assets.name
     return Sources(
         minds={seat: one.path for seat, one in minds.items()},
         manifests={seat: one.manifest for seat, one in minds.items() if one.manifest is not None},

@@ -16,13 +16,13 @@ from hthor.guest.agent import manifest
 from hthor.types import RobotSeat, TrialSpec
 
 
-def before(folder: Path, wanted: TrialRecord) -> tuple[TrialSpec, ...]:
+def session_before(folder: Path, wanted: TrialRecord) -> tuple[TrialSpec, ...]:
     """The trials of the person's session up to this one.
 
     Raises:
         RunError: when trials before it are missing, or another version of hthor played them.
     """
-    plan = run_config.load(folder)
+    plan = run_config.load_config(folder)
     here, logged = code_identity.code_sha256(plan.humans.model, plan.kinds), wanted.spec.code_sha256
     if here != logged:
         raise RunError(
@@ -40,7 +40,7 @@ def before(folder: Path, wanted: TrialRecord) -> tuple[TrialSpec, ...]:
     return tuple(mine)
 
 
-def sources(folder: Path, spec: TrialSpec, agents: Sequence[str] = (), humans: str = "") -> trial_runner.Sources:
+def replay_sources(folder: Path, spec: TrialSpec, agents: Sequence[str] = (), humans: str = "") -> trial_runner.Sources:
     """Where that lies which a trial needs.
 
     Args:
@@ -66,7 +66,7 @@ def _same(folder: Path, seat: RobotSeat, given: Sequence[AgentInfo]) -> AgentInf
     for character in given:
         if character.ref.sha256 == seat.agent.sha256:
             return character
-    known = next((one for one in run_config.load(folder).agents if one.sha256 == seat.agent.sha256), None)
+    known = next((one for one in run_config.load_config(folder).agents if one.sha256 == seat.agent.sha256), None)
     near = next((one.manifest for one in given if one.manifest and known and one.manifest.source == known.source), None)
     what = ""
     if near is not None and known is not None:

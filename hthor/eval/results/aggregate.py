@@ -52,7 +52,7 @@ def summarise(
     return RunResult(
         name=plan.name,
         robots=plan.robots,
-        agents=opened_files.manifests(plan, records),
+        agents=opened_files.complete_manifests(plan, records),
         humans=plan.humans,
         suite=plan.suite,
         kind=plan.kind,
@@ -134,18 +134,18 @@ def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
     Every trial's metrics are worked out anew from its events. The stored effort is kept, as no log has it. A stored
     result of another version of the format counts as none: the log has all that it takes.
     """
-    plan = run_config.load(folder)
+    plan = run_config.load_config(folder)
     lines, kept = reader.records(folder, plan)
     fresh, stored = _measured(kept), None if result_file.outdated(folder / "result.json") else result_file.load(folder)
     effort = stored.effort if stored else None
-    beside, held = baseline.beside(folder, plan, fresh), run_isolation.load(folder)
+    beside, held = baseline.beside(folder, plan, fresh), run_isolation.load_isolation(folder)
     again = session_restarts.count(folder)
     return plan, summarise(plan, lines, fresh, effort, uplift=beside, isolation=held, replays=again), stored
 
 
 def measured(folder: Path) -> tuple[RunConfig, list[TrialRecord]]:
     """A run's configuration and its records, every trial's metrics worked out anew from its events."""
-    plan = run_config.load(folder)
+    plan = run_config.load_config(folder)
     return plan, _measured(reader.records(folder, plan)[1])
 
 

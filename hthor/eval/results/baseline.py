@@ -75,7 +75,7 @@ def _whole(
 def _fits(candidate: Path, plan: RunConfig) -> RunConfig | None:
     """The configuration of a run that is a control by what it is: same people, suite, seed, rules and code."""
     try:
-        there = run_config.load(candidate)
+        there = run_config.load_config(candidate)
     except RunError:  # of another version, or damaged
         return None
     fits = not there.seats and not pairing.difference(plan, there) and there.participants >= plan.participants

@@ -125,7 +125,7 @@ class RunResult(Struct, frozen=True, kw_only=True):
     @property
     def label(self) -> str:
         """What to call the run in tables and sentences."""
-        return robot_team.label(self.name, self.robots)
+        return robot_team.display_name(self.name, self.robots)
 
 
 def load(folder: Path) -> RunResult | None:

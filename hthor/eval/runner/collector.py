@@ -17,7 +17,7 @@ from hthor.eval.runner.messages import Finished, SessionAbandoned, SessionRestar
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
     from hthor.eval.records.trial_log import TrialLog
-    from hthor.eval.runner.engines import Engine, Make
+    from hthor.eval.runner.engines import Engine, RunnerFactory
     from hthor.eval.runner.fault_report import FaultArchive
     from hthor.eval.runner.run import Watcher
 
@@ -59,11 +59,11 @@ class CollectedTrials:
         return not self.played and len(self.lost) >= _HOPELESS
 
 
-def play(
+def collect(
     book: TrialLog,
     engine: Engine,
     sessions: Sequence[Session],
-    make: Make,
+    make: RunnerFactory,
     watch: Watcher,
     keeper: FaultArchive,
     stop: threading.Event,
@@ -91,7 +91,7 @@ def _listen(
     book: TrialLog,
     engine: Engine,
     sessions: Sequence[Session],
-    make: Make,
+    make: RunnerFactory,
     watch: Watcher,
     keeper: FaultArchive,
     stop: threading.Event,
@@ -149,7 +149,7 @@ def _voided(
     return True
 
 
-def unfinished(folder: Path, lost: Sequence[SessionAbandoned], missing: int, wanted: int) -> HthorError:
+def unfinished_error(folder: Path, lost: Sequence[SessionAbandoned], missing: int, wanted: int) -> HthorError:
     """What to tell of sessions that were given up; their tracebacks go to a file."""
     told = "; ".join(f"participant {one.participant}: {one.cause.rstrip('.')}" for one in lost[:_HOPELESS])
     more = f"; and {len(lost) - _HOPELESS} more" if len(lost) > _HOPELESS else ""

@@ -21,7 +21,7 @@ from hthor.eval.records import opened_files, run_isolation
 from hthor.eval.results.result_file import RunResult
 from hthor.eval.runner import engines, queue, run, run_options, trial_runner
 from hthor.eval.runner.collector import InternalFailure, Unfinished
-from hthor.eval.runner.engines import Make
+from hthor.eval.runner.engines import RunnerFactory
 from hthor.eval.runner.run import Watcher
 from hthor.eval.runner.run_options import ResolvedRuns, RunJob, RunOptions
 from hthor.guest import Isolation
@@ -60,10 +60,10 @@ def run_experiment(
     """
     asked = run_options.resolve_options(options)
     for part in (*asked.parts, *asked.control_of.values()):
-        run_config.examine(part.folder, part.plan)
+        run_config.check_folder(part.folder, part.plan)
         _engine(options, asked.chosen, part.crew)  # is there such an engine?
-        run_isolation.weakest(
-            part.folder, run_isolation.of(asked.held, part.crew.minds.values()), options.require_isolation
+        run_isolation.weakest_isolation(
+            part.folder, run_isolation.isolation_of(asked.held, part.crew.minds.values()), options.require_isolation
         )
     if not agree(asked):
         return
@@ -74,7 +74,12 @@ def run_experiment(
         watch = watcher(part.title)
         try:
             return _perform(
-                options, asked.chosen, part, watch, told, run_isolation.of(asked.held, part.crew.minds.values())
+                options,
+                asked.chosen,
+                part,
+                watch,
+                told,
+                run_isolation.isolation_of(asked.held, part.crew.minds.values()),
             )
         except (Unfinished, InternalFailure) as error:  # the other runs go on
             unfinished.append(error)
@@ -96,8 +101,10 @@ def run_experiment(
 
 
 def _engine(options: RunOptions, chosen: TaskSelection, crew: RobotTeam) -> engines.Engine:
-    limit_s = options.trial_limit or queue.limit(chosen.suite.tasks, len(crew.minds), options.step_limit)
-    return engines.find(options.engine, jobs=options.jobs, address=options.address, gpus=crew.gpus, limit_s=limit_s)
+    limit_s = options.trial_limit or queue.trial_limit_s(chosen.suite.tasks, len(crew.minds), options.step_limit)
+    return engines.find_engine(
+        options.engine, jobs=options.jobs, address=options.address, gpus=crew.gpus, limit_s=limit_s
+    )
 
 
 def _perform(
@@ -119,21 +126,23 @@ def _perform(
     if chosen.drawn:
         extra["suite.json"] = library.encode(chosen.suite)
     if held is not None:
-        extra[run_isolation.NAME] = jsonio.pretty(run_isolation.weakest(folder, held, options.require_isolation))
+        extra[run_isolation.NAME] = jsonio.pretty(
+            run_isolation.weakest_isolation(folder, held, options.require_isolation)
+        )
     return run.run_evaluation(
         plan,
-        deal(options, chosen, part),
-        maker(options, chosen, part, held, houses=folder / "houses" if own else None),
+        run_sessions_of(options, chosen, part),
+        runner_factory(options, chosen, part, held, houses=folder / "houses" if own else None),
         folder=folder,
         engine=_engine(options, chosen, crew),
         watch=watch,
         extra=extra,
         again=_again(options, chosen, part),
-        check=functools.partial(opened_files.check, crew.minds) if plan.agents else None,
+        check=functools.partial(opened_files.check_opened_files, crew.minds) if plan.agents else None,
     )
 
 
-def deal(options: RunOptions, chosen: TaskSelection, part: RunJob) -> tuple[Session, ...]:
+def run_sessions_of(options: RunOptions, chosen: TaskSelection, part: RunJob) -> tuple[Session, ...]:
     """The sessions of a run, or of its shard."""
     plan = part.plan
     dealt = make_sessions(
@@ -150,9 +159,9 @@ def deal(options: RunOptions, chosen: TaskSelection, part: RunJob) -> tuple[Sess
     return plan.shard.share(dealt) if plan.shard else dealt
 
 
-def maker(
+def runner_factory(
     options: RunOptions, chosen: TaskSelection, part: RunJob, held: Isolation | None, houses: Path | None
-) -> Make:
+) -> RunnerFactory:
     """What makes a worker's player.
 
     Args:

@@ -60,7 +60,7 @@ class FaultReport(Struct, frozen=True, kw_only=True):
     again: str = ""
 
 
-def of(key: str, trial: TrialSpec, faults: Sequence[Fault], minds: Mapping[str, Any]) -> FaultReport:
+def describe_faults(key: str, trial: TrialSpec, faults: Sequence[Fault], minds: Mapping[str, Any]) -> FaultReport:
     """What is left of the agents that failed in a trial; of those that were not watched only the fault."""
     names = {robot.seat: robot.agent.name for robot in trial.robots}
     failures = []
@@ -133,12 +133,12 @@ class FaultArchive:
             torn.unlink(missing_ok=True)
         kinds: dict[str, int] = {}
         for path in sorted(self._folder.glob("*.json")):
-            kind = load(path).failures[0].kind
+            kind = load_fault_report(path).failures[0].kind
             kinds[kind] = kinds.get(kind, 0) + 1
         return kinds
 
 
-def load(path: Path) -> FaultReport:
+def load_fault_report(path: Path) -> FaultReport:
     """What a file says.
 
     Raises:
@@ -147,13 +147,13 @@ def load(path: Path) -> FaultReport:
     return documents.read(path, FaultReport, RunError, hint="it only describes faults: delete it, and go on")
 
 
-def command(folder: Path, key: str) -> str:
+def rerun_command(folder: Path, key: str) -> str:
     """What plays a trial of a run once more, as its remains have it; empty where it has none."""
     path = folder / FOLDER / f"{key}.json"
-    return load(path).again if path.is_file() else ""
+    return load_fault_report(path).again if path.is_file() else ""
 
 
-def allowance(words: str) -> Callable[[int], float]:
+def parse_max_faults(words: str) -> Callable[[int], float]:
     """How many of so many trials may have a fault: "3", or "5%" of them.
 
     Raises:

@@ -7,7 +7,7 @@ from contextlib import closing
 from typing import TYPE_CHECKING
 
 from hthor.errors import HthorError
-from hthor.eval.runner.engines import Make, SessionFailed
+from hthor.eval.runner.engines import RunnerFactory, SessionFailed
 from hthor.eval.runner.engines.local import Engine
 from hthor.eval.runner.messages import News, SessionAbandoned
 
@@ -23,7 +23,7 @@ class SessionLost(HthorError):
         super().__init__(lost.cause if lost.detail else f"the session of participant {lost.participant}: {lost.cause}")
 
 
-def run_sessions(sessions: Sequence[Session], make: Make, *, jobs: int) -> Generator[News | None, None, None]:
+def run_sessions(sessions: Sequence[Session], make: RunnerFactory, *, jobs: int) -> Generator[News | None, None, None]:
     """Play sessions in ``jobs`` worker processes; see `hthor.eval.runner.engines.Engine`.
 
     Raises:
@@ -36,4 +36,4 @@ def run_sessions(sessions: Sequence[Session], make: Make, *, jobs: int) -> Gener
             yield news
 
 
-__all__ = ["Make", "SessionFailed", "SessionLost", "run_sessions"]
+__all__ = ["SessionFailed", "SessionLost", "run_sessions"]

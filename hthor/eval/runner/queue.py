@@ -24,7 +24,7 @@ _GUEST_S, _GUEST_STEP_S, _SLACK_S = 300.0, 5.0, 1.0
 _LEAP_S = 1.0
 
 
-def limit(tasks: Sequence[TaskSpec], guests: int, step_limit_s: float | None = None) -> float:
+def trial_limit_s(tasks: Sequence[TaskSpec], guests: int, step_limit_s: float | None = None) -> float:
     """How long [s] a worker may play a trial at most, when so many of its agents are submitted ones.
 
     Those have deadlines of their own, which are to end first: a submitted agent that takes its time is no stuck worker.
@@ -63,7 +63,7 @@ class Queue:
         self._waiting.clear()
 
 
-class Clock:
+class PausableClock:
     """Time [s] for those who look at it often. It stands still while this process does, stopped or kept by a disk."""
 
     def __init__(self) -> None:

@@ -13,7 +13,7 @@ _SCRATCH = re.compile(r"[^\s'\"]*/hthor-guest(?:-\w+)?(?=[/\s'\":,)]|$)")
 _ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")
 
 
-def words(text: str, files: Iterable[str]) -> str:
+def redact(text: str, files: Iterable[str]) -> str:
     """The text with names relative to the folders of these files or classes in files, and no addresses."""
     scripts = [file for file in files if file.endswith(".py") or ".py:" in file]
     folders = {str(Path(file.rpartition(":")[0] if ".py:" in file else file).resolve().parent) for file in scripts}

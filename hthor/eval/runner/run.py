@@ -18,7 +18,7 @@ from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, baseline, result_file
 from hthor.eval.results.result_file import Effort, RunResult
 from hthor.eval.runner import collector, engines
-from hthor.eval.runner.engines import Engine, Make
+from hthor.eval.runner.engines import Engine, RunnerFactory
 from hthor.eval.runner.fault_report import FaultArchive
 from hthor.eval.runner.interrupt import Interrupted, stoppable
 
@@ -45,7 +45,7 @@ class Watcher(Protocol):
 def run_evaluation(
     plan: RunConfig,
     sessions: Sequence[Session],
-    make: Make,
+    make: RunnerFactory,
     *,
     folder: Path,
     jobs: int | None = None,
@@ -74,7 +74,7 @@ def run_evaluation(
         Interrupted: on Ctrl-C or SIGTERM.
     """
     with stoppable() as stop:
-        where = engine or engines.find(engines.LOCAL, jobs=jobs)
+        where = engine or engines.find_engine(engines.LOCAL, jobs=jobs)
         result = _evaluate(plan, sessions, make, folder, where, watch, extra, again, check, stop)
         if stop.is_set():
             raise Interrupted("interrupted; resume with the same command.")
@@ -84,7 +84,7 @@ def run_evaluation(
 def _evaluate(
     plan: RunConfig,
     sessions: Sequence[Session],
-    make: Make,
+    make: RunnerFactory,
     folder: Path,
     engine: Engine,
     watch: Watcher,
@@ -94,10 +94,10 @@ def _evaluate(
     stop: threading.Event,
 ) -> RunResult:
     began = time.monotonic()
-    run_config.examine(folder, plan)
-    plan = run_config.titled(folder, plan)
+    run_config.check_folder(folder, plan)
+    plan = run_config.with_stored_title(folder, plan)
     with TrialLog(folder) as book:
-        run_config.write(folder, plan)
+        run_config.write_config(folder, plan)
         for name, data in (extra or {}).items():
             jsonio.write(folder / name, data)
         keys = [[trial_record.key(trial) for trial in session.trials] for session in sessions]
@@ -111,12 +111,14 @@ def _evaluate(
         keeper = FaultArchive(folder, again)
         if left:
             platform.note(folder)
-        came = collector.play(book, engine, left, make, watch, keeper, stop, steady=not plan.realtime) if left else None
+        came = (
+            collector.collect(book, engine, left, make, watch, keeper, stop, steady=not plan.realtime) if left else None
+        )
         if stop.is_set():
             raise Interrupted(f"interrupted after {len(book)} trials; resume with the same command.")
         missing = [key for key in wanted if key not in book]
         if missing:
-            raise collector.unfinished(folder, came.lost if came else [], len(missing), len(wanted))
+            raise collector.unfinished_error(folder, came.lost if came else [], len(missing), len(wanted))
     if came is None:
         return _finish(folder, plan, None)
     effort = Effort(
@@ -142,7 +144,7 @@ def _finish(folder: Path, plan: RunConfig, effort: Effort | None) -> RunResult:
         records,
         effort or (stored.effort if stored else None),
         uplift=baseline.beside(folder, plan, records),
-        isolation=run_isolation.load(folder),
+        isolation=run_isolation.load_isolation(folder),
         replays=session_restarts.count(folder),
     )
     if result != stored:

@@ -104,13 +104,15 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
         )
     guest.confine_guests(options.isolation, hidden(options), inputs.read(options.agent_args, options.readable))
     code_identity.keep_compiled()
-    whom = human_populations.expand(options.humans)
+    whom = human_populations.find_populations(options.humans)
     detector = detector_specs.tidy(options.detector)
     camera = cameras.tidy(options.camera, options.camera_size)
-    pack = trial_runner.furnish(options.assets)
+    pack = trial_runner.load_pack(options.assets)
     shown = run_config.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
-    whole = task_selection.choose(options.suite, options.kind)
-    chosen = task_selection.shorten(task_selection.narrow(whole, options.houses, options.difficulty), options.limit)
+    whole = task_selection.select_tasks(options.suite, options.kind)
+    chosen = task_selection.limit_selection(
+        task_selection.narrow_selection(whole, options.houses, options.difficulty), options.limit
+    )
     parts = _parts(options, chosen, _crews(options, chosen, detector, camera), whom, shown)
     controls = _controls(options, chosen, parts) if options.control and not options.shard else {}
     minds = sorted({mind for part in parts for mind in part.crew.minds.values()})
@@ -120,7 +122,7 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
 
 def _controls(options: RunOptions, chosen: TaskSelection, parts: Sequence[RunJob]) -> dict[Path, RunJob]:
     """For the folder of each run with robots that has no control yet, the run that is its control."""
-    crew = robot_team.form_team(["scout"], [robot_team.NOBODY])
+    crew = robot_team.form_team(["scout"], [robot_team.NO_ROBOT_AGENT])
     found: dict[Path, RunJob] = {}
     for part in parts:
         if not part.plan.seats or baseline.find(part.folder, part.plan) is not None:
@@ -183,7 +185,7 @@ def _parts(
             title = plan.name if len(whom) == 1 else f"{plan.name}, {people.name} people"
             folder = _folder(options, plan, len(found), len(whom))
             if options.shard:
-                plan = run_config.divide(plan, shard.read(options.shard), len(chosen.suite.tasks))
+                plan = run_config.shard_config(plan, shard.parse_shard(options.shard), len(chosen.suite.tasks))
                 assert plan.shard
                 title, folder = f"{title}, shard {plan.shard.words}", plan.shard.folder(folder)
             parts.append(RunJob(crew=crew, people=people, plan=plan, folder=folder, title=title))
@@ -208,7 +210,7 @@ def _crews(options: RunOptions, chosen: TaskSelection, detector: str, camera: st
     if options.robots:
         if options.robot:
             raise HthorError("--robots names all the bodies; leave out --robot.")
-        return robot_team.read(options.robots, options.agents, detector, camera)
+        return robot_team.parse_teams(options.robots, options.agents, detector, camera)
     bodies = (options.robot,) if options.robot else chosen.crew
     if not bodies:
         raise HthorError(

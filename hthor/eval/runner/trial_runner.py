@@ -45,7 +45,7 @@ class Sources(Struct, frozen=True, kw_only=True):
     people: str = ""
 
 
-def furnish(assets: str) -> Pack | None:
+def load_pack(assets: str) -> Pack | None:
     """The furniture pack of this name, None for our own furniture.
 
     Raises:
@@ -70,7 +70,7 @@ class TrialRunner:
         self._worlds: dict[object, World] = {}
         self._people: People | None = None
         self._seen: dict[str, tuple[File, ...]] = {}  # what agents opened and their manifests do not list, by seat
-        gc_freeze.release_with(self)
+        gc_freeze.unfreeze_after(self)
         if self._sources.houses:
             from hthor import houses
 
@@ -98,7 +98,7 @@ class TrialRunner:
             from hthor.world import World
 
             specs = tuple(self._body(seat) for seat in trial.robots)
-            pack = furnish(self._sources.assets)
+            pack = load_pack(self._sources.assets)
             if pack is not None and code_identity.pictures_sha256(pack.sha256) != trial.assets_sha256:
                 raise HthorError(
                     f"the pack '{self._sources.assets}' was built anew while its run was going on; begin a new run."
@@ -112,7 +112,7 @@ class TrialRunner:
                 assets=pack or "",
                 cameras=cameras,
             )
-            gc_freeze.keep()
+            gc_freeze.freeze_existing()
         return self._worlds[key]
 
     def play(self, company: Participants, trial: TrialSpec, world: Any = None) -> TrialRecord:
@@ -125,17 +125,17 @@ class TrialRunner:
         from hthor.eval.runner import fault_report, redact
 
         self._examine(company)
-        log = _play(world or self.world(trial), company, trial)
+        log = _run_trial(world or self.world(trial), company, trial)
         company.rest()
         self._examine(company)  # before its record is written: what was played halfway with another file is no trial
         opened = self._opened(company)
         if not log.faults:
             return msgspec.structs.replace(trial_record.make_record(trial, log), files=opened or msgspec.UNSET)
         files = self._sources.minds.values()
-        told = (msgspec.structs.replace(one, detail=redact.words(one.detail, files)) for one in log.faults)
+        told = (msgspec.structs.replace(one, detail=redact.redact(one.detail, files)) for one in log.faults)
         done = trial_record.make_record(trial, msgspec.structs.replace(log, faults=tuple(told)))
         done = msgspec.structs.replace(done, files=opened or msgspec.UNSET)
-        fault_report.leave(fault_report.of(done.key, trial, done.faults, company.minds))
+        fault_report.leave(fault_report.describe_faults(done.key, trial, done.faults, company.minds))
         for seat in dict.fromkeys(fault.seat for fault in log.faults):
             company.dismiss(seat)
         return done
@@ -167,7 +167,7 @@ class TrialRunner:
         if self._people is None:
             self._people = resolve.find(self._sources.people)
         if self._people.sha256 != trial.human_sha256:
-            raise HthorError(_changed(self._sources.people))
+            raise HthorError(_changed_message(self._sources.people))
         return self._people
 
     def _body(self, seat: RobotSeat) -> Any:
@@ -193,17 +193,17 @@ class TrialRunner:
             return RecordedAgent(guest)
         if changed and known is not None and known.claimed:
             guest.close()
-            raise AgentError(_changed(path))
+            raise AgentError(_changed_message(path))
         return RecordedAgent(guest)
 
 
 def _unchanged(path: str, sha256: str) -> None:
     """See that a user's file is the one that the run began with."""
     if sha256 and plugins.sha256(path) != sha256:
-        raise HthorError(_changed(path))
+        raise HthorError(_changed_message(path))
 
 
-def _changed(path: str) -> str:
+def _changed_message(path: str) -> str:
     return (
         f"{path} was changed while its run was going on. Change it back and repeat the command to finish this run, "
         "or evaluate the new version in a run of its own."
@@ -266,13 +266,13 @@ def make_runner(sources: Sources | None = None) -> Callable[[Session], Iterator[
     return perform
 
 
-def _play(world: Any, company: Participants, trial: TrialSpec) -> EpisodeLog:
+def _run_trial(world: Any, company: Participants, trial: TrialSpec) -> EpisodeLog:
     """One trial; a failure in a plug-in of the user's is theirs to mend, and told as such."""
     from hthor.episode import run_episode
 
     try:
         return run_episode(trial, world, company.human, company.robots())
     except (Exception, SystemExit) as error:
-        if (own := plugins.blamed(error)) is None:
+        if (own := plugins.user_error(error)) is None:
             raise
         raise own from error

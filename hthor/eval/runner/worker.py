@@ -27,14 +27,14 @@ ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_
 _MENDABLE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 
 
-def work(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[TrialRecord]]], parent: int) -> None:
+def run_worker(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[TrialRecord]]], parent: int) -> None:
     """Play every session that comes through the pipe, until it says None or closes.
 
     Args:
         make: called once, here: gives what plays a session. Must be picklable.
         parent: id of the process that started this one; this one ends with it.
     """
-    end_with(parent)
+    end_with_parent(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides what it means
     signal.signal(signal.SIGTERM, lambda *_: None)  # likewise; not ignored, as those whom it starts would ignore it too
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
@@ -45,13 +45,13 @@ def work(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[Trial
 
 
 def _serve(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[TrialRecord]]]) -> None:
-    player = Player(make)
+    player = SessionPlayer(make)
     for session in iter(pipe.recv, None):
         for news in player.play(session):
             pipe.send(news)
 
 
-class Player:
+class SessionPlayer:
     """What every worker does with sessions, whoever started it and wherever it sends what it tells."""
 
     def __init__(self, make: Callable[[], Callable[[Session], Iterator[TrialRecord]]]) -> None:
@@ -98,7 +98,7 @@ def _failure(participant: int, error: Exception) -> Failed | SessionAbandoned:
     return SessionAbandoned(participant=participant, cause=summary, detail="".join(traceback.format_exception(error)))
 
 
-def end_with(parent: int) -> None:
+def end_with_parent(parent: int) -> None:
     """Ask the kernel to kill this process when its parent ends, so that no run leaves orphans."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(1, int(signal.SIGKILL), 0, 0, 0)  # 1 is PR_SET_PDEATHSIG

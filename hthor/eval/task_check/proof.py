@@ -267,7 +267,7 @@ def _examine(tasks: Sequence[TaskSpec]) -> list[Verdict]:
 
 def _begin(parent: int, shelves: tuple[Path, ...]) -> None:
     """End with the parent, know its houses, and be deaf to Ctrl-C, for the parent decides what it means."""
-    worker.end_with(parent)
+    worker.end_with_parent(parent)
     for folder in shelves:
         houses.shelve(folder)
     signal.signal(signal.SIGINT, signal.SIG_IGN)

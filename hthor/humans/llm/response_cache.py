@@ -85,7 +85,7 @@ class Answers:
                     break
                 self._read += len(line)
                 try:
-                    with documents.guarded():
+                    with documents.reading_errors():
                         asked = _decoder.decode(line)
                 except documents.Unreadable:
                     continue

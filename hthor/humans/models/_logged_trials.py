@@ -114,7 +114,7 @@ def _read(path: str) -> dict[int, list[Past]]:
         if not line.endswith(b"\n"):
             break  # a run that was stopped
         try:
-            with documents.guarded():
+            with documents.reading_errors():
                 past = decoder.decode(line)
         except documents.Unreadable as error:
             raise HthorError(f"{path}, line {number}: {error}. {_HINT}") from None

@@ -16,7 +16,7 @@ import numpy as np
 from msgspec import Struct
 
 from hthor import documents, jsonio
-from hthor.errors import PeopleError, UnknownName
+from hthor.errors import PopulationError, UnknownName
 from hthor.humans.population import bounds
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.population import Population, Spec, Validity, trouble
@@ -148,18 +148,20 @@ def _read(path: Path) -> Population:
     given = (*columns, *document.fixed)
     for field, name in (*(("parameters", name) for name in columns), *(("fixed", name) for name in document.fixed)):
         if name not in known:
-            raise PeopleError(str(path), field, f"this version has no parameter '{name}'; make the population again")
+            raise PopulationError(
+                str(path), field, f"this version has no parameter '{name}'; make the population again"
+            )
         if given.count(name) > 1:
-            raise PeopleError(str(path), field, f"'{name}' is there twice")
+            raise PopulationError(str(path), field, f"'{name}' is there twice")
     for name, value in document.fixed.items():
         if problem := bounds.problem(name, value):
-            raise PeopleError(str(path), f"fixed.{name}", problem)
+            raise PopulationError(str(path), f"fixed.{name}", problem)
     if found := trouble(columns, draws, log_weight):
-        raise PeopleError(str(numbers), *found)
+        raise PopulationError(str(numbers), *found)
     with np.errstate(over="ignore"):
         total = float(np.exp(log_weight).sum())
     if abs(total - 1.0) > _ROUNDING:
-        raise PeopleError(str(numbers), "log_weight", f"the weights add up to {total:g}; expected 1")
+        raise PopulationError(str(numbers), "log_weight", f"the weights add up to {total:g}; expected 1")
     missing = tuple(name for name in known if name not in given)
     return Population(
         name=document.name,
@@ -181,7 +183,7 @@ def _read(path: Path) -> Population:
 
 def _document(path: Path) -> Document:
     data = _bytes(path, "a population has two files, NAME.npz and NAME.json, side by side")
-    return documents.parse(data, Document, PeopleError, shown=str(path), schema=SCHEMA, hint=_DAMAGED)
+    return documents.parse(data, Document, PopulationError, shown=str(path), schema=SCHEMA, hint=_DAMAGED)
 
 
 def _arrays(path: Path, document: Document) -> tuple[Any, Any]:
@@ -189,20 +191,20 @@ def _arrays(path: Path, document: Document) -> tuple[Any, Any]:
     data = _bytes(path, "a population has two files, NAME.npz and NAME.json, side by side")
     if (digest := _sha256(data)) != document.arrays.sha256:
         there = document.arrays.sha256[:10]
-        raise PeopleError(str(path), "$", f"it hashes to {digest[:10]}, the JSON file says {there}: {_DAMAGED}")
+        raise PopulationError(str(path), "$", f"it hashes to {digest[:10]}, the JSON file says {there}: {_DAMAGED}")
     try:
         with np.load(io.BytesIO(data), allow_pickle=False) as archive:
             held = {name: archive[name] for name in ("names", "draws", "log_weight")}
     except KeyError as error:
-        raise PeopleError(str(path), str(error).strip("'\"").split(" ")[0], f"is missing; {_DAMAGED}") from None
+        raise PopulationError(str(path), str(error).strip("'\"").split(" ")[0], f"is missing; {_DAMAGED}") from None
     except (ValueError, EOFError, OSError, zipfile.BadZipFile) as error:
-        raise PeopleError(str(path), "$", f"is no NPZ archive: {error}; {_DAMAGED}") from None
+        raise PopulationError(str(path), "$", f"is no NPZ archive: {error}; {_DAMAGED}") from None
     columns = [spec.name for spec in document.parameters]
     if (there := held["names"].tolist()) != columns:
-        raise PeopleError(str(path), "names", f"are {there}, the JSON file lists {columns}")
+        raise PopulationError(str(path), "names", f"are {there}, the JSON file lists {columns}")
     for name in ("draws", "log_weight"):
         if held[name].dtype != np.dtype("<f8"):
-            raise PeopleError(str(path), name, f"has the type {held[name].dtype}, expected float64")
+            raise PopulationError(str(path), name, f"has the type {held[name].dtype}, expected float64")
     return held["draws"], held["log_weight"]
 
 
@@ -210,7 +212,7 @@ def _bytes(path: Path, hint: str) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise PeopleError(str(path), "$", f"cannot be read: {error.strerror}; {hint}") from None
+        raise PopulationError(str(path), "$", f"cannot be read: {error.strerror}; {hint}") from None
 
 
 def _sha256(data: bytes) -> str:

@@ -14,7 +14,7 @@ from typing import Any
 from msgspec import Struct
 
 from hthor import documents, jsonio, plugins
-from hthor.errors import PeopleError, UnknownName
+from hthor.errors import PopulationError, UnknownName
 from hthor.humans.population import kinds, population_file
 from hthor.humans.population.kinds import Kind
 from hthor.humans.population.participant import Person
@@ -86,7 +86,7 @@ def find(word: str) -> People:
     left, base = _split(word)
     if left in population_file.names() or left.endswith(".npz") or _schema(left) == population_file.SCHEMA:
         if base is not None:
-            raise PeopleError(word, "@", f"'{left}' is a population itself; write a kind or a model before the @")
+            raise PopulationError(word, "@", f"'{left}' is a population itself; write a kind or a model before the @")
         return _people(word, left, PROXY, "", Population.load(left), None)
     if left in kinds.names() or left.endswith(".json"):
         kind = kinds.load(left)
@@ -141,7 +141,7 @@ def _named(word: str, digest: str) -> str:
 def _purpose(left: str, model: str, population: Population, kind: Kind | None) -> str:
     if kind is not None:
         return kind.purpose
-    return plugins.purpose(_SORT, model) if left.partition(":")[0] == model else population.purpose
+    return plugins.summary(_SORT, model) if left.partition(":")[0] == model else population.purpose
 
 
 def _ingredients(model: str, source: str) -> Any:

@@ -48,7 +48,7 @@ def asked(held: Outcomes) -> np.ndarray:
 
 def people(count: int, participants: int) -> list[int]:
     """Whose each trial is, where every task is done once."""
-    sizes = [sessions.trials_of(count, [person]) for person in range(participants)]
+    sizes = [sessions.count_trials(count, [person]) for person in range(participants)]
     return [person for person, size in enumerate(sizes) for _ in range(size)]
 
 

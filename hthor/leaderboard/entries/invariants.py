@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 
 from hthor import rules
-from hthor.eval.config.sessions import people_for
+from hthor.eval.config.sessions import participants_needed
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import File
@@ -48,8 +48,11 @@ def sizes(entry: Entry, held: Outcomes) -> Found:
     ):
         if value != trials:
             yield field, f"is {value}, but 'trials' holds {trials}"
-    if entry.run.participants != people_for(trials):
-        yield "run.participants", f"is {entry.run.participants}; {trials} tasks done once take {people_for(trials)}"
+    if entry.run.participants != participants_needed(trials):
+        yield (
+            "run.participants",
+            f"is {entry.run.participants}; {trials} tasks done once take {participants_needed(trials)}",
+        )
     for field, value, there in (
         ("counts.successes", counts.successes, int(held.met.sum())),
         ("counts.messages", counts.messages, int(held.sent.sum())),
@@ -149,7 +152,7 @@ def numbers(entry: Entry, held: Outcomes) -> Found:
             yield field, f"the mean {one.mean} is not inside the interval {one.ci95[0]} to {one.ci95[1]}"
         if one.n > entry.trials.count:
             yield f"{field}.n", f"is {one.n}, more than the {entry.trials.count} trials"
-    if entry.run.participants != people_for(entry.trials.count):
+    if entry.run.participants != participants_needed(entry.trials.count):
         return  # whose trials these are is not known
     whose = entry_metrics.people(entry.trials.count, entry.run.participants)
     for metric, fresh in entry_metrics.scores(held, whose, alone=entry.alone).items():

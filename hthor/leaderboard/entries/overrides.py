@@ -8,7 +8,7 @@ from pathlib import Path
 
 from hthor import plugins, tasks
 from hthor.eval.config.run_config import PROCEDURAL, RunConfig
-from hthor.eval.config.sessions import people_for
+from hthor.eval.config.sessions import participants_needed
 from hthor.tasks.suites import library
 from hthor.types.detector_specs import OWN
 
@@ -21,7 +21,7 @@ def of(plan: RunConfig, crew: tuple[str, ...] = (), played: int | None = None) -
         played: how many different tasks were played, where that is known.
     """
     found: dict[str, str] = {}
-    if plan.participants != people_for(tasks_of(plan) or played or plan.trials):
+    if plan.participants != participants_needed(tasks_of(plan) or played or plan.trials):
         found["participants"] = str(plan.participants)
     if plan.limit:
         found["limit"] = str(plan.limit)
@@ -40,7 +40,7 @@ def of(plan: RunConfig, crew: tuple[str, ...] = (), played: int | None = None) -
             found["detector"] = seat.detector
         if seat.camera:
             found["camera"] = seat.camera
-        if not plugins.ships("robot", seat.robot):
+        if not plugins.is_built_in("robot", seat.robot):
             found["robot"] = f"{seat.robot}.py"
     bodies = tuple(seat.robot for seat in plan.seats)
     if bodies and crew and bodies != crew:
@@ -54,7 +54,7 @@ def refusal(folder: Path, plan: RunConfig, found: Mapping[str, str]) -> str:
     listed = f"{', '.join(options[:-1])} and {options[-1]}" if len(options) > 1 else options[0]
     why = "entries are compared trial by trial, so they all have the benchmark's settings"
     if "participants" in found and (size := tasks_of(plan)):
-        every = f"each of the {size} tasks of '{plan.suite.name}' done once, by {people_for(size)} people"
+        every = f"each of the {size} tasks of '{plan.suite.name}' done once, by {participants_needed(size)} people"
         why += f", with {every}; this run has {plan.trials} trials"
     return (
         f"{folder} was played with {listed}, and cannot stand on the leaderboard: {why}. Play it again without "

@@ -10,5 +10,5 @@ from hthor.types import TaskSpec
 
 def tasks(suite: Suite, entry: Entry) -> list[TaskSpec]:
     """The task of each trial, in the order in which an entry holds its trials."""
-    hands = sessions.hands(suite.tasks, entry.run.seed, range(entry.run.participants))
+    hands = sessions.assign_many(suite.tasks, entry.run.seed, range(entry.run.participants))
     return [suite.tasks[number] for hand in hands for number in hand]

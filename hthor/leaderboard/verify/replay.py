@@ -21,7 +21,7 @@ from hthor.eval.config.task_selection import TaskSelection
 from hthor.eval.records import run_isolation, trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import engines, trial_runner
-from hthor.eval.runner.engines import Make
+from hthor.eval.runner.engines import RunnerFactory
 from hthor.eval.runner.messages import SessionAbandoned, TrialDone
 from hthor.guest import Given
 from hthor.humans.population import resolve
@@ -56,7 +56,7 @@ def play(
             not be played, as nothing follows from a part of a draw.
     """
     guest.confine_guests(given=given)
-    chosen = task_selection.choose(suite or entry.run.suite.name, "")
+    chosen = task_selection.select_tasks(suite or entry.run.suite.name, "")
     crew, who = crew_of(entry, agent), resolve.find(entry.run.humans.source)
     _same(entry, chosen, crew, who)
     whole = sessions.make_sessions(chosen.suite, agent=crew, human=who, **dealt(entry))
@@ -65,7 +65,9 @@ def play(
     return {seats[one.spec.participant, one.spec.index]: (one, line) for one, line in played}
 
 
-def perform(entry: Entry, wanted: Sequence[Session], make: Make, jobs: int | None) -> list[tuple[TrialRecord, bytes]]:
+def perform(
+    entry: Entry, wanted: Sequence[Session], make: RunnerFactory, jobs: int | None
+) -> list[tuple[TrialRecord, bytes]]:
     """The records of these sessions, every trial of them, with their lines.
 
     Raises:
@@ -73,7 +75,7 @@ def perform(entry: Entry, wanted: Sequence[Session], make: Make, jobs: int | Non
     """
     found: list[tuple[TrialRecord, bytes]] = []
     lost: list[str] = []
-    with closing(engines.find(engines.LOCAL, jobs=jobs).perform(wanted, make)) as stream:
+    with closing(engines.find_engine(engines.LOCAL, jobs=jobs).perform(wanted, make)) as stream:
         for news in stream:
             if isinstance(news, TrialDone):
                 found.append((trial_record.decode(news.line), news.line))
@@ -134,7 +136,7 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
     return wanted, seats
 
 
-def player(suite: str, crew: RobotTeam, who: People, required: str, given: Given | None = None) -> Make:
+def player(suite: str, crew: RobotTeam, who: People, required: str, given: Given | None = None) -> RunnerFactory:
     """What plays a session, as in the run that the entry is of.
 
     Args:

@@ -70,7 +70,7 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
         trials=replayed(entry, drawn, _again(entry, drawn, request)),
         control=None if control is None else replayed(control, drawn, _again(control, drawn, request)),
         official=request.official,
-        platform=jsonio.sha256(platform_fingerprint.here()),
+        platform=jsonio.sha256(platform_fingerprint.this_platform()),
         by=request.by,
         date=request.date,
     )
@@ -91,7 +91,7 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
 
 def replayed(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[TrialRecord, bytes]]) -> Replayed:
     """The verdict over these records, and how surely it would have been another over a forged entry."""
-    here = platform_fingerprint.here()
+    here = platform_fingerprint.this_platform()
     by = tier(entry)
     places = sorted(again)
     held = trial_outcomes.of(
@@ -120,7 +120,7 @@ def replayed(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[TrialRec
 def tier(entry: Entry) -> Tier:
     """How an entry can be compared with what is played here."""
     repeats = entry.alone or (entry.agent.deterministic and entry.mode != REALTIME)
-    return verdict.tier(repeats=repeats, same_platform=entry.platforms == (platform_fingerprint.here(),))
+    return verdict.tier(repeats=repeats, same_platform=entry.platforms == (platform_fingerprint.this_platform(),))
 
 
 def _size(entry: Entry, request: Request) -> int:
@@ -140,7 +140,7 @@ def _noted(entry: Entry, request: Request) -> None:
 
 def _sorts(path: Path, entry: Entry, request: Request) -> None:
     """What the entry says of its tasks against the suite, which is at hand here even when it is secret."""
-    suite = task_selection.choose(request.suite or entry.run.suite.name, "").suite
+    suite = task_selection.select_tasks(request.suite or entry.run.suite.name, "").suite
     if suite.sha256 == entry.run.suite.sha256:
         laws = invariants.outcomes(entry, trial_outcomes.unpack(entry.trials), trial_tasks.tasks(suite, entry))
         files.refuse(Problem(file=str(path), field=field, problem=problem) for field, problem in laws)
@@ -164,5 +164,5 @@ def _grounds(by: Tier, entry: Entry, here: dict[str, str]) -> str:
     if by == "V2":
         if len(entry.platforms) != 1:
             return "several platforms" if entry.platforms else "a platform that was not noted"
-        return f"another platform ({'; '.join(platform_fingerprint.differences(entry.platforms[0], here))})"
+        return f"another platform ({'; '.join(platform_fingerprint.platform_differences(entry.platforms[0], here))})"
     return "thinking takes time" if entry.mode == REALTIME else "the agent does not claim to repeat itself"

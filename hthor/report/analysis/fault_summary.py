@@ -72,7 +72,7 @@ def _here(again: str, run: Run) -> str:
         *words, _, key = shlex.split(again)
     except ValueError:  # there is none, or somebody changed it
         return again
-    return shlex.join([*words, str(cli_command.near(run.folder)), key])
+    return shlex.join([*words, str(cli_command.relative_path(run.folder)), key])
 
 
 def _remains(run: Run, record: TrialRecord) -> _Remains:

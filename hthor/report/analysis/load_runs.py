@@ -78,7 +78,7 @@ def with_controls(found: Sequence[Run]) -> list[Run]:
 
 
 def _read(folder: Path) -> Run:
-    plan = run_config.load(folder)
+    plan = run_config.load_config(folder)
     lines, records = reader.records(folder, plan)
     if not records:
         raise RunError(f"{folder / 'trials.jsonl'} has no trials yet. Finish the run with 'hthor eval' first.")

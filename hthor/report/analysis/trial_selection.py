@@ -60,4 +60,4 @@ def _shown(run: Run, rank: str, record: TrialRecord, other: TrialRecord | None) 
 
 def replay(run: Run, record: TrialRecord) -> str:
     """The command that draws a trial, as it can be typed where the report was written."""
-    return shlex.join(["hthor", "replay", str(cli_command.near(run.folder)), record.key])
+    return shlex.join(["hthor", "replay", str(cli_command.relative_path(run.folder)), record.key])

@@ -17,7 +17,7 @@ from matplotlib.patches import Patch, Polygon, Wedge
 
 from hthor import rules
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.replay.human_trace import Stream
+from hthor.eval.replay.human_trace import HumanTrace
 from hthor.geometry import plane
 from hthor.report.drawing import floor_plan, human_trace_timeline, lettering, text_fit, trial_trace
 from hthor.types import HUMAN, Event, HouseSpec, Vec2
@@ -40,7 +40,7 @@ _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidt
 
 
 @lettering.plain()
-def figure(record: TrialRecord, house: HouseSpec, stream: Stream) -> Figure:
+def figure(record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> Figure:
     """Draw a mind, 11 inches wide, 14 where the house is deep."""
     moments = _moments(stream.events)
     wide, deep = _extent(house)
@@ -79,7 +79,7 @@ def _moments(events: Sequence[Event]) -> list[tuple[Event, Event]]:
 
 
 def _draw_moment(
-    ax: Axes, record: TrialRecord, house: HouseSpec, beliefs: Event, choice: Event, stream: Stream
+    ax: Axes, record: TrialRecord, house: HouseSpec, beliefs: Event, choice: Event, stream: HumanTrace
 ) -> None:
     floor_plan.draw_house(ax, house)
     chances, ahead = posterior(beliefs)
@@ -107,7 +107,7 @@ def _draw_moment(
     ax.set_title(title, fontsize=8, loc="left", color=trial_trace.INK)
 
 
-def _draw_end(ax: Axes, record: TrialRecord, house: HouseSpec, stream: Stream) -> None:
+def _draw_end(ax: Axes, record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> None:
     """The whole way, and what was noticed, of a trial in which nothing had to be searched for."""
     floor_plan.draw_house(ax, house)
     noticed = {event.data["object"] for event in stream.events if event.kind == "noticed"}

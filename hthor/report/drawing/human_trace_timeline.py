@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hthor import rules
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.replay.human_trace import Stream
+from hthor.eval.replay.human_trace import HumanTrace
 from hthor.report.drawing import trial_trace
 from hthor.types import Event
 
@@ -32,13 +32,13 @@ _CHAR, _NAMES = 0.008, 4
 """What share of the time axis a letter takes up; so many names stand in a row."""
 
 
-def lanes(stream: Stream) -> list[str]:
+def lanes(stream: HumanTrace) -> list[str]:
     """The lanes that there is something for, the lowest first."""
     kinds = {event.kind for event in stream.events}
     return [name for name, kind in _LANES.items() if kind in kinds]
 
 
-def height(stream: Stream) -> float:
+def height(stream: HumanTrace) -> float:
     """Inches that the lanes want."""
     return _LANE_IN * len(lanes(stream)) + 0.7
 
@@ -52,7 +52,7 @@ def chances(choice: Event, beta: float) -> dict[str, float]:
     return {name: weight / total for name, weight in zip(choice.data["options"], weights, strict=True)}
 
 
-def draw(ax: Axes, record: TrialRecord, stream: Stream) -> None:
+def draw(ax: Axes, record: TrialRecord, stream: HumanTrace) -> None:
     """Draw the lanes, trust lowest."""
     events, end, limit = stream.events, record.ticks * rules.TICK_S, record.spec.task.time_limit
     names = lanes(stream)
@@ -94,7 +94,7 @@ def _draw_aims(ax: Axes, aims: list[Event], end: float, row: float, letter_s: fl
             ax.text(begin, row - 0.43, verb, fontsize=6, va="center", color=trial_trace.INK)
 
 
-def _draw_noticed(ax: Axes, stream: Stream, wanted: set[str], row: float, end: float) -> None:
+def _draw_noticed(ax: Axes, stream: HumanTrace, wanted: set[str], row: float, end: float) -> None:
     """A stroke for each piece of furniture, red when it is forgotten; a star with its name for what matters."""
     seen = {e.data["object"]: e.data for e in stream.events if e.kind == "exposure"}
     last, high = -math.inf, False
@@ -140,7 +140,7 @@ def _draw_attempt(ax: Axes, event: Event, end: float, row: float) -> None:
     ax.text(begin + 0.2, row, event.data["what"], fontsize=6.5, va="center", color=trial_trace.INK, clip_on=True)
 
 
-def _draw_message(ax: Axes, shown: Event, stream: Stream, end: float, row: float) -> None:
+def _draw_message(ax: Axes, shown: Event, stream: HumanTrace, end: float, row: float) -> None:
     """From when a message was shown to what became of it."""
     number, begin = shown.data["message"], shown.tick * rules.TICK_S
     fate = next((e for e in stream.events if e.kind in _ANSWERS and e.data["message"] == number), None)
@@ -170,7 +170,7 @@ def _words(name: str) -> str:
     return (kind if number.isdecimal() else name).replace("_", " ")
 
 
-def offers(stream: Stream) -> list[str]:
+def offers(stream: HumanTrace) -> list[str]:
     """A line for each message that was weighed: what spoke for and against it, and the answer."""
     numbers = {e.data["number"]: e.data["message"] + 1 for e in stream.events if e.kind == "offer"}
     lines = []

@@ -84,8 +84,8 @@ def film(
     """
     spec = wanted.spec
     guest.confine_guests(hidden=(str(folder.resolve()),), given=given)
-    session = Session(participant=spec.participant, trials=session_history.before(folder, wanted))
-    stage = trial_runner.TrialRunner(session_history.sources(folder, spec, agents, humans))
+    session = Session(participant=spec.participant, trials=session_history.session_before(folder, wanted))
+    stage = trial_runner.TrialRunner(session_history.replay_sources(folder, spec, agents, humans))
     with stage.enter(session) as company:
         for number, trial in enumerate(session.trials, 1):
             activity.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from hthor.eval.config.robot_team import NO_ROBOT, NOBODY
+from hthor.eval.config.robot_team import NO_ROBOT, NO_ROBOT_AGENT
 from hthor.eval.config.run_config import REALTIME
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.results.result_file import RunResult, Scores
@@ -148,7 +148,7 @@ def worst_lines(matrix: PopulationMatrix) -> Iterator[str]:
 
 
 def _called(agent: str) -> str:
-    return NO_ROBOT if agent == NOBODY else agent
+    return NO_ROBOT if agent == NO_ROBOT_AGENT else agent
 
 
 def _bare(estimate: Estimate) -> str:

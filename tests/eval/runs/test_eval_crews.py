@@ -13,7 +13,7 @@ import pytest
 from hthor import tasks
 from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.config import cli_command, robot_team, sessions
-from hthor.eval.config.run_config import crew_name
+from hthor.eval.config.run_config import team_name
 from hthor.eval.records import find, trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate
@@ -49,20 +49,20 @@ def pairs(crew: robot_team.RobotTeam) -> list[tuple[str, str, str]]:
 
 
 def test_bodies_and_minds_are_read_in_order():
-    (crew,) = robot_team.read("tall:oracle, small:frontier,puck:oracle", ())
+    (crew,) = robot_team.parse_teams("tall:oracle, small:frontier,puck:oracle", ())
     assert pairs(crew) == [
         ("robot", "tender", "oracle"),
         ("robot2", "puck", "frontier"),
         ("robot3", "puck", "oracle"),
     ]
-    assert crew_name(crew.listed) == "tender-oracle+puck-frontier+puck-oracle"
+    assert team_name(crew.listed) == "tender-oracle+puck-frontier+puck-oracle"
 
 
 def test_bodies_without_a_mind_take_the_agents_in_turn():
-    first, second = robot_team.read("tall,small:frontier", ("oracle", "none"))
+    first, second = robot_team.parse_teams("tall,small:frontier", ("oracle", "none"))
     assert pairs(first) == [("robot", "tender", "oracle"), ("robot2", "puck", "frontier")]
     assert pairs(second) == [("", "", "none"), ("robot", "puck", "frontier")], "who wants no robot has no seat"
-    assert crew_name(second.listed) == "none+puck-frontier"
+    assert team_name(second.listed) == "none+puck-frontier"
     assert [robot.seat for robot in second.seats] == ["robot"]
 
 
@@ -74,14 +74,14 @@ def test_a_comma_within_an_agent_is_escaped(monkeypatch: pytest.MonkeyPatch):
         return fakes.character()
 
     monkeypatch.setattr(robot_team, "load_agent_info", introduce)
-    robot_team.read(r"tall:cmd:tool --at 1\,2,small:oracle", ())
+    robot_team.parse_teams(r"tall:cmd:tool --at 1\,2,small:oracle", ())
     assert heard == ["cmd:tool --at 1,2", "oracle"]
 
 
 def test_a_crew_of_nobody_is_one_silent_agent():
-    (crew,) = robot_team.read("tall,small", ("none",))
+    (crew,) = robot_team.parse_teams("tall,small", ("none",))
     assert pairs(crew) == [("", "", "none")]
-    assert crew_name(crew.listed) == "none"
+    assert team_name(crew.listed) == "none"
 
 
 @pytest.mark.parametrize(
@@ -97,7 +97,7 @@ def test_a_crew_of_nobody_is_one_silent_agent():
 )
 def test_wrong_crews_are_told_what_is_right(robots: str, agents: tuple[str, ...], told: str):
     with pytest.raises(HthorError) as caught:
-        robot_team.read(robots, agents)
+        robot_team.parse_teams(robots, agents)
     assert told in str(caught.value)
 
 
@@ -122,7 +122,7 @@ def guests(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 def played(robots: str, count: int = 1) -> list[TrialRecord]:
     """The first trials of one person in a small house."""
-    (crew,) = robot_team.read(robots, ())
+    (crew,) = robot_team.parse_teams(robots, ())
     few = library.frozen("few", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == HOUSE))
     whole = sessions.make_sessions(few, agent=crew, participants=1)[0]
     perform = trial_runner.make_runner(trial_runner.Sources(minds=crew.minds, bodies=crew.bodies))

@@ -43,14 +43,14 @@ def conducted(**asked) -> experiment.FinishedRun:
 
 
 def test_a_suite_is_narrowed_to_a_kind():
-    whole = task_selection.choose("smoke", "")
+    whole = task_selection.select_tasks("smoke", "")
     assert (whole.kind, whole.crew, len(whole.suite.tasks)) == (None, ("scout",), 60)
     for name in ("manipulation", "mobile_manipulation"):
-        part = task_selection.choose("smoke", name)
+        part = task_selection.select_tasks("smoke", name)
         assert part.kind.name == "mobile_manipulation"
         assert (len(part.suite.tasks), part.suite.name) == (40, "smoke")
         assert part.suite.sha256 != whole.suite.sha256
-    assert task_selection.choose("", "") == whole
+    assert task_selection.select_tasks("", "") == whole
 
 
 @pytest.mark.parametrize(
@@ -63,7 +63,7 @@ def test_a_suite_is_narrowed_to_a_kind():
 )
 def test_what_does_not_fit_is_told(suite: str, kind: str, told: str):
     with pytest.raises(HthorError) as caught:
-        task_selection.choose(suite, kind)
+        task_selection.select_tasks(suite, kind)
     assert told in str(caught.value)
 
 
@@ -71,7 +71,7 @@ def test_what_does_not_fit_is_told(suite: str, kind: str, told: str):
 def test_a_kind_with_a_suite_of_its_own_needs_no_other(name: str):
     if name not in tasks.suites():
         pytest.skip(f"no suite '{name}' yet")
-    chosen = task_selection.choose("", name)
+    chosen = task_selection.select_tasks("", name)
     assert chosen.kind is None, "it is all of that suite"
     assert {task.kind for task in chosen.suite.tasks} == {task_selection.find_kind(name).name}
     assert chosen.crew == tuple(task_selection.find_kind(name).crew)
@@ -105,7 +105,7 @@ def test_the_example_kind_runs_as_it_is(root: Path, few: None, tmp_path: Path):
 
 
 def test_the_same_file_gives_the_same_tasks(root: Path, few: None):
-    one, two = (task_selection.choose("", str(root / "examples" / "put_away.py")) for _ in range(2))
+    one, two = (task_selection.select_tasks("", str(root / "examples" / "put_away.py")) for _ in range(2))
     assert one == two
     assert one.drawn
     assert one.crew == ("tender",)
@@ -155,7 +155,7 @@ def test_a_mistake_in_drawing_is_told_with_its_line(
     file = written(tmp_path, "early", goals=said)
     monkeypatch.setattr("sys.argv", ["hthor", "eval"])
     with pytest.raises(SystemExit) as caught:
-        exit_status.conclude(lambda **_: task_selection.choose("", str(file)))
+        exit_status.conclude(lambda **_: task_selection.select_tasks("", str(file)))
     assert caught.value.code == 2
     assert f"{file}:11, {words}" in capsys.readouterr().err
 
@@ -163,33 +163,33 @@ def test_a_mistake_in_drawing_is_told_with_its_line(
 def test_a_file_that_ends_python_is_refused(tmp_path: Path):
     (tmp_path / "leaving.py").write_text("raise SystemExit(3)\n")
     with pytest.raises(HthorError, match=r"leaving\.py: SystemExit: 3\. The file must load by itself"):
-        task_selection.choose("", str(tmp_path / "leaving.py"))
+        task_selection.select_tasks("", str(tmp_path / "leaving.py"))
 
 
 def test_houses_that_have_nothing_for_a_kind_are_left_out(few: None, tmp_path: Path):
-    some = task_selection.choose("", str(written(tmp_path, "choosy", goals="if house.id == 'elder': return ()")))
+    some = task_selection.select_tasks("", str(written(tmp_path, "choosy", goals="if house.id == 'elder': return ()")))
     assert [task.house for task in some.suite.tasks] == ["rowan"]
     assert "there is no task in elder" in some.notes[0]
     with pytest.raises(HthorError, match="there is no task in elder"):
-        task_selection.choose("", str(written(tmp_path, "useless", goals="return ()")))
+        task_selection.select_tasks("", str(written(tmp_path, "useless", goals="return ()")))
 
 
 def test_a_file_that_is_no_kind(tmp_path: Path):
     with pytest.raises(HthorError, match="its name must be the file's, 'misnamed'"):
-        task_selection.choose("", str(written(tmp_path, "misnamed", name="other")))
+        task_selection.select_tasks("", str(written(tmp_path, "misnamed", name="other")))
     (tmp_path / "number.py").write_text("KIND = 5\n")
     with pytest.raises(HthorError, match="must be an instance of a subclass of hthor"):
-        task_selection.choose("", str(tmp_path / "number.py"))
+        task_selection.select_tasks("", str(tmp_path / "number.py"))
     (tmp_path / "empty.py").write_text("")
     with pytest.raises(HthorError, match="must define 'KIND'"):
-        task_selection.choose("", str(tmp_path / "empty.py"))
+        task_selection.select_tasks("", str(tmp_path / "empty.py"))
 
 
 def test_a_kind_that_changes_during_its_run_ends_it(few: None, tmp_path: Path):
     from hthor.eval.runner import trial_runner
 
     file = written(tmp_path, "fickle")
-    chosen = task_selection.choose("", str(file))
+    chosen = task_selection.select_tasks("", str(file))
     (dealt,) = make_sessions(chosen.suite, agent="silent", participants=1, kind_sha256=chosen.kind.sha256)
     perform = trial_runner.make_runner(trial_runner.Sources(kind=chosen.path))
     written(tmp_path, "fickle", met="return False")

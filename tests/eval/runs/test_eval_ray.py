@@ -40,14 +40,14 @@ cluster.shutdown()
 @pytest.mark.skipif(not WITHOUT, reason="Ray is installed")
 def test_without_ray_one_sentence_says_what_to_install():
     with pytest.raises(MissingExtra, match=r"--engine ray needs .*: pip install 'hthor\[cluster\]'\."):
-        engines.find("ray")
+        engines.find_engine("ray")
 
 
 def test_unknown_engines_and_needless_addresses_are_refused():
     with pytest.raises(HthorError, match=r"unknown engine 'rey'. Did you mean 'ray'\? Valid: local, ray\."):
-        engines.find("rey")
+        engines.find_engine("rey")
     with pytest.raises(HthorError, match=r"--address 10\.0\.0\.1:6379: the engine 'local' has none"):
-        engines.find("local", address="10.0.0.1:6379")
+        engines.find_engine("local", address="10.0.0.1:6379")
 
 
 AGENT = """
@@ -141,7 +141,7 @@ def test_a_node_that_is_lost_costs_guests_nothing(nodes: subprocess.Popen[str], 
     agent = guest_fakes.write(tmp_path / "agent")
     plan, dealt = fakes.run_of(60)
     make = functools.partial(guest_fakes.player, str(agent), "auto")
-    local = engines.find("local", jobs=2)
+    local = engines.find_engine("local", jobs=2)
     run.run_evaluation(plan, dealt, make, folder=tmp_path / "local", engine=local, watch=progress.Silent())
     with _start(tmp_path / "ray", 60, address, str(agent)) as process:
         end = time.monotonic() + 120

@@ -126,7 +126,7 @@ def test_sessions_that_cannot_be_played_do_not_stop_the_others(tmp_path: Path, r
 
 def test_a_worker_that_hangs_is_ended_and_its_session_played_again(tmp_path: Path, reference: Path):
     plan, dealt = fakes.run_of(60)
-    engine = engines.find("local", jobs=2, limit_s=6.0)
+    engine = engines.find_engine("local", jobs=2, limit_s=6.0)
     make, watch = functools.partial(fakes.sick_player, str(tmp_path), "hang"), Notes()
     result = run.run_evaluation(plan, dealt, make, folder=tmp_path / "run", engine=engine, watch=watch)
     assert "participant 3 begins again: its worker was ended by the limit of 6 s for a trial" in watch.notes[0]
@@ -169,8 +169,8 @@ def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path
 
 def test_a_worker_has_as_long_as_its_agents_deadlines_allow():
     tasks = [fakes.task()]
-    assert queue.limit(tasks, 0) == queue.LIMIT_S
-    assert queue.limit(tasks, 2) > 2 * (60 + 60 + 60 + 5 * tasks[0].time_limit / rules.TICK_S)
+    assert queue.trial_limit_s(tasks, 0) == queue.LIMIT_S
+    assert queue.trial_limit_s(tasks, 2) > 2 * (60 + 60 + 60 + 5 * tasks[0].time_limit / rules.TICK_S)
 
 
 def test_a_users_error_in_a_worker_keeps_its_exit_code(tmp_path: Path):
@@ -195,7 +195,7 @@ def test_a_run_has_one_do_over_for_killed_agents(tmp_path: Path, times: int, fau
 def test_no_later_command_has_another_do_over(tmp_path: Path):
     plan, dealt = fakes.run_of(30)
     make = functools.partial(fakes.killing_player, 1, {})
-    run_config.write(tmp_path, plan)
+    run_config.write_config(tmp_path, plan)
     assert session_restarts.SessionRestarts(tmp_path).take(7)
     result = run.run_evaluation(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
     assert (result.counts.faults_by_kind, result.counts.replays) == ({KILLED: 3}, 1)

@@ -29,7 +29,7 @@ def _play(folder: Path, words: str = "", *, make=fakes.player, **how) -> Path:
     """A run, or a shard of it, of tasks that do not divide evenly; its folder."""
     plan, dealt = fakes.run_of(COUNT, **how)
     if words:
-        plan = run_config.divide(plan, shard.read(words), COUNT)
+        plan = run_config.shard_config(plan, shard.parse_shard(words), COUNT)
         folder, dealt = plan.shard.folder(folder), plan.shard.share(dealt)
     run.run_evaluation(plan, dealt, make, folder=folder, engine=fakes.Here(), watch=progress.Silent())
     return folder
@@ -59,9 +59,9 @@ def test_shards_are_a_partition_and_know_their_size(tasks: int, people: int, of:
     plan = msgspec.structs.replace(plan, participants=people)
     if of > people:
         with pytest.raises(HthorError, match=f"{people} shards at most"):
-            run_config.divide(plan, shard.Shard(number=1, of=of), tasks)
+            run_config.shard_config(plan, shard.Shard(number=1, of=of), tasks)
         return
-    parts = [run_config.divide(plan, shard.Shard(number=number, of=of), tasks).shard for number in range(1, of + 1)]
+    parts = [run_config.shard_config(plan, shard.Shard(number=number, of=of), tasks).shard for number in range(1, of + 1)]
     held = [participant for part in parts for participant in part.share(range(people))]
     assert sorted(held) == list(range(people))
     hands = [sessions.assign_tasks([fakes.task(number) for number in range(tasks)], 0, person) for person in range(people)]
@@ -71,17 +71,17 @@ def test_shards_are_a_partition_and_know_their_size(tasks: int, people: int, of:
 @pytest.mark.parametrize("words", ["0/4", "5/4", "4", "a/b", "-1/4", "1/0", "1/4/2"])
 def test_a_shard_that_there_is_not_is_refused(words: str):
     with pytest.raises(HthorError, match=r"expected i/N with i from 1 to N"):
-        shard.read(words)
+        shard.parse_shard(words)
 
 
 def test_merged_shards_are_the_undivided_run(undivided: Path, shards: Sequence[Path], tmp_path: Path):
-    done = merge_shards.merge(shards[::-1], tmp_path / "whole")
+    done = merge_shards.merge_shards(shards[::-1], tmp_path / "whole")
     assert (done.trials, done.new, done.gaps) == (COUNT, COUNT, ())
     assert _result(tmp_path / "whole") == _result(undivided)
     assert (tmp_path / "whole" / "run.json").read_bytes() == (undivided / "run.json").read_bytes()
-    there = reader.records(undivided, run_config.load(undivided))[0]
+    there = reader.records(undivided, run_config.load_config(undivided))[0]
     assert (tmp_path / "whole" / "trials.jsonl").read_bytes() == b"".join(there)
-    again = merge_shards.merge([*shards, shards[1]], tmp_path / "whole")
+    again = merge_shards.merge_shards([*shards, shards[1]], tmp_path / "whole")
     assert (again.trials, again.new, again.result) == (COUNT, 0, done.result)
     assert _play(tmp_path / "whole", make=fakes.forgetful_player)  # plays nothing, as all is there
 
@@ -97,7 +97,7 @@ def test_what_is_missing_is_named_with_its_command(undivided: Path, shards: Sequ
     (torn / "run.json").write_bytes((shards[2] / "run.json").read_bytes())
     lines = (shards[2] / "trials.jsonl").read_bytes().splitlines(keepends=True)
     (torn / "trials.jsonl").write_bytes(b"".join(lines[:-3]) + lines[-3][:40])
-    done = merge_shards.merge([shards[0], torn, shards[3]], tmp_path / "whole")
+    done = merge_shards.merge_shards([shards[0], torn, shards[3]], tmp_path / "whole")
     assert done.result is None
     assert not (tmp_path / "whole" / "result.json").exists()
     second, third = done.gaps
@@ -106,7 +106,7 @@ def test_what_is_missing_is_named_with_its_command(undivided: Path, shards: Sequ
     assert shlex.split(third.command)[-4:] == ["--shard", "3/4", "--out", str(tmp_path / "run")]
     _play(tmp_path / "run", "3/4")
     _play(tmp_path / "run", "2/4")
-    filled = merge_shards.merge([torn, tmp_path / "run-shard-2-of-4"], tmp_path / "whole")
+    filled = merge_shards.merge_shards([torn, tmp_path / "run-shard-2-of-4"], tmp_path / "whole")
     assert filled.new == COUNT - done.trials
     assert _result(tmp_path / "whole") == _result(undivided)
 
@@ -131,28 +131,28 @@ def test_the_command_says_what_is_missing_and_ends_with_one(shards: Sequence[Pat
 
 
 def test_a_part_that_was_merged_is_finished_as_a_run(undivided: Path, shards: Sequence[Path], tmp_path: Path):
-    merge_shards.merge(shards[:3], tmp_path)
+    merge_shards.merge_shards(shards[:3], tmp_path)
     _play(tmp_path)
     assert _result(tmp_path) == _result(undivided)
 
 
 def test_shards_of_several_divisions_are_merged(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     half = _play(tmp_path / "run", "2/2")
-    part = merge_shards.merge([shards[0], shards[1], half], tmp_path / "whole")
+    part = merge_shards.merge_shards([shards[0], shards[1], half], tmp_path / "whole")
     (gap,) = part.gaps
     assert (gap.number, gap.of, gap.trials) == (1, 1, COUNT - part.trials)
     assert "--shard" not in gap.command
     assert shlex.split(gap.command)[-2:] == ["--out", str(tmp_path / "whole")]
-    assert merge_shards.merge([half, shards[2]], tmp_path / "whole").gaps == ()
+    assert merge_shards.merge_shards([half, shards[2]], tmp_path / "whole").gaps == ()
     assert _result(tmp_path / "whole") == _result(undivided)
 
 
 def test_shards_of_other_runs_are_told_apart(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     other = _play(tmp_path / "other", "2/4", seed=1)
     with pytest.raises(RunError, match=r"other-shard-2-of-4 is a shard of another run than .*: seed is 0 there and 1"):
-        merge_shards.merge([shards[0], other], tmp_path / "whole")
+        merge_shards.merge_shards([shards[0], other], tmp_path / "whole")
     with pytest.raises(RunError, match="not divided"):
-        merge_shards.merge([undivided], tmp_path / "whole")
+        merge_shards.merge_shards([undivided], tmp_path / "whole")
     assert not (tmp_path / "whole").exists()
 
 
@@ -162,7 +162,7 @@ def test_records_of_other_shards_and_other_outcomes_are_refused(shards: Sequence
     (mixed / "run.json").write_bytes((shards[0] / "run.json").read_bytes())
     (mixed / "trials.jsonl").write_bytes((shards[1] / "trials.jsonl").read_bytes())
     with pytest.raises(RunError, match=r"spec\.participant is 1, who is not in shard 1/4"):
-        merge_shards.merge([mixed], tmp_path / "whole")
+        merge_shards.merge_shards([mixed], tmp_path / "whole")
     otherwise = _play(tmp_path / "otherwise", "2/4", make=fakes.forgetful_player)
     with pytest.raises(RunError, match=r"is not the same in .* and in .*otherwise"):
-        merge_shards.merge([*shards, otherwise], tmp_path / "whole")
+        merge_shards.merge_shards([*shards, otherwise], tmp_path / "whole")

@@ -173,10 +173,10 @@ def test_every_trial_s_key_knows_the_camera() -> None:
 
 def test_the_options_reach_the_seats() -> None:
     options = run_options.RunOptions(agents=("frontier",), camera="thor", camera_size="32x32")
-    chosen = task_selection.choose("smoke", "")
+    chosen = task_selection.select_tasks("smoke", "")
     (crew,) = run_options._crews(options, chosen, "own", cameras.tidy(options.camera, options.camera_size))
     assert [seat.camera for seat in crew.seats] == ["thor:32x32"]
-    (crew,) = robot_team.read("tall:oracle,small:frontier", (), camera="square")
+    (crew,) = robot_team.parse_teams("tall:oracle,small:frontier", (), camera="square")
     assert [seat.camera for seat in crew.seats] == ["square", "square"]
     assert isinstance(crew.listed[0], RobotSeat)
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 LOCAL = "local"
 
-Make = Callable[[], "Callable[[Session], Iterator[TrialRecord]]"]
+RunnerFactory = Callable[[], "Callable[[Session], Iterator[TrialRecord]]"]
 """Picklable; called once in each worker, gives what plays a session."""
 
 
@@ -34,7 +34,7 @@ class Engine(Protocol):
         ``gpus`` is what one of them needs; one that plays a trial for more than ``limit_s`` [s] is ended.
         """
 
-    def perform(self, sessions: Sequence[Session], make: Make) -> Generator[News | None, None, None]:
+    def perform(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
         """Play sessions and tell what happens; None when nothing does. Closing the generator ends the workers.
 
         A session that costs `hthor.eval.runner.queue.ATTEMPTS` workers is `SessionAbandoned`, and the others go on.
@@ -55,13 +55,13 @@ class SessionFailed(HthorError):
         super().__init__(failed.message)
 
 
-def names() -> list[str]:
+def engine_names() -> list[str]:
     """The engines that there are, the usual one first."""
     found = (path.stem for path in Path(__file__).parent.glob("*.py") if not path.stem.startswith("_"))
     return sorted(found, key=lambda name: (name != LOCAL, name))
 
 
-def find(
+def find_engine(
     name: str, *, jobs: int | None = None, address: str = "", gpus: float = 0.0, limit_s: float = LIMIT_S
 ) -> Engine:
     """The engine of this name, ready to be told what to play.
@@ -70,8 +70,8 @@ def find(
         UnknownName: when there is none.
         HthorError: when it cannot be used here.
     """
-    if name not in names():
-        raise UnknownName("engine", name, names())
+    if name not in engine_names():
+        raise UnknownName("engine", name, engine_names())
     module = importlib.import_module(f"hthor.eval.runner.engines.{name}")
     engine: Engine = module.Engine(jobs=jobs, address=address, gpus=gpus, limit_s=limit_s)
     return engine

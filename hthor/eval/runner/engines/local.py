@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 from hthor import code_identity
 from hthor.errors import HthorError
 from hthor.eval.runner import worker
-from hthor.eval.runner.engines import Make, SessionFailed
+from hthor.eval.runner.engines import RunnerFactory, SessionFailed
 from hthor.eval.runner.messages import Failed, Finished, News, SessionAbandoned, TrialDone
-from hthor.eval.runner.queue import BEAT_S, LIMIT_S, Clock, Queue
+from hthor.eval.runner.queue import BEAT_S, LIMIT_S, PausableClock, Queue
 
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
@@ -39,9 +39,9 @@ class Engine:
         if address:
             raise HthorError(f"--address {address}: the engine 'local' has none. Leave it out, or add --engine ray.")
         self._jobs = jobs or len(os.sched_getaffinity(0))
-        self._limit_s, self._clock, self._draining = limit_s, Clock(), False
+        self._limit_s, self._clock, self._draining = limit_s, PausableClock(), False
 
-    def perform(self, sessions: Sequence[Session], make: Make) -> Generator[News | None, None, None]:
+    def perform(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
         """See `hthor.eval.runner.engines.Engine`."""
         queue = Queue(sessions)
         hands: list[_Hand] = []
@@ -88,11 +88,11 @@ class Engine:
 class _Hand:
     """A worker process, the pipe to it, and the session it has in hand."""
 
-    def __init__(self, make: Make) -> None:
+    def __init__(self, make: RunnerFactory) -> None:
         context = multiprocessing.get_context("spawn")
         self.pipe: Connection
         self.pipe, far = context.Pipe(duplex=True)
-        self.process = context.Process(target=worker.work, args=(far, make, os.getpid()), daemon=True)
+        self.process = context.Process(target=worker.run_worker, args=(far, make, os.getpid()), daemon=True)
         with _quiet_environment():
             self.process.start()
         far.close()  # so that the worker's end closes with the worker

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 from hthor import code_identity, installation
 from hthor.errors import HthorError, MissingExtra
-from hthor.eval.runner.engines import Make, SessionFailed
+from hthor.eval.runner.engines import RunnerFactory, SessionFailed
 from hthor.eval.runner.messages import Failed, Finished, News, SessionAbandoned, TrialDone
-from hthor.eval.runner.queue import ATTEMPTS, BEAT_S, LIMIT_S, Clock, Queue
-from hthor.eval.runner.worker import ONE_THREAD, Player
+from hthor.eval.runner.queue import ATTEMPTS, BEAT_S, LIMIT_S, PausableClock, Queue
+from hthor.eval.runner.worker import ONE_THREAD, SessionPlayer
 
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
@@ -50,10 +50,10 @@ class Engine:
             raise HthorError(f"--address {address}: expected HOST:PORT. Give the command on a machine of the cluster.")
         self._ray: Any = ray
         self._jobs, self._address, self._gpus = jobs, address, gpus
-        self._limit_s, self._clock, self._draining = limit_s, Clock(), False
+        self._limit_s, self._clock, self._draining = limit_s, PausableClock(), False
         self._stillborn = 0
 
-    def perform(self, sessions: Sequence[Session], make: Make) -> Generator[News | None, None, None]:
+    def perform(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
         """See `hthor.eval.runner.engines.Engine`."""
         with self._connected():
             queue, jobs, cast = Queue(sessions), self._jobs or self._room(), self._cast()
@@ -209,16 +209,16 @@ class _Hand:
 class Actor:
     """A worker on some machine."""
 
-    def __init__(self, make: Make) -> None:
+    def __init__(self, make: RunnerFactory) -> None:
         code_identity.keep_compiled()
-        self._player = Player(make)
+        self._player = SessionPlayer(make)
 
     def greet(self) -> tuple[str, str, dict[str, str]]:
         """This machine's name, and which hthor it has with which libraries."""
         return socket.gethostname(), installation.sha256(), installation.versions()
 
     def play(self, session: Session) -> Iterator[News]:
-        """See `hthor.eval.runner.worker.Player`."""
+        """See `hthor.eval.runner.worker.SessionPlayer`."""
         yield from self._player.play(session)
 
 

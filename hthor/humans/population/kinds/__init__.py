@@ -13,7 +13,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor import documents
-from hthor.errors import PeopleError, UnknownName
+from hthor.errors import PopulationError, UnknownName
 from hthor.humans.population import bounds
 from hthor.humans.population.parameters import Parameters
 
@@ -90,15 +90,15 @@ def load(name_or_path: str | Path) -> Kind:
 
 
 def _read(path: Path) -> Kind:
-    kind = documents.read(path, Kind, PeopleError, schema=SCHEMA)
+    kind = documents.read(path, Kind, PopulationError, schema=SCHEMA)
     if kind.name != path.stem:
-        raise PeopleError(str(path), "name", f"it is '{kind.name}', but must be the file's name, '{path.stem}'")
+        raise PopulationError(str(path), "name", f"it is '{kind.name}', but must be the file's name, '{path.stem}'")
     for number, change in enumerate(kind.changes):
         where = f"changes[{number}]"
         if change.parameter not in bounds.known():
-            raise PeopleError(
+            raise PopulationError(
                 str(path), f"{where}.parameter", str(UnknownName("parameter", change.parameter, bounds.known()))
             )
         if change.verb == "set" and (problem := bounds.problem(change.parameter, change.value)):
-            raise PeopleError(str(path), f"{where}.value", problem)
+            raise PopulationError(str(path), f"{where}.value", problem)
     return kind

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from hthor.eval.config.cli_command import OURS
+from hthor.eval.config.cli_command import BUILT_IN_AGENTS
 from hthor.guest import Isolation
 from hthor.report.analysis.document import Findings
 from hthor.report.analysis.run_provenance import Origin, Platform
@@ -36,7 +36,7 @@ def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
 
 def _own(found: Findings) -> str:
     """Where files of the user's own are wanted: a run keeps their names and hashes, not their folders."""
-    ours = all(robot.agent.source.startswith(OURS) for one in found.origins for robot in one.robots)
+    ours = all(robot.agent.source.startswith(BUILT_IN_AGENTS) for one in found.origins for robot in one.robots)
     return "" if ours else ", typed where the agents' files lie"
 
 
