@@ -51,7 +51,7 @@ app.add_typer(human_commands.app, name="humans")
 listings.agent.command("serve")(serve.serve)
 for _name, _group in listings.GROUPS.items():
     app.add_typer(_group, name=_name)
-help_text.flow(app)
+help_text.attach(app)
 
 
 def _show_version(wanted: bool) -> None:
