@@ -14,12 +14,13 @@ from typing import Annotated
 import typer
 
 from hthor import __version__
-from hthor.commands import assets, compare, doctor, houses, merge, priors, report, runs, score, suite, tasks
-from hthor.commands.agent import listings, serve
+from hthor.commands import assets, compare, doctor, houses, merge, priors, replay, report, runs, score, suite
+from hthor.commands.agent import agent, serve
 from hthor.commands.calibrate import calibrate
 from hthor.commands.eval import evaluate
-from hthor.commands.humans import human_commands
-from hthor.commands.leaderboard import board_commands, listing
+from hthor.commands.humans import humans
+from hthor.commands.leaderboard import board, list_entries, verify
+from hthor.commands.tasks import make, tasks
 from hthor.console import completion, exit_status, help_text, startup, waiting_notice
 
 app = typer.Typer(
@@ -34,22 +35,26 @@ app.command("merge")(merge.merge)
 app.command("score")(score.score)
 app.command("compare")(compare.compare)
 app.command("power")(compare.power)
-app.command("replay")(score.replay)
+app.command("replay")(replay.replay)
 app.command("report")(report.report)
 app.command("case")(report.case)
 app.command("calibrate")(calibrate.calibrate)
 app.command("doctor")(doctor.doctor)
 app.add_typer(runs.app, name="runs")
-board_commands.app.command("list")(listing.list_entries)
-app.add_typer(board_commands.app, name="leaderboard")
+board.app.command("verify")(verify.verify)
+board.app.command("record")(verify.record)
+board.app.command("list")(list_entries.list_entries)
+app.add_typer(board.app, name="leaderboard")
 app.add_typer(assets.app, name="assets")
 app.add_typer(houses.app, name="houses")
+tasks.app.command("make")(make.make_suite)
+tasks.app.command("check")(make.check_tasks)
 app.add_typer(tasks.app, name="tasks")
 app.add_typer(suite.app, name="suite")
 app.add_typer(priors.app, name="priors")
-app.add_typer(human_commands.app, name="humans")
-listings.agent.command("serve")(serve.serve)
-for _name, _group in listings.GROUPS.items():
+app.add_typer(humans.app, name="humans")
+agent.agent.command("serve")(serve.serve)
+for _name, _group in agent.GROUPS.items():
     app.add_typer(_group, name=_name)
 help_text.attach(app)
 

@@ -7,7 +7,7 @@ import typing
 from collections.abc import Iterator
 from typing import Any
 
-from hthor.console import reference
+from scripts import cli_reference
 
 OUTSIDE = {
     "hthor assets build": "loads a package from the network",
@@ -56,7 +56,7 @@ _OUT = {"out": ("out", "out/a/b", "few.json", "few.json/x", "/dev/null", "/dev/n
 
 def lines(dice: random.Random, count: int) -> Iterator[tuple[str, ...]]:
     """So many lines, without the program's name."""
-    known = list(reference.leaves())
+    known = list(cli_reference.leaves())
     for _ in range(count):
         name, command = dice.choice(known)
         words = name.split()[1:]
@@ -68,7 +68,7 @@ def lines(dice: random.Random, count: int) -> Iterator[tuple[str, ...]]:
 
 def _arguments(command: Any, dice: random.Random) -> list[str]:
     words: list[str] = []
-    for one in reference.options(command):
+    for one in cli_reference.options(command):
         if one.param_type_name == "argument":
             for _ in range(dice.choice((0, 1, 1, 1, 1, 2))):
                 words.append(_value(one, dice))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hthor.commands.eval.evaluate import Json
+from hthor.commands.options import Json
 from hthor.console import output
 
 if TYPE_CHECKING:
@@ -49,10 +49,10 @@ def build(
     packs.overwritable(folder)
     talk = output.console(talk=True)
     files, source = debian.libraries(deb)
-    talk.print(f"building '{called}' from {source} ...", markup=False, highlight=False, soft_wrap=True)
+    output.say(f"building '{called}' from {source} ...", talk)
     made = making.make(files, source, folder, called, cc_by=cc_by)
     for pick, reason in made.skipped:
-        talk.print(f"left out {pick.kind} {pick.model}: {reason}", markup=False, highlight=False, soft_wrap=True)
+        output.say(f"left out {pick.kind} {pick.model}: {reason}", talk)
     if json:
         output.put_json(_row(made.pack))
         return
@@ -60,7 +60,7 @@ def build(
     models, kinds = len(made.pack.contents.models), len(made.pack.kinds)
     talk.print(f"{models} models of {kinds} kinds, {_megabytes(made.pack):.1f} MB.", markup=False, highlight=False)
     if (folder / "ATTRIBUTION.md").exists():
-        talk.print(f"Show {folder}/ATTRIBUTION.md with its pictures.", markup=False, highlight=False, soft_wrap=True)
+        output.say(f"Show {folder}/ATTRIBUTION.md with its pictures.", talk)
 
 
 @app.command("list")

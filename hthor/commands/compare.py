@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hthor.commands.eval.evaluate import Json
+from hthor.commands.options import Json
 from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
 
@@ -57,7 +57,7 @@ def compare(
     for party in found.runs:
         if party.trials < party.planned:
             lacks = f"{party.name}: {party.planned - party.trials} of {party.planned} trials are not played yet."
-            talk.print(lacks, markup=False, highlight=False, soft_wrap=True)
+            output.say(lacks, talk)
     if fail_if_worse and found.worse:
         raise typer.Exit(_WORSE_EXIT)
 

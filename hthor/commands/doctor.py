@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hthor.commands.eval.evaluate import Json
+from hthor.commands.options import Json
 from hthor.console import output
 
 if TYPE_CHECKING:

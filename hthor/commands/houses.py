@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hthor.commands.eval.evaluate import Json
+from hthor.commands.options import Json
 from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from hthor.commands.eval.evaluate import Json
+from hthor.commands.options import Json
 from hthor.console import output
 
 _MISSING_EXIT, _FAULTS_EXIT = 1, 3
@@ -40,7 +40,7 @@ def merge(
     talk = output.console(talk=True)
 
     def say(text: str) -> None:
-        talk.print(text, markup=False, highlight=False, soft_wrap=True)
+        output.say(text, talk)
 
     if dry_run:
         would = f"{done.trials} of {done.plan.trials} trials would be in {out}/, {done.new} of them new"

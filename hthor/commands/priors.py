@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hthor.commands.eval.evaluate import Json
+from hthor.commands.options import Json
 from hthor.console import output
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def build(
     table = making.make(seen, words.vectors, words.origin())
     if out is not None:
         jsonio.write(out, making.encoded(table))
-        output.console(talk=True).print(f"wrote {out}", markup=False, highlight=False, soft_wrap=True)
+        output.say(f"wrote {out}")
         if json and not check:
             output.put_files([out], json, triplets=len(table.triplets))
     elif not check:

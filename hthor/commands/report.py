@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from hthor.commands.eval.agent_inputs import AgentArgs, Readable
-from hthor.commands.eval.evaluate import Json
+from hthor.commands.options import AgentArgs, Json, Readable
 from hthor.console import output
 
 Runs = Annotated[list[Path], typer.Argument(metavar="RUN...", help="Runs' folders, such as runs/demo/frontier.")]

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hthor.commands.eval.agent_inputs import AgentArgs, Readable
-from hthor.commands.eval.evaluate import Json, Run
+from hthor.commands.options import Json, Run
 from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
 
@@ -36,7 +34,7 @@ def score(
     talk = output.console(talk=True)
 
     def say(text: str) -> None:
-        talk.print(text, markup=False, highlight=False, soft_wrap=True)
+        output.say(text, talk)
 
     if formats.asks_json(json, shape):
         output.put_json(result)
@@ -80,47 +78,6 @@ def _rows(result: RunResult, everything: bool) -> Iterator[dict[str, object]]:
             known = {key: gain.get(key) for key in ("n", "ci95_low", "ci95_high", "mde80")}
             whose = {"run": result.name, "people": result.humans.name, "kind": ""}
             yield {**whose, "metric": f"uplift_{name}", "mean": mean, **known}
-
-
-def replay(
-    run: Run,
-    trial: Annotated[
-        str, typer.Argument(metavar="TRIAL", help="A key or its start, a task's id, or a number counted from 0.")
-    ],
-    out: Annotated[
-        Path | None, typer.Option(help="The file to write.", show_default="RUN/replays/TASK-KEY.png, or .webm")
-    ] = None,
-    video: Annotated[bool, typer.Option("--video", help="Write a film instead of a picture.")] = False,
-    mind: Annotated[
-        bool, typer.Option("--mind", help="Instead, what the person believed, saw and chose; the session is replayed.")
-    ] = False,
-    agent: Annotated[
-        list[str] | None,
-        typer.Option(help="With --mind: the file of an agent that is not built in.", show_default=False),
-    ] = None,
-    agent_args: AgentArgs = None,
-    readable: Readable = None,
-    humans: Annotated[str, typer.Option(help="With --mind: the people's file, if any.", show_default=False)] = "",
-    json: Annotated[
-        bool, typer.Option("--json", help="What was written as JSON; with --mind: the thoughts, and no picture.")
-    ] = False,
-) -> None:
-    """Draw one trial from above: the paths, the messages and what came of them."""
-    if mind:
-        from hthor.commands import replay_mind
-        from hthor.guest.agent import inputs
-
-        replay_mind.replay(run, trial, out, agent or (), humans, inputs.read(agent_args or (), readable or ()), json)
-        return
-    from hthor import houses
-    from hthor.eval.records import find
-    from hthor.report.drawing import render_trial
-
-    houses.shelve(run / "houses")  # where the suite brought its own
-    record = find.find_trial(run, trial)
-    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'webm' if video else 'png'}"
-    render_trial.draw(record, path, video=video)
-    output.put_files([path], json, key=record.key, task=record.spec.task.id)
 
 
 def _difference(stored: object, result: object) -> str:

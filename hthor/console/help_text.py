@@ -45,7 +45,7 @@ def attach(app: typer.Typer) -> None:
 class HelpCommand(TyperCommand):
     """A command with this help."""
 
-    def format_help(self, ctx: Any, formatter: Any) -> None:
+    def format_help(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002
         """Print the help to standard output."""
         _print(self, ctx)
 
@@ -53,7 +53,7 @@ class HelpCommand(TyperCommand):
 class HelpGroup(TyperGroup):
     """A group of commands with this help."""
 
-    def format_help(self, ctx: Any, formatter: Any) -> None:
+    def format_help(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002
         """Print the help to standard output."""
         _print(self, ctx)
 

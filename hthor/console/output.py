@@ -31,6 +31,11 @@ def console(*, talk: bool = False) -> Console:
     return FittingConsole(file=stream, width=wide, emoji=False)  # agent.py:B: is no blood group
 
 
+def say(text: str, to: Console | None = None) -> None:
+    """Print a sentence as it stands, on standard error unless a console is given; the terminal breaks long lines."""
+    (to or console(talk=True)).print(text, markup=False, highlight=False, soft_wrap=True)
+
+
 def live() -> bool:
     """Whether somebody watches standard error on a terminal that can be redrawn."""
     return sys.stderr.isatty() and os.environ.get("TERM") != "dumb" and not os.environ.get("CI")

@@ -15,7 +15,7 @@ import eval_fakes as fakes
 import msgspec
 import pytest
 
-from hthor import __version__, houses, tasks
+from hthor import __version__, cli, houses, tasks
 from hthor.console import output, python_version
 from hthor.eval.config import robot_team
 from hthor.eval.runner import trial_runner
@@ -43,7 +43,7 @@ def hthor(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     def run(*words: str) -> Said:
         monkeypatch.setattr(sys, "argv", ["hthor", *words])
         try:
-            python_version.check()
+            cli.main()
             code = 0
         except SystemExit as end:
             code = end.code if isinstance(end.code, int) else int(end.code is not None)

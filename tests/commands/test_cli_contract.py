@@ -16,11 +16,12 @@ from typer.testing import CliRunner
 
 from hthor import code_identity, houses, plugins, tasks
 from hthor.cli import app
-from hthor.console import completion, completion_values, exit_status, reference
+from hthor.console import completion, completion_values, exit_status
 from hthor.eval.config import human_populations, robot_team
 from hthor.eval.runner import engines
 from hthor.guest.confinement import LEVELS
 from hthor.humans.population import kinds, population_file
+from scripts import cli_reference
 
 FAKES = Path(__file__).parents[1] / "support" / "command_fakes.py"
 WITHOUT_JSON = {
@@ -122,18 +123,18 @@ def test_the_exit_codes_are_listed_where_people_look(root: Path) -> None:
 
 
 def test_every_command_that_has_something_to_tell_tells_programs() -> None:
-    lacking = {name for name, one in reference.leaves() if not any("--json" in param.opts for param in one.params)}
+    lacking = {name for name, one in cli_reference.leaves() if not any("--json" in param.opts for param in one.params)}
     assert lacking <= set(WITHOUT_JSON)
 
 
 def test_help_fills_the_screen_that_there_is() -> None:
-    broken = [name for name, one in reference.leaves() if any("\n" in part for part in one.help.split("\n\n"))]
+    broken = [name for name, one in cli_reference.leaves() if any("\n" in part for part in one.help.split("\n\n"))]
     assert broken == [], "a docstring's line breaks would show in the middle of a narrower line"
 
 
 def test_the_page_has_every_command(root: Path) -> None:
     text = (root / "docs" / "cli.md").read_text()
-    assert text == reference.page(text), f"write it anew: python -m {reference.__name__} docs/cli.md"
+    assert text == cli_reference.page(text), "write it anew: python scripts/cli_reference.py docs/cli.md"
 
 
 def test_a_dry_run_tells_all_and_writes_nothing(both: Path, tmp_path: Path) -> None:
@@ -205,7 +206,7 @@ def test_what_is_offered_is_what_there_is(tmp_path: Path, monkeypatch: pytest.Mo
     assert completion_values.kinds() == sorted({name for kind in loaded for name in (kind.name, kind.short)})
     everybody = (*population_file.names(), *kinds.names(), *plugins.names("human model"), *human_populations.WORDS)
     assert completion_values.people() == sorted(set(everybody))
-    names = {param.name for _, one in reference.leaves() for param in one.params}
+    names = {param.name for _, one in cli_reference.leaves() for param in one.params}
     assert {offer.rpartition(" ")[2] for offer in completion.OFFERS} <= names
     (tmp_path / "runs" / "one" / "control").mkdir(parents=True)
     for folder in ("one", "one/control"):

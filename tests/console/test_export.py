@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from hthor.cli import app
-from hthor.console import formats, reference
+from hthor.console import formats
 from hthor.console.formats import Format
 from hthor.errors import HthorError
+from scripts import cli_reference
 
 CELLS = st.text(
     st.characters(codec="utf-8", exclude_characters="\r\n\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"), max_size=12
@@ -96,7 +97,7 @@ def test_two_formats_at_once_are_a_mistake() -> None:
 
 
 def test_commands_with_tables_of_results_have_formats() -> None:
-    those = {name for name, one in reference.leaves() if any("--format" in param.opts for param in one.params)}
+    those = {name for name, one in cli_reference.leaves() if any("--format" in param.opts for param in one.params)}
     assert those >= {"hthor compare", "hthor score", "hthor power", "hthor runs list", "hthor runs view"}
 
 

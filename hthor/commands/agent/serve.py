@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from hthor.commands.eval.agent_inputs import AgentArgs, Readable
+from hthor.commands.options import AgentArgs, Readable
 
 
 def serve(

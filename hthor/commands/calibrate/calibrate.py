@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from hthor.commands.eval.evaluate import Json
+from hthor.commands.options import Json
 from hthor.console import output
 
 

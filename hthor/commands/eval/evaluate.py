@@ -2,40 +2,17 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from hthor.commands.eval.agent_inputs import AgentArgs, Readable
+from hthor.commands.eval import results
+from hthor.commands.options import AgentArgs, Camera, CameraSize, Json, Readable
 from hthor.console import output
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
-    from hthor.eval.comparison.population_matrix import PopulationMatrix
     from hthor.eval.runner.experiment import ClosableWatcher, FinishedRun
-
-Run = Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder, such as runs/demo/frontier.")]
-Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output; words go to standard error.")]
-
-Camera = Annotated[
-    str,
-    typer.Option(
-        help="The robot's camera: own (as its body says), square, thor, habitat or realsense; docs/robots.md lists "
-        "their fields of view and sizes. What the robot detects does not depend on it."
-    ),
-]
-CameraSize = Annotated[
-    str,
-    typer.Option(
-        metavar="WxH",
-        help="The size of its pictures in pixels, such as 320x240. Pixels are square, so another shape than the field "
-        "of view's shows the middle of it.",
-        show_default="the camera's own",
-    ),
-]
 
 _FAULTS_EXIT = 3
 
@@ -272,11 +249,11 @@ def evaluate(
         agent_args=tuple(agent_args or ()),
         readable=tuple(readable or ()),
     )
-    options = custom_houses.resolve(options, lambda words: None if quiet else _say(talk, words))
+    options = custom_houses.resolve(options, lambda words: None if quiet else output.say(words, talk))
     if dry_run:
-        from hthor.commands.eval import dry_run_table
+        from hthor.commands.eval.dry_run import show_forecast
 
-        dry_run_table.show(options, watcher, context, json)
+        show_forecast(options, watcher, context, json)
         return
     paper = talk if json else output.console()
     done: list[FinishedRun] = []
@@ -285,79 +262,23 @@ def evaluate(
     for one in experiment.run_experiment(options, watcher):
         done.append(one)
         if single or not quiet:
-            _show(paper if single else talk, one)
-    results = [one.result for one in done]
-    whole = population_matrix.make_matrix(results) if len({result.humans.name for result in results}) > 1 else None
+            results.show_run(paper if single else talk, one)
+    run_results = [one.result for one in done]
+    whole = (
+        population_matrix.make_matrix(run_results) if len({result.humans.name for result in run_results}) > 1 else None
+    )
     if whole is not None:
-        _compare_peoples(paper, whole)
+        results.show_populations(paper, whole)
     elif len(done) > 1:
-        paper.print(result_tables.comparison_table(results))
+        paper.print(result_tables.comparison_table(run_results))
     if len(done) > 1:
         for one in done:
             whose = f", {one.plan.humans.name} people" if whole is not None else ""
-            _say(paper, f"{one.plan.label}{whose}: {one.folder}/")
-    for note in result_tables.notes(results):
-        _say(paper, note)
+            output.say(f"{one.plan.label}{whose}: {one.folder}/", paper)
+    for note in result_tables.notes(run_results):
+        output.say(note, paper)
     if json:
         held = tuple(evaluation.Evaluated(folder=str(one.folder), result=one.result) for one in done)
         output.put_json(evaluation.Evaluation(runs=held, peoples=whole))
     if any(one.result.counts.faults > allowed(one.result.counts.trials) for one in done):
         raise typer.Exit(_FAULTS_EXIT)
-
-
-def _show(console: Console, one: FinishedRun) -> None:
-    """A run's table, its first fault, where its files are, and what to do with them."""
-    from hthor.eval.config.shard import whole_folder
-    from hthor.eval.records import find
-    from hthor.eval.runner import fault_report
-    from hthor.leaderboard.entries import overrides
-    from hthor.report.terminal import result_tables
-
-    result, folder = one.result, one.folder
-    console.print(result_tables.result_table(result))
-    if result.counts.faults:
-        faulty, many = find.first_fault(folder), f"{result.counts.faults} of {result.counts.trials}"
-        alone = "there the person went on alone" if len(one.plan.seats) == 1 else "there the others went on without it"
-        failed = [f"{seat} in {count}" for seat, count in result.counts.faults_by_seat.items() if count]
-        whose = f" ({', '.join(failed)})" if len(one.plan.seats) > 1 else ""
-        _say(console, f"{'An' if whose else 'The'} agent failed in {many} trials{whose}; {alone}.")
-        kinds = ", ".join(f"{count} {kind}" for kind, count in result.counts.faults_by_kind.items())
-        _say(console, f"Faults by kind: {kinds}.")
-        _say(console, f"First in trial {faulty.key} ({faulty.spec.task.id}), {find.fault_words(faulty)}")
-        for line in find.fault_lines(faulty):
-            _say(console, f"    {line}")
-        if again := fault_report.rerun_command(folder, faulty.key):
-            _say(console, f"look:  {again}")
-    more = ", suite.json" if (folder / "suite.json").exists() else ""
-    if one.plan.shard:
-        base, of = shlex.quote(str(whole_folder(folder))), one.plan.shard.of
-        _say(console, f"shard {one.plan.shard.words} is done: {result.counts.trials} of {one.plan.trials} trials")
-        _say(console, f"files: {folder}/run.json, trials.jsonl{more}")
-        _say(console, f"next:  hthor merge {base}-shard-*-of-{of} --out {base}")
-        return
-    _say(console, f"files: {folder}/run.json, trials.jsonl, result.json{more}")
-    run = shlex.quote(str(folder))
-    unranked = overrides.of(one.plan)
-    if unranked:
-        why = ", ".join(f"{name.replace('_', '-')} is {value}" for name, value in unranked.items())
-        _say(console, f"not for the leaderboard: {why}")
-    ranked = () if unranked else (f"hthor leaderboard add {run}",)
-    for line in output.following(f"hthor replay {run} 0", f"hthor score {run} --all", *ranked):
-        _say(console, line)
-
-
-def _compare_peoples(console: Console, whole: PopulationMatrix) -> None:
-    """All scores, with whom each agent fares worst, and what does not hold for everybody."""
-    from hthor.report.terminal import result_tables
-
-    console.print(result_tables.peoples_table(whole))
-    for line in result_tables.worst_lines(whole):
-        _say(console, line)
-    for found in sorted(whole.conclusions, key=lambda one: one.verdict != "flips"):
-        _say(console, f"{'! ' if found.verdict == 'flips' else ''}{found.sentence}")
-    if whole.conclusions and all(found.verdict != "flips" for found in whole.conclusions):
-        _say(console, "no conclusion flips inside the bracket")
-
-
-def _say(console: Console, text: str) -> None:
-    console.print(text, markup=False, highlight=False, soft_wrap=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hthor.commands.eval.evaluate import Json
+from hthor.commands.options import Json
 from hthor.console import output
 
 if TYPE_CHECKING:
@@ -93,19 +93,19 @@ def validate(
     if json:
         output.put_json(done.findings)
     for note in done.findings.subject.notes:
-        talk.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+        output.say(f"note: {note}", talk)
     words = f"report: {done.folder}/validation.html, validation.json"
-    talk.print(words, markup=False, highlight=False, soft_wrap=True)
+    output.say(words, talk)
     failed = criteria.failed(done.findings.gates)
     if failed:
         listed = ", ".join(gate.name for gate in failed)
-        talk.print(f"not cleared: {listed}.", markup=False, highlight=False, soft_wrap=True)
+        output.say(f"not cleared: {listed}.", talk)
         raise typer.Exit(1)
 
 
 def _foretell(options: ValidationOptions, json: bool) -> None:
     from hthor.calibration.validation import plan
-    from hthor.commands.eval import dry_run_table
+    from hthor.commands.eval import dry_run
 
     found = list(plan.preview(options))
     trials, played = (sum(getattr(run, name) for _, run in found) for name in ("trials", "played"))
@@ -126,10 +126,10 @@ def _foretell(options: ValidationOptions, json: bool) -> None:
                 run.name,
                 run.trials,
                 run.played,
-                dry_run_table.time(run.seconds) or "unknown",
+                dry_run.time(run.seconds) or "unknown",
             )
             for one, run in found
         ],
     )
-    about = f", {dry_run_table.time(seconds)}" if seconds is not None else ""
+    about = f", {dry_run.time(seconds)}" if seconds is not None else ""
     output.put_line(f"{trials - played} of {trials} trials would be played{about}, in {folder}/; nothing was written.")

@@ -10,8 +10,8 @@ from typing import Annotated, Any
 
 import typer
 
-from hthor.commands.agent import agent_commands as agents_of_mine
-from hthor.commands.eval.evaluate import Json
+from hthor.commands.agent import check as agents_of_mine
+from hthor.commands.options import Json
 from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
 

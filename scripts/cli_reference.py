@@ -1,4 +1,4 @@
-"""The page of all commands, written from the commands themselves: `python -m hthor.console.reference docs/cli.md`.
+"""Writes the page of all commands from the commands themselves: `python scripts/cli_reference.py docs/cli.md`.
 
 Everything after a page's marker is replaced; what stands before it is written by hand.
 """
@@ -13,8 +13,10 @@ from typing import Any
 
 import typer.main
 
+from hthor.cli import app
+
 _WIDE = 116
-MARK = "<!-- All below is written by: python -m hthor.console.reference docs/cli.md -->\n"
+MARK = "<!-- All below is written by: python scripts/cli_reference.py docs/cli.md -->\n"
 
 
 def page(before: str) -> str:
@@ -27,8 +29,6 @@ def page(before: str) -> str:
 
 def leaves() -> Iterator[tuple[str, Any]]:
     """Every command that does something, by its whole name, in the order of the help."""
-    from hthor.cli import app
-
     yield from _below("hthor", typer.main.get_command(app))
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hthor.commands.eval.evaluate import Json
 from hthor.commands.humans import validate
+from hthor.commands.options import Json
 from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
 

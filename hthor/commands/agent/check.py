@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hthor.commands.eval.agent_inputs import AgentArgs, Readable
-from hthor.commands.eval.evaluate import Camera, CameraSize, Json, Run
+from hthor.commands.options import AgentArgs, Camera, CameraSize, Json, Readable, Run
 from hthor.console import output
 
 if TYPE_CHECKING:
@@ -135,7 +134,7 @@ def _tell(paper: Console, done: Rerun) -> None:
     else:
         lines += ["", "as it was logged." if done.same else "it went otherwise than it was logged."]
     for line in lines:
-        paper.print(line, markup=False, highlight=False, soft_wrap=True)
+        output.say(line, paper)
 
 
 def failure_lines(failure: Failure) -> list[str]:

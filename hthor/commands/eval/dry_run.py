@@ -19,7 +19,9 @@ _LEFT_OUT = ("json", "quiet", "dry_run", "context")
 _ORIGINS = {"COMMANDLINE": "flag", "ENVIRONMENT": "environment", "DEFAULT": "default", "DEFAULT_MAP": "default"}
 
 
-def show(options: RunOptions, watcher: Callable[[str], ClosableWatcher], context: typer.Context, json: bool) -> None:
+def show_forecast(
+    options: RunOptions, watcher: Callable[[str], ClosableWatcher], context: typer.Context, json: bool
+) -> None:
     """Say what the command would do."""
     from hthor.eval.dry_run import forecast
     from hthor.eval.runner import experiment
@@ -30,7 +32,7 @@ def show(options: RunOptions, watcher: Callable[[str], ClosableWatcher], context
     talk = output.console(talk=True)
 
     def say(text: str) -> None:
-        talk.print(text, markup=False, highlight=False, soft_wrap=True)
+        output.say(text, talk)
 
     def agree(intent: ResolvedRuns) -> bool:
         found.append(forecast.make_forecast(options, intent, origins, say))

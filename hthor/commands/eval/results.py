@@ -1,0 +1,68 @@
+"""What `hthor eval` prints of finished runs."""
+
+from __future__ import annotations
+
+import shlex
+from typing import TYPE_CHECKING
+
+from hthor.console import output
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from hthor.eval.comparison.population_matrix import PopulationMatrix
+    from hthor.eval.runner.experiment import FinishedRun
+
+
+def show_run(console: Console, one: FinishedRun) -> None:
+    """A run's table, its first fault, where its files are, and what to do with them."""
+    from hthor.eval.config.shard import whole_folder
+    from hthor.eval.records import find
+    from hthor.eval.runner import fault_report
+    from hthor.leaderboard.entries import overrides
+    from hthor.report.terminal import result_tables
+
+    result, folder = one.result, one.folder
+    console.print(result_tables.result_table(result))
+    if result.counts.faults:
+        faulty, many = find.first_fault(folder), f"{result.counts.faults} of {result.counts.trials}"
+        alone = "there the person went on alone" if len(one.plan.seats) == 1 else "there the others went on without it"
+        failed = [f"{seat} in {count}" for seat, count in result.counts.faults_by_seat.items() if count]
+        whose = f" ({', '.join(failed)})" if len(one.plan.seats) > 1 else ""
+        output.say(f"{'An' if whose else 'The'} agent failed in {many} trials{whose}; {alone}.", console)
+        kinds = ", ".join(f"{count} {kind}" for kind, count in result.counts.faults_by_kind.items())
+        output.say(f"Faults by kind: {kinds}.", console)
+        output.say(f"First in trial {faulty.key} ({faulty.spec.task.id}), {find.fault_words(faulty)}", console)
+        for line in find.fault_lines(faulty):
+            output.say(f"    {line}", console)
+        if again := fault_report.rerun_command(folder, faulty.key):
+            output.say(f"look:  {again}", console)
+    more = ", suite.json" if (folder / "suite.json").exists() else ""
+    if one.plan.shard:
+        base, of = shlex.quote(str(whole_folder(folder))), one.plan.shard.of
+        output.say(f"shard {one.plan.shard.words} is done: {result.counts.trials} of {one.plan.trials} trials", console)
+        output.say(f"files: {folder}/run.json, trials.jsonl{more}", console)
+        output.say(f"next:  hthor merge {base}-shard-*-of-{of} --out {base}", console)
+        return
+    output.say(f"files: {folder}/run.json, trials.jsonl, result.json{more}", console)
+    run = shlex.quote(str(folder))
+    unranked = overrides.of(one.plan)
+    if unranked:
+        why = ", ".join(f"{name.replace('_', '-')} is {value}" for name, value in unranked.items())
+        output.say(f"not for the leaderboard: {why}", console)
+    ranked = () if unranked else (f"hthor leaderboard add {run}",)
+    for line in output.following(f"hthor replay {run} 0", f"hthor score {run} --all", *ranked):
+        output.say(line, console)
+
+
+def show_populations(console: Console, whole: PopulationMatrix) -> None:
+    """All scores, with whom each agent fares worst, and what does not hold for everybody."""
+    from hthor.report.terminal import result_tables
+
+    console.print(result_tables.peoples_table(whole))
+    for line in result_tables.worst_lines(whole):
+        output.say(line, console)
+    for found in sorted(whole.conclusions, key=lambda one: one.verdict != "flips"):
+        output.say(f"{'! ' if found.verdict == 'flips' else ''}{found.sentence}", console)
+    if whole.conclusions and all(found.verdict != "flips" for found in whole.conclusions):
+        output.say("no conclusion flips inside the bracket", console)

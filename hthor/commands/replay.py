@@ -1,0 +1,86 @@
+"""`hthor replay`: one logged trial as a picture or a film."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hthor.commands.options import AgentArgs, Readable, Run
+from hthor.console import output
+
+if TYPE_CHECKING:
+    from hthor.guest import Given
+
+
+def replay(
+    run: Run,
+    trial: Annotated[
+        str, typer.Argument(metavar="TRIAL", help="A key or its start, a task's id, or a number counted from 0.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="The file to write.", show_default="RUN/replays/TASK-KEY.png, or .webm")
+    ] = None,
+    video: Annotated[bool, typer.Option("--video", help="Write a film instead of a picture.")] = False,
+    mind: Annotated[
+        bool, typer.Option("--mind", help="Instead, what the person believed, saw and chose; the session is replayed.")
+    ] = False,
+    agent: Annotated[
+        list[str] | None,
+        typer.Option(help="With --mind: the file of an agent that is not built in.", show_default=False),
+    ] = None,
+    agent_args: AgentArgs = None,
+    readable: Readable = None,
+    humans: Annotated[str, typer.Option(help="With --mind: the people's file, if any.", show_default=False)] = "",
+    json: Annotated[
+        bool, typer.Option("--json", help="What was written as JSON; with --mind: the thoughts, and no picture.")
+    ] = False,
+) -> None:
+    """Draw one trial from above: the paths, the messages and what came of them."""
+    if mind:
+        from hthor.guest.agent import inputs
+
+        _replay_mind(run, trial, out, agent or (), humans, inputs.read(agent_args or (), readable or ()), json)
+        return
+    from hthor import houses
+    from hthor.eval.records import find
+    from hthor.report.drawing import render_trial
+
+    houses.shelve(run / "houses")  # where the suite brought its own
+    record = find.find_trial(run, trial)
+    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'webm' if video else 'png'}"
+    render_trial.draw(record, path, video=video)
+    output.put_files([path], json, key=record.key, task=record.spec.task.id)
+
+
+def _replay_mind(
+    run: Path, trial: str, out: Path | None, agents: Sequence[str], humans: str, given: Given, json: bool
+) -> None:
+    """Play a person's session again up to one trial, and draw or print what went on in their mind."""
+    from hthor import houses
+    from hthor.eval.records import find
+    from hthor.eval.replay import human_trace
+    from hthor.report.drawing import human_trace_figure, lettering, render_trial
+
+    houses.shelve(run / "houses")  # where the suite brought its own
+    record = find.find_trial(run, trial)
+    house = render_trial.house(record)
+    stream = human_trace.trace_human(run, record, agents=agents, humans=humans, given=given)
+    if not stream.same:
+        talk = output.console(talk=True)
+        talk.print(
+            "the trial went otherwise than it was logged: something here does not repeat itself. What follows is what "
+            "the person thought this time.",
+            soft_wrap=True,
+        )
+    if json:
+        output.put_json(stream)
+        return
+    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}-mind.png"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    render_trial.check_name(path, video=False)
+    lettering.save(human_trace_figure.figure(record, house, stream), path)
+    sys.stdout.write(f"{path}\n")

@@ -1,0 +1,184 @@
+"""`hthor tasks make` and `hthor tasks check`: both prove tasks in worker processes."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from hthor.commands.options import Json
+from hthor.commands.tasks.tasks import put_rows
+from hthor.console import output
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from hthor.eval.task_check.proof import Fault, Verdict
+    from hthor.tasks import Suite
+    from hthor.types import TaskSpec
+
+_SAY_EVERY_S = 20.0
+
+
+def make_suite(
+    houses: Annotated[
+        list[str], typer.Argument(metavar="HOUSE...", help="Houses: house files (ProcTHOR's JSON), or names of ours.")
+    ],
+    out: Annotated[
+        Path,
+        typer.Option(
+            help="The suite's file, mysuite.json, with copies of the houses in mysuite.houses; or the folder of both."
+        ),
+    ] = Path("mysuite.json"),
+    tasks: Annotated[int, typer.Option(min=1, help="How many tasks in each house.")] = 10,
+    kind: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Tasks of this kind: its name or short name. Repeat it for several.",
+            show_default="a quarter searches, the others deliveries",
+        ),
+    ] = None,
+    difficulty: Annotated[
+        Literal["easy", "medium", "hard"] | None, typer.Option(help="Only tasks so hard.", show_default="any")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Equal seeds give equal tasks in equal houses.")] = 0,
+    name: Annotated[str, typer.Option(help="What to call the suite.", show_default="as the file")] = "",
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one a CPU]")] = None,
+    json: Json = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+) -> None:
+    """Make a suite of tasks in houses of your own, for 'hthor eval --suite'.
+
+    Each task is proved as 'hthor tasks check' does it, and drawn again when it does not pass.
+    """
+    from hthor.eval.config import task_selection
+    from hthor.eval.task_check import make_suite as proved
+    from hthor.tasks.suites import custom_suite, suite_files
+
+    given = suite_files.sources(houses)
+    suite_files.clear(out)
+    kinds = tuple(dict.fromkeys(task_selection.find_kind(one).name for one in kind or ()))
+    recipe = custom_suite.Recipe(
+        name=suite_files.named(name or out.stem), tasks=tasks, kinds=kinds, difficulty=difficulty or "", seed=seed
+    )
+    columns: dict[int, tuple[TaskSpec, ...]] = {}
+    with _watched(recipe.name, len(given), quiet, "houses") as tell:
+        for number, column in proved.columns(recipe, given, jobs=jobs or len(os.sched_getaffinity(0))):
+            columns[number] = column
+            tell(False)
+    made = suite_files.files(
+        recipe.name, custom_suite.VERSION, given, [columns[number] for number in range(len(given))]
+    )
+    path = suite_files.write(out, made)
+    total, command = sum(map(len, columns.values())), f"hthor eval --suite {shlex.quote(str(path))} --agent frontier"
+    if json:
+        output.put_json({"suite": str(path), "name": recipe.name, "tasks": total, "houses": len(given)})
+        return
+    where = f"{len(given)} houses" if len(given) > 1 else "one house"
+    sys.stdout.write(f"{path}: {total} tasks in {where}, each proved\n")
+    sys.stdout.write(f"next:  {command}\n")
+
+
+def check_tasks(
+    suites: Annotated[list[str], typer.Argument(metavar="SUITE...", help="Suites to check: names or files.")],
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one a CPU]")] = None,
+    json: Json = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+) -> None:
+    """Prove that every task is what it says and can be done: exit code 1 when one is not, and all that is wrong.
+
+    Each is set up in the real world: everything must stay where it is put, be where the task says, and a person who
+    knows everything must meet the goal, in no less than T* and within the time limit.
+    """
+    from hthor.eval.task_check import proof
+    from hthor.tasks.suites import library
+
+    shelves = [_some(library.read(name), name) for name in suites]
+    workers = jobs or len(os.sched_getaffinity(0))
+    rows: list[dict[str, Any]] = []
+    faults: list[Fault] = []
+    for shelf in shelves:
+        began = time.monotonic()
+        with _watched(shelf.name, len(shelf.tasks), quiet) as tell:
+            own = []
+            for verdict in proof.verdicts(shelf.tasks, jobs=workers):
+                own.append(verdict)
+                tell(bool(verdict.faults))
+        rows.append({**_verdict_row(shelf, own), "wall_s": round(time.monotonic() - began, 1)})
+        order = {task.id: number for number, task in enumerate(shelf.tasks)}
+        faults += proof.repeated(shelf.tasks)
+        unsound = sorted((one for one in own if one.faults), key=lambda one: order[one.task])
+        faults += [fault for verdict in unsound for fault in verdict.faults]
+    if json:
+        for row in rows:
+            del row["wall_s"]  # the same tasks give the same document
+        output.put_json({"suites": rows, "faults": faults})
+    else:
+        for fault in faults:
+            sys.stdout.write(f"{fault.task}: {fault.field}: {fault.reason}\n")
+        put_rows(rows)
+    if faults:
+        raise typer.Exit(1)
+
+
+def _some(suite: Suite, given: str) -> Suite:
+    """The suite, if there is anything in it."""
+    from hthor.errors import TaskError
+
+    if not suite.tasks:
+        raise TaskError(given, "tasks", "is empty; a suite needs at least one task")
+    return suite
+
+
+def _verdict_row(suite: Suite, verdicts: Sequence[Verdict]) -> dict[str, Any]:
+    played = sorted(verdict.seconds for verdict in verdicts if verdict.seconds)
+    shares = [verdict.least / verdict.seconds for verdict in verdicts if verdict.seconds]
+    return {
+        "suite": suite.name,
+        "tasks": len(verdicts),
+        "unsound": sum(1 for verdict in verdicts if verdict.faults),
+        "median_s": played[len(played) // 2] if played else 0.0,
+        "slowest_s": played[-1] if played else 0.0,
+        "least_share": round(max(shares, default=0.0), 3),
+        "drift_mm": round(1000 * max((verdict.drift for verdict in verdicts), default=0.0), 1),
+    }
+
+
+@contextmanager
+def _watched(name: str, total: int, quiet: bool, unit: str = "tasks") -> Iterator[Callable[[bool], None]]:
+    """Progress on standard error: a bar where somebody watches, a line now and then where nobody does."""
+    done, bad, said = 0, 0, time.monotonic()
+    first: tuple[int, float] | None = None
+    bar = None
+    if not quiet and output.live():
+        from tqdm import tqdm
+
+        bar = tqdm(total=total, desc=name, unit=unit[:-1], leave=False)
+
+    def tell(faulty: bool) -> None:
+        nonlocal done, bad, said, first
+        done, bad = done + 1, bad + faulty
+        first = first or (done, time.monotonic())
+        if bar is not None:
+            bar.update()
+            if unit == "tasks":
+                bar.set_postfix(unsound=bad, refresh=False)
+        elif not quiet and (time.monotonic() - said > _SAY_EVERY_S or done == total):
+            said = time.monotonic()
+            pace = (done - first[0]) / max(said - first[1], 1e-9)  # the first had to wait for the workers to start
+            left = f", {(total - done) / pace:.0f} s left" if done > first[0] and done < total else ""
+            told = f", {bad} unsound" if unit == "tasks" else ""
+            sys.stderr.write(f"{name}: {done}/{total} {unit}{told}{left}\n")
+
+    try:
+        yield tell
+    finally:
+        if bar is not None:
+            bar.close()

@@ -1,0 +1,191 @@
+"""`hthor tasks`: list, show, draw and check tasks."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from hthor.commands.options import Json
+from hthor.console import formats, output
+from hthor.console.formats import Format, Shape
+
+if TYPE_CHECKING:
+    from hthor.tasks import Suite
+    from hthor.types import Placement, TaskSpec
+
+app = typer.Typer(no_args_is_help=True, help="Tasks and suites of them.")
+
+TaskId = Annotated[str, typer.Argument(metavar="TASK", help="A task's id, such as navigation/alder/apple-in-fridge.")]
+Own = Annotated[
+    str | None, typer.Option("--suite", help="The suite it is in: a name or a file. [default: any of ours]")
+]
+
+
+@app.callback()
+def _group() -> None:
+    """Tasks and suites of them."""
+
+
+@app.command("list")
+def list_tasks(
+    suite: Annotated[
+        str | None, typer.Argument(metavar="[SUITE]", help="List the tasks of this suite: a name or a file.")
+    ] = None,
+    house: Annotated[str, typer.Option(help="Only tasks in this house.")] = "",
+    kind: Annotated[str, typer.Option(help="Only tasks of this kind, or whose short name is this.")] = "",
+    target: Annotated[str, typer.Option(help="Only tasks with this target.")] = "",
+    difficulty: Annotated[Literal["easy", "medium", "hard"] | None, typer.Option(help="Only tasks so hard.")] = None,
+    split: Annotated[Literal["seen", "new"] | None, typer.Option(help="Only tasks in houses so known.")] = None,
+    shape: Shape = Format.TABLE,
+    json: Json = False,
+) -> None:
+    """The suites, or the tasks of one."""
+    from hthor import tasks as rooms
+
+    wanted = {"house": house, "kind": kind, "target": target, "difficulty": difficulty or "", "split": split or ""}
+    if suite is None:
+        if any(wanted.values()):
+            given = next(name for name, value in wanted.items() if value)
+            raise typer.BadParameter("name the suite whose tasks are meant", param_hint=f"--{given}")
+        rows = [_suite_row(rooms.suite(name)) for name in rooms.suites()]
+        output.put_json(rows) if formats.asks_json(json, shape) else put_rows(rows, ("sha256",), shape)
+        return
+    found = rooms.suite(suite)
+    rows = [row for row in map(_task_row, found.tasks) if _fits(row, wanted)]
+    if formats.asks_json(json, shape):
+        output.put_json(rows)
+        return
+    put_rows([{name: row[name] for name in _told(rows)} for row in rows], shape=shape)
+    part = f"{len(rows)} of " if any(wanted.values()) else ""
+    whole = f"{len(found.tasks)} tasks, suite {found.name}, version {found.version}, {found.sha256[:10]}"
+    (sys.stdout if shape is Format.TABLE else sys.stderr).write(f"{part}{whole}\n")
+
+
+@app.command("show")
+def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
+    """Tell all about a task: what is asked, where everything is, who starts where, how long it takes at least."""
+    from hthor import houses
+    from hthor.tasks.generation import difficulty
+    from hthor.tasks.suites import library
+
+    shelf, spec = library.find(task, suite)
+    house = houses.load(spec.house)
+    hard = difficulty.measured(spec, house)
+    if json:
+        output.put_json({"suite": shelf.name, "task": spec, "before": round(hard.before, 3), "score_s": hard.score})
+        return
+    sys.stdout.write(f"{spec.id}: {spec.instruction}\n\n")
+    share = (
+        f"{hard.level}: takes at least {hard.least:.1f} s, {100 * hard.before:.0f} % of where it is expected is nearer"
+    )
+    facts = [
+        ("suite", f"{shelf.name} {shelf.version}"),
+        ("kind", spec.kind),
+        ("house", spec.house + (f" ({spec.split})" if spec.split else "")),
+        ("difficulty", share),
+        ("time limit", f"{spec.time_limit:.0f} s"),
+        ("T*", f"{spec.t_star:.1f} s"),
+        ("person", _pose(spec.human_start)),
+        *((f"robot {number}", _pose(pose)) for number, pose in enumerate(spec.robot_starts, 1)),
+    ]
+    width = max(len(name) for name, _ in facts)
+    sys.stdout.write("".join(f"{name:<{width}}  {text}\n" for name, text in facts))
+    targets = {job.target for job in spec.goal.todo}
+    rows = [{"object": _starred(one, targets), "where": _where(one), "x": one.position[0], "y": one.position[1],
+             "z": round(one.position[2], 3)} for one in spec.objects]  # fmt: skip
+    put_rows(rows)
+    sys.stdout.write("* what the task is about\n")
+    sys.stderr.write(f"next:  hthor tasks draw {spec.id} --out task.png\n")
+
+
+@app.command("draw")
+def draw_task(
+    task: TaskId,
+    out: Annotated[Path | None, typer.Option(help="The file: .png, .svg or .pdf. [default: TASK.png]")] = None,
+    suite: Own = None,
+    json: Json = False,
+) -> None:
+    """Draw a task from above: objects, destination, starts, and the shortest walk that does it."""
+    from hthor.eval.task_check import omniscient_solver
+    from hthor.report.drawing import task_figure
+    from hthor.tasks.suites import library
+    from hthor.world import World
+
+    _, spec = library.find(task, suite)
+    world = World(spec.house, objects=[(one.id, one.kind) for one in spec.objects])
+    path = out or Path(spec.id.replace("/", "-") + ".png")
+    limit = 10 * spec.time_limit
+    task_figure.draw(spec, world.house, omniscient_solver.solve(world, spec, limit_s=limit), path)
+    output.put_files([path], json, task=spec.id)
+
+
+def _suite_row(suite: Suite) -> dict[str, Any]:
+    levels = Counter(task.difficulty for task in suite.tasks if task.difficulty)
+    return {
+        "name": suite.name,
+        "version": str(suite.version),
+        "tasks": len(suite.tasks),
+        "kinds": sorted({task.kind for task in suite.tasks}),
+        "houses": len({task.house for task in suite.tasks}),
+        "easy, medium, hard": [levels[name] for name in ("easy", "medium", "hard")] if levels else [],
+        "sha256": suite.sha256,
+    }
+
+
+def _task_row(task: TaskSpec) -> dict[str, Any]:
+    return {
+        "id": task.id,
+        "kind": task.kind,
+        "house": task.house,
+        "target": task.goal.target,
+        "instruction": task.instruction,
+        "t_star_s": round(task.t_star, 1),
+        "difficulty": task.difficulty,
+        "split": task.split,
+    }
+
+
+def _told(rows: Sequence[dict[str, Any]]) -> list[str]:
+    """The columns that tell something: not what ids and instructions say already, nor what all tasks have in common."""
+    if not rows:
+        return []
+    known = {"target", "house"} if all(row["house"] in row["id"].split("/") for row in rows) else {"target"}
+    same = {name for name in ("kind", "difficulty", "split") if len({row[name] for row in rows}) == 1}
+    return [name for name in rows[0] if name not in known | same]
+
+
+def _fits(row: dict[str, Any], wanted: dict[str, str]) -> bool:
+    return all(not value or _is(row, name, value) for name, value in wanted.items())
+
+
+def _is(row: dict[str, Any], name: str, value: str) -> bool:
+    if name != "kind" or row["kind"] == value:
+        return bool(row[name] == value)
+    from hthor import plugins
+
+    return bool(plugins.load("task kind", row["kind"]).short == value)
+
+
+def _starred(placed: Placement, targets: set[str]) -> str:
+    return f"{placed.id} *" if placed.id in targets else placed.id
+
+
+def _where(placed: Placement) -> str:
+    near = f", near {placed.near}" if placed.near else ""
+    return f"{placed.relation} {placed.support or 'the floor'}{near}"
+
+
+def _pose(pose: Any) -> str:
+    return f"({pose.x:.2f}, {pose.y:.2f}) m, heading {pose.yaw:.2f} rad"
+
+
+def put_rows(rows: Sequence[dict[str, Any]], short: Sequence[str] = (), shape: Format = Format.TABLE) -> None:
+    """Rows as a table, long hashes cut short."""
+    headings = list(rows[0]) if rows else ["nothing"]
+    cells = [[row[name][:10] if name in short else row[name] for name in headings] for row in rows]
+    output.put_table(headings, cells, shape)
