@@ -22,8 +22,10 @@ from hthor import code_identity, houses, jsonio
 from hthor.eval.task_check import make_suite as proved
 from hthor.eval.task_check import proof
 from hthor.eval.task_check.proof import Verdict
-from hthor.tasks.suites import custom_suite, suite_files
-from hthor.tasks.suites.custom_suite import Recipe
+from hthor.houses import HouseLibrary
+from hthor.tasks.generation import custom_suite
+from hthor.tasks.generation.custom_suite import Recipe
+from hthor.tasks.suites import suite_files
 from hthor.tasks.suites.suite_files import Source
 from hthor.world.validation import generate_valid
 
@@ -56,8 +58,8 @@ def _measure(given: argparse.Namespace, folder: Path) -> None:
         folder / "suite.json", suite_files.files(recipe.name, custom_suite.VERSION, found, columns)
     )
     tasks = [task for column in columns for task in column]
-    houses.shelve(path.with_suffix(".houses"))
-    _count("made", list(proof.verdicts(tasks, jobs=given.jobs)))
+    library = HouseLibrary(folder=path.with_suffix(".houses"))
+    _count("made", list(proof.verdicts(tasks, jobs=given.jobs, houses=library)))
     if given.agent != "-":
         _play(path, given, folder / "run")
 
@@ -68,9 +70,8 @@ def _shared(work: object, recipe: Recipe, found: tuple[Source, ...], jobs: int) 
 
 def _first(recipe: Recipe, source: Source) -> list[Verdict]:
     """Verdicts on the first draws in one house."""
-    if source.file is not None:
-        houses.shelve(source.file.resolve().parent)
-    return [proof.examine(task) for task in custom_suite.in_house(recipe, source.given)]
+    house = houses.load(source.given)
+    return [proof.examine(task, house) for task in custom_suite.in_house(recipe, house)]
 
 
 def _generated(given: argparse.Namespace, folder: Path) -> list[str]:

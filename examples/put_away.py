@@ -5,7 +5,7 @@ hthor eval --kind examples/put_away.py --agent oracle
 
 from hthor import catalog
 from hthor.errors import HthorError
-from hthor.tasks.generation.target_arrangement import arrange
+from hthor.tasks.arrangement.target_arrangement import arrange
 from hthor.tasks.subgoals import JobKind
 from hthor.types import Goal, HouseSpec, Job, Placement
 

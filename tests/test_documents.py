@@ -151,9 +151,9 @@ def test_every_file_is_read_by_the_one_reader(root: Path):
     listed = {
         "hthor/documents.py",
         "hthor/catalog/priors/__init__.py",  # these ship with hthor
-        "hthor/tasks/generation/commonsense_places.py",
+        "hthor/tasks/arrangement/commonsense_places.py",
         "hthor/eval/doctor/reproducibility.py",
-        "hthor/tasks/suites/secret_suites.py",  # made a moment before
+        "hthor/tasks/generation/secret_suites.py",  # made a moment before
         "hthor/tasks/suites/suite_files.py",
         "hthor/eval/doctor/subprocess_probe.py",  # the output of a process of ours
         "hthor/houses/schema.py",  # names line and column

@@ -17,7 +17,6 @@ from types import FrameType
 
 from hthor import cli
 from hthor.console import exit_status
-from hthor.houses import loader
 
 LIMIT_S = 120
 _NO_NUMBER = re.compile(r"(?<![\w.])-?(nan|inf|infinity)(?![\w.])", re.IGNORECASE)
@@ -87,7 +86,7 @@ def ask(folder: Path, words: Sequence[str], limit_s: int = LIMIT_S) -> Said:
 @contextlib.contextmanager
 def _alone(folder: Path, words: Sequence[str]) -> Iterator[None]:
     """What one command leaves behind in a process is taken away before the next."""
-    before = (os.getcwd(), list(sys.argv), dict(os.environ), dict(loader._shelves), set(sys.modules))
+    before = (os.getcwd(), list(sys.argv), dict(os.environ), set(sys.modules))
     os.chdir(folder)
     sys.argv = ["hthor", *words]
     os.environ["XDG_CACHE_HOME"] = str(folder / ".cache")
@@ -98,9 +97,7 @@ def _alone(folder: Path, words: Sequence[str]) -> Iterator[None]:
         sys.argv = before[1]
         os.environ.clear()
         os.environ.update(before[2])
-        loader._shelves.clear()
-        loader._shelves.update(before[3])
-        for name in set(sys.modules) - before[4]:
+        for name in set(sys.modules) - before[3]:
             if str(getattr(sys.modules[name], "__file__", None) or "").startswith(str(folder)):
                 del sys.modules[name]
 

@@ -10,7 +10,8 @@ import msgspec
 from hthor import calibration, humans, jsonio, tasks, world
 from hthor.eval.records import find
 from hthor.eval.runner import experiment, fault_report, progress, run_options
-from hthor.tasks.suites import commitment, library
+from hthor.tasks.suite import encode_suite, make_suite
+from hthor.tasks.suites import commitment
 from hthor.tasks.suites.commitment import Commitment, Revealed
 from hthor.tasks.suites.secret_salt import Salt
 
@@ -24,8 +25,8 @@ def make(folder: Path) -> Path:
     """Fill the folder; plays three short trials with no robot and with the oracle."""
     few = [one for one in tasks.suite("smoke").tasks if one.house == "hazel"][:3]
     short = tuple(msgspec.structs.replace(one, time_limit=15.0, t_star=10.0) for one in few)
-    suite = library.frozen("few", 1, short)
-    jsonio.write(folder / "few.json", library.encode(suite))
+    suite = make_suite("few", 1, short)
+    jsonio.write(folder / "few.json", encode_suite(suite))
     options = run_options.RunOptions(
         agents=("silent", "oracle"), suite=str(folder / "few.json"), jobs=1, out=folder / "runs"
     )
@@ -56,7 +57,7 @@ def _faults(run: Path) -> None:
 
 def _official(folder: Path, suite: tasks.Suite) -> None:
     """A suite with its commitment and the salt."""
-    files = {"suite.json": library.encode(suite)}
+    files = {"suite.json": encode_suite(suite)}
     held = Commitment(
         name="few",
         salt=Salt(SALT).commitment(),

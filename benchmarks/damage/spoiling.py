@@ -15,7 +15,7 @@ import numpy as np
 
 from hthor import jsonio
 from hthor.eval.records import trial_record
-from hthor.tasks.suites import library
+from hthor.tasks.suite import Suite, tasks_sha256
 from hthor.types import TrialSpec
 
 Spoil = Callable[[bytes, random.Random], bytes]
@@ -122,9 +122,9 @@ def mended_suite(data: bytes, dice: random.Random) -> bytes:
     """A suite is changed, and its hash is that of what it holds now."""
     spoiled = change(data, dice)
     try:
-        held = msgspec.json.decode(spoiled, type=library.Suite)
+        held = msgspec.json.decode(spoiled, type=Suite)
         document = json.loads(spoiled)
-        document["sha256"] = library.digest_of(held.tasks)
+        document["sha256"] = tasks_sha256(held.tasks)
         return json.dumps(document).encode()
     except (ValueError, TypeError, OverflowError, RecursionError):
         return spoiled

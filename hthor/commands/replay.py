@@ -45,14 +45,12 @@ def replay(
 
         _replay_mind(run, trial, out, agent or (), humans, inputs.read(agent_args or (), readable or ()), json)
         return
-    from hthor import houses
     from hthor.eval.records import find
     from hthor.report.drawing import render_trial
 
-    houses.shelve(run / "houses")  # where the suite brought its own
     record = find.find_trial(run, trial)
     path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'webm' if video else 'png'}"
-    render_trial.draw(record, path, video=video)
+    render_trial.draw(run, record, path, video=video)
     output.put_files([path], json, key=record.key, task=record.spec.task.id)
 
 
@@ -60,14 +58,12 @@ def _replay_mind(
     run: Path, trial: str, out: Path | None, agents: Sequence[str], humans: str, given: Given, json: bool
 ) -> None:
     """Play a person's session again up to one trial, and draw or print what went on in their mind."""
-    from hthor import houses
     from hthor.eval.records import find
     from hthor.eval.replay import human_trace
     from hthor.report.drawing import human_trace_figure, lettering, render_trial
 
-    houses.shelve(run / "houses")  # where the suite brought its own
     record = find.find_trial(run, trial)
-    house = render_trial.house(record)
+    house = render_trial.house(run, record)
     stream = human_trace.trace_human(run, record, agents=agents, humans=humans, given=given)
     if not stream.same:
         talk = output.console(talk=True)

@@ -14,9 +14,9 @@ from hthor.commands.options import Json
 from hthor.console import output
 
 if TYPE_CHECKING:
+    from hthor.tasks.generation.secret_suites import Each, Proof
     from hthor.tasks.suites.commitment import Commitment
-    from hthor.tasks.suites.secret_suites import Each, Proof
-    from hthor.types import TaskSpec
+    from hthor.types import HouseSpec, TaskSpec
 
 app = typer.Typer(
     no_args_is_help=True, help="Official suites: made from a secret salt, in houses that nobody has seen."
@@ -54,7 +54,8 @@ def make(
     """Make a suite from a salt: its houses, its tasks, and the commitment that can be published now."""
     from hthor import code_identity, installation
     from hthor.errors import HthorError
-    from hthor.tasks.suites import commitment, secret_suites
+    from hthor.tasks.generation import secret_suites
+    from hthor.tasks.suites import commitment
 
     folder = out or Path(name)
     secret_suites.unused(name)
@@ -99,7 +100,8 @@ def verify(
     json: Json = False,
 ) -> None:
     """Compare a suite with its commitment, and, once the salt is revealed, make it again and compare every byte."""
-    from hthor.tasks.suites import commitment, secret_suites
+    from hthor.tasks.generation import secret_suites
+    from hthor.tasks.suites import commitment
 
     held = commitment.load(published or folder / commitment.COMMITMENT)
     salt = commitment.revealed(folder) if salt_file is None else _salt(salt_file, folder)
@@ -140,8 +142,8 @@ def _tell_versions(held: Commitment) -> None:
 
 def _salt(path: Path, folder: Path) -> Any:
     """The salt in a file, which must not lie among what is published."""
+    from hthor.tasks.generation import secret_suites
     from hthor.tasks.suites import secret_salt as salts
-    from hthor.tasks.suites import secret_suites
 
     secret_suites.beside(path, folder)
     held = salts.read(path)
@@ -152,16 +154,16 @@ def _salt(path: Path, folder: Path) -> Any:
 
 def _proof() -> Proof:
     """Houses are proved as by `hthor houses check --full`, tasks as by `hthor tasks check`."""
-    from hthor.tasks.suites.secret_suites import Proof
+    from hthor.tasks.generation.secret_suites import Proof
     from hthor.world.validation.house_soundness import prove
 
     return Proof(house=prove, task=_possible)
 
 
-def _possible(task: TaskSpec) -> bool:
+def _possible(task: TaskSpec, house: HouseSpec) -> bool:
     from hthor.eval.task_check import proof
 
-    return not proof.examine(task).faults
+    return not proof.examine(task, house).faults
 
 
 def _each(jobs: int | None, total: int) -> Each:

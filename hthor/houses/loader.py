@@ -1,4 +1,4 @@
-"""From a house file to a `HouseSpec`: frames turned, names given, doors judged.
+"""From the content of a house file to a `HouseSpec`: frames turned, rooms named, doors classified.
 
 Unity's (x, y up, z) becomes the house frame's (x, z, y), and its clockwise yaw a counter-clockwise one.
 """
@@ -7,100 +7,40 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from importlib import resources
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from hthor import jsonio
-from hthor.errors import HouseError, UnknownName
+from hthor.errors import HouseError
 from hthor.geometry.plane import signed_area, wrap
 from hthor.houses import laying, schema, worktops
-from hthor.houses.assets import DATABASE, Assets
+from hthor.houses.assets import Assets
 from hthor.houses.checks import structure
 from hthor.houses.checks.structure import EXTERIOR, ROOM_KINDS
 from hthor.houses.schema import Agent, HouseFile, OpeningRow, RoomRow, WallRow
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec3, Wall
-
-_OWN = {
-    name: Path(str(resources.files("hthor.houses").joinpath(folder)))
-    for name, folder in (("scenes", "data"), ("unseen", "unseen"))
-}
-_shelves: dict[Path, None] = {}
-
-
-def names(group: Literal["scenes", "unseen"] = "scenes") -> tuple[str, ...]:
-    """The houses that come with hthor: the benchmark's ten scenes, or the ``unseen`` ones that stand beside them."""
-    return tuple(sorted(path.stem for path in _OWN[group].glob("*.json")))
-
-
-def shelve(folder: Path) -> None:
-    """Let `load` find the houses of a folder by name, in this process, after those that come with hthor.
-
-    A suite that brings its own houses is read so. Of two folders with a house of one name the one shelved last counts;
-    a task holds its house's hash, so that a house that is not the one it was made for is refused.
-    """
-    _shelves.pop(folder.resolve(), None)
-    _shelves[folder.resolve()] = None
-
-
-def shelves() -> tuple[Path, ...]:
-    """The folders given to `shelve`, in order: what another process has to be told."""
-    return tuple(_shelves)
-
-
-def load(name_or_path: str | Path, assets: Path | None = None) -> HouseSpec:
-    """A house by name, or from a ProcTHOR house file, JSON schema 1.0.0.
-
-    Args:
-        name_or_path: one of `names`, of either group; the name of a house in a folder given to `shelve`; or the path of
-            a file.
-        assets: a ProcTHOR asset database, or the folder it lies in, for files with foreign assets. Without it the
-            database is looked for where the environment variable HTHOR_ASSETS says, then beside the file and in the
-            folders above, in ``shared/houses/databases`` of any folder above the current one, and in an installed
-            ``procthor`` package.
-
-    Raises:
-        UnknownName: when it is neither a name nor a file.
-        HouseError: when the file cannot be used; names the file and the field.
-    """
-    path, file = _locate(str(name_or_path))
-    document, house = schema.read(path, file)
-    structure.validate(house, file)
-    return _build(house, path.stem, jsonio.sha256(document), file, Assets(path, assets))
 
 
 def build(document: Any, name: str) -> HouseSpec:
     """A house from a document in memory, such as `hthor.houses.generator` makes; ``name`` becomes its id.
 
     Raises:
-        HouseError: as `load`, naming ``name`` as the file.
+        HouseError: naming ``name`` as the file, and the field.
     """
     house = schema.convert(document, name)
     structure.validate(house, name)
-    return _build(house, name, jsonio.sha256(document), name, Assets(Path()))
+    return make_house(house, name, jsonio.sha256(document), name, Assets(Path()))
 
 
-def _locate(given: str) -> tuple[Path, str]:
-    for folder in (*_OWN.values(), *reversed(_shelves)):
-        if _plain(given) and (folder / f"{given}.json").is_file():
-            return folder / f"{given}.json", f"{given}.json"
-    path = Path(given)
-    if path.suffix == ".json" or path.is_file():
-        return path, given
-    known = (
-        *names(),
-        *names("unseen"),
-        *(path.stem for shelf in _shelves for path in sorted(shelf.glob("*.json")) if path.name != DATABASE),
-    )
-    raise UnknownName("house", given, known, "Or give the path of a ProcTHOR house file (.json).")
+def make_house(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) -> HouseSpec:
+    """A house from the valid content of a house file.
 
+    Args:
+        name: the house's id. sha256: of the file's document. file: what errors call it. assets: kinds and sizes.
 
-def _plain(name: str) -> bool:
-    """Whether a name is no path in disguise."""
-    return name == Path(name).name and bool(name)
-
-
-def _build(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) -> HouseSpec:
+    Raises:
+        HouseError: naming ``file`` and the field.
+    """
     walls = {wall.id: wall for wall in house.walls}
     found = structure.start(house)
     if found is None:

@@ -1,8 +1,12 @@
-"""Tasks: kinds, suites and their making."""
+"""What to do in a house: kinds of task, suites of tasks, and how both are made.
+
+Begin with `kind` (the contract of a kind of task) and `suites.library` (how a suite is read).
+"""
 
 from __future__ import annotations
 
-from hthor.tasks.suites.library import Suite, suite, suites
+from hthor.tasks.suite import Suite
+from hthor.tasks.suites.library import suite, suites
 
 CODE_ROOT = "makers"
 

@@ -47,7 +47,7 @@ class TaskKind(ABC):
         """The sentence that the person and the robots are given."""
 
     @abstractmethod
-    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> bool:
+    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
         """Whether the goal is met at the snapshot's tick; ``house`` is the task's, loaded by its name when absent."""
 
     @abstractmethod
@@ -64,7 +64,7 @@ class TaskKind(ABC):
         Raises:
             HthorError: when the house has nothing for a task of this kind.
         """
-        from hthor.tasks.generation.target_arrangement import arrange
+        from hthor.tasks.arrangement.target_arrangement import arrange
 
         known = self.goals(house)
         if not known:
@@ -76,7 +76,7 @@ class TaskKind(ABC):
         """Why a task that can be run is not worth giving, in words, or nothing; a suite's maker then draws again."""
         return ""
 
-    def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> float:
+    def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> float:
         """The share of the goal that is met at the snapshot's tick, from 0 to 1."""
         return float(self.met(task, snapshot, house))
 

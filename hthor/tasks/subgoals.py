@@ -23,10 +23,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor import catalog, houses, rules
+from hthor import catalog, rules
 from hthor.geometry import plane
-from hthor.tasks.generation.avatar import REACH_M
-from hthor.tasks.generation.reachability import SLACK_M, Bools, Ground, Walk
+from hthor.tasks.arrangement.avatar import REACH_M
+from hthor.tasks.arrangement.reachability import SLACK_M, Bools, Ground, Walk
 from hthor.tasks.kind import LeastTimes, TaskKind
 from hthor.types import Goal, HouseSpec, Job, Placement, Snapshot, TaskSpec, Thing, ThingState, Vec2, Vec3
 
@@ -61,17 +61,15 @@ class JobKind(TaskKind):
             return "has two jobs about the same object; one for each is allowed"
         return next((f"jobs[{n}] {text}" for n, job in enumerate(goal.jobs) if (text := impossible(job, house))), "")
 
-    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> bool:
-        home = house or houses.load(task.house)
-        return all(is_done(job, snapshot.things.get(job.target), home) for job in task.goal.jobs)
+    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
+        return all(is_done(job, snapshot.things.get(job.target), house) for job in task.goal.jobs)
 
     def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
         return not left(goal, objects, house)
 
-    def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> float:
-        home = house or houses.load(task.house)
-        first = len(left(task.goal, task.objects, home))
-        now = sum(1 for job in task.goal.jobs if not is_done(job, snapshot.things.get(job.target), home))
+    def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> float:
+        first = len(left(task.goal, task.objects, house))
+        now = sum(1 for job in task.goal.jobs if not is_done(job, snapshot.things.get(job.target), house))
         return max(0.0, (first - now) / first) if first else float(not now)
 
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:

@@ -11,14 +11,14 @@ from collections.abc import Iterator, Sequence
 
 from msgspec import Struct
 
-from hthor import catalog, houses, plugins
+from hthor import catalog, plugins
 from hthor.errors import HouseError, HthorError, TaskError, UnknownName
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.solids import overlap
-from hthor.tasks.generation.avatar import HEIGHT_M, RADIUS_M
-from hthor.tasks.generation.placement import Shelves, as_thing, footprint, rests_of, stands
+from hthor.tasks.arrangement.avatar import HEIGHT_M, RADIUS_M
+from hthor.tasks.arrangement.placement import Shelves, as_thing, footprint, rests_of, stands
 from hthor.tasks.kind import TaskKind
-from hthor.tasks.suites.library import Suite
+from hthor.tasks.suite import Suite
 from hthor.types import HouseSpec, Placement, TaskSpec
 
 CODE_PART = "tools"
@@ -57,7 +57,7 @@ def unsound(suite: Suite) -> Iterator[Unsound]:
     loaded: dict[str, HouseSpec | str] = {}
     for index, task in enumerate(suite.tasks):
         if task.house not in loaded:
-            loaded[task.house] = _house(task.house)
+            loaded[task.house] = _house(task.house, suite)
         house = loaded[task.house]
         rows = [("house", house)] if isinstance(house, str) else list(faults(task, house))
         if task.id in seen:
@@ -90,10 +90,10 @@ def faults(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
             yield field, f"must be a positive number of seconds, got {value}"
 
 
-def _house(name: str) -> HouseSpec | str:
+def _house(name: str, suite: Suite) -> HouseSpec | str:
     """The house of that name, or why there is none."""
     try:
-        return houses.load(name)
+        return suite.houses.load(name)
     except (UnknownName, HouseError) as error:
         return str(error)
 

@@ -34,10 +34,10 @@ from hthor.eval.runner import progress
 from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.humans.population import parameter_registry
 from hthor.humans.population.population import Population
-from hthor.tasks.suites import library
+from hthor.tasks.suite import make_suite
 
 PAPER = tasks.suite("paper")
-TINY = library.frozen("tiny", 1, tuple(task for task in PAPER.tasks if task.house == PAPER.tasks[0].house)[:2])
+TINY = make_suite("tiny", 1, tuple(task for task in PAPER.tasks if task.house == PAPER.tasks[0].house)[:2])
 
 
 # -------------------------------------------------------------------------------------------------------- real sessions

@@ -19,7 +19,7 @@ from hthor.catalog import priors
 from hthor.catalog.priors import scenes, words
 from hthor.cli import app
 from hthor.errors import UnknownName
-from hthor.tasks.generation import scene_graph
+from hthor.tasks.arrangement import scene_graph
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
 
 SAMPLES = 10_000

@@ -33,7 +33,7 @@ from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import engines, trial_runner
 from hthor.leaderboard import enter
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
-from hthor.tasks.suites import library
+from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites.commitment import Commitment
 from hthor.types import HUMAN
 
@@ -50,8 +50,8 @@ TRIALS = 12
 def brief() -> Iterator[tasks.Suite]:
     """A suite of a few houses' tasks, and its file."""
     chosen = tuple(task for task in tasks.suite("smoke").tasks if task.house in HOUSES)
-    suite = library.frozen("brief", 1, chosen)
-    SUITE.write_bytes(library.encode(suite))
+    suite = make_suite("brief", 1, chosen)
+    SUITE.write_bytes(encode_suite(suite))
     yield suite
     shutil.rmtree(FOLDER)
 

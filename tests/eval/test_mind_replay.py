@@ -21,7 +21,7 @@ from hthor.eval.replay.human_trace import HumanTrace
 from hthor.eval.runner import experiment, progress, run_options
 from hthor.report.drawing import human_trace_figure, human_trace_timeline, render_trial
 from hthor.report.page import camera_frames
-from hthor.tasks.suites import library
+from hthor.tasks.suite import encode_suite, make_suite
 from hthor.types import HUMAN, Event
 
 PNG = b"\x89PNG\r\n"
@@ -32,8 +32,8 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small run with the oracle: one person, three trials in one house."""
     folder = tmp_path_factory.mktemp("mind")
     smoke = tasks.suite("smoke")
-    few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house == "hazel")[:3])
-    (folder / "few.json").write_bytes(library.encode(few))
+    few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "hazel")[:3])
+    (folder / "few.json").write_bytes(encode_suite(few))
     options = run_options.RunOptions(
         agents=("oracle",), suite=str(folder / "few.json"), participants=1, jobs=1, seed=4, out=folder / "run"
     )
@@ -110,11 +110,12 @@ def test_trust_at_the_end_is_what_the_next_trial_begins_with(heard: list[tuple[T
 
 def test_it_is_drawn(heard: list[tuple[TrialRecord, HumanTrace]], tmp_path: Path) -> None:
     record, stream = max(heard, key=lambda pair: len(pair[1].events))
-    figure = human_trace_figure.figure(record, render_trial.house(record), stream)
+    house = render_trial.house(tmp_path, record)
+    figure = human_trace_figure.figure(record, house, stream)
     figure.savefig(tmp_path / "mind.png", dpi=40)
     assert (tmp_path / "mind.png").read_bytes().startswith(PNG)
     quiet = msgspec.structs.replace(stream, events=tuple(e for e in stream.events if e.kind == "aim"))
-    human_trace_figure.figure(record, render_trial.house(record), quiet).savefig(tmp_path / "quiet.png", dpi=40)
+    human_trace_figure.figure(record, house, quiet).savefig(tmp_path / "quiet.png", dpi=40)
     assert human_trace_timeline.lanes(quiet) == ["is about"]
 
 
@@ -157,8 +158,8 @@ def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> N
         "    def act(self, observation):\n        if observation.tick > 20:\n            raise RuntimeError('lost')\n"
         "        return Action(motion=Move(forward=0.3))\n"
     )
-    one = library.frozen("one", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == "hazel")[:1])
-    (tmp_path / "one.json").write_bytes(library.encode(one))
+    one = make_suite("one", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == "hazel")[:1])
+    (tmp_path / "one.json").write_bytes(encode_suite(one))
     options = run_options.RunOptions(
         agents=(str(agent),), suite=str(tmp_path / "one.json"), jobs=1, out=tmp_path / "run", max_faults="100%"
     )

@@ -12,8 +12,8 @@ from test_check import SIDE, TABLE, house, on, thing
 
 from hthor import catalog
 from hthor.errors import HthorError
-from hthor.houses.checks.check import check
 from hthor.houses.checks.findings import error, sound
+from hthor.houses.checks.house_checks import check
 from hthor.world.validation import drop_test, generate_valid, penetration
 from hthor.world.validation.drop_test import drops
 from hthor.world.validation.house_soundness import prove

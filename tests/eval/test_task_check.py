@@ -10,7 +10,8 @@ import pytest
 from hthor import houses, plugins, rules, tasks
 from hthor.catalog import priors
 from hthor.eval.task_check import omniscient_solver, proof
-from hthor.tasks.generation import generate, scene_graph
+from hthor.tasks.arrangement import scene_graph
+from hthor.tasks.generation import generate
 from hthor.types import Goal, Job, Pose
 from hthor.world import World
 

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from hthor import catalog, houses
 from hthor.geometry.plane import to_house
 from hthor.houses.checks import plan_rules
-from hthor.houses.checks.check import STRICT, check
 from hthor.houses.checks.findings import Finding, sound
+from hthor.houses.checks.house_checks import STRICT, check
 from hthor.houses.space import boxes, solids
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec2, Wall
 

@@ -14,7 +14,7 @@ import pytest
 from hthor import houses
 from hthor.errors import HouseError
 from hthor.houses import loader
-from hthor.houses.checks.check import check
+from hthor.houses.checks.house_checks import check
 from hthor.houses.generator import generate
 from hthor.types import HouseSpec
 

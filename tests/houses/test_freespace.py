@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from hthor import houses
 from hthor.errors import HthorError
 from hthor.geometry.plane import distance_to_rectangle, signed_area
-from hthor.houses.checks.check import check, sound
+from hthor.houses.checks.house_checks import check, sound
 from hthor.houses.space import solids
 from hthor.houses.space.free_space import FreeSpace, obstacles
 from hthor.houses.space.geodesic import Geodesics

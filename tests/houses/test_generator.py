@@ -18,7 +18,7 @@ from hthor import catalog, houses, jsonio
 from hthor.errors import HthorError, UnknownName
 from hthor.geometry.plane import signed_area
 from hthor.houses import generator, loader
-from hthor.houses.checks.check import check, sound
+from hthor.houses.checks.house_checks import check, sound
 from hthor.houses.generator import document, scenes, validity
 from hthor.houses.generator.attempt import Flaw
 from hthor.houses.generator.draws import Dice

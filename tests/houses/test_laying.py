@@ -17,10 +17,9 @@ from hthor import catalog, houses, plugins
 from hthor.eval.task_check import proof
 from hthor.houses import laying, loader
 from hthor.houses.checks import thing_rules
-from hthor.tasks.generation import generate
-from hthor.tasks.generation.placement import Shelves
-from hthor.tasks.suites import custom_suite
-from hthor.tasks.suites.custom_suite import Recipe
+from hthor.tasks.arrangement.placement import Shelves
+from hthor.tasks.generation import custom_suite, generate
+from hthor.tasks.generation.custom_suite import Recipe
 from hthor.tasks.validate import faults
 from hthor.types import Goal, HouseSpec, Placement, TaskSpec, Thing
 from hthor.world import World
@@ -159,7 +158,7 @@ def test_tasks_in_houses_of_others_start_with_everything_apart(samples: list[Pat
     for path in samples[4:6]:
         house = houses.load(path)
         world = World(house)
-        for made in custom_suite.in_house(Recipe(name="samples", tasks=3), str(path)):
+        for made in custom_suite.in_house(Recipe(name="samples", tasks=3), house):
             assert not list(faults(made, house))
             world.reset(made)
             for placed in made.objects:

@@ -11,7 +11,7 @@ from hthor import tasks
 from hthor.episode import EpisodeLog, run_episode
 from hthor.eval.config.sessions import make_sessions
 from hthor.eval.runner import trial_runner
-from hthor.tasks.suites import library
+from hthor.tasks.suite import make_suite
 from hthor.types import Action, Briefing, Event, Observation, TrialSpec
 
 PERCEIVED = ("detections", "scan", "sighting")
@@ -104,7 +104,7 @@ class Shut:
 
 def trials(agent: str, stage: trial_runner.TrialRunner, *, veiled: bool) -> list[EpisodeLog]:
     smoke = tasks.suite("smoke")
-    few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house in ("alder", "maple")))
+    few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house in ("alder", "maple")))
     session, logs = make_sessions(few, agent=agent, seed=2)[0], []
     with stage.enter(session) as company:
         for trial in session.trials[:4]:
@@ -167,7 +167,7 @@ def test_the_veil_holds(stage: trial_runner.TrialRunner) -> None:
         journal = ()
 
     smoke = tasks.suite("smoke")
-    few = library.frozen("one", 1, smoke.tasks[:1])
+    few = make_suite("one", 1, smoke.tasks[:1])
     trial = make_sessions(few, agent="silent")[0].trials[0]
     shut = Shut(stage.world(trial))
     log = run_episode(trial, shut, Guarded(Cheat(), shut), {})  # type: ignore[arg-type]

@@ -19,8 +19,8 @@ from hthor.eval.records import trial_record
 from hthor.humans.models import _logged_trials, greedy, proxy, random, replay
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import Person
+from hthor.tasks.suite import make_suite
 from hthor.tasks.suites import library
-from hthor.tasks.suites.library import frozen
 from hthor.types import Action, AgentRef, Goal, Message, Move, Pose, RobotSeat, Send, TaskSpec, TrialSpec, Wait
 from hthor.world import World
 
@@ -191,7 +191,7 @@ def test_both_ends_play_every_kind_of_task(suite):
     from hthor.eval.runner import trial_runner
 
     task = msgspec.structs.replace(library.suite(suite).tasks[0], time_limit=30.0)
-    one = sessions.make_sessions(frozen("one", 1, (task,)), agent="oracle", robot="tender", human="greedy")[0]
+    one = sessions.make_sessions(make_suite("one", 1, (task,)), agent="oracle", robot="tender", human="greedy")[0]
     stage = trial_runner.TrialRunner()
     for made in (greedy.Model, random.Model):
         with stage.enter(one) as company:

@@ -9,7 +9,7 @@ from hthor import rules, tasks
 from hthor.episode import EpisodeLog, run_episode
 from hthor.eval.config.sessions import make_sessions
 from hthor.eval.runner import trial_runner
-from hthor.tasks.suites import library
+from hthor.tasks.suite import make_suite
 from hthor.types import HUMAN, Action, Briefing, Move, Observation, Rotate
 
 PEOPLE = 2
@@ -52,7 +52,7 @@ def alone(stage: trial_runner.TrialRunner) -> list[EpisodeLog]:
 def first_trials(agent: str, stage: trial_runner.TrialRunner, mind: object = None) -> list[EpisodeLog]:
     """The first trials of a few people, in a few houses."""
     smoke, logs = tasks.suite("smoke"), []
-    few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house in HOUSES))
+    few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house in HOUSES))
     for session in make_sessions(few, agent=agent)[:PEOPLE]:
         with stage.enter(session) as company:
             for trial in session.trials[:TRIALS]:

@@ -16,7 +16,7 @@ from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
 from hthor.humans.core.behaviour_log import Recorder
-from hthor.tasks.suites import library
+from hthor.tasks.suite import make_suite
 from hthor.types import HUMAN, Event, Move, Rotate, Wait
 from hthor.world.model.bodies.avatar import HUMAN as BODY
 
@@ -88,7 +88,7 @@ def test_what_was_written_down_stands() -> None:
 def played() -> list[TrialRecord]:
     """A few trials of one person with the oracle, in one house."""
     smoke = tasks.suite("smoke")
-    few = library.frozen("few", 1, tuple(task for task in smoke.tasks if task.house == "alder"))
+    few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "alder"))
     whole = make_sessions(few, agent="oracle", seed=3)[0]
     return list(trial_runner.make_runner()(Session(participant=whole.participant, trials=whole.trials[:4])))
 

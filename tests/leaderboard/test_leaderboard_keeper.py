@@ -375,7 +375,7 @@ def test_the_better_it_went_the_less_of_a_fall(won: int, more: int):
 
 def test_fresh_tasks_are_of_the_recipe_and_of_no_other_draw():
     from hthor import tasks
-    from hthor.tasks.suites import fresh_tasks
+    from hthor.tasks.generation import fresh_tasks
 
     made = fresh_tasks.suite("smoke", 7, 3, lambda drafts: [True] * len(drafts))
     known = {(task.house, task.human_start) for task in tasks.suite("smoke").tasks}

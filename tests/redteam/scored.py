@@ -24,7 +24,7 @@ from hthor.eval.records.trial_log import read
 from hthor.eval.runner import fault_report, progress, run, trial_runner, worker
 from hthor.eval.runner.worker import News
 from hthor.guest import Guest, IsolationError
-from hthor.tasks.suites import library
+from hthor.tasks.suite import make_suite
 from hthor.types import HUMAN, AgentRef
 from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, Case, source
 from tests.redteam.play import SECRET, lay_out, listening
@@ -82,7 +82,7 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
     step_s = 1.0 if "timeout" in case.kinds and len(case.kinds) == 1 else 20.0
     guest.Guest = functools.partial(Guest, step_s=step_s, bank_s=0.0, memory_mb=512, disk_mb=64)  # type: ignore[misc]
     task = next(task for task in tasks.suite("smoke").tasks if task.id == _TASK)
-    suite = library.frozen("short", 1, (msgspec.structs.replace(task, time_limit=_LIMIT_S),))
+    suite = make_suite("short", 1, (msgspec.structs.replace(task, time_limit=_LIMIT_S),))
     ref = AgentRef(name="agent", source="agent.py", sha256=hashlib.sha256(text.encode()).hexdigest())
     crew = robot_team.form_team(["scout"], [robot_team.AgentInfo(ref=ref, path=str(path))])
     plan = run_config.build_config(suite, crew, human="proxy", seed=0, participants=None)

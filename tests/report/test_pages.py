@@ -51,7 +51,7 @@ def run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, count: 
 def _known_house() -> Iterator[None]:
     plan = houses.load("hazel")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(render_trial, "house", lambda _: plan)
+        patch.setattr(render_trial, "house", lambda *_: plan)
         yield
 
 

@@ -49,7 +49,7 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 def _known_house() -> Iterator[None]:
     plan = houses.load("hazel")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(render_trial, "house", lambda _: plan)
+        patch.setattr(render_trial, "house", lambda *_: plan)
         yield
 
 

@@ -32,7 +32,7 @@ from hthor.humans.population import resolve
 from hthor.humans.population.population import Population, Validity
 from hthor.humans.population.resolve import People
 from hthor.tasks import Suite
-from hthor.tasks.suites.library import frozen
+from hthor.tasks.suite import make_suite
 from hthor.types import AgentRef, Event, Goal, Placement, Pose, TaskSpec, TrialSpec
 
 HOUSES = ("attic", "barn", "cottage")
@@ -55,7 +55,7 @@ def task(number: int = 0) -> TaskSpec:
 
 
 def suite(count: int = 60) -> Suite:
-    return frozen("fake", 1, tuple(task(number) for number in range(count)))
+    return make_suite("fake", 1, tuple(task(number) for number in range(count)))
 
 
 def persons(name: str = "proxy", *, calibrated: bool = True) -> People:

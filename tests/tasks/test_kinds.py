@@ -18,12 +18,14 @@ from hthor.errors import HthorError, UnknownName
 from hthor.geometry.plane import inside
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import Geodesics
-from hthor.tasks.generation import commonsense_places, generate
-from hthor.tasks.generation.avatar import HEIGHT_M, RADIUS_M, REACH_M
-from hthor.tasks.generation.free_spots import NEAR_M
+from hthor.tasks.arrangement import commonsense_places
+from hthor.tasks.arrangement.avatar import HEIGHT_M, RADIUS_M, REACH_M
+from hthor.tasks.arrangement.free_spots import NEAR_M
+from hthor.tasks.generation import generate
 from hthor.tasks.generation.suite_specs import PLANS
 from hthor.tasks.kinds import multi_robot_collection as collection
 from hthor.tasks.subgoals import PLACE_M, TOGETHER_M, JobKind, carrying_time, is_done, left
+from hthor.tasks.suite import encode_suite
 from hthor.tasks.suites import library
 from hthor.tasks.validate import faults
 from hthor.types import Goal, Job, Pose, Snapshot, TaskSpec, ThingState
@@ -244,7 +246,7 @@ def test_each_kind_has_two_tasks_in_each_scene(suite):
 def test_a_house_made_anew_is_the_same(name):
     again = generate.in_house(PLANS[name], HOUSES["elder"])
     assert again == tuple(task for task in tasks.suite(name).tasks if task.house == "elder")
-    assert library.path_of(name).read_bytes() == library.encode(tasks.suite(name))
+    assert library.path_of(name).read_bytes() == encode_suite(tasks.suite(name))
 
 
 def test_apples_are_apart_and_too_much_for_one():

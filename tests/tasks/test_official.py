@@ -18,10 +18,12 @@ from hypothesis import strategies as st
 from hthor import catalog, cli, houses, jsonio, tasks
 from hthor.errors import HthorError, TaskError, UnknownName
 from hthor.houses.checks.findings import error
-from hthor.tasks.suites import commitment, library, secret_suites, standard
+from hthor.tasks.generation import secret_suites, standard
+from hthor.tasks.generation.secret_suites import Order, Proof
+from hthor.tasks.suite import encode_suite, make_suite
+from hthor.tasks.suites import commitment, library
 from hthor.tasks.suites import secret_salt as salts
 from hthor.tasks.suites.secret_salt import Salt
-from hthor.tasks.suites.secret_suites import Order, Proof
 from hthor.tasks.validate import faults
 
 TEXT = "5f1d0c9be7a84e2699c3b1d07a4418f2e35b6097cd12fa8870b94d6e1ac53f28"
@@ -34,7 +36,7 @@ def soundly(house):
     return houses.check(house, 0.25, strict=True)
 
 
-PROOF = Proof(house=soundly, task=lambda task: houses.load(task.house).sha256 == task.house_sha256)
+PROOF = Proof(house=soundly, task=lambda task, house: house.sha256 == task.house_sha256)
 
 
 @pytest.fixture(scope="module")
@@ -223,7 +225,7 @@ def test_a_task_that_cannot_be_done_is_drawn_again():
     lot = secret_suites.lots(Order(name="tiny", houses=1, tasks=1), SALT)[0]
     seen = []
 
-    def second(task):
+    def second(task, house):
         seen.append(task)
         return len(seen) == 2
 
@@ -292,9 +294,9 @@ def test_a_suite_that_was_not_drawn_from_its_salt_is_found_out(folder: Path, par
     """Its maker picked the tasks by hand and committed to them: every hash fits, but they do not come of the salt."""
     suite = tasks.suite(folder)
     easier = msgspec.structs.replace(suite.tasks[0], t_star=suite.tasks[0].t_star / 2)
-    forged = library.frozen(suite.name, suite.version, (easier, *suite.tasks[1:]))
+    forged = make_suite(suite.name, suite.version, (easier, *suite.tasks[1:]))
     names = [f"houses/{part.house}.json" for part in parts]
-    files = {"suite.json": library.encode(forged), **{name: (folder / name).read_bytes() for name in names}}
+    files = {"suite.json": encode_suite(forged), **{name: (folder / name).read_bytes() for name in names}}
     secret_suites.write(ORDER, SALT, folder, files, {})
     assert list(commitment.changes(folder, commitment.load(folder / "commitment.json"))) == []
     found = dict(differences(folder, parts))
@@ -375,7 +377,6 @@ def test_a_season_from_salt_to_verdict(say, tmp_path: Path, monkeypatch: pytest.
     result = json.loads((run / "result.json").read_bytes())
     assert result["counts"]["trials"] == 4
     done("score", run)
-    monkeypatch.setattr(houses.loader, "_shelves", {})  # as in a new process, with the suite put away
     picture = tmp_path / "trial.png"
     done("replay", run, 0, "--out", picture)
     assert picture.stat().st_size > 10_000
@@ -431,32 +432,22 @@ def test_misuse_of_the_commands(say, folder: Path, tmp_path: Path):
 # ------------------------------------------------------------------------------------------------ houses of its own
 
 
-def test_houses_on_a_shelf_are_found_by_name_after_ours(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(houses.loader, "_shelves", {})
+def test_a_librarys_own_houses_are_found_by_name_after_ours(folder: Path):
     name = next((folder / "houses").glob("*.json")).stem
+    library = houses.HouseLibrary(folder=folder / "houses")
     with pytest.raises(UnknownName):
         houses.load(name)
-    houses.shelve(folder / "houses")
-    assert houses.load(name).id == name
+    assert library.load(name).id == name
     (folder / "houses" / "alder.json").write_bytes((folder / "houses" / f"{name}.json").read_bytes())
-    assert houses.load("alder").sha256 != houses.load(name).sha256
+    assert library.load("alder") == houses.load("alder")
     with pytest.raises(UnknownName, match=name):
-        houses.load("h000")
+        library.load("h000")
     with pytest.raises(UnknownName):
-        houses.load("../houses/alder")
+        library.load("../houses/alder")
     assert name not in houses.names()
-    (tmp_path / "more").mkdir()
-    (tmp_path / "more" / f"{name}.json").write_bytes(
-        (Path(houses.__file__).parent / "data" / "birch.json").read_bytes()
-    )
-    for shelf, there in ((tmp_path / "more", "birch"), (folder / "houses", "alder"), (tmp_path / "more", "birch")):
-        houses.shelve(shelf)  # the last one counts
-        assert (houses.load(name).sha256 == houses.load("birch").sha256) == (there == "birch")
-    assert houses.shelves() == (folder / "houses", tmp_path / "more")
 
 
-def test_a_suite_whose_houses_are_missing_says_so(folder: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(houses.loader, "_shelves", {})
+def test_a_suite_whose_houses_are_missing_says_so(folder: Path):
     for path in (folder / "houses").glob("*.json"):
         path.unlink()
     with pytest.raises(TaskError, match=r"tasks\[0\].house: unknown house"):

@@ -17,13 +17,16 @@ from hthor.eval.config import cli_command, run_config, suite_check, task_selecti
 from hthor.eval.runner import run_options
 from hthor.eval.task_check import custom_houses, proof
 from hthor.houses.assets import DATABASE
-from hthor.tasks.suites import custom_suite, library, suite_files
-from hthor.tasks.suites.custom_suite import Recipe
+from hthor.tasks.generation import custom_suite
+from hthor.tasks.generation.custom_suite import Recipe
+from hthor.tasks.suite import encode_suite, make_suite
+from hthor.tasks.suites import library, suite_files
 from hthor.tasks.validate import unsound
-from hthor.types import TaskSpec
+from hthor.types import HouseSpec, TaskSpec
 
 DATA = Path(houses.__file__).parent / "data"
 RECIPE = Recipe(name="mine", tasks=3, seed=5)
+ELDER = houses.load("elder")
 CUP = {"assetId": "Cup_1", "objectType": "Cup", "boundingBox": {"x": 0.08, "y": 0.1, "z": 0.08},
        "primaryProperty": "CanPickup"}  # fmt: skip
 
@@ -44,7 +47,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def made(home: Path) -> tuple[TaskSpec, ...]:
-    return custom_suite.in_house(RECIPE, str(home))
+    return custom_suite.in_house(RECIPE, houses.load(home))
 
 
 @pytest.fixture
@@ -58,7 +61,7 @@ def broken(path: Path, *numbers: int) -> Path:
     """The suite with objects of some tasks a metre too high."""
     found = library.read(path)
     rows = [_raised(task) if number in numbers else task for number, task in enumerate(found.tasks)]
-    path.write_bytes(library.encode(library.frozen(found.name, found.version, tuple(rows))))
+    path.write_bytes(encode_suite(make_suite(found.name, found.version, tuple(rows))))
     return path
 
 
@@ -72,25 +75,25 @@ def _raised(task: TaskSpec) -> TaskSpec:
 
 
 def test_equal_recipes_give_equal_tasks_and_other_seeds_others(home: Path, made: tuple[TaskSpec, ...]):
-    assert custom_suite.in_house(RECIPE, str(home)) == made
-    assert custom_suite.in_house(msgspec.structs.replace(RECIPE, seed=6, tasks=1), str(home))[0] not in made
+    assert custom_suite.in_house(RECIPE, houses.load(home)) == made
+    assert custom_suite.in_house(msgspec.structs.replace(RECIPE, seed=6, tasks=1), houses.load(home))[0] not in made
     assert [task.id for task in made] == sorted({task.id for task in made}, key=[task.id for task in made].index)
     assert {task.house for task in made} == {"my home"}
 
 
 def test_what_cannot_be_done_is_drawn_again_with_another_goal_in_the_end():
-    first = custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), "elder")[0].goal
+    first = custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), ELDER)[0].goal
     tried: list[TaskSpec] = []
 
-    def possible(task: TaskSpec) -> bool:
+    def possible(task: TaskSpec, house: HouseSpec) -> bool:
         tried.append(task)
         return task.goal != first
 
-    (task,) = custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), "elder", possible)
+    (task,) = custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), ELDER, possible)
     assert task.goal != first
     assert len(tried) > 1
     with pytest.raises(HthorError, match="has no room for another task like 'mine/elder/navigation-01'"):
-        custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("object_goal_navigation",)), "elder", lambda _: False)
+        custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("object_goal_navigation",)), ELDER, lambda *_: False)
 
 
 def test_a_suite_brings_its_houses_and_what_they_need(suite: Path, made: tuple[TaskSpec, ...], home: Path):
@@ -100,7 +103,7 @@ def test_a_suite_brings_its_houses_and_what_they_need(suite: Path, made: tuple[T
     assert rows == {"Cup": [CUP]}, "only what the house names"
     found = tasks.suite(suite)
     assert found.tasks == made
-    assert houses.load("my home") == houses.load(home)
+    assert found.houses.load("my home") == houses.load(home)
     assert set(library.own_houses(suite)) == set(names)
 
 
@@ -169,8 +172,7 @@ def test_that_a_suite_is_sound_is_remembered_until_it_changes(suite: Path, monke
 
 
 def test_a_kind_that_is_not_there_is_a_fault_and_no_end(made: tuple[TaskSpec, ...], home: Path):
-    houses.shelve(home.parent)
-    verdict = proof.examine(msgspec.structs.replace(made[0], kind="nothing"))
+    verdict = proof.examine(msgspec.structs.replace(made[0], kind="nothing"), houses.load(home))
     assert [fault.field for fault in verdict.faults] == ["kind"]
     assert proof.repeated([made[0], made[1], made[0]])[0].task == made[0].id
     assert not proof.repeated(made)

@@ -14,9 +14,11 @@ from hthor import catalog, cli, houses, jsonio, plugins, tasks
 from hthor.catalog import priors
 from hthor.errors import UnknownName
 from hthor.eval.task_check import proof
-from hthor.tasks.generation import difficulty, generate, scene_graph, suite_specs
+from hthor.tasks.arrangement import scene_graph
+from hthor.tasks.generation import difficulty, generate, suite_specs
 from hthor.tasks.kind import TaskKind
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
+from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites import library
 from hthor.tasks.validate import faults
 from hthor.types import Goal, Placement, Snapshot
@@ -122,7 +124,7 @@ def test_a_slice_made_again_is_the_same(name):
 
 @pytest.mark.parametrize("name", ["smoke", "paper"])
 def test_a_suite_made_again_is_the_same_file(name):
-    assert library.encode(generate.build(suite_specs.PLANS[name])) == library.path_of(name).read_bytes()
+    assert encode_suite(generate.build(suite_specs.PLANS[name])) == library.path_of(name).read_bytes()
 
 
 @pytest.mark.parametrize("name", sorted(suite_specs.PLANS))
@@ -130,7 +132,7 @@ def test_files_are_canonical_and_carry_their_hash(name):
     data = library.path_of(name).read_bytes()
     assert len(data) < 3_000_000
     suite = library.read(name)
-    assert library.encode(suite) == data
+    assert encode_suite(suite) == data
     assert suite.sha256 == jsonio.sha256(json.loads(data)["tasks"])
     assert (suite.name, suite.version) == (name, suite_specs.PLANS[name].version)
 
@@ -250,7 +252,7 @@ def test_check_names_task_field_and_reason(hthor, tmp_path):
     task = next(task for task in PAPER.tasks if task.house == "willow")
     late = msgspec.structs.replace(task, id="late", t_star=300.0)
     path = tmp_path / "own.json"
-    path.write_bytes(library.encode(library.frozen("own", 1, (task, late))))
+    path.write_bytes(encode_suite(make_suite("own", 1, (task, late))))
     code, out, err = hthor("tasks", "check", str(path), "--jobs", "1")
     assert code == 1
     assert "late: t_star: means at least 114.4 s" in out
@@ -262,7 +264,7 @@ def test_check_names_task_field_and_reason(hthor, tmp_path):
 
 def test_a_task_is_found_by_its_id_in_ones_own_file_too(tmp_path):
     path = tmp_path / "own.json"
-    path.write_bytes(library.encode(library.frozen("own", 1, PAPER.tasks[:2])))
+    path.write_bytes(encode_suite(make_suite("own", 1, PAPER.tasks[:2])))
     assert library.find(PAPER.tasks[1].id, path)[1] == PAPER.tasks[1]
     with pytest.raises(UnknownName, match="unknown task"):
         library.find("paper/alder/nothing", path)

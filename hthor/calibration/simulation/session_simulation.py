@@ -13,7 +13,7 @@ from msgspec import Struct
 from hthor import plugins, rules
 from hthor.episode import EpisodeLog, run_episode
 from hthor.errors import HthorError
-from hthor.eval.runner.trial_runner import TrialRunner
+from hthor.eval.runner.trial_runner import Sources, TrialRunner
 from hthor.humans.models.proxy import Model
 from hthor.humans.population import parameter_registry, random_effects
 from hthor.humans.population.participant import Person, root
@@ -75,7 +75,7 @@ def player(suite: Suite, seats: tuple[tuple[RobotSeat, ...], ...]) -> Callable[[
     Args:
         seats: the robots of each condition.
     """
-    stage = TrialRunner()
+    stage = TrialRunner(Sources(houses=str(suite.houses.folder or "")))
 
     def perform(sitting: SessionSpec) -> Iterator[SessionOutcome]:
         rows = []

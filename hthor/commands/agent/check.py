@@ -47,12 +47,10 @@ def run(
 
     The person's trials before it are played too, as they shape what the person does. Exit code 3 when the agent fails.
     """
-    from hthor import houses
     from hthor.eval.records import find
     from hthor.eval.replay import rerun
     from hthor.guest.agent import inputs
 
-    houses.shelve(run / "houses")  # where the suite brought its own
     wanted = find.find_trial(run, trial)
     files = rerun.RunFiles(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
     done = rerun.rerun_trial(run, wanted, files, isolation, inputs.read(agent_args or (), readable or ()))

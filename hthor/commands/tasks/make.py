@@ -60,7 +60,8 @@ def make_suite(
     """
     from hthor.eval.config import task_selection
     from hthor.eval.task_check import make_suite as proved
-    from hthor.tasks.suites import custom_suite, suite_files
+    from hthor.tasks.generation import custom_suite
+    from hthor.tasks.suites import suite_files
 
     given = suite_files.sources(houses)
     suite_files.clear(out)
@@ -108,7 +109,7 @@ def check_tasks(
         began = time.monotonic()
         with _watched(shelf.name, len(shelf.tasks), quiet) as tell:
             own = []
-            for verdict in proof.verdicts(shelf.tasks, jobs=workers):
+            for verdict in proof.verdicts(shelf.tasks, jobs=workers, houses=shelf.houses):
                 own.append(verdict)
                 tell(bool(verdict.faults))
         rows.append({**_verdict_row(shelf, own), "wall_s": round(time.monotonic() - began, 1)})

@@ -69,12 +69,11 @@ def list_tasks(
 @app.command("show")
 def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
     """Tell all about a task: what is asked, where everything is, who starts where, how long it takes at least."""
-    from hthor import houses
     from hthor.tasks.generation import difficulty
     from hthor.tasks.suites import library
 
     shelf, spec = library.find(task, suite)
-    house = houses.load(spec.house)
+    house = shelf.houses.load(spec.house)
     hard = difficulty.measured(spec, house)
     if json:
         output.put_json({"suite": shelf.name, "task": spec, "before": round(hard.before, 3), "score_s": hard.score})
@@ -116,8 +115,8 @@ def draw_task(
     from hthor.tasks.suites import library
     from hthor.world import World
 
-    _, spec = library.find(task, suite)
-    world = World(spec.house, objects=[(one.id, one.kind) for one in spec.objects])
+    found, spec = library.find(task, suite)
+    world = World(found.houses.load(spec.house), objects=[(one.id, one.kind) for one in spec.objects])
     path = out or Path(spec.id.replace("/", "-") + ".png")
     limit = 10 * spec.time_limit
     task_figure.draw(spec, world.house, omniscient_solver.solve(world, spec, limit_s=limit), path)

@@ -19,7 +19,7 @@ from hthor.eval.runner import trial_runner
 from hthor.eval.runner.agent_recorder import RecordedAgent
 from hthor.guest import Guest
 from hthor.guest.process_tools import resource_usage
-from hthor.tasks.suites import library
+from hthor.tasks.suite import make_suite
 from hthor.thinking_time import Timed
 from hthor.types import Action, Briefing, Detection, Observation, Send, TrialSpec, Wait
 from hthor.types.cameras import OWN
@@ -78,7 +78,7 @@ class Rehearsal:
         crew = robot_team.form_team([robot], [character], camera=camera)
         known = {task.id: task for task in tasks.suite("smoke").tasks}
         short = [msgspec.structs.replace(known[name], time_limit=_LIMIT_S) for name in _TASKS]
-        dealt = make_sessions(library.frozen("rehearsal", 1, tuple(short)), agent=crew, participants=1)[0]
+        dealt = make_sessions(make_suite("rehearsal", 1, tuple(short)), agent=crew, participants=1)[0]
         by_task = {trial.task.id: trial for trial in dealt.trials}
         self.a, self.b = (by_task[name] for name in _TASKS)
 

@@ -6,8 +6,8 @@ import hashlib
 from pathlib import Path
 
 from hthor import code_identity, installation, jsonio, tasks
+from hthor.tasks.suite import Suite
 from hthor.tasks.suites import library
-from hthor.tasks.suites.library import Suite
 from hthor.tasks.validate import validate
 
 

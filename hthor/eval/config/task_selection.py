@@ -13,9 +13,9 @@ from hthor import houses, plugins, seeds, tasks
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.config import suite_check, task_subset
 from hthor.eval.config.run_config import KindRef
+from hthor.houses import HouseLibrary
 from hthor.tasks.kind import TaskKind
-from hthor.tasks.suites import library
-from hthor.tasks.suites.library import Suite
+from hthor.tasks.suite import Suite, make_suite
 from hthor.types import TaskSpec
 
 _ROOT = seeds.derive(2, "programme")
@@ -82,7 +82,9 @@ def narrow_selection(whole: TaskSelection, names: Sequence[str], difficulty: str
         if name not in there:
             raise UnknownName(f"house of the suite '{suite.name}'", name, there)
     chosen = tuple(
-        task for task in suite.tasks if (not names or task.house in names) and _has_difficulty(task, difficulty)
+        task
+        for task in suite.tasks
+        if (not names or task.house in names) and _has_difficulty(task, suite.houses, difficulty)
     )
     if not chosen:
         where = f" in {', '.join(names)}" if names else ""
@@ -97,14 +99,14 @@ def narrow_selection(whole: TaskSelection, names: Sequence[str], difficulty: str
     note = f"{few}, are played: no result for the leaderboard."
     return msgspec.structs.replace(
         whole,
-        suite=library.frozen(suite.name, suite.version, chosen),
+        suite=suite.with_tasks(chosen),
         houses=tuple(name for name in there if name in names),
         difficulty=difficulty,
         notes=(*whole.notes, note),
     )
 
 
-def _has_difficulty(task: TaskSpec, difficulty: str) -> bool:
+def _has_difficulty(task: TaskSpec, houses: HouseLibrary, difficulty: str) -> bool:
     from hthor.tasks.generation import difficulty as difficulties
 
     if not difficulty:
@@ -123,7 +125,7 @@ def limit_selection(whole: TaskSelection, limit: int | None) -> TaskSelection:
     if limit > len(whole.suite.tasks):
         raise HthorError(f"--limit {limit}: the suite '{whole.suite.name}' has {len(whole.suite.tasks)} tasks here.")
     suite = whole.suite
-    some = library.frozen(suite.name, suite.version, task_subset.choose_subset(suite.tasks, limit))
+    some = suite.with_tasks(task_subset.choose_subset(suite.tasks, limit))
     note = f"{limit} of the {len(suite.tasks)} tasks of '{suite.name}' are played: no result for the leaderboard."
     return msgspec.structs.replace(whole, suite=some, limit=limit, notes=(*whole.notes, note))
 
@@ -170,7 +172,7 @@ def _only_kind(whole: Suite, kind: str) -> Suite:
     if not chosen:
         there = ", ".join(sorted({task.kind for task in whole.tasks}))
         raise HthorError(f"the suite '{whole.name}' has no task of the kind '{kind}'; it has: {there}.")
-    return library.frozen(whole.name, whole.version, chosen)
+    return whole.with_tasks(chosen)
 
 
 def _generated_tasks(kind: TaskKind, path: str) -> tuple[Suite, tuple[str, ...]]:
@@ -185,7 +187,7 @@ def _generated_tasks(kind: TaskKind, path: str) -> tuple[Suite, tuple[str, ...]]
             missing.append(f"there is no task in {name}: {error}")
     if not made:
         raise HthorError(f"{path}: {missing[0]}")
-    return library.frozen(kind.short, _VERSION, tuple(made)), tuple(missing)
+    return make_suite(kind.short, _VERSION, tuple(made)), tuple(missing)
 
 
 def _load_user_kind(path: str) -> TaskKind:

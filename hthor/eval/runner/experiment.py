@@ -26,6 +26,7 @@ from hthor.eval.runner.run import Watcher
 from hthor.eval.runner.run_options import ResolvedRuns, RunJob, RunOptions
 from hthor.guest import Isolation
 from hthor.guest.agent import inputs
+from hthor.tasks.suite import encode_suite
 from hthor.tasks.suites import library
 
 
@@ -124,7 +125,7 @@ def _perform(
     own = own_houses(options)
     extra = {f"houses/{name}": data for name, data in own.items()}  # so that the run can be drawn by itself
     if chosen.drawn:
-        extra["suite.json"] = library.encode(chosen.suite)
+        extra["suite.json"] = encode_suite(chosen.suite)
     if held is not None:
         extra[run_isolation.NAME] = jsonio.pretty(
             run_isolation.weakest_isolation(folder, held, options.require_isolation)

@@ -71,10 +71,6 @@ class TrialRunner:
         self._people: People | None = None
         self._seen: dict[str, tuple[File, ...]] = {}  # what agents opened and their manifests do not list, by seat
         gc_freeze.unfreeze_after(self)
-        if self._sources.houses:
-            from hthor import houses
-
-            houses.shelve(Path(self._sources.houses))
         if self._sources.kind:
             plugins.load("task kind", self._sources.kind)
 
@@ -94,17 +90,18 @@ class TrialRunner:
         cameras = tuple(seat.camera or OWN for seat in trial.robots)
         key = (task.house, task.house_sha256, bodies, detectors, cameras, objects)
         if key not in self._worlds:
-            from hthor import houses
+            from hthor.houses import HouseLibrary
             from hthor.world import World
 
             specs = tuple(self._body(seat) for seat in trial.robots)
+            own = Path(self._sources.houses) if self._sources.houses else None
             pack = load_pack(self._sources.assets)
             if pack is not None and code_identity.pictures_sha256(pack.sha256) != trial.assets_sha256:
                 raise HthorError(
                     f"the pack '{self._sources.assets}' was built anew while its run was going on; begin a new run."
                 )
             self._worlds[key] = World(
-                houses.load(task.house),
+                HouseLibrary(folder=own).load(task.house),
                 robots=specs,
                 objects=objects,
                 detectors=detectors,

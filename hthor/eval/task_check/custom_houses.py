@@ -14,8 +14,9 @@ from hthor.errors import HthorError
 from hthor.eval.config import task_selection
 from hthor.eval.runner.run_options import RunOptions
 from hthor.eval.task_check import make_suite as proved
-from hthor.tasks.suites import custom_suite, suite_files
-from hthor.tasks.suites.custom_suite import Recipe
+from hthor.tasks.generation import custom_suite
+from hthor.tasks.generation.custom_suite import Recipe
+from hthor.tasks.suites import suite_files
 from hthor.tasks.suites.suite_files import Source
 
 TASKS = 10

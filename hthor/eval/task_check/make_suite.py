@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 
 from hthor import houses
 from hthor.eval.task_check import proof
-from hthor.tasks.suites import custom_suite
-from hthor.tasks.suites.custom_suite import Recipe
+from hthor.tasks.generation import custom_suite
+from hthor.tasks.generation.custom_suite import Recipe
 from hthor.tasks.suites.suite_files import Source
-from hthor.types import TaskSpec
+from hthor.types import HouseSpec, TaskSpec
 
 CODE_ROOT = "makers"
 
@@ -25,10 +25,8 @@ def columns(recipe: Recipe, given: Sequence[Source], *, jobs: int) -> Iterator[t
 
 
 def _column(recipe: Recipe, source: Source) -> tuple[TaskSpec, ...]:
-    if source.file is not None:
-        houses.shelve(source.file.resolve().parent)  # so that the proof finds it by name
-    return custom_suite.in_house(recipe, source.given, _possible)
+    return custom_suite.in_house(recipe, houses.load(source.given), _possible)
 
 
-def _possible(task: TaskSpec) -> bool:
-    return not proof.examine(task).faults
+def _possible(task: TaskSpec, house: HouseSpec) -> bool:
+    return not proof.examine(task, house).faults

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from hthor import catalog, plugins, rules
 from hthor.geometry import plane
-from hthor.tasks.generation.occlusion import Sight
-from hthor.tasks.generation.reachability import Ground
+from hthor.tasks.arrangement.occlusion import Sight
+from hthor.tasks.arrangement.reachability import Ground
 from hthor.types import HUMAN, Drop, Job, Motion, Move, Open, Outcome, Pick, Place, Rotate, TaskSpec, Thing, Vec2, Vec3
 
 if TYPE_CHECKING:

@@ -7,6 +7,7 @@ the task (`hthor.eval.task_check.omniscient_solver`).
 
 from __future__ import annotations
 
+import functools
 import math
 import os
 import signal
@@ -16,17 +17,17 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import closing
 from functools import cache, lru_cache
 from multiprocessing import get_context
-from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 from msgspec import Struct
 
-from hthor import catalog, code_identity, houses, plugins, rules
+from hthor import catalog, code_identity, plugins, rules
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.runner import worker
 from hthor.eval.task_check import omniscient_solver
-from hthor.tasks.generation.placement import NEAR_M, as_thing
+from hthor.houses.library import OURS, HouseLibrary
+from hthor.tasks.arrangement.placement import NEAR_M, as_thing
 from hthor.tasks.validate import faults as mistakes
 from hthor.types import HUMAN, HouseSpec, Placement, TaskSpec, Thing, ThingState, Vec3
 
@@ -69,9 +70,14 @@ class Verdict(Struct, frozen=True, kw_only=True):
     faults: tuple[Fault, ...] = ()
 
 
-def verdicts(tasks: Sequence[TaskSpec], *, jobs: int) -> Generator[Verdict, None, None]:
-    """Check tasks in worker processes; verdicts come as they are ready. Closing the iterator ends the workers."""
-    with closing(shared(_examine, _chunks(tasks), jobs=jobs)) as found:
+def verdicts(tasks: Sequence[TaskSpec], *, jobs: int, houses: HouseLibrary = OURS) -> Generator[Verdict, None, None]:
+    """Check tasks in worker processes; verdicts come as they are ready. Closing the iterator ends the workers.
+
+    Args:
+        houses: finds the tasks' houses by name.
+    """
+    work = functools.partial(_examine, houses=houses)
+    with closing(shared(work, _chunks(tasks), jobs=jobs)) as found:
         for _, own in found:
             yield from own
 
@@ -84,8 +90,8 @@ def shared(work: Callable[[_In], _Out], items: Sequence[_In], *, jobs: int) -> G
     before = dict(os.environ)
     os.environ.update(worker.ONE_THREAD, PYTHONHASHSEED="0")
     code_identity.keep_compiled()
-    count, known = min(jobs, max(1, len(items))), (os.getpid(), houses.shelves())
-    pool = ProcessPoolExecutor(count, get_context("spawn"), initializer=_begin, initargs=known)
+    count, parent = min(jobs, max(1, len(items))), (os.getpid(),)
+    pool = ProcessPoolExecutor(count, get_context("spawn"), initializer=_begin, initargs=parent)
     try:
         left = {pool.submit(work, item): number for number, item in enumerate(items)}
         for future in as_completed(left):
@@ -98,10 +104,10 @@ def shared(work: Callable[[_In], _Out], items: Sequence[_In], *, jobs: int) -> G
         os.environ.update(before)
 
 
-def examine(task: TaskSpec) -> Verdict:
-    """Check one task, in this process."""
+def examine(task: TaskSpec, house: HouseSpec | HouseLibrary = OURS) -> Verdict:
+    """Check one task in this process, in its house or in the one that a library has under its house's name."""
     try:
-        house = _house(task.house, task.house_sha256)
+        house = _house(house, task.house, task.house_sha256) if isinstance(house, HouseLibrary) else house
     except HthorError as error:
         return _unsound(task, [("house", str(error))])
     first = list(mistakes(task, house))
@@ -261,20 +267,18 @@ def _chunks(tasks: Sequence[TaskSpec]) -> list[list[TaskSpec]]:
     return [own[first : first + _CHUNK] for own in by_house.values() for first in range(0, len(own), _CHUNK)]
 
 
-def _examine(tasks: Sequence[TaskSpec]) -> list[Verdict]:
-    return [examine(task) for task in tasks]
+def _examine(tasks: Sequence[TaskSpec], houses: HouseLibrary) -> list[Verdict]:
+    return [examine(task, houses) for task in tasks]
 
 
-def _begin(parent: int, shelves: tuple[Path, ...]) -> None:
-    """End with the parent, know its houses, and be deaf to Ctrl-C, for the parent decides what it means."""
+def _begin(parent: int) -> None:
+    """End with the parent, and be deaf to Ctrl-C, for the parent decides what it means."""
     worker.end_with_parent(parent)
-    for folder in shelves:
-        houses.shelve(folder)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @lru_cache(maxsize=32)
-def _house(name: str, sha256: str) -> HouseSpec:  # noqa: ARG001 - names may come to stand for other houses
+def _house(houses: HouseLibrary, name: str, sha256: str) -> HouseSpec:  # noqa: ARG001 - a file may change
     """The house of that name, loaded once for all tasks that were made for its version ``sha256``."""
     return houses.load(name)
 

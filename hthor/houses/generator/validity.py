@@ -9,7 +9,7 @@ import numpy as np
 
 from hthor import catalog
 from hthor.geometry.plane import inside, to_house, to_local
-from hthor.houses.checks.check import check
+from hthor.houses.checks.house_checks import check
 from hthor.houses.generator.floorplan.doors import LEAF_M
 from hthor.houses.generator.furnishing.clutter import takes_all
 from hthor.houses.space import grid_kernel, solids
@@ -72,7 +72,8 @@ def reached(free: Bools) -> Bools:
 def faults(house: HouseSpec, space: FreeSpace, walkable: Bools) -> Iterator[Fault]:
     """Everything that is wrong: by rule, id and words.
 
-    The rules of `hthor.houses.checks.check`, judged strictly, then those about open leaves, solids and free surfaces.
+    The rules of `hthor.houses.checks.house_checks`, applied strictly, then those about open doors, solids and free
+    surfaces.
     """
     for finding in check(house, RADIUS_M, HEIGHT_M, strict=True):
         if finding.severity == "error":

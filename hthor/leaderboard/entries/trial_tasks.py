@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hthor.eval.config import sessions
 from hthor.leaderboard.entries.entry import Entry
-from hthor.tasks.suites.library import Suite
+from hthor.tasks.suite import Suite
 from hthor.types import TaskSpec
 
 

@@ -26,7 +26,8 @@ from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.files import BoardError
 from hthor.leaderboard.entries.verification import Fresh
 from hthor.leaderboard.verify import performance_drop, replay
-from hthor.tasks.suites import fresh_tasks, library, secret_suites
+from hthor.tasks.generation import fresh_tasks, secret_suites
+from hthor.tasks.suite import encode_suite
 from hthor.tasks.suites.secret_salt import Salt
 from hthor.types import TaskSpec
 
@@ -104,7 +105,7 @@ def _draw(entry: Entry, board: Path, word: str, count: int, folder: Path, jobs: 
     lot = hashlib.sha256(f"hthor fresh\n{word}\n{entry.digest}\n".encode()).hexdigest()
     if name in tasks.suites():
         drawn = fresh_tasks.suite(name, int(lot[:30], 16), count, functools.partial(_possible, jobs=jobs))
-        jsonio.write(folder / secret_suites.SUITE, library.encode(drawn))
+        jsonio.write(folder / secret_suites.SUITE, encode_suite(drawn))
         return
     season = files.commitments(board).get(entry.run.suite.sha256)
     if season is None:
@@ -113,8 +114,8 @@ def _draw(entry: Entry, board: Path, word: str, count: int, folder: Path, jobs: 
 
     homes = max(1, min(season.houses, count // _HOUSE_TASKS))
     order = secret_suites.Order(name=f"fresh-{lot[:10]}", houses=homes, tasks=count)
-    proof = secret_suites.Proof(house=prove, task=lambda task: not proof.examine(task).faults)
-    for path, data in secret_suites.files(order, Salt(lot), proof).items():
+    judges = secret_suites.Proof(house=prove, task=lambda task, house: not proof.examine(task, house).faults)
+    for path, data in secret_suites.files(order, Salt(lot), judges).items():
         jsonio.write(folder / path, data)
 
 

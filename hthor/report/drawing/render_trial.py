@@ -4,23 +4,23 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hthor import houses
 from hthor.errors import HthorError
 from hthor.eval.records.trial_record import TrialRecord
+from hthor.houses import HouseLibrary
 from hthor.report.drawing import lettering
 from hthor.types import HouseSpec
 
 PICTURES = (".png", ".svg", ".pdf")
 
 
-def draw(record: TrialRecord, path: Path, *, video: bool) -> None:
-    """Write the picture or the film of a trial.
+def draw(run: Path, record: TrialRecord, path: Path, *, video: bool) -> None:
+    """Write the picture or the film of a trial of the run in the folder ``run``.
 
     Raises:
         HthorError: when the file's name does not fit, or the house has changed since.
     """
     check_name(path, video=video)
-    plan = house(record)
+    plan = house(run, record)
     path.parent.mkdir(parents=True, exist_ok=True)
     if video:
         from hthor.report.drawing import trial_video as film
@@ -43,14 +43,14 @@ def check_name(path: Path, *, video: bool) -> None:
         raise HthorError(f"{path}: the name of a {'film' if video else 'picture'} must end in {' or '.join(valid)}.")
 
 
-def house(record: TrialRecord) -> HouseSpec:
-    """The house of a trial, as it was then.
+def house(run: Path, record: TrialRecord) -> HouseSpec:
+    """The house of a trial of the run in the folder ``run``, as it was then.
 
     Raises:
         HthorError: when it has changed since.
     """
     task = record.spec.task
-    found = houses.load(task.house)
+    found = HouseLibrary(folder=run / "houses").load(task.house)
     if found.sha256 != task.house_sha256:
         raise HthorError(
             f"the house '{task.house}' has changed since this trial was played (its hash was {task.house_sha256[:10]} "

@@ -6,7 +6,7 @@ import io
 from collections.abc import Sequence
 from pathlib import Path
 
-from hthor import houses, jsonio
+from hthor import jsonio
 from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.guest import Given
@@ -50,9 +50,7 @@ def study(
     runs = load_runs.runs(folders)
     _same_people(runs)
     chosen = _records(runs, task, person)
-    for run in runs:
-        houses.shelve(run.folder / "houses")  # where the suite brought its own
-    rows, house = [], render_trial.house(chosen[0])
+    rows, house = [], render_trial.house(runs[0].folder, chosen[0])
     for run, record in zip(runs, chosen, strict=True):
         held = key_moments.of(record, house)
         ticks = [one.tick for one in held]

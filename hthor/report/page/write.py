@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from hthor import houses, jsonio
+from hthor import jsonio
 from hthor.errors import HthorError
 from hthor.report.analysis import build, load_runs
 from hthor.report.analysis.document import Findings, Published
@@ -40,11 +40,9 @@ def report(folders: Sequence[Path], out: Path, published: Published | None = Non
 
 def _scenes(runs: Sequence[Run], found: Findings) -> Iterator[Scene]:
     """What the maps are drawn of, in the findings' order."""
-    for run in runs:
-        houses.shelve(run.folder / "houses")  # where the suite brought its own
     own = {run.label: run for run in runs if run.plan.humans.name == found.people}
     alone = own[found.baseline].by_pair if found.baseline else {}
     by_arm = {label: {record.key: record for record in run.records} for label, run in own.items()}
     for one in found.shown:
         record = by_arm[one.arm][one.key]
-        yield Scene(record=record, alone=alone.get(pair(record)), house=render_trial.house(record))
+        yield Scene(record=record, alone=alone.get(pair(record)), house=render_trial.house(own[one.arm].folder, record))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hthor import catalog, plugins
 from hthor.catalog import priors
-from hthor.tasks.generation.reachability import Ground
+from hthor.tasks.arrangement.reachability import Ground
 from hthor.tasks.kind import TaskKind
 from hthor.types import HouseSpec, Placement, TaskSpec, Thing
 

@@ -16,12 +16,13 @@ import msgspec
 from hthor import houses, jsonio, plugins, seeds
 from hthor.catalog.priors import Triplet
 from hthor.errors import HthorError, UnknownName
+from hthor.tasks.arrangement.target_arrangement import arrange
 from hthor.tasks.generation import difficulty
 from hthor.tasks.generation.difficulty import Level
 from hthor.tasks.generation.start_poses import Begin, begin
 from hthor.tasks.generation.suite_specs import PLANS, ROBOTS, Order, Plan
-from hthor.tasks.generation.target_arrangement import arrange
 from hthor.tasks.kind import TaskKind
+from hthor.tasks.suite import Suite, encode_suite, make_suite
 from hthor.tasks.suites import library
 from hthor.types import Goal, HouseSpec, Placement, TaskSpec
 
@@ -31,7 +32,7 @@ _CLOSE_S = 0.5
 _TRIES = 20
 
 
-def build(plan: Plan) -> library.Suite:
+def build(plan: Plan) -> Suite:
     """The suite that a plan describes: its houses' tasks in turn, the first of each, then the second of each.
 
     Raises:
@@ -40,7 +41,7 @@ def build(plan: Plan) -> library.Suite:
     columns = [in_house(plan, houses.load(name)) for name in plan.houses]
     longest = max(len(column) for column in columns)
     tasks = [column[number] for number in range(longest) for column in columns if number < len(column)]
-    return library.frozen(plan.name, plan.version, tuple(tasks))
+    return make_suite(plan.name, plan.version, tuple(tasks))
 
 
 def in_house(plan: Plan, house: HouseSpec) -> tuple[TaskSpec, ...]:
@@ -95,7 +96,7 @@ def task(
         looks: of how many arrangements the one whose time is nearest to that is taken, unless one is near enough.
         level: the stratum of difficulty that it must be of, if any.
         split: whether the house is one of the ten scenes; empty when the suite does not tell.
-        serial: as `hthor.tasks.generation.target_arrangement.arrange` has it.
+        serial: as `hthor.tasks.arrangement.target_arrangement.arrange` has it.
         told: whether the task tells how difficult it is.
 
     Raises:
@@ -167,7 +168,7 @@ def main(arguments: Sequence[str]) -> int:
         if not arguments or arguments[0] not in PLANS:
             raise UnknownName("suite plan", arguments[0] if arguments else "", PLANS)
         path = Path(arguments[1]) if len(arguments) > 1 else library.path_of(arguments[0])
-        jsonio.write(path, library.encode(build(PLANS[arguments[0]])))
+        jsonio.write(path, encode_suite(build(PLANS[arguments[0]])))
     except HthorError as error:
         sys.stderr.write(f"{error}\n")
         return error.exit_code

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from hthor import seeds
 from hthor.houses.space.free_space import FreeSpace
-from hthor.tasks.generation.avatar import HEIGHT_M, START_MARGIN_M
-from hthor.tasks.generation.reachability import Ground, rim
+from hthor.tasks.arrangement.avatar import HEIGHT_M, START_MARGIN_M
+from hthor.tasks.arrangement.reachability import Ground, rim
 from hthor.tasks.kind import TaskKind
 from hthor.types import Goal, HouseSpec, Placement, Pose
 

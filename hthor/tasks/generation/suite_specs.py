@@ -14,7 +14,7 @@ from msgspec import Struct
 from hthor import catalog, plugins, seeds
 from hthor.catalog.priors import Triplet
 from hthor.errors import HthorError
-from hthor.tasks.generation import scene_graph
+from hthor.tasks.arrangement import scene_graph
 from hthor.tasks.generation.difficulty import Level
 from hthor.tasks.kind import TaskKind
 from hthor.types import Goal, HouseSpec
@@ -46,7 +46,7 @@ class Plan(Struct, frozen=True, kw_only=True):
 
     ``orders`` lists a house's tasks. ``robots`` is how many of them a task has starts for, ``looks`` how many
     arrangements are compared for how hard they are. ``serial`` as
-    `hthor.tasks.generation.target_arrangement.arrange` has it. ``told`` says whether the tasks tell how difficult
+    `hthor.tasks.arrangement.target_arrangement.arrange` has it. ``told`` says whether the tasks tell how difficult
     they are. ``redrawn`` says how often a task was drawn again, because ``hthor tasks check`` found that nobody can
     do it: in the real world small things hide the target, or the way takes too long.
     """

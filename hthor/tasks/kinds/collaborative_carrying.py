@@ -17,7 +17,7 @@ import math
 from hthor import catalog, seeds
 from hthor.errors import HthorError
 from hthor.geometry import plane
-from hthor.tasks.generation.free_spots import floor_spot, unique
+from hthor.tasks.arrangement.free_spots import floor_spot, unique
 from hthor.tasks.subgoals import JobKind, carrying_way
 from hthor.types import Goal, HouseSpec, Job, Placement, Snapshot, TaskSpec
 
@@ -63,7 +63,7 @@ class CollaborativeCarrying(JobKind):
             f"house '{house.id}' has no two rooms with floor enough to carry a trunk from one to the other"
         )
 
-    def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> float:
+    def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> float:
         if self.met(task, snapshot, house):
             return 1.0
         (job,), trunk = task.goal.jobs, snapshot.things.get(task.goal.target)

@@ -13,10 +13,9 @@ Turning, recognising and reading cost nothing, and lines of sight do not matter.
 
 from __future__ import annotations
 
-import functools
 from typing import Literal
 
-from hthor import catalog, houses, rules
+from hthor import catalog, rules
 from hthor.tasks.kind import LeastTimes, TaskKind
 from hthor.types import Goal, HouseSpec, Placement, Snapshot, TaskSpec
 
@@ -62,18 +61,18 @@ class MobileManipulation(TaskKind):
         destination = catalog.kind(goal.destination)
         return f"Pick {target.indefinite} and place it {goal.relation} {destination.indefinite}."
 
-    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> bool:
+    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
         target = snapshot.things[task.goal.target]
         if target.held_by or not target.support:
             return False
-        return _kind_of(target.support, house or _house(task.house)) == task.goal.destination
+        return _kind_of(target.support, house) == task.goal.destination
 
     def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
         support = next(placement.support for placement in objects if placement.id == goal.target)
         return _kind_of(support, house) == goal.destination
 
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
-        from hthor.tasks.generation.reachability import Ground
+        from hthor.tasks.arrangement.reachability import Ground
 
         target = next(placement for placement in objects if placement.id == goal.target)
         opening = [_kind_of(target.support, house) if target.relation == "in" else "", goal.destination]
@@ -82,11 +81,6 @@ class MobileManipulation(TaskKind):
         walk = ground.walk([ground.touching(target), ground.serving(goal.destination)])
         handling = (2 + doors) * rules.HANDLING_S
         return lambda starts: walk.lengths(starts) / rules.PACE_M_S + handling
-
-
-@functools.cache
-def _house(name: str) -> HouseSpec:
-    return houses.load(name)
 
 
 def _relation(destination: str) -> Literal["on", "in"]:

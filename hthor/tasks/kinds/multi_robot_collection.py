@@ -23,8 +23,8 @@ from collections.abc import Iterable
 from hthor import catalog, rules, seeds
 from hthor.catalog import priors
 from hthor.errors import HthorError
-from hthor.tasks.generation.free_spots import room_of, spot, unique
-from hthor.tasks.generation.reachability import Ground
+from hthor.tasks.arrangement.free_spots import room_of, spot, unique
+from hthor.tasks.arrangement.reachability import Ground
 from hthor.tasks.subgoals import JobKind, carrying_way
 from hthor.types import Goal, HouseSpec, Job, Placement, Pose, TaskSpec, Thing
 

@@ -40,14 +40,14 @@ class ObjectGoalNavigation(TaskKind):
     def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
         return f"Find {_kind(goal, objects).indefinite}."
 
-    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec | None = None) -> bool:
+    def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
         return task.goal.target in snapshot.in_view.get(HUMAN, ())
 
     def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
         return False
 
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
-        from hthor.tasks.generation.reachability import Ground
+        from hthor.tasks.arrangement.reachability import Ground
 
         target = next(placement for placement in objects if placement.id == goal.target)
         ground = Ground.of(house)

@@ -20,7 +20,7 @@ import msgspec
 
 from hthor import catalog, seeds
 from hthor.errors import HthorError
-from hthor.tasks.generation.free_spots import at_hand, spot
+from hthor.tasks.arrangement.free_spots import at_hand, spot
 from hthor.tasks.subgoals import JobKind
 from hthor.types import Goal, HouseSpec, Job, Placement, Thing
 
@@ -48,7 +48,7 @@ class RoomRearrangement(JobKind):
         return f"Some things were moved, {first.definite} among them. Put everything back where it was."
 
     def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]:
-        from hthor.tasks.generation.target_arrangement import arrange
+        from hthor.tasks.arrangement.target_arrangement import arrange
 
         count = FEWEST + int(seeds.draw(root, "count") * (MOST - FEWEST + 1))
         for attempt in range(_TRIES):

@@ -1,6 +1,6 @@
 """Put what is out of place where common sense expects it.
 
-There is no reference: any place that the judgement (`hthor.tasks.generation.commonsense_places`, as data) allows
+There is no reference: any place that the judgement (`hthor.tasks.arrangement.commonsense_places`, as data) allows
 will do. The goal's jobs say so of every target, those included that lie well already, and which those are nobody is
 told, but that the first of them does not::
 
@@ -15,8 +15,8 @@ from __future__ import annotations
 
 from hthor import catalog, seeds
 from hthor.errors import HthorError
-from hthor.tasks.generation import commonsense_places
-from hthor.tasks.generation.free_spots import spot
+from hthor.tasks.arrangement import commonsense_places
+from hthor.tasks.arrangement.free_spots import spot
 from hthor.tasks.subgoals import JobKind
 from hthor.types import Goal, HouseSpec, Job, Placement, Thing
 

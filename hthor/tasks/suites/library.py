@@ -1,27 +1,18 @@
-"""Suites of tasks: frozen files, read and judged."""
+"""Suites by name or from a file: read, verified by their hash and, where they are the user's own, validated."""
 
 from __future__ import annotations
 
 import difflib
 from pathlib import Path
 
-from msgspec import Struct
-
-from hthor import documents, houses, jsonio
+from hthor import documents
 from hthor.errors import TaskError, UnknownName
+from hthor.houses.library import OURS, HouseLibrary
+from hthor.tasks.suite import Suite, SuiteFile, tasks_sha256
 from hthor.types import TaskSpec
 
 _FOLDER = Path(__file__).parent / "data"
 _SHOWN = 8
-
-
-class Suite(Struct, frozen=True, kw_only=True):
-    """A named list of tasks. ``sha256`` is the hash of the tasks' canonical JSON."""
-
-    name: str
-    version: int
-    sha256: str
-    tasks: tuple[TaskSpec, ...]
 
 
 def suites() -> tuple[str, ...]:
@@ -32,91 +23,73 @@ def suites() -> tuple[str, ...]:
 def suite(name_or_path: str | Path) -> Suite:
     """A suite by name, or from a file, verified and validated.
 
-    A suite of ours was validated when it was made, and its hash tells that nothing has changed since; one of the user's
-    is validated now. Houses that lie beside the file, in `houses_of` it, are those of the suite: from now on
-    `hthor.houses.load` finds them by name. The path of a folder stands for the ``suite.json`` in it.
+    The suites that come with hthor were validated when they were made; their hash shows that nothing has changed since.
+    A file's tasks are validated now. The path of a folder stands for the ``suite.json`` in it.
 
     Raises:
         UnknownName: when no suite has that name.
-        TaskError: when the file cannot be read, was changed after it was frozen, or holds a task that cannot be run.
+        TaskError: when the file cannot be read, was changed after it was made, or holds a task that cannot be run.
     """
-    found = read(name_or_path)
+    loaded = read(name_or_path)
     path, shown = _locate(name_or_path)
     if path.parent != _FOLDER:
         from hthor.tasks.validate import validate
 
-        validate(found, shown)
-    return found
+        validate(loaded, shown)
+    return loaded
 
 
 def read(name_or_path: str | Path) -> Suite:
-    """A suite by name, or from a file, verified but not validated: every task of it is as it was frozen.
+    """A suite by name, or from a file, verified by its hash but not validated.
 
     Raises:
         UnknownName: when no suite has that name.
-        TaskError: when the file cannot be read, or was changed after it was frozen.
+        TaskError: when the file cannot be read, or was changed after it was made.
     """
     path, shown = _locate(name_or_path)
-    if (own := houses_of(path)).is_dir():
-        houses.shelve(own)
-    found = _decode(path, shown)
-    digest = digest_of(found.tasks)
-    if digest != found.sha256:
-        problem = f"the tasks hash to {digest}, the file says {found.sha256}, so it was changed after it was frozen"
+    file = documents.read(path, SuiteFile, TaskError, shown=shown)
+    digest = tasks_sha256(file.tasks)
+    if digest != file.sha256:
+        problem = f"the tasks hash to {digest}, the file says {file.sha256}, so it was changed after it was made"
         raise TaskError(
             shown, "sha256", f"{problem}; restore it, or rebuild it with python -m hthor.tasks.generation.generate"
         )
-    return found
+    folder = houses_of(path)
+    houses = HouseLibrary(folder=folder.resolve()) if folder.is_dir() else OURS
+    return Suite(name=file.name, version=file.version, sha256=file.sha256, tasks=file.tasks, houses=houses)
 
 
 def find(id: str, name_or_path: str | Path | None = None) -> tuple[Suite, TaskSpec]:
-    """The task of that id, of one suite or of any of ours, and the suite it is in.
+    """The task of that id, in one suite or in any that comes with hthor, and the suite it is in.
 
     Raises:
         UnknownName: when there is none; names the nearest.
     """
-    shelf = suites() if name_or_path is None else (name_or_path,)
+    names = suites() if name_or_path is None else (name_or_path,)
     ids: list[str] = []
-    for name in sorted(shelf, key=lambda name: str(name) != id.partition("/")[0]):
-        found = read(name)
-        for task in found.tasks:
+    for name in sorted(names, key=lambda name: str(name) != id.partition("/")[0]):
+        loaded = read(name)
+        for task in loaded.tasks:
             if task.id == id:
-                return found, task
-        ids += [task.id for task in found.tasks]
+                return loaded, task
+        ids += [task.id for task in loaded.tasks]
     alike = difflib.get_close_matches(id, ids, n=_SHOWN, cutoff=0.6)
     raise UnknownName("task", id, alike or ids, "'hthor tasks list SUITE' lists them all.")
 
 
 def own_houses(name_or_path: str | Path) -> dict[str, bytes]:
-    """The house files that a suite brings with it, by name such as ``h1c0ffee.json``; empty for a suite of ours.
+    """The house files that a suite brings along, by name such as ``h1c0ffee.json``; empty for a suite of hthor's own.
 
-    The excerpt of an asset database that may lie beside them comes with them.
+    The excerpt of an asset database that may lie beside them is included.
     """
     path, _ = _locate(name_or_path)
     return {file.name: file.read_bytes() for file in sorted(houses_of(path).glob("*.json"))}
 
 
 def houses_of(path: Path) -> Path:
-    """Where the houses of the suite in this file lie: ``mine.houses`` for ``mine.json``, else ``houses`` beside it."""
+    """The folder of the houses of this suite file: ``mine.houses`` for ``mine.json``, else ``houses`` beside it."""
     own = path.with_suffix(".houses")
     return own if own.is_dir() else path.with_name("houses")
-
-
-def frozen(name: str, version: int, tasks: tuple[TaskSpec, ...]) -> Suite:
-    """A suite with the hash of its tasks."""
-    return Suite(name=name, version=version, sha256=digest_of(tasks), tasks=tasks)
-
-
-def digest_of(tasks: tuple[TaskSpec, ...]) -> str:
-    """Hash of the tasks' canonical JSON, 64 hexadecimal digits."""
-    return jsonio.sha256(tasks)
-
-
-def encode(found: Suite) -> bytes:
-    """The suite's file: one task a line, so that a change of one task is a change of one line."""
-    head = jsonio.canonical({"name": found.name, "sha256": found.sha256, "version": found.version})
-    lines = b",\n".join(jsonio.canonical(task) for task in found.tasks)
-    return head[:-1] + b',"tasks":[\n' + lines + b"\n]}\n"
 
 
 def path_of(name: str) -> Path:
@@ -133,7 +106,3 @@ def _locate(name_or_path: str | Path) -> tuple[Path, str]:
     if path.suffix != ".json" and not path.exists():
         raise UnknownName("suite", str(name_or_path), suites(), "A path to a suite's file (.json) or folder works too.")
     return path, str(name_or_path)
-
-
-def _decode(path: Path, shown: str) -> Suite:
-    return documents.read(path, Suite, TaskError, shown=shown)

@@ -14,7 +14,8 @@ from hthor import houses, jsonio
 from hthor.errors import HouseError, HthorError
 from hthor.houses import schema
 from hthor.houses.assets import DATABASE, Assets
-from hthor.tasks.suites import library, standard
+from hthor.tasks.suite import encode_suite, in_turn, make_suite
+from hthor.tasks.suites import library
 from hthor.types import TaskSpec
 
 SUITE = "suite.json"
@@ -69,9 +70,9 @@ def files(name: str, version: int, found: Sequence[Source], columns: Sequence[Se
     Args:
         name, version: of the suite. columns: the tasks of each of the houses ``found``.
     """
-    suite = library.frozen(name, version, tuple(standard.in_turn(columns)))
+    suite = make_suite(name, version, tuple(in_turn(columns)))
     own = {f"houses/{one.file.stem}.json": one.file for one in found if one.file is not None}
-    made = {SUITE: library.encode(suite), **{path: file.read_bytes() for path, file in own.items()}}
+    made = {SUITE: encode_suite(suite), **{path: file.read_bytes() for path, file in own.items()}}
     database = _excerpt(list(own.values()))
     return {**made, **({f"houses/{DATABASE}": database} if database else {})}
 

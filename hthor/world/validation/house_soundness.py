@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hthor.houses.checks import thing_rules
-from hthor.houses.checks.check import check
 from hthor.houses.checks.findings import Finding, error
+from hthor.houses.checks.house_checks import check
 from hthor.types import HouseSpec
 from hthor.world.model import door_geometry
 from hthor.world.validation.drop_test import drops
@@ -16,8 +16,8 @@ from hthor.world.validation.penetration import penetrations
 def prove(house: HouseSpec, radius: float = 0.25) -> tuple[Finding, ...]:
     """Everything that is wrong with a house of our own for bodies up to this radius [m]; errors come first.
 
-    The rules of `hthor.houses.checks.check`, judged strictly, ``swing-free`` for the leaves in its doorways too, then
-    ``penetration`` and ``surface-takes``.
+    The rules of `hthor.houses.checks.house_checks`, applied strictly, ``swing-free`` for the leaves in its doorways
+    too, then ``penetration`` and ``surface-takes``.
     """
     plain = check(house, radius, strict=True)
     found = (*plain, *_leaves(house), *penetrations(house), *drops(house))

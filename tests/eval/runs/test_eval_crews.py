@@ -10,6 +10,7 @@ import eval_fakes as fakes
 import msgspec
 import pytest
 
+from hthor.tasks.suite import encode_suite, make_suite
 from hthor import tasks
 from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.config import cli_command, robot_team, sessions
@@ -123,7 +124,7 @@ def guests(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 def played(robots: str, count: int = 1) -> list[TrialRecord]:
     """The first trials of one person in a small house."""
     (crew,) = robot_team.parse_teams(robots, ())
-    few = library.frozen("few", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == HOUSE))
+    few = make_suite("few", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == HOUSE))
     whole = sessions.make_sessions(few, agent=crew, participants=1)[0]
     perform = trial_runner.make_runner(trial_runner.Sources(minds=crew.minds, bodies=crew.bodies))
     return list(perform(msgspec.structs.replace(whole, trials=whole.trials[:count])))
@@ -213,7 +214,7 @@ def test_the_command_that_finishes_a_run_names_every_robot(tmp_path: Path):
 def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):
     chosen = [task for task in tasks.suite("smoke").tasks if task.house == HOUSE][:2]
     suite = tmp_path / "brief.json"
-    suite.write_bytes(library.encode(library.frozen("brief", 1, tuple(chosen))))
+    suite.write_bytes(encode_suite(make_suite("brief", 1, tuple(chosen))))
     results = []
     for jobs in (1, 2):
         options = run_options.RunOptions(

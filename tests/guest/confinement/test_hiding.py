@@ -13,7 +13,8 @@ from hthor import houses, jsonio, tasks
 from hthor.guest import Guest, GuestFault
 from hthor.guest.confinement import hiding, paths
 from hthor.humans.population import population_file
-from hthor.tasks.suites import library, secret_salt
+from hthor.tasks.suite import encode_suite, make_suite
+from hthor.tasks.suites import secret_salt
 from hthor.types import Observation, Pose
 
 LOOK = Observation(tick=0, pose=Pose(x=0.0, y=0.0, yaw=0.0), idle=True, senses=None)
@@ -31,7 +32,7 @@ SECRETS = {
     "a/b/c/d/e/shard-1-of-4/trials.jsonl": LINE,
     "early/trials.jsonl": LINE,
     "old.jsonl": LINE,
-    "mine/tasks.json": library.encode(library.frozen("mine", 1, tasks.suite("smoke").tasks[:1])),
+    "mine/tasks.json": encode_suite(make_suite("mine", 1, tasks.suite("smoke").tasks[:1])),
     "mine/houses/h1.json": HOUSE,
     "official/commitment.json": jsonio.pretty({"schema": "hthor.commitment/1", "salt": "0" * 64}),
     "official/houses/h2.json": HOUSE,

@@ -12,8 +12,8 @@ from hthor import catalog, seeds
 from hthor.catalog import priors
 from hthor.catalog.priors import Triplet
 from hthor.geometry.plane import inside
-from hthor.tasks.generation.placement import NEAR_M, Rest, Shelves, gap_to, placed
-from hthor.tasks.generation.reachability import Ground
+from hthor.tasks.arrangement.placement import NEAR_M, Rest, Shelves, gap_to, placed
+from hthor.tasks.arrangement.reachability import Ground
 from hthor.types import HouseSpec, Placement, Thing, Vec2
 
 TRIES = 60

@@ -9,9 +9,9 @@ import msgspec
 from hthor import catalog, seeds
 from hthor.catalog.priors import Triplet
 from hthor.errors import HthorError
-from hthor.tasks.generation import fallback_placement, scene_graph
-from hthor.tasks.generation.placement import NEAR_M
-from hthor.tasks.generation.relation_placement import TRIES, Wish, find
+from hthor.tasks.arrangement import fallback_placement, scene_graph
+from hthor.tasks.arrangement.placement import NEAR_M
+from hthor.tasks.arrangement.relation_placement import TRIES, Wish, find
 from hthor.types import HouseSpec, Placement
 
 CODE_PART = "tools"
@@ -38,7 +38,7 @@ def arrange(
     each relation a pose that rests exactly on a surface, touches nothing, and can be reached and seen by the person's
     avatar, the fridge's door being open. What is near something is in the same room. Where a relation has no such pose,
     that target's is drawn again, unless it is ``fixed``: then the whole graph is, but where no graph helps because of
-    what is banned, see `hthor.tasks.generation.fallback_placement`.
+    what is banned, see `hthor.tasks.arrangement.fallback_placement`.
 
     Args:
         house: the floor plan.

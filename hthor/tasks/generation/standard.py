@@ -1,16 +1,15 @@
 """The suite ``standard``: 2000 tasks in the ten scenes and ten houses beside them.
 
-``python -m hthor.tasks.suites.standard`` writes ``suites/standard.json`` anew, byte for byte the same as long as
+``python -m hthor.tasks.generation.standard`` writes ``suites/standard.json`` anew, byte for byte the same as long as
 the houses, the catalogue, the rules and the makers of tasks are. An argument names another file to write.
 """
 
 from __future__ import annotations
 
-import itertools
 import math
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -20,6 +19,7 @@ from hthor import houses, jsonio, plugins, seeds
 from hthor.errors import HthorError
 from hthor.tasks.generation import generate
 from hthor.tasks.generation.suite_specs import SCENES, Plan, counted
+from hthor.tasks.suite import Suite, encode_suite, in_turn, make_suite
 from hthor.tasks.suites import library
 from hthor.tasks.validate import validate
 from hthor.types import HouseSpec, Placement, TaskSpec
@@ -47,7 +47,16 @@ PLAN = Plan(
 """A hundred tasks a house, of the two kinds as many as in the paper's 565 and 1583: 26 to 74 in a hundred."""
 
 
-def build() -> library.Suite:
+Possible = Callable[[TaskSpec, HouseSpec], bool]
+"""Whether a task can be done in its house."""
+
+
+def anything(_task: TaskSpec, _house: HouseSpec) -> bool:
+    """Whether a task can be done, for who takes them unproved."""
+    return True
+
+
+def build() -> Suite:
     """The suite, validated; made by one process a CPU.
 
     Raises:
@@ -55,7 +64,7 @@ def build() -> library.Suite:
     """
     with ProcessPoolExecutor(len(os.sched_getaffinity(0)), get_context("spawn")) as pool:
         columns = list(pool.map(column, PLAN.houses))
-    suite = library.frozen(PLAN.name, PLAN.version, tuple(in_turn(columns)))
+    suite = make_suite(PLAN.name, PLAN.version, tuple(in_turn(columns)))
     validate(suite, PLAN.name)
     return suite
 
@@ -66,7 +75,7 @@ def column(name: str) -> tuple[TaskSpec, ...]:
 
 
 def in_house(
-    plan: Plan, house: HouseSpec, split: Literal["seen", "new"], possible: Callable[[TaskSpec], bool] = lambda _: True
+    plan: Plan, house: HouseSpec, split: Literal["seen", "new"], possible: Possible = anything
 ) -> Iterator[TaskSpec]:
     """One house's tasks of a plan one by one, no two of them alike; what is not ``possible`` is drawn again.
 
@@ -87,7 +96,7 @@ def in_house(
                 looks=plan.looks,
                 split=split,
             )
-            if not any(alike(made, other) for other in done) and possible(made):
+            if not any(alike(made, other) for other in done) and possible(made, house):
                 done.append(made)
                 yield made
                 break
@@ -105,12 +114,6 @@ def alike(one: TaskSpec, two: TaskSpec) -> bool:
     return math.dist((here.x, here.y), (there.x, there.y)) < ALIKE_M
 
 
-def in_turn(columns: Sequence[Sequence[TaskSpec]]) -> Iterable[TaskSpec]:
-    """The houses' tasks in turn, so that tasks that follow one another are in different houses."""
-    rows = itertools.zip_longest(*columns)
-    return (task for row in rows for task in row if task is not None)
-
-
 def _target(task: TaskSpec) -> Placement:
     return next(placement for placement in task.objects if placement.id == task.goal.target)
 
@@ -119,7 +122,7 @@ def main(arguments: Sequence[str]) -> int:
     """Write the suite."""
     path = Path(arguments[0]) if arguments else library.path_of(PLAN.name)
     try:
-        jsonio.write(path, library.encode(build()))
+        jsonio.write(path, encode_suite(build()))
     except HthorError as error:
         sys.stderr.write(f"{error}\n")
         return error.exit_code

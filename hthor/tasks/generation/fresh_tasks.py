@@ -8,9 +8,9 @@ import msgspec
 
 from hthor import houses, seeds
 from hthor.errors import HthorError, UnknownName
-from hthor.tasks.generation import generate
+from hthor.tasks.generation import generate, standard
 from hthor.tasks.generation.suite_specs import PLANS, Plan
-from hthor.tasks.suites import library, standard
+from hthor.tasks.suite import Suite, make_suite
 from hthor.types import TaskSpec
 
 _VERSION = 1
@@ -19,7 +19,7 @@ Possible = Callable[[Sequence[TaskSpec]], Sequence[bool]]
 """Whether each of these tasks can be done."""
 
 
-def suite(name: str, root: int, count: int, possible: Possible) -> library.Suite:
+def suite(name: str, root: int, count: int, possible: Possible) -> Suite:
     """A suite of so many tasks by the recipe of one of hthor's own, which shares no draw with it.
 
     The houses, the kinds of task and their shares, the goals and how hard tasks are aimed to be are the recipe's; what
@@ -42,7 +42,7 @@ def suite(name: str, root: int, count: int, possible: Possible) -> library.Suite
         made |= {number: task for (number, task), good in zip(drafts, sound, strict=True) if good}
         if len(made) == count:
             tasks = tuple(made[number] for number in sorted(made))
-            return library.frozen(f"{name}-fresh", _VERSION, tasks)
+            return make_suite(f"{name}-fresh", _VERSION, tasks)
     missing = f"{count - len(made)} of {count} fresh tasks like those of '{name}'"
     raise HthorError(f"{missing} could not be drawn; ask for fewer")
 

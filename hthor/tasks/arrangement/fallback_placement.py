@@ -14,9 +14,9 @@ import msgspec
 
 from hthor import catalog, seeds
 from hthor.catalog import priors
-from hthor.tasks.generation.placement import NEAR_M, Rest, Shelves, as_thing, laid, placed, rests_of
-from hthor.tasks.generation.reachability import Ground
-from hthor.tasks.generation.relation_placement import TRIES, Wish, find, near_enough, reachable
+from hthor.tasks.arrangement.placement import NEAR_M, Rest, Shelves, as_thing, laid, placed, rests_of
+from hthor.tasks.arrangement.reachability import Ground
+from hthor.tasks.arrangement.relation_placement import TRIES, Wish, find, near_enough, reachable
 from hthor.types import HouseSpec, Placement
 
 CODE_PART = "tools"

@@ -6,18 +6,17 @@ Equal recipes and houses give equal tasks.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
 from typing import Literal
 
 import msgspec
 from msgspec import Struct
 
-from hthor import houses, plugins, seeds
+from hthor import plugins, seeds
 from hthor.errors import HthorError
-from hthor.tasks.generation import generate
+from hthor.tasks.generation import generate, standard
 from hthor.tasks.generation.difficulty import Level
+from hthor.tasks.generation.standard import Possible, anything
 from hthor.tasks.generation.suite_specs import FIND, MOVE, ROBOTS, Order, Plan, counted
-from hthor.tasks.suites import standard
 from hthor.types import Goal, HouseSpec, TaskSpec
 
 VERSION = 1
@@ -41,13 +40,12 @@ class Recipe(Struct, frozen=True, kw_only=True):
     seed: int = 0
 
 
-def in_house(recipe: Recipe, given: str, possible: Callable[[TaskSpec], bool] = lambda _: True) -> tuple[TaskSpec, ...]:
+def in_house(recipe: Recipe, house: HouseSpec, possible: Possible = anything) -> tuple[TaskSpec, ...]:
     """The tasks of one house, no two of them alike; what is not ``possible`` is drawn again.
 
     Raises:
         HthorError: when the house has no room for so many.
     """
-    house = houses.load(given)
     orders = functools.partial(_orders, recipe)
     plan = Plan(name=recipe.name, version=VERSION, root=seeds.derive(_ROOT, recipe.seed), houses=(), orders=orders)
     made = _House(plan, house, possible)
@@ -83,7 +81,7 @@ def _counts(recipe: Recipe) -> list[tuple[str, int]]:
 class _House:
     """One house's tasks, made one after the other."""
 
-    def __init__(self, plan: Plan, house: HouseSpec, possible: Callable[[TaskSpec], bool]) -> None:
+    def __init__(self, plan: Plan, house: HouseSpec, possible: Possible) -> None:
         self._plan, self._house, self._possible = plan, house, possible
         self._hopeless: set[Goal] = set()
         self.done: list[TaskSpec] = []
@@ -104,7 +102,7 @@ class _House:
                     continue
                 if any(standard.alike(made, other) for other in self.done):
                     reason = "what was drawn is like an earlier task"
-                elif not self._possible(made):
+                elif not self._possible(made, self._house):
                     reason = "what was drawn cannot be done"
                 else:
                     self.done.append(made)

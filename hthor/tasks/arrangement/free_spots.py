@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from hthor import catalog, seeds
 from hthor.geometry.plane import inside
 from hthor.houses.space.free_space import FreeSpace
-from hthor.tasks.generation.avatar import HEIGHT_M
-from hthor.tasks.generation.placement import Rest, Shelves, laid, placed
-from hthor.tasks.generation.reachability import Ground
+from hthor.tasks.arrangement.avatar import HEIGHT_M
+from hthor.tasks.arrangement.placement import Rest, Shelves, laid, placed
+from hthor.tasks.arrangement.reachability import Ground
 from hthor.types import HouseSpec, Placement, Room, Thing
 
 Floats = NDArray[np.float64]

@@ -17,8 +17,8 @@ from hthor import catalog, rules
 from hthor.geometry.plane import to_house
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import Field, Geodesics
-from hthor.tasks.generation.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
-from hthor.tasks.generation.occlusion import Sight
+from hthor.tasks.arrangement.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
+from hthor.tasks.arrangement.occlusion import Sight
 from hthor.types import HouseSpec, Placement, Thing, Vec2, Vec3
 
 Bools = NDArray[np.bool_]

@@ -9,16 +9,14 @@ from __future__ import annotations
 import functools
 import itertools
 import re
-import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import msgspec
 from msgspec import Struct
 
-from hthor import houses, jsonio
+from hthor import jsonio
 from hthor.errors import HthorError, TaskError
 from hthor.houses import generator, loader
 from hthor.houses.checks.findings import Finding
@@ -27,8 +25,11 @@ from hthor.houses.generator.attempt import Flaw
 from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.floorplan.room_specs import choose
 from hthor.houses.generator.furnishing.requirements import wants
+from hthor.tasks.generation import standard
+from hthor.tasks.generation.standard import Possible
 from hthor.tasks.generation.suite_specs import Plan, counted
-from hthor.tasks.suites import commitment, library, standard
+from hthor.tasks.suite import SuiteFile, encode_suite, in_turn, make_suite
+from hthor.tasks.suites import commitment, library
 from hthor.tasks.suites.commitment import COMMITMENT, Commitment
 from hthor.tasks.suites.secret_salt import Salt
 from hthor.types import HouseSpec, TaskSpec
@@ -56,12 +57,10 @@ Each = Callable[[Callable[["Lot"], "Part"], Iterable["Lot"]], Iterable["Part"]]
 
 
 class Proof(Struct, frozen=True, kw_only=True):
-    """Who judges what is drawn. ``house`` tells what is wrong with one, errors among it when it is not one to live in;
-    ``task`` whether one can be done, its house being found by name.
-    """
+    """Proves what is drawn: ``house`` returns what is wrong with a house, ``task`` whether a task can be done in it."""
 
     house: Callable[[HouseSpec], Sequence[Finding]]
-    task: Callable[[TaskSpec], bool]
+    task: Possible
 
 
 class Lot(Struct, frozen=True, kw_only=True):
@@ -97,7 +96,7 @@ def committed(order: Order, salt: Salt, files: Mapping[str, bytes], made_with: M
         salt=salt.commitment(),
         houses=order.houses,
         tasks=order.tasks,
-        suite_sha256=msgspec.json.decode(files[SUITE], type=library.Suite).sha256,
+        suite_sha256=msgspec.json.decode(files[SUITE], type=SuiteFile).sha256,
         files=commitment.hashes(files),
         made_with={"houses": str(generator.VERSION), "official": str(VERSION), **made_with},
     )
@@ -111,8 +110,8 @@ def files(order: Order, salt: Salt, proof: Proof, each: Each = map) -> dict[str,
     """
     parts = list(each(functools.partial(part, proof=proof), lots(order, salt)))
     columns = [[_named(task, order, salt, number) for number, task in enumerate(one.tasks)] for one in parts]
-    suite = library.frozen(order.name, VERSION, tuple(standard.in_turn(columns)))
-    return {SUITE: library.encode(suite), **{f"houses/{one.house}.json": one.file for one in parts}}
+    suite = make_suite(order.name, VERSION, tuple(in_turn(columns)))
+    return {SUITE: encode_suite(suite), **{f"houses/{one.house}.json": one.file for one in parts}}
 
 
 def lots(order: Order, salt: Salt) -> tuple[Lot, ...]:
@@ -154,21 +153,11 @@ def part(lot: Lot, proof: Proof) -> Part:
             if flaw := next((str(finding) for finding in proof.house(house) if finding.severity == "error"), ""):
                 raise HthorError(flaw)
             plan = Plan(name=lot.suite, version=VERSION, root=tasks_root, houses=(), orders=counted(*lot.counts))
-            with _shelved(lot.house, file):
-                tasks = tuple(standard.in_house(plan, house, "new", proof.task))
+            tasks = tuple(standard.in_house(plan, house, "new", proof.task))
             return Part(house=lot.house, file=file, tasks=tasks)
         except (Flaw, HthorError) as error:
             problem = str(error)
     raise HthorError(f"no house of {lot.rooms} rooms came of {len(lot.roots)} roots; of the last: {problem}")
-
-
-@contextmanager
-def _shelved(name: str, file: bytes) -> Iterator[None]:
-    """Let a house be found by name for as long as its tasks are judged."""
-    with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / f"{name}.json").write_bytes(file)
-        houses.shelve(Path(folder))
-        yield
 
 
 def _document(rooms: int, dice: Dice) -> dict[str, Any]:
@@ -193,7 +182,7 @@ def differences(
             yield path, "is in the commitment, and does not come of the salt"
         elif digests[path] != held.files[path]:
             yield path, "comes out otherwise than it was committed to" + (_first(there, made[path]) if there else "")
-    suite = msgspec.json.decode(made[SUITE], type=library.Suite).sha256
+    suite = msgspec.json.decode(made[SUITE], type=SuiteFile).sha256
     if suite != held.suite_sha256:
         yield COMMITMENT, f"suite_sha256 is {held.suite_sha256[:10]}..., the salt gives {suite[:10]}..."
 
