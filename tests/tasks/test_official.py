@@ -174,8 +174,8 @@ def test_its_tasks_are_sound_and_in_houses_of_its_own(files, folder: Path):
     known = {*houses.names(), *houses.names("unseen")}
     for task in suite.tasks:
         assert task.house not in known
-        assert list(faults(task, houses.load(task.house))) == []
-        assert {thing.kind for thing in houses.load(task.house).things} >= set(catalog.RECEPTACLES)
+        assert list(faults(task, suite.houses.load(task.house))) == []
+        assert {thing.kind for thing in suite.houses.load(task.house).things} >= set(catalog.RECEPTACLES)
     assert library.own_houses(folder) == {path[7:]: data for path, data in files.items() if path != "suite.json"}
     assert library.own_houses("smoke") == {}
 
