@@ -9,9 +9,9 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import guest_agents
 import msgspec
 import pytest
-import test_guest
 from eval_fakes import persons, suite
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -129,12 +129,12 @@ def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds
         Session(participant=0, trials=trials)
     ) as company:
         mind = company.robots()["robot"]
-        mind.begin(test_guest.BRIEFING)
+        mind.begin(guest_agents.BRIEFING)
         if seconds is None:
-            assert mind.act(test_guest.look()) == Action()
+            assert mind.act(guest_agents.look()) == Action()
             return
         with pytest.raises(GuestFault, match=r"gave no answer within 0\.1 s$") as caught:
-            mind.act(test_guest.look())
+            mind.act(guest_agents.look())
     assert caught.value.kind == "timeout"
 
 

@@ -8,11 +8,11 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from test_guest import HEAD, agent
 
 from hthor.guest import Guest, IsolationError
 from hthor.guest.confinement import paths
 from hthor.guest.host import isolation_level
+from tests.support.guest_agents import HEAD, agent
 
 
 def _unreadable(*_: object, **__: object) -> tuple[str, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import time
 from collections.abc import Callable, Iterator
@@ -17,82 +16,15 @@ from hthor.guest import Guest, GuestFault, load_info
 from hthor.guest.host import process_pool
 from hthor.types import (
     Action,
-    BodySpec,
-    Briefing,
-    Camera,
-    Detection,
     Message,
     Move,
-    Observation,
     Outcome,
-    Pose,
     Receipt,
-    Scan,
     Send,
     ThingState,
 )
 from tests.redteam.agents import PIPE
-
-BRIEFING = Briefing(
-    seat="robot",
-    instruction="Find an apple.",
-    target="apple",
-    destination="",
-    relation="find",
-    body=BodySpec(
-        name="disc",
-        title="disc",
-        radius=0.2,
-        height=1.0,
-        eye=0.9,
-        fov=(1.2, 1.2),
-        speed=1.0,
-        turn_rate=1.8,
-        sight_range=1.5,
-        scan_range=5.0,
-        scan_beams=61,
-        pitch_limit=0.5,
-        capabilities=frozenset({"navigate"}),
-    ),
-    tick_s=0.1,
-    time_limit=90.0,
-)
-HEAD = "import math, os, sys, time\nfrom hthor.types import *\n"
-
-
-class Sensors:
-    """Counts what is read."""
-
-    def __init__(self) -> None:
-        self.read: list[str] = []
-
-    def scan(self) -> Scan:
-        self.read.append("scan")
-        return Scan(origin=Pose(x=1.0, y=2.0), bearings=np.linspace(-1, 1, 61), ranges=np.full(61, 2.5), limit=5.0)
-
-    def detections(self) -> tuple[Detection, ...]:
-        self.read.append("detections")
-        return (
-            Detection(
-                id="apple", kind="apple", family="object", position=(1, 2, 0.8), size=(0.1, 0.1, 0.1), yaw=0, distance=1
-            ),
-        )
-
-    def rgb(self) -> Any:
-        self.read.append("rgb")
-        return np.arange(300 * 400 * 3, dtype=np.uint32).astype(np.uint8).reshape(300, 400, 3)
-
-    def depth(self) -> Any:
-        raise ValueError("no picture today")
-
-    def camera(self) -> Camera:
-        self.read.append("camera")
-        return Camera(size=(400, 300), matrix=np.diag((200.0, 200.0, 1.0)), pose=np.eye(4), near=0.02, far=80.0)
-
-
-def look(tick: int = 0, senses: object = None, **more: Any) -> Observation:
-    return Observation(tick=tick, pose=Pose(x=0.1, y=0.2, yaw=0.3), idle=True, senses=senses or Sensors(), **more)
-
+from tests.support.guest_agents import BRIEFING, HEAD, Sensors, agent, living, look
 
 Write = Callable[[str], Path]
 
@@ -105,11 +37,6 @@ def write(tmp_path: Path) -> Write:
         return path
 
     return write
-
-
-def agent(act: str, begin: str = "pass") -> str:
-    lines = "\n".join(f"        {line}" for line in act.splitlines())
-    return f"class Agent:\n    def begin(self, briefing):\n        {begin}\n    def act(self, observation):\n{lines}\n"
 
 
 @pytest.fixture
@@ -220,20 +147,6 @@ def test_a_hanging_agent_is_ended_at_its_deadline(started: Callable[..., Guest])
     assert "0.3 s" in caught.detail
     assert "thinking" in caught.log
     assert not living(pid)
-
-
-def living(group: int) -> list[str]:
-    """Processes of a group that still run, or will after a moment; the dead whom nobody has collected do not count."""
-    for _ in range(100):
-        found = []
-        for stat in Path("/proc").glob("[0-9]*/stat"):
-            with contextlib.suppress(OSError):
-                state, _, pgrp = stat.read_text().rpartition(")")[2].split()[:3]
-                found += [stat.parent.name] if int(pgrp) == group and state not in "ZX" else []
-        if not found:
-            break
-        time.sleep(0.05)
-    return found
 
 
 def test_an_agent_that_only_talks_is_ended_too(started: Callable[..., Guest]) -> None:

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import levels
 import pytest
-from test_guest import BRIEFING
 
 from hthor.guest import Guest
 from hthor.guest.process_tools import cpu_affinity
 from hthor.types import Action, Observation, Pose, Send
+from tests.support.guest_agents import BRIEFING
 
 pytestmark = [
     pytest.mark.skipif(sys.platform != "linux", reason="only Linux lets a process choose its CPUs"),

@@ -6,12 +6,12 @@ import os
 from pathlib import Path
 
 import pytest
-from test_guest import BRIEFING, look
 
 from hthor import guest
 from hthor.guest import Guest, IsolationError
 from hthor.guest.host import process_pool
 from hthor.guest.process_tools import resource_usage
+from tests.support.guest_agents import BRIEFING, look
 
 BURNS = """
 import time

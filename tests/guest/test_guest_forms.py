@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 from msgspec import structs
-from test_guest import BRIEFING, HEAD, Sensors, agent, living, look
 
 from hthor import guest
 from hthor.errors import AgentError, UnknownName
@@ -42,6 +41,7 @@ from hthor.types import (
     ThingState,
     Wait,
 )
+from tests.support.guest_agents import BRIEFING, HEAD, Sensors, agent, living, look
 
 PACKAGE = Path(guest.__file__).parents[1]
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"

@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
-from test_guest import BRIEFING, HEAD, Sensors, agent, look
 
 from hthor.guest import Guest
 from hthor.guest.protocol import shared_frames
 from hthor.types import Action
+from tests.support.guest_agents import BRIEFING, HEAD, Sensors, agent, look
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="this system has no such memory")
 SHAPES = arrays.array_shapes(min_dims=0, max_dims=4, max_side=9, min_side=0)

@@ -3,48 +3,35 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from test_guest import BRIEFING, HEAD, agent, look
 
 from hthor.errors import KILLED, AgentKilled
 from hthor.guest import Guest, GuestFault
 from hthor.guest.host import guest, isolation_level
 from hthor.guest.host.process import Process
 from hthor.guest.process_tools import exit_status
-
-needs_bwrap = pytest.mark.skipif(not shutil.which("bwrap"), reason="needs bubblewrap")
-FAMILIES = [("L1", 3), ("L2", 3), pytest.param("L3", 4, marks=needs_bwrap)]
-"""How many processes a guest is at each level: guard or bubblewrap's two, keeper, and the trial's own."""
-
-
-def _line(pid: int) -> list[int]:
-    """A process and its descendants, of which each has one child at most."""
-    found = [pid]
-    while children := Path(f"/proc/{found[-1]}/task/{found[-1]}/children").read_text().split():
-        found.append(int(children[0]))
-    return found
+from tests.support.guest_agents import (
+    HEAD,
+    PROCESS_CHAINS,
+    agent,
+    look,
+    needs_bwrap,
+    process_chain,
+    start_trial,
+)
 
 
-def _playing(path: Path, level: str) -> Guest:
-    path.write_text(HEAD + agent("time.sleep(0.05); return Action()"))
-    guest = Guest(path, isolation=level)
-    guest.begin(BRIEFING)
-    guest.act(look())
-    return guest
-
-
-@pytest.mark.parametrize(("level", "size"), FAMILIES)
+@pytest.mark.parametrize(("level", "size"), PROCESS_CHAINS)
 def test_a_process_killed_from_outside_is_told_as_such(level: str, size: int, tmp_path: Path):
     for place in range(size):
-        with _playing(tmp_path / "agent.py", level) as guest:
+        with start_trial(tmp_path / "agent.py", level) as guest:
             assert guest._process is not None
-            line = _line(guest._process.pid)
+            line = process_chain(guest._process.pid)
             assert len(line) == size
             os.kill(line[place], signal.SIGKILL)
             with pytest.raises(GuestFault, match="killed by SIGKILL") as caught:
@@ -67,13 +54,13 @@ def _alive(pid: int) -> bool:
         return False
 
 
-@pytest.mark.parametrize("level", [level for level, _ in FAMILIES[:2]] + [pytest.param("L3", marks=needs_bwrap)])
+@pytest.mark.parametrize("level", [level for level, _ in PROCESS_CHAINS[:2]] + [pytest.param("L3", marks=needs_bwrap)])
 def test_one_killed_while_it_starts_costs_no_level(level: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     real: Callable[..., Process] = isolation_level.process.start
 
     def start(*words: object, **more: object) -> Process:
         one = real(*words, **more)
-        while level == "L3" and len(_line(one.pid)) < 3:  # before that bubblewrap's two are not tied to one another
+        while level == "L3" and len(process_chain(one.pid)) < 3:  # earlier, bubblewrap's two do not end together
             time.sleep(0.001)
         os.kill(one.pid, signal.SIGKILL)
         return one

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from test_guest import BRIEFING, HEAD, Sensors, agent, look
 from typer.testing import CliRunner
 
 from hthor import agents
@@ -24,6 +23,7 @@ from hthor.guest import Guest, GuestFault, IsolationError, Unreachable
 from hthor.guest.client import websocket_server
 from hthor.guest.protocol import wire
 from hthor.types import Action, Move, Wait
+from tests.support.guest_agents import BRIEFING, HEAD, Sensors, agent, look
 
 server = pytest.importorskip("websockets.sync.server")
 

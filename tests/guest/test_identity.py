@@ -21,7 +21,6 @@ import pytest
 import test_episode
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from test_guest import BRIEFING, HEAD, look
 from typer.testing import CliRunner
 
 from hthor import guest
@@ -36,6 +35,7 @@ from hthor.guest.agent.agent_paths import Grounds
 from hthor.guest.agent.manifest import File
 from hthor.guest.client import file_recorder
 from hthor.guest.host import snapshot
+from tests.support.guest_agents import BRIEFING, HEAD, look
 
 LEVELS = ("L1", "L2", "L3")
 

@@ -10,13 +10,12 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from test_guest import HEAD, agent
-from test_guest_killed import FAMILIES, _line, _playing
 
 from hthor import guest
 from hthor.guest import IsolationError
 from hthor.guest.client import preloading
 from tests.redteam.nobody import ROOT, runner
+from tests.support.guest_agents import HEAD, PROCESS_CHAINS, agent, process_chain, start_trial
 
 TRIED = """
 import json, os, resource, socket, subprocess, sys
@@ -65,14 +64,14 @@ def test_what_imports_libraries_for_an_agent_can_do_little_else() -> None:
     assert [name for name, error in found.items() if not error] == list(allowed), found
 
 
-@pytest.mark.parametrize("level", ["L2", pytest.param("L3", marks=FAMILIES[2].marks)])  # type: ignore[union-attr]
+@pytest.mark.parametrize("level", ["L2", pytest.param("L3", marks=PROCESS_CHAINS[2].marks)])  # type: ignore[union-attr]
 def test_the_keeper_of_a_guest_is_held(level: str, tmp_path: Path) -> None:
     try:
         guest.in_force(level)
     except IsolationError as error:
         pytest.skip(str(error))
-    with _playing(tmp_path / "agent.py", level) as mind:
-        keeper = _line(mind.pid)[-2]
+    with start_trial(tmp_path / "agent.py", level) as mind:
+        keeper = process_chain(mind.pid)[-2]
         status = Path(f"/proc/{keeper}/status").read_text()
     assert "Seccomp:\t2" in status
     assert "NoNewPrivs:\t1" in status

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from test_guest import BRIEFING, look
 
 from hthor import guest
 from hthor.guest import Guest, IsolationError
 from tests.redteam.agents import PIPE
+from tests.support.guest_agents import BRIEFING, look
 
 HEAD = """
 import ctypes, fcntl, os, struct, sys, tempfile, threading, time

@@ -13,11 +13,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from test_guest import BRIEFING, look
-
 from hthor import guest
 from hthor.guest import Guest, GuestFault
 from tests.redteam.agents import HONEST, HOSTILE, Case, source
+from tests.support.guest_agents import BRIEFING, look
 
 SECRET = "pepper and salt"
 

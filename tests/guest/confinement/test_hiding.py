@@ -7,7 +7,6 @@ from pathlib import Path
 
 import levels
 import pytest
-from test_guest import BRIEFING
 
 from hthor import houses, jsonio, tasks
 from hthor.guest import Guest, GuestFault
@@ -16,6 +15,7 @@ from hthor.humans.population import population_file
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites import secret_salt
 from hthor.types import Observation, Pose
+from tests.support.guest_agents import BRIEFING
 
 LOOK = Observation(tick=0, pose=Pose(x=0.0, y=0.0, yaw=0.0), idle=True, senses=None)
 RUN = jsonio.pretty({"schema": "hthor.run/9", "seed": 0})

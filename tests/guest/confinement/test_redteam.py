@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from test_guest import BRIEFING, look
 
 from hthor import guest
 from hthor.guest import Guest, IsolationError
@@ -21,6 +20,7 @@ from hthor.guest.process_tools import cleanup
 from tests.redteam import nobody
 from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, PIPE, Case
 from tests.redteam.nobody import ROOT, runner
+from tests.support.guest_agents import BRIEFING, look
 
 
 @functools.cache
@@ -109,7 +109,7 @@ import sys
 import time
 from pathlib import Path
 from hthor.guest import Guest
-from test_guest import BRIEFING
+from tests.support.guest_agents import BRIEFING
 guest = Guest(sys.argv[1], isolation=sys.argv[2])
 guest.load()
 print(guest._process._ground or guest._process.policy.scratch, flush=True)
@@ -179,7 +179,7 @@ LEAK = """
 from pathlib import Path
 import os, sys, tempfile
 import numpy as np
-from hthor.guest import wire
+from hthor.guest.protocol import wire
 from hthor.types import *
 FOLDER = Path(tempfile.gettempdir())
 SEEN = [str(path) for path in FOLDER.iterdir()] + [name for name in vars(np) if name == "leak"]
@@ -249,7 +249,7 @@ def test_the_next_trial_finds_the_wire_as_it_was(level: str, tmp_path: Path) -> 
 
 CLEARED = """
 import os, sys
-from hthor.guest import clearing
+from hthor.guest.process_tools import cleanup
 top = sys.argv[1]
 scratch, foreign = top + "/scratch", top + "/foreign"
 os.makedirs(scratch + "/deep/deeper")
@@ -260,10 +260,10 @@ os.symlink(foreign, scratch + "/link")
 os.symlink(foreign, scratch + "/deep/link")
 os.chmod(scratch + "/deep", 0)
 os.chmod(scratch, 0o500)
-clearing.empty(scratch)
+cleanup.empty(scratch)
 print(os.listdir(scratch), os.listdir(foreign), oct(os.stat(foreign + "/kept").st_mode & 0o777))
 os.symlink(foreign, top + "/instead")
-clearing.empty(top + "/instead")
+cleanup.empty(top + "/instead")
 print(os.listdir(foreign))
 """
 
