@@ -13,7 +13,7 @@ from hthor.commands.options import AgentArgs, Readable, Run
 from hthor.console import output
 
 if TYPE_CHECKING:
-    from hthor.guest import Given
+    from hthor.guest import AgentInputs
 
 
 def replay(
@@ -55,7 +55,7 @@ def replay(
 
 
 def _replay_mind(
-    run: Path, trial: str, out: Path | None, agents: Sequence[str], humans: str, given: Given, json: bool
+    run: Path, trial: str, out: Path | None, agents: Sequence[str], humans: str, given: AgentInputs, json: bool
 ) -> None:
     """Play a person's session again up to one trial, and draw or print what went on in their mind."""
     from hthor.eval.records import find

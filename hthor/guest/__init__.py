@@ -7,13 +7,14 @@ How strongly it is held is a level, from a mere process to namespaces of its own
 
 from __future__ import annotations
 
-from hthor.guest.agent.inputs import Given
+from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.agent.reference import Reference, is_served
 from hthor.guest.confinement import SERVED, Isolation, IsolationError, suffices
-from hthor.guest.host.guest import Guest, load_info
+from hthor.guest.host.config import GuestConfig
+from hthor.guest.host.guest import Guest, in_force, load_info
+from hthor.guest.host.guest_pool import GuestPool
 from hthor.guest.host.info import GuestInfo
-from hthor.guest.host.isolation_level import confine_guests, in_force
 from hthor.guest.host.websocket_client import Unreachable
 from hthor.guest.protocol.faults import GuestFault
 
@@ -21,17 +22,18 @@ CODE_PART = "tools"
 
 __all__ = [
     "SERVED",
+    "AgentInputs",
     "File",
-    "Given",
     "Guest",
+    "GuestConfig",
     "GuestFault",
     "GuestInfo",
+    "GuestPool",
     "Isolation",
     "IsolationError",
     "Manifest",
     "Reference",
     "Unreachable",
-    "confine_guests",
     "in_force",
     "is_served",
     "load_info",

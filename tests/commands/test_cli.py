@@ -164,7 +164,7 @@ def test_eval_of_something_else_in_the_same_folder_is_refused(hthor, done: Path)
 def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     real = robot_team.load_agent_info
     monkeypatch.setattr(
-        robot_team, "load_agent_info", lambda name: real(name) if name == "none" else fakes.character(name)
+        robot_team, "load_agent_info", lambda name, _: real(name) if name == "none" else fakes.character(name)
     )
     said = hthor("eval", "--agent", "none", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path), "--quiet")
     assert said.code == 3, "done, but an agent failed in some trials"
@@ -177,7 +177,7 @@ def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.
 def test_the_control_is_played_too_once_and_the_uplift_is_reported(hthor, tmp_path: Path, monkeypatch):
     real = robot_team.load_agent_info
     monkeypatch.setattr(
-        robot_team, "load_agent_info", lambda name: real(name) if name == "none" else fakes.character(name)
+        robot_team, "load_agent_info", lambda name, _: real(name) if name == "none" else fakes.character(name)
     )
     words = ("eval", "--agent", "helper", "--suite", "fake", "--jobs", "1")
     said = hthor(*words, "--out", str(tmp_path / "run"))
@@ -196,7 +196,7 @@ def test_runs_are_compared_and_a_worse_one_fails(hthor, tmp_path: Path, monkeypa
     monkeypatch.setattr(trial_runner, "make_runner", fakes.leaning_player)
     real = robot_team.load_agent_info
     monkeypatch.setattr(
-        robot_team, "load_agent_info", lambda name: real(name) if name == "none" else fakes.character(name)
+        robot_team, "load_agent_info", lambda name, _: real(name) if name == "none" else fakes.character(name)
     )
     agents = ("--agent", "none", "--agent", "helper")
     hthor("eval", *agents, "--suite", "fake", "--participants", "16", "--out", str(tmp_path), "--quiet")
@@ -238,7 +238,7 @@ def _printed(text: str) -> list[str]:
 def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
-    def introduce(text):  # the fakes' source is a file, so that is what a command names
+    def introduce(text, _):  # the fakes' source is a file, so that is what a command names
         name = text.removesuffix(".py")
         return fakes.character(name, absent=name == "none")
 
@@ -274,7 +274,7 @@ def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor,
 
 def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(robot_team, "load_agent_info", lambda name: fakes.character(name, absent=name == "none"))
+    monkeypatch.setattr(robot_team, "load_agent_info", lambda name, _: fakes.character(name, absent=name == "none"))
     assert hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--quiet").code == 0
     run = next((tmp_path / "runs").iterdir())
     hazel = houses.load("hazel")
@@ -287,7 +287,7 @@ def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_p
 
 
 def test_what_the_people_were_not_calibrated_for_is_said_once_and_last(hthor, tmp_path: Path, monkeypatch):
-    monkeypatch.setattr(robot_team, "load_agent_info", lambda name: fakes.character(name, absent=name == "none"))
+    monkeypatch.setattr(robot_team, "load_agent_info", lambda name, _: fakes.character(name, absent=name == "none"))
     agents = ("--agent", "none", "--agent", "helper", "--agent", "twin")
     said = hthor("eval", *agents, "--suite", "fake", "--out", str(tmp_path), "--jobs", "1")
     told = [line for line in said.out.splitlines() + said.err.splitlines() if "was calibrated" in line]

@@ -67,8 +67,8 @@ def one_world_for_all() -> Any:
     worlds: dict[object, Any] = {}
     before = trial_runner.TrialRunner.__init__
 
-    def begin(self: trial_runner.TrialRunner, sources: trial_runner.Sources | None = None) -> None:
-        before(self, sources)
+    def begin(self: trial_runner.TrialRunner, sources: trial_runner.Sources | None = None, pool: Any = None) -> None:
+        before(self, sources, pool)
         self._worlds = worlds
 
     trial_runner.TrialRunner.__init__ = begin  # type: ignore[method-assign]

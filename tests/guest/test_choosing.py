@@ -9,9 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from hthor.guest import Guest, IsolationError
+from hthor.guest import Guest, GuestConfig, IsolationError
 from hthor.guest.confinement import paths
-from hthor.guest.host import isolation_level
 from tests.support.guest_agents import HEAD, agent
 
 
@@ -28,9 +27,8 @@ def test_an_interpreter_in_a_folder_that_cannot_be_read_is_named(
     scratch = tmp_path / "scratch"
     scratch.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(scratch))
-    monkeypatch.setattr(isolation_level, "_missing", {})
     monkeypatch.setattr(paths, "readable", _unreadable)
     told = r"cannot be had on this machine: .*Permission denied: /root/\.pyenv/versions"
-    with pytest.raises(IsolationError, match=told), Guest(path, isolation=level) as mind:
+    with pytest.raises(IsolationError, match=told), Guest(path, config=GuestConfig(isolation=level)) as mind:
         mind.load()
     assert os.listdir(scratch) == []

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 from hthor.errors import AgentError
-from hthor.guest import Guest, GuestFault, load_info
-from hthor.guest.host import process_pool
+from hthor.guest import Guest, GuestFault, GuestPool, load_info
 from hthor.types import (
     Action,
     Message,
@@ -280,20 +279,11 @@ def test_an_endless_import_is_refused(write: Write) -> None:
         load_info(write("while True: pass\n"), start_s=0.5)
 
 
-@pytest.fixture
-def parked() -> Iterator[None]:
-    process_pool.clear()  # what runs of earlier tests in this process left waiting
-    process_pool.keep()
-    yield
-    process_pool.clear()
-
-
-@pytest.mark.usefixtures("parked")
-def test_a_guest_waits_for_whoever_wants_the_same(write: Write) -> None:
-    path = write(COUNTER)
+def test_an_idle_guest_is_reused_for_the_very_same_agent_and_settings(write: Write) -> None:
+    path, pool = write(COUNTER), GuestPool()
 
     def play(**options: Any) -> tuple[int, float]:
-        with Guest(path, **options) as guest:
+        with Guest(path, pool=pool, **options) as guest:
             guest.begin(BRIEFING)
             for _ in range(2):
                 seconds = guest.act(look()).motion.seconds  # type: ignore[union-attr]
@@ -304,8 +294,8 @@ def test_a_guest_waits_for_whoever_wants_the_same(write: Write) -> None:
     assert play(memory_mb=1000)[0] != first[0], "other terms"
     write(COUNTER + "# changed\n")
     assert play()[0] != first[0], "another file"
-    assert len(process_pool.pids()) == 3
-    with Guest(path) as guest:
+    assert len(pool.pids()) == 3
+    with Guest(path, pool=pool) as guest:
         guest.begin(BRIEFING)
         waited = guest.pid
         os.kill(waited, 9)
@@ -313,5 +303,7 @@ def test_a_guest_waits_for_whoever_wants_the_same(write: Write) -> None:
         with pytest.raises(GuestFault, match="killed"):
             list(ends)
     assert not living(waited)
-    process_pool.clear()
+    pool.close()
     assert not living(first[0])
+    play()
+    assert not pool.pids(), "a closed pool keeps none"

@@ -12,7 +12,7 @@ from pathlib import Path
 import levels
 import pytest
 
-from hthor.guest import Guest
+from hthor.guest import Guest, GuestConfig
 from hthor.guest.process_tools import cpu_affinity
 from hthor.types import Action, Observation, Pose, Send
 from tests.support.guest_agents import BRIEFING
@@ -74,7 +74,7 @@ def test_they_take_turns_on_one_cpu_and_part_after_each_trial(tmp_path: Path, le
     agent = tmp_path / "agent.py"
     agent.write_text(source)
     everywhere = os.sched_getaffinity(0)
-    with Guest(agent, isolation=level) as guest:
+    with Guest(agent, config=GuestConfig(isolation=level)) as guest:
         for _ in range(2):
             guest.begin(BRIEFING)
             here = os.sched_getaffinity(0)
@@ -88,7 +88,7 @@ def test_a_guest_with_threads_runs_everywhere(tmp_path: Path) -> None:
     agent = tmp_path / "agent.py"
     agent.write_text(SEVERAL_THREADS)
     everywhere = os.sched_getaffinity(0)
-    with Guest(agent, isolation="L2") as guest:
+    with Guest(agent, config=GuestConfig(isolation="L2")) as guest:
         guest.begin(BRIEFING)
         assert _soon(guest, everywhere)
 
@@ -97,7 +97,7 @@ def test_an_agent_that_may_start_processes_is_left_alone(tmp_path: Path) -> None
     agent = tmp_path / "agent.py"
     agent.write_text(SAYS_WHERE)
     everywhere = os.sched_getaffinity(0)
-    with Guest(agent, isolation="L1") as guest:
+    with Guest(agent, config=GuestConfig(isolation="L1")) as guest:
         guest.begin(BRIEFING)
         assert os.sched_getaffinity(0) == everywhere
         assert _where(guest.act(LOOK)) == everywhere
@@ -107,7 +107,10 @@ def test_two_guests_share_the_place_and_what_starts_meanwhile_is_free(tmp_path: 
     agent = tmp_path / "agent.py"
     agent.write_text(SAYS_WHERE)
     everywhere = os.sched_getaffinity(0)
-    with Guest(agent, isolation="L2") as one, Guest(agent, isolation="L2") as other:
+    with (
+        Guest(agent, config=GuestConfig(isolation="L2")) as one,
+        Guest(agent, config=GuestConfig(isolation="L2")) as other,
+    ):
         one.begin(BRIEFING)
         here = os.sched_getaffinity(0)
         with cpu_affinity.anywhere():
@@ -124,7 +127,7 @@ def test_a_guest_that_fails_or_is_forgotten_keeps_nobody(tmp_path: Path) -> None
     agent = tmp_path / "agent.py"
     agent.write_text(SAYS_WHERE)
     everywhere = os.sched_getaffinity(0)
-    guest = Guest(agent, isolation="L2")
+    guest = Guest(agent, config=GuestConfig(isolation="L2"))
     guest.begin(BRIEFING)
     assert os.sched_getaffinity(0) != everywhere
     del guest

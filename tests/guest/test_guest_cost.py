@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from hthor import guest
-from hthor.guest import Guest, IsolationError
-from hthor.guest.host import process_pool
+from hthor.guest import Guest, GuestConfig, GuestPool, IsolationError
 from hthor.guest.process_tools import resource_usage
 from tests.support.guest_agents import BRIEFING, look
 
@@ -38,10 +37,9 @@ def test_the_processor_time_of_guests_is_counted_once(level: str, tmp_path: Path
         guest.in_force(level)
     except IsolationError as error:
         pytest.skip(str(error))
-    process_pool.clear()
     path = tmp_path / "burns.py"
     path.write_text(BURNS)
-    with Guest(path, isolation=level) as mind:
+    with Guest(path, config=GuestConfig(isolation=level)) as mind:
         mind.begin(BRIEFING)
         before = spent()
         for tick in range(2):
@@ -49,3 +47,18 @@ def test_the_processor_time_of_guests_is_counted_once(level: str, tmp_path: Path
         taken = resource_usage.cpu_s(mind.pid)
         assert resource_usage.resident_mb(mind.pid) > 5
     assert 0.55 <= spent() - before <= taken + 0.3
+
+
+def test_the_processor_time_of_an_idle_guest_is_counted_once(tmp_path: Path) -> None:
+    path = tmp_path / "burns.py"
+    path.write_text(BURNS)
+    pool = GuestPool()
+    before = spent()
+    with Guest(path, pool=pool) as mind:
+        mind.begin(BRIEFING)
+        mind.act(look())
+    (pid,) = pool.pids()
+    idle = spent() - before
+    assert 0.3 <= idle <= resource_usage.cpu_s(pid) + 0.05
+    pool.close()
+    assert idle - 0.02 <= spent() - before <= idle + 0.3

@@ -13,7 +13,7 @@ from msgspec import structs
 
 from hthor import guest
 from hthor.errors import AgentError, UnknownName
-from hthor.guest import Guest, GuestFault, IsolationError, load_info
+from hthor.guest import Guest, GuestConfig, GuestFault, IsolationError, load_info
 from hthor.guest.agent import digests, reference
 from hthor.guest.confinement import devices
 from hthor.guest.protocol import wire
@@ -157,7 +157,7 @@ def test_a_module_that_hides_behind_another_is_refused(package: Path) -> None:
 @pytest.mark.parametrize("words", [f"{sys.executable} wire_agent.py", "perl wire_agent.pl"], ids=["python", "perl"])
 def test_the_examples_of_the_wire_play(level: str, words: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(EXAMPLES)
-    with Guest(f"cmd:{words}", isolation=at(level)) as mind:
+    with Guest(f"cmd:{words}", config=GuestConfig(isolation=at(level))) as mind:
         assert mind.load().isolation.level == level
         for _ in range(2):
             mind.begin(BRIEFING)
@@ -214,7 +214,7 @@ def test_a_hostile_program_comes_to_nothing(level: str, perl: Callable[..., str]
         "environment": "exists $ENV{HTHOR_SALT} and die 'BREACH';",
         "scratch": "open(my $f, '>', \"$ENV{TMPDIR}/x\") or die 'no scratch folder';",
     }
-    with Guest(perl("\n".join(attacks.values())), isolation=at(level)) as mind:
+    with Guest(perl("\n".join(attacks.values())), config=GuestConfig(isolation=at(level))) as mind:
         mind.begin(BRIEFING)
         assert mind.act(look()) == Action(motion=Wait(seconds=1.0)), mind.log
 
@@ -246,7 +246,7 @@ def test_every_misdeed_of_a_program_is_a_fault(perl: Callable[..., str], act: st
 
 
 def test_a_program_leaves_nothing_behind_where_it_may_fork(perl: Callable[..., str]) -> None:
-    with Guest(perl("if (!fork) { setpgrp; sleep 600 }"), isolation="L1") as mind:
+    with Guest(perl("if (!fork) { setpgrp; sleep 600 }"), config=GuestConfig(isolation="L1")) as mind:
         mind.begin(BRIEFING)
         mind.act(look())
         group = mind._process.pid if mind._process else 0

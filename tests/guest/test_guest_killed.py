@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from hthor.errors import KILLED, AgentKilled
-from hthor.guest import Guest, GuestFault
-from hthor.guest.host import guest, isolation_level
+from hthor.guest import Guest, GuestConfig, GuestFault
+from hthor.guest.host import guest, startup
 from hthor.guest.host.process import Process
 from hthor.guest.process_tools import exit_status
 from tests.support.guest_agents import (
@@ -56,7 +56,7 @@ def _alive(pid: int) -> bool:
 
 @pytest.mark.parametrize("level", [level for level, _ in PROCESS_CHAINS[:2]] + [pytest.param("L3", marks=needs_bwrap)])
 def test_one_killed_while_it_starts_costs_no_level(level: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    real: Callable[..., Process] = isolation_level.process.start
+    real: Callable[..., Process] = startup.process.start
 
     def start(*words: object, **more: object) -> Process:
         one = real(*words, **more)
@@ -67,10 +67,10 @@ def test_one_killed_while_it_starts_costs_no_level(level: str, tmp_path: Path, m
 
     (tmp_path / "agent.py").write_text(HEAD + agent("return Action()"))
     with monkeypatch.context() as patch:
-        patch.setattr(isolation_level.process, "start", start)
+        patch.setattr(startup.process, "start", start)
         with pytest.raises(AgentKilled, match=r"agent\.py: its process was killed by SIGKILL while it started"):
-            Guest(tmp_path / "agent.py", isolation=level).load()
-    with Guest(tmp_path / "agent.py", isolation=level) as guest:
+            Guest(tmp_path / "agent.py", config=GuestConfig(isolation=level)).load()
+    with Guest(tmp_path / "agent.py", config=GuestConfig(isolation=level)) as guest:
         assert guest.load().isolation.level == level
 
 
@@ -78,7 +78,7 @@ def test_one_killed_while_it_loads_its_file_is_told_as_such(tmp_path: Path):
     path = tmp_path / "agent.py"
     path.write_text("import os\nos.kill(os.getpid(), 9)\n")
     with pytest.raises(AgentKilled, match=r"loading it failed \(killed: the agent's process was killed by SIGKILL\)"):
-        guest.load_info(path, isolation="L1")
+        guest.load_info(path, config=GuestConfig(isolation="L1"))
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import sqlite3
 import sys
 import textwrap
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -28,7 +28,7 @@ from hthor.cli import app
 from hthor.errors import AgentError, HthorError, RunError
 from hthor.eval.config import robot_team
 from hthor.eval.runner import engines, trial_runner
-from hthor.guest import Given, Guest, GuestFault, IsolationError
+from hthor.guest import AgentInputs, Guest, GuestConfig, GuestFault, IsolationError
 from hthor.guest.agent import inputs as giving
 from hthor.guest.agent import manifest, source_scan
 from hthor.guest.agent.agent_paths import Grounds
@@ -52,17 +52,11 @@ def write(
     return folder / name
 
 
-def names(agent: Path | str) -> list[str]:
+def names(agent: Path | str, config: GuestConfig | None = None) -> list[str]:
     """What the agent's manifest lists."""
-    made = robot_team.load_agent_info(str(agent)).manifest
+    made = robot_team.load_agent_info(str(agent), config).manifest
     assert made is not None
     return [file.path for file in made.files]
-
-
-@pytest.fixture(autouse=True)
-def _free() -> Iterator[None]:
-    yield
-    guest.confine_guests()
 
 
 def at(level: str) -> str:
@@ -135,10 +129,8 @@ def test_an_agent_is_the_same_wherever_it_lies_and_whatever_holds_it(tmp_path: P
     path = write(tmp_path / "a", WEIGHTS, top="import helper")
     found = []
     for level in ("L1", at("L2")):
-        guest.confine_guests(level)
-        found.append(robot_team.load_agent_info(str(path)).manifest)
+        found.append(robot_team.load_agent_info(str(path), GuestConfig(isolation=level)).manifest)
     (tmp_path / "a").rename(tmp_path / "elsewhere")
-    guest.confine_guests()
     found.append(robot_team.load_agent_info(str(tmp_path / "elsewhere" / "agent.py")).manifest)
     assert found[0] == found[1] == found[2]
 
@@ -168,7 +160,7 @@ def test_compiled_files_beside_an_agent_are_never_run(tmp_path: Path) -> None:
         source.write_text(honest)
         assert Path(importlib.util.cache_from_source(str(source))).exists()
     for level in ("L1", at("L2")):
-        with Guest(path, isolation=level) as mind:
+        with Guest(path, config=GuestConfig(isolation=level)) as mind:
             mind.begin(BRIEFING)
             action = mind.act(look())
         assert getattr(action.motion, "forward", None) == 0.25, level
@@ -236,10 +228,10 @@ def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Pa
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     mind = Guest(f"cmd:sh {tmp_path / 'mind.sh'}")
-    first = snapshot.files_of(mind.reference, Given(), mind.grounds, ())
+    first = snapshot.files_of(mind.reference, AgentInputs(), mind.grounds, ())
     assert [file.path for file in first] == ["lib/common.sh", "mind.sh", "tool.pl", "weights.bin"]
     (tmp_path / "weights.bin").write_text("2")
-    assert snapshot.files_of(mind.reference, Given(), mind.grounds, ()) != first
+    assert snapshot.files_of(mind.reference, AgentInputs(), mind.grounds, ()) != first
 
 
 ARGS = """
@@ -268,7 +260,7 @@ def test_arguments_reach_the_constructor_and_a_file_among_them_is_readable(takin
     at(level)
     out = taking.parents[1] / "out" / "net.txt"
     given = giving.read([f"checkpoint={out}", "speed=0.25", "loud=yes"])
-    with Guest(taking, isolation=level, given=given) as mind:
+    with Guest(taking, config=GuestConfig(isolation=level, inputs=given)) as mind:
         mind.begin(BRIEFING)
         action = mind.act(look())
     assert action.motion is not None
@@ -280,10 +272,10 @@ def test_arguments_are_part_of_who_an_agent_is(taking: Path) -> None:
     out = taking.parents[1] / "out" / "net.txt"
     found = []
     for words in ([], ["speed=0.1"], ["speed=0.2"], [f"checkpoint={out}"]):
-        guest.confine_guests(given=giving.read(words))
-        found.append(robot_team.load_agent_info(str(taking)))
+        config = GuestConfig(inputs=giving.read(words))
+        found.append(robot_team.load_agent_info(str(taking), config))
     out.write_text("more")
-    found.append(robot_team.load_agent_info(str(taking)))
+    found.append(robot_team.load_agent_info(str(taking), config))
     assert len({one.ref.sha256 for one in found}) == 5
     assert [one.ref.name for one in found[:4]] == [
         "agent",
@@ -311,19 +303,22 @@ def test_arguments_are_part_of_who_an_agent_is(taking: Path) -> None:
 def test_wrong_arguments_are_told_apart(taking: Path, words: list[str], told: str, monkeypatch: Any) -> None:
     monkeypatch.chdir(taking.parent)
     with pytest.raises(HthorError) as caught:
-        guest.load_info(taking, given=giving.read(words))
+        guest.load_info(taking, config=GuestConfig(inputs=giving.read(words)))
     assert told in str(caught.value)
 
 
 def test_an_agent_without_arguments_says_so(tmp_path: Path) -> None:
     with pytest.raises(AgentError, match="Its constructor takes no arguments"):
-        guest.load_info(write(tmp_path / "a"), given=giving.read(["speed=1"]))
+        guest.load_info(write(tmp_path / "a"), config=GuestConfig(inputs=giving.read(["speed=1"])))
 
 
 def test_a_command_gets_arguments_as_words(tmp_path: Path) -> None:
     (tmp_path / "mind.py").write_text("import sys\nprint(sys.argv[1:], file=sys.stderr)\nsys.exit(3)\n")
     with pytest.raises(AgentError, match=r"\['--speed=1', '--mode=fast'\]"):
-        guest.load_info(f"cmd:{sys.executable} {tmp_path / 'mind.py'}", given=giving.read(["speed=1", "mode=fast"]))
+        guest.load_info(
+            f"cmd:{sys.executable} {tmp_path / 'mind.py'}",
+            config=GuestConfig(inputs=giving.read(["speed=1", "mode=fast"])),
+        )
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -336,18 +331,17 @@ def test_what_isolation_hides_is_named_and_readable_shows_it(tmp_path: Path, lev
     hidden = f"open({str(tmp_path / 'out' / 'old' / 'run.json')!r}).read()"
     path = write(tmp_path / "own", body, act=hidden)
     if level != "L1":
-        with Guest(path, isolation=level) as mind, pytest.raises(GuestFault) as caught:
+        with Guest(path, config=GuestConfig(isolation=level)) as mind, pytest.raises(GuestFault) as caught:
             mind.begin(BRIEFING)
         assert f"The file 'net.txt' is there, but isolation {level} hides it" in caught.value.detail
         assert "--readable" in caught.value.detail
     given = giving.read(readable=[tmp_path / "out"])
-    with Guest(path, isolation=level, given=given) as mind:
+    with Guest(path, config=GuestConfig(isolation=level, inputs=given)) as mind:
         mind.begin(BRIEFING)
         if level != "L1":
             with pytest.raises(GuestFault):  # a run stays hidden
                 mind.act(look())
-    guest.confine_guests(level, given=given)
-    assert names(path) == ["../out/net.txt", "agent.py"]
+    assert names(path, GuestConfig(isolation=level, inputs=given)) == ["../out/net.txt", "agent.py"]
 
 
 def test_a_missing_environment_variable_is_explained(tmp_path: Path) -> None:
@@ -387,7 +381,7 @@ def test_a_served_agent_says_what_it_consists_of_and_that_is_marked(taking: Path
         out.write_text("more")
         assert robot_team.load_agent_info(url).ref.sha256 != first.ref.sha256
         with pytest.raises(HthorError, match="--agent-args is for 'hthor agent serve' there"):
-            Guest(url, given=giving.read(["speed=1"]))
+            Guest(url, config=GuestConfig(inputs=giving.read(["speed=1"])))
     finally:
         server.shutdown()
 
@@ -405,11 +399,11 @@ def test_compiled_files_beside_a_program_in_python_are_not_run(tmp_path: Path) -
 
 def test_a_folder_with_too_many_files_is_not_made_readable(taking: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(snapshot, "_MOST_READABLE", 1)
-    guest.confine_guests(given=giving.read(readable=[taking.parents[1] / "out"]))
-    assert len(names(taking)) == 2
+    config = GuestConfig(inputs=giving.read(readable=[taking.parents[1] / "out"]))
+    assert len(names(taking, config)) == 2
     (taking.parents[1] / "out" / "more.txt").write_text("")
     with pytest.raises(AgentError, match=r"has more than 1 files.*Name the folders or files in there"):
-        names(taking)
+        names(taking, config)
 
 
 def test_what_no_source_names_can_be_made_part_of_an_agent(tmp_path: Path) -> None:
@@ -417,8 +411,8 @@ def test_what_no_source_names_can_be_made_part_of_an_agent(tmp_path: Path) -> No
     (tmp_path / "a" / "w").mkdir()
     (tmp_path / "a" / "w" / "net.bin").write_bytes(b"1")
     assert names(path) == ["agent.py"]
-    guest.confine_guests(given=giving.read(readable=[tmp_path / "a" / "w"]))
-    assert names(path) == ["agent.py", "w/net.bin"]
+    config = GuestConfig(inputs=giving.read(readable=[tmp_path / "a" / "w"]))
+    assert names(path, config) == ["agent.py", "w/net.bin"]
 
 
 class Quick(trial_runner.TrialRunner):

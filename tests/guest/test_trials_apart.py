@@ -10,7 +10,7 @@ from typing import NamedTuple
 import pytest
 
 from hthor import guest
-from hthor.guest import Guest, IsolationError
+from hthor.guest import Guest, GuestConfig, IsolationError
 from tests.redteam.agents import PIPE
 from tests.support.guest_agents import BRIEFING, look
 
@@ -124,7 +124,7 @@ def test_an_agent_finds_nothing_of_the_trial_before(level: str, name: str, tmp_p
     path = tmp_path / "agent.py"
     path.write_text(source(CASES[name]))
     told = []
-    with Guest(path, isolation=level) as mind:
+    with Guest(path, config=GuestConfig(isolation=level)) as mind:
         for _ in range(4):
             mind.begin(BRIEFING)
             mind.act(look())

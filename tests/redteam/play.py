@@ -13,8 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from hthor import guest
-from hthor.guest import Guest, GuestFault
+from hthor.guest import Guest, GuestConfig, GuestFault
 from tests.redteam.agents import HONEST, HOSTILE, Case, source
 from tests.support.guest_agents import BRIEFING, look
 
@@ -29,12 +28,13 @@ def main(level: str, wanted: list[str]) -> None:
         secret.write_text(SECRET)
         jobs = [one for one in (*HOSTILE, *HONEST) if not wanted or one.name in wanted]
 
-        guest.confine_guests(hidden=tuple(str(Path(folder) / name / "official.json") for name, *_ in jobs))
+        hidden = tuple(str(Path(folder) / name / "official.json") for name, *_ in jobs)
+        config = GuestConfig(isolation=level, hidden=hidden)
 
         def one(job: Case) -> dict[str, Any]:
             home = Path(folder) / job.name
             text = source(job.attack, secret=str(secret), harness=os.getpid(), port=port)
-            return _play(home, job, text, level)
+            return _play(home, job, text, config)
 
         with ThreadPoolExecutor(4) as pool:
             told = list(pool.map(one, jobs))
@@ -42,12 +42,12 @@ def main(level: str, wanted: list[str]) -> None:
     json.dump({"uid": os.getuid(), "intact": intact, "agents": told}, sys.stdout)
 
 
-def _play(home: Path, case: Case, text: str, level: str) -> dict[str, Any]:
+def _play(home: Path, case: Case, text: str, config: GuestConfig) -> dict[str, Any]:
     path = lay_out(home, text)
     before = sorted(home.rglob("*"))
     fault, log, held = {"kind": "", "detail": ""}, "", {}
     with Guest(
-        path, step_s=2.0 if case.kinds == ("timeout",) else 30.0, bank_s=0.0, isolation=level, memory_mb=512, disk_mb=64
+        path, step_s=2.0 if case.kinds == ("timeout",) else 30.0, bank_s=0.0, config=config, memory_mb=512, disk_mb=64
     ) as mind:
         try:
             held = {"level": mind.load().isolation.level}

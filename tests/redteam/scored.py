@@ -23,7 +23,7 @@ from hthor.eval.records import run_isolation
 from hthor.eval.records.trial_log import read
 from hthor.eval.runner import fault_report, progress, run, trial_runner, worker
 from hthor.eval.runner.worker import News
-from hthor.guest import Guest, IsolationError
+from hthor.guest import Guest, GuestConfig, GuestPool, IsolationError
 from hthor.tasks.suite import make_suite
 from hthor.types import HUMAN, AgentRef
 from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, Case, source
@@ -37,8 +37,8 @@ _WORLDS: dict[object, Any] = {}
 class _Stage(trial_runner.TrialRunner):
     """Keeps its world for the next run too, which saves building it for every agent."""
 
-    def __init__(self, sources: trial_runner.Sources | None = None) -> None:
-        super().__init__(sources)
+    def __init__(self, sources: trial_runner.Sources | None = None, pool: GuestPool | None = None) -> None:
+        super().__init__(sources, pool)
         self._worlds = _WORLDS
 
 
@@ -87,9 +87,9 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
     crew = robot_team.form_team(["scout"], [robot_team.AgentInfo(ref=ref, path=str(path))])
     plan = run_config.build_config(suite, crew, human="proxy", seed=0, participants=None)
     hidden = (str(home / "runs"), str(home / "official.json"))
-    make = functools.partial(
-        run_isolation.player, trial_runner.Sources(minds=crew.minds, manifests=crew.manifests), held.level, hidden
-    )
+    config = GuestConfig(isolation=held.level, hidden=hidden)
+    sources = trial_runner.Sources(minds=crew.minds, manifests=crew.manifests, guests=config)
+    make = functools.partial(trial_runner.make_runner, sources)
     result = run.run_evaluation(
         plan,
         sessions.make_sessions(suite, agent=crew),

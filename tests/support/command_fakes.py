@@ -28,7 +28,7 @@ def main(name: str) -> None:
     real, introduce = tasks.suite, robot_team.load_agent_info
     tasks.suite = lambda word: eval_fakes.suite(20) if word == "fake" else real(word)
     trial_runner.make_runner = functools.partial(command_fakes.perform, name)
-    robot_team.load_agent_info = lambda word: (
+    robot_team.load_agent_info = lambda word, *_: (
         eval_fakes.character(word) if word in ("helper", "clumsy") else introduce(word)
     )
     if not name.startswith("slow"):

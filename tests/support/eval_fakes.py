@@ -76,7 +76,7 @@ def persons(name: str = "proxy", *, calibrated: bool = True) -> People:
     )
 
 
-def character(name: str = "helper", *, absent: bool = False) -> robot_team.AgentInfo:
+def character(name: str = "helper", guests: object = None, *, absent: bool = False) -> robot_team.AgentInfo:
     return robot_team.AgentInfo(ref=AgentRef(name=name, source=f"{name}.py", sha256="cd" * 32), absent=absent)
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hthor.guest import Guest
+from hthor.guest import Guest, GuestConfig
 from hthor.types import BodySpec, Briefing, Camera, Detection, Observation, Pose, Scan
 
 BRIEFING = Briefing(
@@ -109,7 +109,7 @@ def process_chain(pid: int) -> list[int]:
 
 def start_trial(path: Path, level: str) -> Guest:
     path.write_text(HEAD + agent("time.sleep(0.05); return Action()"))
-    guest = Guest(path, isolation=level)
+    guest = Guest(path, config=GuestConfig(isolation=level))
     guest.begin(BRIEFING)
     guest.act(look())
     return guest

@@ -44,10 +44,9 @@ class Stage(test_episode.Stage):
 
 def player(agent: str, level: str) -> Callable[[Session], Iterator[TrialRecord]]:
     """Plays sessions of some dozen ticks a trial with the agent of this file, held at this level."""
-    guest.confine_guests(level)
 
     def mind(_: RobotSeat) -> guest.Guest:
-        return guest.Guest(agent)
+        return guest.Guest(agent, config=guest.GuestConfig(isolation=level))
 
     def perform(session: Session) -> Iterator[TrialRecord]:
         with trial_runner.Participants(test_episode.Mind(), session.trials[0].robots, mind) as company:

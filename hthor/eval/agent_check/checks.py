@@ -17,7 +17,7 @@ from hthor.eval.agent_check.criteria import Finding
 from hthor.eval.agent_check.probe_trials import Rehearsal
 from hthor.eval.config import robot_team
 from hthor.eval.config.robot_team import AgentInfo
-from hthor.guest import Given, Guest, Isolation, confine_guests
+from hthor.guest import AgentInputs, Guest, GuestConfig, Isolation
 from hthor.guest.host import snapshot
 from hthor.types.cameras import OWN
 
@@ -43,7 +43,7 @@ class Report(Struct, frozen=True, kw_only=True):
 
 
 def check(
-    agent: str, *, robot: str = "", camera: str = OWN, isolation: str = "auto", given: Given | None = None
+    agent: str, *, robot: str = "", camera: str = OWN, isolation: str = "auto", given: AgentInputs | None = None
 ) -> Report:
     """Check an agent's file, ``file.py`` or ``file.py:Class``.
 
@@ -57,17 +57,17 @@ def check(
     """
     if agent in plugins.names("agent"):
         raise HthorError(f"'{agent}' ships with hthor; give an agent of your own, such as my_agent.py.")
-    confine_guests(isolation, given=given)
+    guests = GuestConfig(isolation=isolation, inputs=given or AgentInputs())
     code_identity.keep_compiled()
     try:
-        character = robot_team.load_agent_info(agent)
+        character = robot_team.load_agent_info(agent, guests)
     except AgentError as error:
         broken = Finding(check="loads", status="broken", told=str(error), advice="Mend that, and check again.")
         return _report(agent, [broken], {})
     if character.absent:
         raise HthorError(f"{agent} says that there is no robot at all (absent = True), so there is nothing to check.")
     rehearsal = Rehearsal(character, robot or (character.bodies[0] if character.bodies else "scout"), camera)
-    with Guest(agent) as guest:
+    with Guest(agent, config=guests) as guest:
         began = time.perf_counter()
         info = guest.load()
         load_s = time.perf_counter() - began
@@ -77,7 +77,7 @@ def check(
     findings = [criteria.loads(load_s, character), criteria.files(character, later), *criteria.plays(first, agent)]
     figures = {"load_s": load_s, **criteria.figures(first)}
     if not first.faults:
-        with Guest(agent) as guest:
+        with Guest(agent, config=guests) as guest:
             again, other, last = rehearsal.play(guest, [rehearsal.a, rehearsal.b, rehearsal.a])
         if not other.faults:  # only from the second trial on it has to be imported anew
             findings[2], figures["begin_s"] = criteria.plays(other, agent)[0], other.begin_s

@@ -13,6 +13,7 @@ from msgspec import Struct
 from hthor import code_identity, plugins
 from hthor.errors import HthorError, UnknownName
 from hthor.guest.agent.manifest import Manifest
+from hthor.guest.host.config import GuestConfig
 from hthor.types import AgentRef, RobotSeat, cameras
 from hthor.types.detector_specs import OWN
 
@@ -133,16 +134,20 @@ def team_pictures_sha256(crew: RobotTeam, pack: str = "") -> str:
 
 
 def form_team(
-    bodies: Sequence[str | RobotInfo], minds: Sequence[str | AgentInfo], detector: str = OWN, camera: str = cameras.OWN
+    bodies: Sequence[str | RobotInfo],
+    minds: Sequence[str | AgentInfo],
+    detector: str = OWN,
+    camera: str = cameras.OWN,
+    guests: GuestConfig | None = None,
 ) -> RobotTeam:
-    """A crew of these bodies and minds, which belong together one by one.
+    """A crew of these bodies and minds, which belong together one by one; ``guests`` as in `load_agent_info`.
 
     Raises:
         UnknownName: when one of them is unknown, or a mind is not made for its body.
     """
     robots = []
     for body, mind in zip(bodies, minds, strict=True):
-        character = load_agent_info(mind) if isinstance(mind, str) else mind
+        character = load_agent_info(mind, guests) if isinstance(mind, str) else mind
         shape = load_robot_info(body) if isinstance(body, str) else body
         if character.bodies and shape.name not in character.bodies and not character.absent:
             hint = "Choose one with --robot or --robots."
@@ -153,13 +158,20 @@ def form_team(
     return RobotTeam(robots=tuple(robots), detector=detector, camera=camera)
 
 
-def parse_teams(robots: str, agents: Sequence[str], detector: str = OWN, camera: str = cameras.OWN) -> list[RobotTeam]:
+def parse_teams(
+    robots: str,
+    agents: Sequence[str],
+    detector: str = OWN,
+    camera: str = cameras.OWN,
+    *,
+    guests: GuestConfig | None = None,
+) -> list[RobotTeam]:
     """The crews that ``--robots`` stands for: one, or, where bodies have no mind of their own, one for each agent.
 
     Args:
         robots: BODY:AGENT or BODY, separated by commas: "tall:oracle,small:my_agent.py:Careful". A comma within an
             agent is written as a backslash and a comma.
-        agents: who sits in the bodies that come without a mind.
+        agents: who sits in the bodies that come without a mind. guests: as in `load_agent_info`.
 
     Raises:
         HthorError: when it cannot be read, or a name in it is unknown.
@@ -172,7 +184,8 @@ def parse_teams(robots: str, agents: Sequence[str], detector: str = OWN, camera:
     if agents and not bare:
         raise HthorError("--robots names a mind for every robot, so --agent has nobody to be; leave one of them out.")
     shapes = [load_robot_info(body) for body, _ in pairs]
-    known = {mind: load_agent_info(mind) for mind in dict.fromkeys([*(mind for _, mind in pairs if mind), *agents])}
+    wanted = dict.fromkeys([*(mind for _, mind in pairs if mind), *agents])
+    known = {mind: load_agent_info(mind, guests) for mind in wanted}
     casts = [[known[mind or agent] for _, mind in pairs] for agent in agents or [""]]
     return [form_team(shapes, minds, detector, camera) for minds in casts]
 
@@ -207,18 +220,19 @@ def load_robot_info(robot: str) -> RobotInfo:
     return RobotInfo(name=bodies.robot(robot).name, sha256=plugins.sha256(robot), path=str(Path(robot).resolve()))
 
 
-def load_agent_info(agent: str) -> AgentInfo:
+def load_agent_info(agent: str, guests: GuestConfig | None = None) -> AgentInfo:
     """Find out who an agent is.
 
     Args:
         agent: a built-in agent's name, or an agent of the user's in one of the forms of `hthor.guest.agent.reference`.
+        guests: how a submitted agent is isolated while it is asked, and what it is given.
 
     Raises:
         UnknownName: when it is neither.
         AgentError: when it does not load.
     """
     name = plugins.plugin_name("agent", agent)
-    return _built_in_agent(name) if name in plugins.names("agent") else _submitted_agent(agent)
+    return _built_in_agent(name) if name in plugins.names("agent") else _submitted_agent(agent, guests)
 
 
 def display_name(name: str, robots: Sequence[RobotSeat]) -> str:
@@ -243,13 +257,13 @@ def _built_in_agent(name: str) -> AgentInfo:
     )
 
 
-def _submitted_agent(text: str) -> AgentInfo:
+def _submitted_agent(text: str, config: GuestConfig | None) -> AgentInfo:
     from hthor.guest import Guest
     from hthor.guest.host import snapshot
 
-    with Guest(text) as guest:
+    with Guest(text, config=config) as guest:
         info = guest.load()
-        name = _file_safe("-".join([info.name, *(_argument_text(*pair) for pair in guest.given.args.items())]))
+        name = _file_safe("-".join([info.name, *(_argument_text(*pair) for pair in guest.inputs.args.items())]))
         made = snapshot.settle(guest, name)
         ref = AgentRef(name=name, source=info.source, sha256=made.sha256, privileges=tuple(info.privileges))
         return AgentInfo(

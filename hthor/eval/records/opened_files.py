@@ -12,7 +12,7 @@ import msgspec
 from hthor.errors import AgentError, RunError
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.guest import Guest
+from hthor.guest import Guest, GuestConfig
 from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.host import snapshot
 
@@ -43,11 +43,13 @@ def complete_manifests(plan: RunConfig, records: Iterable[TrialRecord]) -> tuple
     )
 
 
-def check_opened_files(minds: Mapping[str, str], plan: RunConfig, records: Sequence[TrialRecord]) -> None:
+def check_opened_files(
+    minds: Mapping[str, str], guests: GuestConfig, plan: RunConfig, records: Sequence[TrialRecord]
+) -> None:
     """See that what a run's trials were played with so far is still there, before more of them are played.
 
     Args:
-        minds: agents that are not built in, by seat.
+        minds: agents that are not built in, by seat. guests: what they are given.
 
     Raises:
         AgentError: names the file that is not as it was. RunError: as `manifests`.
@@ -57,8 +59,7 @@ def check_opened_files(minds: Mapping[str, str], plan: RunConfig, records: Seque
         used = {file for record in records for file in (record.files or {}).get(seat, ())}
         if used:
             try:
-                snapshot.examine(
-                    sorted(used), Guest(mind).grounds, since="since trials of this run were played with it"
-                )
+                grounds = Guest(mind, config=guests).grounds
+                snapshot.examine(sorted(used), grounds, since="since trials of this run were played with it")
             except AgentError as error:
                 raise AgentError(f"{error} --out FOLDER gives it one.") from None

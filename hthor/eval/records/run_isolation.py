@@ -6,20 +6,13 @@ keeps it in `isolation.json`. It decides no record and is no part of the run's c
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from hthor import documents
 from hthor.errors import RunError
 from hthor.guest import Isolation, IsolationError
 from hthor.guest.confinement import known, suffices
-
-if TYPE_CHECKING:
-    from hthor.eval.config.sessions import Session
-    from hthor.eval.records.trial_record import TrialRecord
-    from hthor.eval.runner.trial_runner import Sources
-    from hthor.guest import Given
 
 NAME = "isolation.json"
 
@@ -82,17 +75,6 @@ def load_isolation(folder: Path) -> Isolation | None:
         return None
     hint = "it says how the agents were held; evaluate the run again, into another folder"
     return documents.read(path, Isolation, RunError, hint=hint)
-
-
-def player(
-    sources: Sources | None, level: str, hidden: tuple[str, ...], given: Given | None = None
-) -> Callable[[Session], Iterator[TrialRecord]]:
-    """`cast.player`, whose agents are held at this level, cannot read what is hidden, and are given this."""
-    from hthor import guest
-    from hthor.eval.runner import trial_runner
-
-    guest.confine_guests(level, hidden, given)
-    return trial_runner.make_runner(sources)
 
 
 def _demand(held: Isolation, required: str, whose: str) -> None:

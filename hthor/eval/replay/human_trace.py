@@ -13,14 +13,14 @@ from typing import Any
 
 from msgspec import Struct
 
-from hthor import activity, code_identity, guest
+from hthor import activity, code_identity
 from hthor.errors import HthorError
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import session_history
 from hthor.eval.runner import trial_runner
-from hthor.guest import Given
+from hthor.guest import AgentInputs
 from hthor.types import HUMAN, Action, Briefing, Event, Observation
 
 SCHEMA = "hthor.mind/1"
@@ -89,7 +89,7 @@ class TracedHuman:
 
 
 def trace_human(
-    folder: Path, wanted: TrialRecord, *, agents: Sequence[str] = (), humans: str = "", given: Given | None = None
+    folder: Path, wanted: TrialRecord, *, agents: Sequence[str] = (), humans: str = "", given: AgentInputs | None = None
 ) -> HumanTrace:
     """Play a trial of a run again and listen.
 
@@ -105,8 +105,7 @@ def trace_human(
     code_identity.keep_compiled()
     spec = wanted.spec
     session = Session(participant=spec.participant, trials=session_history.session_before(folder, wanted))
-    guest.confine_guests(hidden=(str(folder.resolve()),), given=given)
-    stage = trial_runner.TrialRunner(session_history.replay_sources(folder, spec, agents, humans))
+    stage = trial_runner.TrialRunner(session_history.replay_sources(folder, spec, agents, humans, given))
     with stage.enter(session) as company:
         company.human = person = TracedHuman(company.human)
         if not all(hasattr(type(person.human), name) for name in ("about", "listener")):

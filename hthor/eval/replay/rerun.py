@@ -12,18 +12,18 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
-from hthor import activity, code_identity, guest, plugins
+from hthor import activity, code_identity, plugins
 from hthor.errors import HthorError
 from hthor.eval.config import robot_team, run_config
 from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.config.sessions import Session
-from hthor.eval.records import run_isolation, trial_record
+from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import session_history
-from hthor.eval.runner import fault_report
+from hthor.eval.runner import fault_report, trial_runner
 from hthor.eval.runner.fault_report import FaultReport
 from hthor.eval.runner.trial_runner import Sources
-from hthor.guest import Given
+from hthor.guest import AgentInputs, GuestConfig
 from hthor.types import RobotSeat, TrialSpec
 
 
@@ -49,7 +49,7 @@ class Rerun(Struct, frozen=True, kw_only=True):
 
 
 def rerun_trial(
-    folder: Path, wanted: TrialRecord, files: RunFiles, isolation: str = "auto", given: Given | None = None
+    folder: Path, wanted: TrialRecord, files: RunFiles, isolation: str = "auto", given: AgentInputs | None = None
 ) -> Rerun:
     """Play a trial of a run once more.
 
@@ -57,16 +57,14 @@ def rerun_trial(
         RunError: when trials before it are missing, or another version of hthor played them.
         HthorError: when a file is needed and not given.
     """
-    guest.confine_guests(isolation, (str(folder.resolve()),), given)
+    guests = GuestConfig(isolation=isolation, hidden=(str(folder.resolve()),), inputs=given or AgentInputs())
     code_identity.keep_compiled()
     specs = session_history.session_before(folder, wanted)
-    minds = _minds(wanted.spec, files.agents)
+    minds = _minds(wanted.spec, files.agents, guests)
     robots = tuple(_seated(seat, minds) for seat in wanted.spec.robots)
     trials = tuple(msgspec.structs.replace(spec, robots=robots) for spec in specs)
     session = Session(participant=wanted.spec.participant, trials=trials)
-    perform = run_isolation.player(
-        _sources(folder, wanted.spec, files, minds), isolation, (str(folder.resolve()),), given
-    )
+    perform = trial_runner.make_runner(_sources(folder, wanted.spec, files, minds, guests))
     done = _last(perform(session), len(trials))
     left = [fault_report.take(trial_record.key(trial)) for trial in trials][-1]
     changed = robots != wanted.spec.robots
@@ -84,9 +82,9 @@ def _last(played: Iterator[TrialRecord], count: int) -> TrialRecord:
     return done[-1]
 
 
-def _minds(spec: TrialSpec, paths: Sequence[str]) -> dict[str, AgentInfo]:
+def _minds(spec: TrialSpec, paths: Sequence[str], guests: GuestConfig) -> dict[str, AgentInfo]:
     """For each seat whose agent is not built in, the file that is meant: the very same one, or one of its name."""
-    given = [robot_team.load_agent_info(path) for path in paths]
+    given = [robot_team.load_agent_info(path, guests) for path in paths]
     found: dict[str, AgentInfo] = {}
     for seat in spec.robots:
         if seat.agent.name in plugins.names("agent"):
@@ -104,7 +102,9 @@ def _seated(seat: RobotSeat, minds: dict[str, AgentInfo]) -> RobotSeat:
     return msgspec.structs.replace(seat, agent=minds[seat.seat].ref) if seat.seat in minds else seat
 
 
-def _sources(folder: Path, spec: TrialSpec, files: RunFiles, minds: dict[str, AgentInfo]) -> Sources:
+def _sources(
+    folder: Path, spec: TrialSpec, files: RunFiles, minds: dict[str, AgentInfo], guests: GuestConfig
+) -> Sources:
     """Where everything lies, looked for before anything is played."""
     if spec.kind_sha256 and not files.kind:
         raise HthorError(f"the kind '{spec.task.kind}' of this trial came from a file of its own. Give it with --kind.")
@@ -127,4 +127,5 @@ def _sources(folder: Path, spec: TrialSpec, files: RunFiles, minds: dict[str, Ag
         assets="" if shown == run_config.PROCEDURAL else shown,
         houses=str(own.resolve()) if own.is_dir() else "",
         people=files.humans,
+        guests=guests,
     )

@@ -12,6 +12,7 @@ from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.records import reader
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
+from hthor.guest import AgentInputs, GuestConfig
 from hthor.guest.agent import manifest
 from hthor.types import RobotSeat, TrialSpec
 
@@ -40,24 +41,29 @@ def session_before(folder: Path, wanted: TrialRecord) -> tuple[TrialSpec, ...]:
     return tuple(mine)
 
 
-def replay_sources(folder: Path, spec: TrialSpec, agents: Sequence[str] = (), humans: str = "") -> trial_runner.Sources:
+def replay_sources(
+    folder: Path, spec: TrialSpec, agents: Sequence[str] = (), humans: str = "", given: AgentInputs | None = None
+) -> trial_runner.Sources:
     """Where that lies which a trial needs.
 
     Args:
         folder: the run's. agents: files of its agents that are not built in. humans: where its people come from.
+        given: arguments and files that the agents are given.
 
     Raises:
         HthorError: when an agent's file is needed and not given.
     """
     theirs = [seat for seat in spec.robots if seat.agent.name not in plugins.names("agent")]
-    given = [robot_team.load_agent_info(path) for path in agents] if theirs else []
-    minds = {seat.seat: _same(folder, seat, given) for seat in theirs}
+    guests = GuestConfig(hidden=(str(folder.resolve()),), inputs=given or AgentInputs())
+    found = [robot_team.load_agent_info(path, guests) for path in agents] if theirs else []
+    minds = {seat.seat: _same(folder, seat, found) for seat in theirs}
     own = folder / "houses"
     return trial_runner.Sources(
         minds={seat: one.path for seat, one in minds.items()},
         manifests={seat: one.manifest for seat, one in minds.items() if one.manifest is not None},
         people=humans,
         houses=str(own.resolve()) if own.is_dir() else "",
+        guests=guests,
     )
 
 

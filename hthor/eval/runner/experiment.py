@@ -24,8 +24,7 @@ from hthor.eval.runner.collector import InternalFailure, Unfinished
 from hthor.eval.runner.engines import RunnerFactory
 from hthor.eval.runner.run import Watcher
 from hthor.eval.runner.run_options import ResolvedRuns, RunJob, RunOptions
-from hthor.guest import Isolation
-from hthor.guest.agent import inputs
+from hthor.guest import GuestConfig, Isolation
 from hthor.tasks.suite import encode_suite
 from hthor.tasks.suites import library
 
@@ -122,7 +121,7 @@ def _perform(
         if note not in told:
             told.add(note)
             watch.note(note)
-    own = own_houses(options)
+    own, guests = own_houses(options), run_options.guest_config(options)
     extra = {f"houses/{name}": data for name, data in own.items()}  # so that the run can be drawn by itself
     if chosen.drawn:
         extra["suite.json"] = encode_suite(chosen.suite)
@@ -139,7 +138,7 @@ def _perform(
         watch=watch,
         extra=extra,
         again=_again(options, chosen, part),
-        check=functools.partial(opened_files.check_opened_files, crew.minds) if plan.agents else None,
+        check=functools.partial(opened_files.check_opened_files, crew.minds, guests) if plan.agents else None,
     )
 
 
@@ -169,6 +168,10 @@ def runner_factory(
         held: how the run's agents are held, None where all are built in.
         houses: the folder with the suite's own houses, None where it has none.
     """
+    guests = run_options.guest_config(options)
+    if held is not None:
+        level = options.isolation if held.level == guest.SERVED else held.level  # of whoever is beside the served one
+        guests = GuestConfig(isolation=level, hidden=(*guests.hidden, str(part.folder.resolve())), inputs=guests.inputs)
     sources = trial_runner.Sources(
         minds=part.crew.minds,
         manifests=part.crew.manifests,
@@ -177,13 +180,9 @@ def runner_factory(
         assets=options.assets,
         houses=str(houses.resolve()) if houses else "",
         people=part.people.word,
+        guests=guests,
     )
-    if held is None:
-        return functools.partial(trial_runner.make_runner, sources)
-    hidden = (*run_options.hidden(options), str(part.folder.resolve()))
-    level = options.isolation if held.level == guest.SERVED else held.level  # of whoever is beside the served one
-    more = inputs.read(options.agent_args, options.readable)
-    return functools.partial(run_isolation.player, sources, level, hidden, more)
+    return functools.partial(trial_runner.make_runner, sources)
 
 
 def own_houses(options: RunOptions) -> dict[str, bytes]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
-from hthor import code_identity, guest
+from hthor import code_identity
 from hthor.errors import HthorError
 from hthor.eval.config import human_populations, robot_team, run_config, shard, task_selection
 from hthor.eval.config.robot_team import RobotTeam
@@ -17,7 +17,7 @@ from hthor.eval.config.task_selection import TaskSelection
 from hthor.eval.records import run_isolation
 from hthor.eval.results import baseline
 from hthor.eval.runner import engines, trial_runner
-from hthor.guest import Isolation
+from hthor.guest import GuestConfig, Isolation
 from hthor.guest.agent import inputs
 from hthor.humans.population.resolve import PROXY, People
 from hthor.tasks.suites import library
@@ -102,7 +102,7 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
         raise HthorError(
             "name an agent with --agent, or robots and their agents with --robots tall:oracle,small:oracle."
         )
-    guest.confine_guests(options.isolation, hidden(options), inputs.read(options.agent_args, options.readable))
+    guests = guest_config(options)
     code_identity.keep_compiled()
     whom = human_populations.find_populations(options.humans)
     detector = detector_specs.tidy(options.detector)
@@ -113,7 +113,7 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
     chosen = task_selection.limit_selection(
         task_selection.narrow_selection(whole, options.houses, options.difficulty), options.limit
     )
-    parts = _parts(options, chosen, _crews(options, chosen, detector, camera), whom, shown)
+    parts = _parts(options, chosen, _crews(options, chosen, detector, camera, guests), whom, shown)
     controls = _controls(options, chosen, parts) if options.control and not options.shard else {}
     minds = sorted({mind for part in parts for mind in part.crew.minds.values()})
     held = run_isolation.resolve_isolation(options.isolation, options.require_isolation, minds)
@@ -196,6 +196,12 @@ def _parts(
     return parts
 
 
+def guest_config(options: RunOptions) -> GuestConfig:
+    """How submitted agents are isolated, and what they are given."""
+    given = inputs.read(options.agent_args, options.readable)
+    return GuestConfig(isolation=options.isolation, hidden=hidden(options), inputs=given)
+
+
 def hidden(options: RunOptions) -> tuple[str, ...]:
     """What no agent may read, even if it lies in its own folder: runs, tasks and people."""
     words = (*options.humans, options.suite, options.kind, str(options.out or ""))
@@ -205,12 +211,14 @@ def hidden(options: RunOptions) -> tuple[str, ...]:
     return tuple(str(path.resolve()) for path in places if path.exists())
 
 
-def _crews(options: RunOptions, chosen: TaskSelection, detector: str, camera: str) -> list[RobotTeam]:
+def _crews(
+    options: RunOptions, chosen: TaskSelection, detector: str, camera: str, guests: GuestConfig
+) -> list[RobotTeam]:
     """Who is evaluated, one run each."""
     if options.robots:
         if options.robot:
             raise HthorError("--robots names all the bodies; leave out --robot.")
-        return robot_team.parse_teams(options.robots, options.agents, detector, camera)
+        return robot_team.parse_teams(options.robots, options.agents, detector, camera, guests=guests)
     bodies = (options.robot,) if options.robot else chosen.crew
     if not bodies:
         raise HthorError(
@@ -218,7 +226,7 @@ def _crews(options: RunOptions, chosen: TaskSelection, detector: str, camera: st
             "or choose one kind with --kind."
         )
     shapes = [robot_team.load_robot_info(body) for body in bodies]
-    minds = [robot_team.load_agent_info(agent) for agent in options.agents]
+    minds = [robot_team.load_agent_info(agent, guests) for agent in options.agents]
     return [robot_team.form_team(shapes, [mind] * len(shapes), detector, camera) for mind in minds]
 
 

@@ -15,6 +15,7 @@ from hthor.errors import AgentError, HthorError
 from hthor.eval.runner.agent_recorder import RecordedAgent
 from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.host import snapshot
+from hthor.guest.host.config import GuestConfig
 from hthor.types import Mind, RobotSeat, TrialSpec
 from hthor.types.cameras import OWN
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from hthor.episode import EpisodeLog
     from hthor.eval.config.sessions import Session
     from hthor.eval.records.trial_record import TrialRecord
+    from hthor.guest import GuestPool
     from hthor.humans.model import HumanModel
     from hthor.humans.population.resolve import People
     from hthor.looks.pack import Pack
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
 class Sources(Struct, frozen=True, kw_only=True):
     """Where that lies which is not ours: files of minds and of bodies by their seats, what these minds consist of,
     the file of a kind of task, the name of the furniture pack that pictures show, the folder of the suite's own houses,
-    and the word that finds the people again (empty: the name in the trial does).
+    the word that finds the people again (empty: the name in the trial does), and how submitted agents are isolated.
     """
 
     minds: dict[str, str] = {}
@@ -43,6 +45,7 @@ class Sources(Struct, frozen=True, kw_only=True):
     assets: str = ""
     houses: str = ""
     people: str = ""
+    guests: GuestConfig = GuestConfig()
 
 
 def load_pack(assets: str) -> Pack | None:
@@ -63,10 +66,11 @@ class TrialRunner:
 
     Args:
         sources: where that lies which is not ours.
+        pool: idle processes of submitted agents to use and to leave; without one they end with their session.
     """
 
-    def __init__(self, sources: Sources | None = None) -> None:
-        self._sources = sources or Sources()
+    def __init__(self, sources: Sources | None = None, pool: GuestPool | None = None) -> None:
+        self._sources, self._pool = sources or Sources(), pool
         self._worlds: dict[object, World] = {}
         self._people: People | None = None
         self._seen: dict[str, tuple[File, ...]] = {}  # what agents opened and their manifests do not list, by seat
@@ -180,7 +184,8 @@ class TrialRunner:
             return mind
         from hthor.guest import Guest, Unreachable
 
-        guest = Guest(path) if step_limit_s is None else Guest(path, step_s=step_limit_s, bank_s=0.0)
+        make = functools.partial(Guest, path, config=self._sources.guests, pool=self._pool)
+        guest = make() if step_limit_s is None else make(step_s=step_limit_s, bank_s=0.0)
         known = self._sources.manifests.get(seat.seat)
         if known is not None:
             snapshot.check(known, guest.grounds)
@@ -250,10 +255,9 @@ class Participants:
 
 def make_runner(sources: Sources | None = None) -> Callable[[Session], Iterator[TrialRecord]]:
     """What a worker does with each session: play its trials in order. Called in the worker; imports what is heavy."""
-    from hthor.guest.host import process_pool
+    from hthor.guest import GuestPool
 
-    process_pool.keep()
-    stage = TrialRunner(sources)
+    stage = TrialRunner(sources, GuestPool())
 
     def perform(session: Session) -> Iterator[TrialRecord]:
         with stage.enter(session) as company:

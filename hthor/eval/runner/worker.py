@@ -108,11 +108,6 @@ def end_with_parent(parent: int) -> None:
 
 def _cpu_s() -> float:
     """Processor time of this process, and of all that it started and that has ended or waits for its next session."""
-    times, guests, waiting = (
-        os.times(),
-        sys.modules.get("hthor.guest.process_tools.resource_usage"),
-        sys.modules.get("hthor.guest.host.process_pool"),
-    )
+    times, guests = os.times(), sys.modules.get("hthor.guest.process_tools.resource_usage")
     lost = guests.uncollected_cpu_s() if guests else 0.0
-    lost += sum(guests.cpu_s(pid) for pid in waiting.pids()) if guests and waiting else 0.0
     return float(times.user + times.system + times.children_user + times.children_system + lost)

@@ -15,7 +15,7 @@ from hthor.guest.agent.reference import Reference
 _HINT = "Name the folder with --readable too, so that the agent may read it and its files count as the agent's."
 
 
-class Given(Struct, frozen=True, kw_only=True):
+class AgentInputs(Struct, frozen=True, kw_only=True):
     """Arguments by their keys, and absolute paths of files and folders; a file among the arguments is readable too."""
 
     args: dict[str, str] = {}
@@ -41,7 +41,7 @@ class Given(Struct, frozen=True, kw_only=True):
         return tuple(dict.fromkeys(found))
 
 
-def read(args: Iterable[str] = (), readable: Iterable[Path | str] = ()) -> Given:
+def read(args: Iterable[str] = (), readable: Iterable[Path | str] = ()) -> AgentInputs:
     """What a user typed.
 
     Raises:
@@ -60,7 +60,7 @@ def read(args: Iterable[str] = (), readable: Iterable[Path | str] = ()) -> Given
     for key, value in found.items():  # a folder without a slash in its name, which could be any word
         if os.path.isdir(value) and os.path.realpath(value) in folders:
             found[key] = os.path.realpath(value)
-    return Given(args=found, readable=tuple(dict.fromkeys(places)))
+    return AgentInputs(args=found, readable=tuple(dict.fromkeys(places)))
 
 
 def _within(path: str, folders: Iterable[str]) -> bool:

@@ -16,7 +16,7 @@ import msgspec
 
 from hthor.errors import AgentError, UnknownName
 from hthor.guest.agent import agent_paths, arguments, reference
-from hthor.guest.agent.inputs import Given
+from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.client import loading, source_importer
 from hthor.guest.client.agent_loop import play
 from hthor.guest.client.file_recorder import Recorder
@@ -61,7 +61,7 @@ class Socket:
         raise Gone("not what was asked for")
 
 
-def serve(text: str, host: str, port: int, given: Given | None = None) -> Server:
+def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> Server:
     """A server that is ready to serve an agent; call its ``serve_forever``.
 
     Args:
@@ -76,7 +76,7 @@ def serve(text: str, host: str, port: int, given: Given | None = None) -> Server
     if agent.form not in ("file", "module"):
         raise UnknownName("agent to serve", text, reference.FORMS[:3], "Only Python agents are served.")
     sockets = websocket_client.library()
-    version, more = agent.sha256, given or Given()
+    version, more = agent.sha256, given or AgentInputs()
     ground = agent_paths.of(agent, more.beyond(agent))
     sys.path.insert(0, agent.root)
     source_importer.only_from(ground)

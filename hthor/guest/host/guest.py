@@ -6,8 +6,10 @@ import contextlib
 from pathlib import Path
 
 from hthor.guest.agent import agent_paths, reference
-from hthor.guest.agent.inputs import Given
-from hthor.guest.host import failure_explanation, isolation_level
+from hthor.guest.confinement import AUTO, Isolation
+from hthor.guest.host import failure_explanation, noop_agent
+from hthor.guest.host.config import GuestConfig
+from hthor.guest.host.guest_pool import GuestPool
 from hthor.guest.host.info import GuestInfo
 from hthor.guest.host.process import Process
 from hthor.guest.host.startup import Arrival
@@ -19,25 +21,27 @@ from hthor.guest.protocol.faults import GuestFault
 from hthor.guest.protocol.trial_exchange import Turns
 from hthor.types import Action, Briefing, Observation
 
+_NOOP_AGENT = Path(noop_agent.__file__)
+
 
 def load_info(
-    path: str | Path,
-    cls: str | None = None,
-    *,
-    start_s: float = 60.0,
-    isolation: str | None = None,
-    given: Given | None = None,
+    path: str | Path, cls: str | None = None, *, config: GuestConfig | None = None, start_s: float = 60.0
 ) -> GuestInfo:
-    """Bring an agent up, and say what it is.
+    """Start an agent, and say what it is. Arguments and errors are those of `Guest` and `Guest.load`."""
+    with Guest(path, cls, config=config, start_s=start_s) as guest:
+        return guest.load()
+
+
+def in_force(level: str = AUTO) -> Isolation:
+    """What confines a guest on this machine, found out by starting an agent that does nothing.
 
     Args:
-        path: the agent, as `reference.read` reads it.
+        level: "L1", "L2", "L3", or "auto" for the strongest that starts.
 
     Raises:
-        UnknownName, AgentError, IsolationError: as `Guest` and `Guest.load`.
+        UnknownName: when there is no such level. IsolationError: when it does not start.
     """
-    with Guest(path, cls, start_s=start_s, isolation=isolation, given=given) as guest:
-        return guest.load()
+    return load_info(_NOOP_AGENT, config=GuestConfig(isolation=level)).isolation
 
 
 class Guest:
@@ -51,13 +55,12 @@ class Guest:
         start_s: seconds for coming up, and again for every ``begin``.
         step_s: seconds for each ``act``; what the host takes to answer (rendering) does not count.
         bank_s: seconds in a trial by which its ``act`` may take longer than that, all together.
-        isolation: "L1", "L2", "L3", or "auto" for the strongest that the machine gives; by default what
-            `confine_guests` has laid down for this process. An agent that is served elsewhere is not held at all.
+        config: how it is isolated and what it is given. An agent that is served elsewhere is not isolated at all.
+        pool: idle processes to use, and where to leave this one's; without one it ends when the guest is closed.
         memory_mb: memory that it may hold. disk_mb: what it may write in a trial.
-        given: arguments and files that it is given; by default what `confine_guests` has laid down.
 
     Attributes:
-        reference: what names it. given: as above. grounds: where its own files lie.
+        reference: what names it. inputs: what it is given. grounds: where its own files lie.
 
     Raises:
         UnknownName, AgentError: when ``path`` names no agent.
@@ -69,27 +72,27 @@ class Guest:
         path: str | Path,
         cls: str | None = None,
         *,
+        config: GuestConfig | None = None,
+        pool: GuestPool | None = None,
         start_s: float = 60.0,
         step_s: float = 5.0,
         bank_s: float = 60.0,
-        isolation: str | None = None,
         memory_mb: int = 4096,
         disk_mb: int = 256,
-        given: Given | None = None,
     ) -> None:
         self._gathered, self._talk = False, Talk()
-        self.given = isolation_level.given() if given is None else given
+        config = config or GuestConfig()
+        self.inputs = config.inputs
         self.reference = reference.read(str(path), cls)
-        beyond = self.given.beyond(self.reference)
-        self.grounds = agent_paths.of(self.reference, beyond)
+        self.grounds = agent_paths.of(self.reference, self.inputs.beyond(self.reference))
         self._arrival = Arrival(
             self._talk,
             self.reference,
+            config=config,
+            pool=pool or GuestPool(most=0),
             start_s=start_s,
-            isolation=isolation,
             memory_mb=memory_mb,
             disk_mb=disk_mb,
-            args=self.given.args,
             grounds=self.grounds,
         )
         self._start_s, self._step_s, self._bank_s = start_s, step_s, bank_s

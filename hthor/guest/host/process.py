@@ -83,6 +83,7 @@ class Process:
         finally:
             tell.close()
             os.close(printed)
+        self._cpu = resource_usage.CpuMeter(self._process.pid)
         self._buffers: dict[int, bytes] = {self._keeper: b""}
         self._open()
 
@@ -199,6 +200,10 @@ class Process:
             return True
         return True
 
+    def count_cpu(self) -> None:
+        """Add the processor time it has taken so far to `resource_usage.uncollected_cpu_s`."""
+        self._cpu.count()
+
     def obituary(self) -> tuple[str, str]:
         """How the process ended: a fault's kind and its words."""
         with contextlib.suppress(subprocess.TimeoutExpired):
@@ -210,7 +215,7 @@ class Process:
 
     def kill(self) -> None:
         """End everything that the guest has started, close the pipes, and remove what it wrote."""
-        with resource_usage.ending(self._process.pid):
+        with self._cpu.ending():
             if self.policy.level == "L1":
                 cleanup.end_descendants(self._process.pid)
             with contextlib.suppress(ProcessLookupError, PermissionError):

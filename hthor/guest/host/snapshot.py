@@ -14,7 +14,7 @@ from hthor import code_identity, rules
 from hthor.errors import AgentError
 from hthor.guest.agent import command, digests, manifest, source_scan
 from hthor.guest.agent.agent_paths import Grounds
-from hthor.guest.agent.inputs import Given
+from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.agent.reference import Reference
 from hthor.guest.confinement import hiding
@@ -41,8 +41,8 @@ def settle(guest: Guest, name: str) -> Manifest:
         return Manifest(name=name, source=info.source, sha256=info.sha256, files=info.manifest, claimed=True)
     if not info.absent and not agent.words:
         _try_beginning(guest, info.privileges)
-    args = {key: _shown(value, grounds) for key, value in guest.given.args.items()}
-    files = files_of(agent, guest.given, grounds, guest.take_opened())
+    args = {key: _shown(value, grounds) for key, value in guest.inputs.args.items()}
+    files = files_of(agent, guest.inputs, grounds, guest.take_opened())
     return manifest.of(name, info.source, args, files, _library(files, grounds))
 
 
@@ -53,7 +53,7 @@ def _library(files: Iterable[File], grounds: Grounds) -> str:
     return code_identity.ours().sha256((), files=read) if read else ""
 
 
-def files_of(agent: Reference, given: Given, grounds: Grounds, opened: Iterable[str]) -> tuple[File, ...]:
+def files_of(agent: Reference, given: AgentInputs, grounds: Grounds, opened: Iterable[str]) -> tuple[File, ...]:
     """The files of an agent, with their hashes, sorted.
 
     Args:

@@ -7,7 +7,9 @@ from hthor.guest.agent import arguments
 from hthor.guest.agent.agent_paths import Grounds
 from hthor.guest.agent.reference import Reference
 from hthor.guest.confinement import Isolation, Policy
-from hthor.guest.host import failure_explanation, info, isolation_level, process_pool, websocket_client
+from hthor.guest.host import failure_explanation, info, isolation_level, process, websocket_client
+from hthor.guest.host.config import GuestConfig
+from hthor.guest.host.guest_pool import GuestPool, IdleGuest, Key
 from hthor.guest.host.info import GuestInfo
 from hthor.guest.host.process import Process
 from hthor.guest.protocol import wire
@@ -33,16 +35,16 @@ class Arrival:
         talk: Talk,
         agent: Reference,
         *,
+        config: GuestConfig,
+        pool: GuestPool,
         start_s: float,
-        isolation: str | None,
         memory_mb: int,
         disk_mb: int,
-        args: dict[str, str],
         grounds: Grounds,
     ) -> None:
         self._talk, self._agent = talk, agent
-        self._args, self._grounds = args, grounds
-        self._start_s, self._isolation = start_s, isolation
+        self._config, self._pool, self._grounds = config, pool, grounds
+        self._start_s = start_s
         self._memory_mb, self._disk_mb = memory_mb, disk_mb
         self._gpus = 0.0
         self.ahead = False
@@ -56,7 +58,7 @@ class Arrival:
         """
         talk, agent = self._talk, self._agent
         digest = agent.sha256
-        if waiting := process_pool.take(self._key(digest)):
+        if waiting := self._pool.take(self._key(digest)):
             talk.open(waiting.process)
             talk.loaded, self.ahead = True, waiting.ahead
             self.policy = waiting.process.policy
@@ -90,16 +92,16 @@ class Arrival:
         line = self._talk.line
         if not isinstance(line, Process):
             return False
-        waiting = process_pool.Parked(process=line, info=found, ahead=self.ahead)
-        if left := process_pool.put(self._key(found.sha256), waiting):
+        waiting = IdleGuest(process=line, info=found, ahead=self.ahead)
+        if left := self._pool.put(self._key(found.sha256), waiting):
             self._talk.release()
         return left
 
-    def _key(self, digest: str) -> process_pool.Key:
+    def _key(self, digest: str) -> Key:
         """What two guests must share to be exchangeable."""
-        limits = self._isolation, self._memory_mb, self._disk_mb
-        more = tuple(self._args.items()), self._grounds.readable
-        return self._agent.text, digest, *limits, *more, *isolation_level.terms()
+        config = self._config
+        limits = config.isolation, config.hidden, self._memory_mb, self._disk_mb
+        return self._agent.text, digest, *limits, tuple(config.inputs.args.items()), self._grounds.readable
 
     def _connected(self) -> Isolation:
         self._talk.open(websocket_client.connect(self._agent.url, self._start_s))
@@ -107,29 +109,34 @@ class Arrival:
 
     def _started(self) -> Isolation:
         """Start its process, at the level that is wanted or the strongest that comes up."""
-        return isolation_level.start(
+        return isolation_level.start_at_level(
+            self._config.isolation, self._launch, self._enter, self._pool.unavailable, self._memory_mb
+        )
+
+    def _launch(self, level: str) -> Process:
+        return process.start(
             self._agent,
-            self._isolation,
-            self._enter,
-            self._memory_mb,
-            self._disk_mb,
+            level,
+            hidden=self._config.hidden,
+            memory_mb=self._memory_mb,
+            disk_mb=self._disk_mb,
             gpus=self._gpus > 0.0,
             readable=self._grounds.readable,
         )
 
-    def _enter(self, process: Process) -> wire.Confined | str:
+    def _enter(self, started: Process) -> wire.Confined | str:
         """What a process that has just started says of its confinement, or why it has none."""
-        self._talk.open(process)
-        self.policy = process.policy
-        agent = self._agent
+        self._talk.open(started)
+        self.policy = started.policy
+        agent, args = self._agent, self._config.inputs.args
         load = wire.Load(
             path=agent.path,
             cls=agent.cls,
-            policy=process.policy,
+            policy=started.policy,
             module=agent.module,
-            words=(*agent.words, *arguments.as_words(self._args)) if agent.words else (),
+            words=(*agent.words, *arguments.as_words(args)) if agent.words else (),
             root=agent.root,
-            args=self._args,
+            args=args,
             grounds=self._grounds,
         )
         try:

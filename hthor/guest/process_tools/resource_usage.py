@@ -17,23 +17,39 @@ from hthor.guest.confinement import limits
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
-class _Spent:
-    """Over the life of this process [s]."""
+class _Total:
+    """Over the life of this process [s], like `os.times`."""
 
     uncollected = 0.0
 
 
 def uncollected_cpu_s() -> float:
-    """Processor time of guests that have ended which `os.times` does not have among the children's."""
-    return _Spent.uncollected
+    """Processor time of this process's guests that `os.times` does not have among the children's [s].
+
+    Guests that are in use are counted when they end, or when they become idle.
+    """
+    return _Total.uncollected
 
 
-@contextmanager
-def ending(pid: int) -> Iterator[None]:
-    """Around the end of a guest, whose first process is ``pid``: take down what would be lost."""
-    spent, before = cpu_s(pid), _collected_s()
-    yield
-    _Spent.uncollected += max(0.0, spent - (_collected_s() - before))
+class CpuMeter:
+    """Adds one guest's processor time to the total; ``pid`` is its first process."""
+
+    def __init__(self, pid: int) -> None:
+        self._pid, self._counted_s = pid, 0.0
+
+    def count(self) -> None:
+        """Add what the guest has taken since this was called last."""
+        now = cpu_s(self._pid)
+        _Total.uncollected += max(0.0, now - self._counted_s)
+        self._counted_s = max(now, self._counted_s)
+
+    @contextmanager
+    def ending(self) -> Iterator[None]:
+        """Around the end of the guest: count what would be lost, without what the kernel gives to `os.times`."""
+        self.count()
+        before = _collected_s()
+        yield
+        _Total.uncollected -= min(self._counted_s, _collected_s() - before)
 
 
 def cpu_s(pid: int) -> float:

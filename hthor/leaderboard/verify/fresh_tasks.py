@@ -19,7 +19,7 @@ from hthor.eval.config import sessions, task_selection
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.statistics import intervals
 from hthor.eval.task_check import proof
-from hthor.guest import Given
+from hthor.guest import AgentInputs
 from hthor.humans.population import resolve
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
 from hthor.leaderboard.entries.entry import Entry
@@ -46,7 +46,7 @@ def verify(
     agent: str = "",
     jobs: int | None = None,
     required: str = "",
-    given: Given | None = None,
+    given: AgentInputs | None = None,
 ) -> Fresh:
     """Draw tasks, have the agent play them, and compare.
 
@@ -61,7 +61,7 @@ def verify(
     with tempfile.TemporaryDirectory() as folder:
         _draw(entry, board, word, count, Path(folder), jobs)
         chosen = task_selection.select_tasks(folder, "")
-        crew, who = replay.crew_of(entry, agent), resolve.find(entry.run.humans.source)
+        crew, who = replay.crew_of(entry, agent, given), resolve.find(entry.run.humans.source)
         clock = {name: value for name, value in replay.dealt(entry).items() if name != "participants"}
         whole = sessions.make_sessions(chosen.suite, agent=crew, human=who, **clock)
         played = replay.perform(entry, whole, replay.player(folder, crew, who, required, given), jobs)

@@ -13,7 +13,7 @@ from typing import Any
 
 import msgspec
 
-from hthor import code_identity, guest
+from hthor import code_identity
 from hthor.eval.config import robot_team, run_config, sessions, task_selection
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.sessions import Session
@@ -23,7 +23,7 @@ from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import engines, trial_runner
 from hthor.eval.runner.engines import RunnerFactory
 from hthor.eval.runner.messages import SessionAbandoned, TrialDone
-from hthor.guest import Given
+from hthor.guest import AgentInputs, GuestConfig
 from hthor.humans.population import resolve
 from hthor.humans.population.resolve import People
 from hthor.leaderboard.enter import OURS
@@ -42,7 +42,7 @@ def play(
     suite: str = "",
     jobs: int | None = None,
     require_isolation: str = "",
-    given: Given | None = None,
+    given: AgentInputs | None = None,
 ) -> dict[int, tuple[TrialRecord, bytes]]:
     """The records of the trials at these places, and of those that had to be played with them, with their lines.
 
@@ -55,9 +55,8 @@ def play(
         BoardError: when this is not what the entry says was played, naming the field; when a trial that is wanted could
             not be played, as nothing follows from a part of a draw.
     """
-    guest.confine_guests(given=given)
     chosen = task_selection.select_tasks(suite or entry.run.suite.name, "")
-    crew, who = crew_of(entry, agent), resolve.find(entry.run.humans.source)
+    crew, who = crew_of(entry, agent, given), resolve.find(entry.run.humans.source)
     _same(entry, chosen, crew, who)
     whole = sessions.make_sessions(chosen.suite, agent=crew, human=who, **dealt(entry))
     wanted, seats = _cut(whole, places)
@@ -93,7 +92,7 @@ def perform(
     return found
 
 
-def crew_of(entry: Entry, agent: str) -> RobotTeam:
+def crew_of(entry: Entry, agent: str, given: AgentInputs | None = None) -> RobotTeam:
     """The robots of an entry, with the submitted agent from its file."""
     minds: list[str] = []
     for robot in entry.run.robots:
@@ -103,7 +102,13 @@ def crew_of(entry: Entry, agent: str) -> RobotTeam:
         minds.append(robot.agent.name if ours else agent)
     bodies = [robot.robot or "scout" for robot in entry.run.robots]  # a mind that wants no robot has no body either
     first = entry.run.robots[0]
-    return robot_team.form_team(bodies, minds, first.detector or "own", first.camera or "own")
+    return robot_team.form_team(
+        bodies,
+        minds,
+        first.detector or "own",
+        first.camera or "own",
+        GuestConfig(inputs=given or AgentInputs()),
+    )
 
 
 def _same(entry: Entry, chosen: TaskSelection, crew: RobotTeam, who: People) -> None:
@@ -136,7 +141,7 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
     return wanted, seats
 
 
-def player(suite: str, crew: RobotTeam, who: People, required: str, given: Given | None = None) -> RunnerFactory:
+def player(suite: str, crew: RobotTeam, who: People, required: str, given: AgentInputs | None = None) -> RunnerFactory:
     """What plays a session, as in the run that the entry is of.
 
     Args:
@@ -147,12 +152,18 @@ def player(suite: str, crew: RobotTeam, who: People, required: str, given: Given
     own = bool(suite) and Path(suite).exists() and bool(library.own_houses(suite))
     folder = Path(suite) if Path(suite).is_dir() else Path(suite).parent
     houses = str((folder / "houses").resolve()) if own else ""
-    sources = trial_runner.Sources(
-        minds=crew.minds, manifests=crew.manifests, bodies=crew.bodies, houses=houses, people=who.word
-    )
     held = run_isolation.resolve_isolation("auto", required, sorted(set(crew.minds.values())))
-    if held is None:
-        return functools.partial(trial_runner.make_runner, sources)
-    hidden = (str(folder.resolve()),) if suite else ()
-    guest.confine_guests(held.level, hidden, given)
-    return functools.partial(run_isolation.player, sources, held.level, hidden, given)
+    guests = GuestConfig(
+        isolation=held.level if held else "auto",
+        hidden=(str(folder.resolve()),) if suite else (),
+        inputs=given or AgentInputs(),
+    )
+    sources = trial_runner.Sources(
+        minds=crew.minds,
+        manifests=crew.manifests,
+        bodies=crew.bodies,
+        houses=houses,
+        people=who.word,
+        guests=guests,
+    )
+    return functools.partial(trial_runner.make_runner, sources)

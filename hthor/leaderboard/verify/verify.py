@@ -13,7 +13,7 @@ from hthor.errors import HthorError
 from hthor.eval.config import task_selection
 from hthor.eval.records import platform_fingerprint
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.guest import Given
+from hthor.guest import AgentInputs
 from hthor.leaderboard import board_check
 from hthor.leaderboard.entries import entry_metrics, files, invariants, trial_outcomes, trial_tasks, verification
 from hthor.leaderboard.entries.entry import REALTIME, Entry
@@ -35,7 +35,7 @@ class Request(Struct, frozen=True, kw_only=True):
 
     word: str
     agent: str = ""
-    given: Given | None = None
+    given: AgentInputs | None = None
     suite: str = ""
     sample: int | None = None
     fresh: int = fresh_tasks.TASKS

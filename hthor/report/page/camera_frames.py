@@ -11,14 +11,14 @@ from typing import Any
 
 import msgspec
 
-from hthor import activity, guest
+from hthor import activity
 from hthor.errors import RunError
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import session_history
 from hthor.eval.runner import trial_runner
-from hthor.guest import Given
+from hthor.guest import AgentInputs
 from hthor.types import Event, TaskSpec
 
 SIZE = (400, 300)
@@ -68,7 +68,7 @@ def film(
     profile: str = "fast",
     agents: Sequence[str] = (),
     humans: str = "",
-    given: Given | None = None,
+    given: AgentInputs | None = None,
 ) -> Views:
     """Play a trial again and look.
 
@@ -83,9 +83,8 @@ def film(
         HthorError: when a file is needed.
     """
     spec = wanted.spec
-    guest.confine_guests(hidden=(str(folder.resolve()),), given=given)
     session = Session(participant=spec.participant, trials=session_history.session_before(folder, wanted))
-    stage = trial_runner.TrialRunner(session_history.replay_sources(folder, spec, agents, humans))
+    stage = trial_runner.TrialRunner(session_history.replay_sources(folder, spec, agents, humans, given))
     with stage.enter(session) as company:
         for number, trial in enumerate(session.trials, 1):
             activity.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")

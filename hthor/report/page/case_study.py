@@ -9,7 +9,7 @@ from pathlib import Path
 from hthor import jsonio
 from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.guest import Given
+from hthor.guest import AgentInputs
 from hthor.report.analysis import load_runs
 from hthor.report.analysis.load_runs import Run
 from hthor.report.drawing import lettering, render_trial
@@ -30,7 +30,7 @@ def study(
     profile: str = "fast",
     agents: Sequence[str] = (),
     humans: str = "",
-    given: Given | None = None,
+    given: AgentInputs | None = None,
 ) -> tuple[Path, Path]:
     """Draw a task under the robots of several runs; the paths of the SVG and of the PNG.
 

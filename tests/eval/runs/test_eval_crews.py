@@ -19,7 +19,7 @@ from hthor.eval.records import find, trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate
 from hthor.eval.runner import experiment, progress, run, run_options, trial_runner
-from hthor.guest.host import isolation_level
+from hthor.guest import GuestConfig
 from hthor.report.drawing import trial_figure
 from hthor.tasks.suites import library
 from hthor.types import HUMAN
@@ -70,7 +70,7 @@ def test_bodies_without_a_mind_take_the_agents_in_turn():
 def test_a_comma_within_an_agent_is_escaped(monkeypatch: pytest.MonkeyPatch):
     heard: list[str] = []
 
-    def introduce(agent: str) -> robot_team.AgentInfo:
+    def introduce(agent: str, _: object) -> robot_team.AgentInfo:
         heard.append(agent)
         return fakes.character()
 
@@ -121,12 +121,14 @@ def guests(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return {name: str(folder / f"{name}.py") for name in files}
 
 
-def played(robots: str, count: int = 1) -> list[TrialRecord]:
+def played(robots: str, count: int = 1, config: GuestConfig | None = None) -> list[TrialRecord]:
     """The first trials of one person in a small house."""
     (crew,) = robot_team.parse_teams(robots, ())
     few = make_suite("few", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == HOUSE))
     whole = sessions.make_sessions(few, agent=crew, participants=1)[0]
-    perform = trial_runner.make_runner(trial_runner.Sources(minds=crew.minds, bodies=crew.bodies))
+    perform = trial_runner.make_runner(
+        trial_runner.Sources(minds=crew.minds, bodies=crew.bodies, guests=config or GuestConfig())
+    )
     return list(perform(msgspec.structs.replace(whole, trials=whole.trials[:count])))
 
 
@@ -134,9 +136,9 @@ def said(record_: TrialRecord, seat: str) -> list[str]:
     return [event.data["text"] for event in record_.events if event.kind == "sent" and event.seat == seat]
 
 
-def test_two_guests_and_a_built_in_agent_share_a_trial(guests: dict[str, str], monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(isolation_level._Terms, "isolation", "L1")  # where process ids tell processes apart
-    (one,) = played(f"tall:{guests['talker']},small:frontier,scout:{guests['talker']}")
+def test_two_guests_and_a_built_in_agent_share_a_trial(guests: dict[str, str]):
+    config = GuestConfig(isolation="L1")  # where process ids tell processes apart
+    (one,) = played(f"tall:{guests['talker']},small:frontier,scout:{guests['talker']}", config=config)
     assert list(one.paths) == [HUMAN, "robot", "robot2", "robot3"]
     assert len(set(one.paths["robot2"])) > 10, "the built-in one explores"
     first, third = said(one, "robot")[0], said(one, "robot3")[0]

@@ -9,7 +9,7 @@ import levels
 import pytest
 
 from hthor import houses, jsonio, tasks
-from hthor.guest import Guest, GuestFault
+from hthor.guest import Guest, GuestConfig, GuestFault
 from hthor.guest.confinement import hiding, paths
 from hthor.humans.population import population_file
 from hthor.tasks.suite import encode_suite, make_suite
@@ -138,7 +138,7 @@ def test_an_agent_tries(level: str, home: Path) -> None:
     """A real one, that reads whatever it can below its folder and says what that was."""
     levels.need(level)
     (home / "agent.py").write_text(THIEF)
-    with Guest(home / "agent.py", isolation=level) as guest:
+    with Guest(home / "agent.py", config=GuestConfig(isolation=level)) as guest:
         guest.begin(BRIEFING)
         with pytest.raises(GuestFault, match="read: ") as caught:
             guest.act(LOOK)

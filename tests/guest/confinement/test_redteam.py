@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from hthor import guest
-from hthor.guest import Guest, IsolationError
+from hthor.guest import Guest, GuestConfig, IsolationError
 from hthor.guest.process_tools import cleanup
 from tests.redteam import nobody
 from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, PIPE, Case
@@ -108,9 +108,9 @@ HOST = """
 import sys
 import time
 from pathlib import Path
-from hthor.guest import Guest
+from hthor.guest import GuestConfig, Guest
 from tests.support.guest_agents import BRIEFING
-guest = Guest(sys.argv[1], isolation=sys.argv[2])
+guest = Guest(sys.argv[1], config=GuestConfig(isolation=sys.argv[2]))
 guest.load()
 print(guest._process._ground or guest._process.policy.scratch, flush=True)
 guest.begin(BRIEFING)
@@ -203,7 +203,7 @@ def test_a_trial_leaves_nothing_to_the_next(level: str, tmp_path: Path) -> None:
         pytest.skip(str(error))
     path = tmp_path / "leaky.py"
     path.write_text(LEAK)
-    with Guest(path, isolation=level) as mind:
+    with Guest(path, config=GuestConfig(isolation=level)) as mind:
         for _ in range(3):
             mind.begin(BRIEFING)
             mind.act(look())
@@ -238,7 +238,7 @@ def test_the_next_trial_finds_the_wire_as_it_was(level: str, tmp_path: Path) -> 
         pytest.skip(str(error))
     path = tmp_path / "late.py"
     path.write_text(HALF_SAID.replace("{pipe}", PIPE))
-    with Guest(path, isolation=level) as mind:
+    with Guest(path, config=GuestConfig(isolation=level)) as mind:
         for _ in range(2):
             mind.begin(BRIEFING)
             mind.act(look())
