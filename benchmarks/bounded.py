@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from msgspec import Struct
 
-from hthor.eval.metrics import bounds
+from hthor.eval.metrics import registry
 from hthor.eval.results import paired_difference
 from hthor.eval.statistics import intervals, variance_components
 
@@ -97,10 +97,11 @@ def table(repeats: int) -> Iterator[str]:
 
 def _row(sort: Sort, level: float, name: str, tasks: np.ndarray, people: np.ndarray, repeats: int) -> str:
     one, other = (sort.value(values) for values in latent(tasks, people, level, repeats))
-    mean, within, share = truth(sort, level), bounds.of(sort.metric, LIMIT_S), sort.metric in paired_difference.SHARES
+    metric = registry.get(sort.metric)
+    mean, within, share = truth(sort, level), metric.range(LIMIT_S), metric.is_share
     found = variance_components.two_way(one, tasks, people)
     apart = paired_difference.spread_of(one - other, tasks, people, share=share)
-    room = bounds.room(sort.metric, LIMIT_S)
+    room = metric.width(LIMIT_S)
     plain, gap = (_plain(held) for held in (found, apart))
     told = [f"{sort.metric:7} {mean:5.2f} {name:23}"]
     for ends, true, most in (

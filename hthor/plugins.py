@@ -21,6 +21,7 @@ from hthor.errors import HthorError, UnknownName
 _PACKAGES = {
     "agent": ("hthor.agents", "Agent"),
     "human model": ("hthor.humans.models", "Model"),
+    "metric": ("hthor.eval.metrics.definitions", "METRICS"),
     "robot": ("hthor.world.robots", "SPEC"),
     "task kind": ("hthor.tasks.kinds", "KIND"),
 }
@@ -34,7 +35,7 @@ def names(sort: str) -> tuple[str, ...]:
     """The names of every plug-in of a sort that ships with hthor, without importing any.
 
     Args:
-        sort: "agent", "human model", "robot" or "task kind".
+        sort: "agent", "human model", "metric", "robot" or "task kind".
     """
     package, _ = _PACKAGES[sort]
     folder = Path(__file__).parent.joinpath(*package.split(".")[1:])

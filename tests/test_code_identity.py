@@ -22,6 +22,7 @@ from hthor.eval.runner import trial_runner
 _OWN = (("human model", "proxy"), ("agent", "frontier"), ("robot", "scout"))
 ROOTS = (
     *(trial_runner.__name__, trial_metrics.__name__, trial_record.__name__),
+    *(plugins.module_name("metric", name) for name in plugins.names("metric")),
     *(plugins.module_name("task kind", name) for name in ("mobile_manipulation", "object_goal_navigation")),
     *(
         plugins.module_name(sort, name)
@@ -205,11 +206,11 @@ def test_processes_and_printing_do_not_count(sources: Sources, whole: str) -> No
 
 def test_switching_an_import_counts(sources: Sources, whole: str) -> None:
     """Two modules that both count have something of the same name: taking it from the other is another program."""
-    text = text_of(sources, "hthor.eval.metrics.trial_metrics")
-    line = "from hthor.eval import channel"
+    text = text_of(sources, "hthor.eval.metrics.definitions.success")
+    line = "from hthor.eval.metrics.definitions import time_spent"
     assert line in text
-    other = text.replace(line, line.replace("channel", "deeds as channel"))
-    assert edited(sources, {"hthor.eval.metrics.trial_metrics": other}).sha256(ROOTS) != whole
+    other = text.replace(line, line.replace("time_spent", "trust as time_spent"))
+    assert edited(sources, {"hthor.eval.metrics.definitions.success": other}).sha256(ROOTS) != whole
 
 
 def test_a_part_is_one_of_three(sources: Sources) -> None:
@@ -251,6 +252,7 @@ def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent
         world = stage.world(trial)
         called = _called(lambda: stage.play(company, trial, world))
     roots = [trial_runner.__name__, trial_metrics.__name__, trial_record.__name__]
+    roots += [plugins.module_name("metric", name) for name in plugins.names("metric")]
     own = (("human model", model), ("agent", agent), ("robot", robot), ("task kind", trial.task.kind))
     counted = set(sources.closure([*roots, *(plugins.module_name(sort, name) for sort, name in own)]))
     assert called > {"hthor.episode", "hthor.world.world"}

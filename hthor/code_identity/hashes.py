@@ -24,7 +24,8 @@ def code_sha256(model: str, kinds: Iterable[str]) -> str:
         kinds: the kinds of task.
     """
     own = [*_modules("human model", model), *(name for kind in set(kinds) for name in _modules("task kind", kind))]
-    return modules_sha256([*roots(_TRIAL), *own])
+    metrics = [plugins.module("metric", name) for name in plugins.names("metric")]
+    return modules_sha256([*roots(_TRIAL), *metrics, *own])
 
 
 def agent_sha256(name: str) -> str:

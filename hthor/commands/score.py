@@ -62,17 +62,17 @@ def score(
 
 def _rows(result: RunResult, everything: bool) -> Iterator[dict[str, object]]:
     """A result for a spreadsheet: a row a metric, of all tasks and then of each kind; rates are shares, not percent."""
-    from hthor.eval.metrics import trial_metrics
-    from hthor.report.terminal import result_tables
+    from hthor.eval.metrics import registry
+    from hthor.eval.results import uplift
 
-    names = trial_metrics.NAMES if everything else result_tables.MAIN
+    metrics = registry.SINGLE if everything else registry.MAIN
     parts = {"": result.metrics, **(result.by_kind if len(result.by_kind) > 1 else {})}
     for kind, scores in parts.items():
-        for name in names:
-            estimate = formats.flat(getattr(scores, name))
-            yield {"run": result.name, "people": result.humans.name, "kind": kind, "metric": name, **estimate}
+        for metric in metrics:
+            estimate = formats.flat(scores[metric.name])
+            yield {"run": result.name, "people": result.humans.name, "kind": kind, "metric": metric.name, **estimate}
     if result.uplift:
-        for name in ("sr", "twsr", "time_s"):
+        for name in uplift.METRICS:
             gain = formats.flat(getattr(result.uplift, name))
             mean = gain.pop("difference")
             known = {key: gain.get(key) for key in ("n", "ci95_low", "ci95_high", "mde80")}

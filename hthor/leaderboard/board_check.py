@@ -9,7 +9,7 @@ from msgspec import UNSET, Struct
 
 from hthor import tasks
 from hthor.errors import HthorError
-from hthor.eval.metrics import bounds
+from hthor.eval.metrics.metric import mean_limit
 from hthor.guest.agent import manifest
 from hthor.leaderboard import canonical_form
 from hthor.leaderboard.entries import files, invariants, trial_outcomes, trial_tasks
@@ -100,7 +100,7 @@ def _suite(entry: Entry, sizes: dict[str, int]) -> invariants.Found:
         ours = library.read(suite.name)
         same = ours.sha256 == suite.sha256
         count = len(ours.tasks) if same else entry.run.trials
-        limit_s = bounds.mean_limit([one.time_limit for one in ours.tasks])
+        limit_s = mean_limit([one.time_limit for one in ours.tasks])
         if same and entry.trials.time_limit_s not in (UNSET, limit_s):
             yield "trials.time_limit_s", f"is {entry.trials.time_limit_s}, but that of the suite is {limit_s}"
     elif suite.sha256 in sizes:

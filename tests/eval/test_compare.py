@@ -20,6 +20,8 @@ from hthor import jsonio
 from hthor.errors import HthorError, RunError
 from hthor.eval.comparison import better, compare, ranking, sample_size
 from hthor.eval.config import run_config
+from hthor.eval.metrics import registry
+from hthor.eval.metrics.metric import SECONDS, SHARE
 from hthor.eval.results import aggregate, baseline, paired_difference, pairing, result_file, uplift
 from hthor.eval.runner import progress, run
 from hthor.eval.statistics import power
@@ -100,7 +102,9 @@ def test_holm_is_never_bolder_than_one_test_nor_shyer_than_bonferroni(p: list[fl
 @given(st.lists(st.tuples(st.booleans(), st.booleans()), min_size=2, max_size=50))
 def test_the_interval_and_p_say_the_same(outcomes: list[tuple[bool, bool]]):
     first, second = (np.array([pair[k] for pair in outcomes], dtype=float) for k in (0, 1))
-    found = paired_difference.between(first, second, np.arange(len(first)), np.arange(len(first)) // 10, share=True)
+    found = paired_difference.between(
+        first, second, np.arange(len(first)), np.arange(len(first)) // 10, registry.get("sr"), limit_s=None
+    )
     low, high = found.ci95
     assert low <= found.difference <= high
     assert found.separated == (low > 0.0 or high < 0.0)
@@ -326,9 +330,9 @@ def test_what_cannot_be_is_refused():
 
 
 def test_a_difference_that_cannot_be_is_not_one_that_could_have_been_seen():
-    shares = [result_tables.least(value, 100.0, room=True) for value in (None, 0.0, 0.123, 1.4)]
+    shares = [result_tables.least(value, SHARE) for value in (None, 0.0, 0.123, 1.4)]
     assert shares == ["–", "–", "12.3", "> 100"]
-    assert result_tables.least(1.4, 1.0, room=False) == "1.4"
+    assert result_tables.least(1.4, SECONDS) == "1.4"
 
 
 def test_a_plan_from_two_runs_has_their_rates_and_correlation(runs: Path):
@@ -340,4 +344,4 @@ def test_a_plan_from_two_runs_has_their_rates_and_correlation(runs: Path):
 
 @pytest.mark.parametrize("value", [-0.0004, -0.0, 0.0])
 def test_nothing_has_no_minus(value: float) -> None:
-    assert result_tables._gain(value, "points") == "+0.0"
+    assert result_tables.signed(value, SHARE) == "+0.0"

@@ -6,9 +6,8 @@ import msgspec
 import pytest
 
 from hthor.episode import EpisodeLog
-from hthor.eval.agent_check import criteria
+from hthor.eval.agent_check import conduct, criteria
 from hthor.eval.agent_check.probe_trials import Notes
-from hthor.eval.metrics import conduct
 from hthor.types import HUMAN, Event
 
 NOTES = Notes(

@@ -18,6 +18,7 @@ from msgspec import Struct
 from hthor import jsonio, rules
 from hthor.calibration.targets import CONDITIONS
 from hthor.errors import RunError
+from hthor.eval.metrics.definitions import success
 from hthor.tasks import Suite
 
 Array = np.ndarray
@@ -149,9 +150,7 @@ def twsr(table: Table, least: Array) -> Array:
     Args:
         least: T* [s] by task, as `t_star` gives it.
     """
-    best = least[table.task]
-    worth: Array = np.where(table.met, best / np.maximum(best, seconds(table)), 0.0)
-    return worth
+    return success.time_weighted(table.met, least[table.task], seconds(table))
 
 
 def store(path: Path, table: Table) -> None:

@@ -43,17 +43,17 @@ def list_entries(
             ]
         )
     else:
-        headings = ("rank", "agent", "success", "time-weighted", "adoption", "time [s]", "trust", "faults")
+        headings = ("rank", "agent", "success", "time-weighted", "adoption", "time", "trust", "faults")
         for part in found.sections:
             output.put_line(f"{part.suite.name}, {part.trials} trials, {part.humans} people", shape)
             output.put_table(headings, map(_cells, part.rows), shape)
 
 
 def _cells(row: Row) -> tuple[object, ...]:
+    from hthor.eval.metrics import registry
     from hthor.report.terminal import result_tables
 
-    units = ("%", "%", "%", "", "")
-    shown = [result_tables.number(getattr(row, name), unit) for name, unit in zip(_METRICS, units, strict=True)]
+    shown = [result_tables.number(getattr(row, name), registry.get(name).unit) for name in _METRICS]
     return (row.ranks.sr.rank if row.ranks else "–", row.name, *shown, row.faults)
 
 

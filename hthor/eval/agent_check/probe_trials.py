@@ -10,10 +10,10 @@ from msgspec import Struct
 
 from hthor import activity, rules, tasks
 from hthor.episode import Fault, run_episode
+from hthor.eval.agent_check import conduct
 from hthor.eval.config import robot_team
 from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.config.sessions import Session, make_sessions
-from hthor.eval.metrics import conduct
 from hthor.eval.records import trial_record
 from hthor.eval.runner import trial_runner
 from hthor.eval.runner.agent_recorder import RecordedAgent
@@ -112,8 +112,8 @@ class Rehearsal:
             motions=sum(not isinstance(action.motion, Wait) for _, action in done),
             refused=sum(not outcome.ok for outcome in ended),
             spot_s=conduct.on_one_spot_s(log, seat),
-            sent=kept.metrics.sent or 0,
-            covered=kept.metrics.covered or 0,
+            sent=int(kept.metrics["sent"] or 0),
+            covered=int(kept.metrics["covered"] or 0),
             repeated=conduct.repeated(log, seat),
             claims=len(about),
             unseen=0 if noted.looked else sum(name not in seen for name, seen in about),

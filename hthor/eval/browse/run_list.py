@@ -102,9 +102,9 @@ def _seen(run: Path, root: Path) -> RunSummary:
 def _tally(run: Path, plan: RunConfig) -> tuple[int, float, int]:
     """Trials played, trials in which the goal was met, and trials with a fault: of the result, or else of the log."""
     result = None if plan.shard or result_file.outdated(run / "result.json") else result_file.load(run)
-    if result is not None and result.metrics.sr.mean is not None and result.hashes.run == plan.sha256:
+    if result is not None and result.metrics["sr"].mean is not None and result.hashes.run == plan.sha256:
         trials = result.counts.trials
-        return trials, result.metrics.sr.mean * trials, result.counts.faults
+        return trials, result.metrics["sr"].mean * trials, result.counts.faults
     last: dict[str, TrialRecord] = {record.key: record for _, record in trial_log.read(run / "trials.jsonl")}
     kept = last.values()
     return len(kept), float(sum(one.met for one in kept)), sum(bool(one.faults) for one in kept)

@@ -13,6 +13,7 @@ from msgspec import Struct
 from hthor.errors import RunError
 from hthor.eval.comparison import better
 from hthor.eval.config.run_config import RunConfig, SuiteRef
+from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, paired_difference, pairing
 from hthor.eval.results.paired_difference import Difference, McNemar
@@ -178,7 +179,7 @@ def _pair(one: Read, other: Read) -> Comparison:
     pairs = joined.pairs
     if not pairs:
         raise RunError(f"{one.folder} and {other.folder} have no trial in common yet. Finish both runs.")
-    found = {metric: paired_difference.paired_difference(pairs, metric) for metric in paired_difference.UNITS}
+    found = {metric.name: paired_difference.paired_difference(pairs, metric.name) for metric in registry.MAIN}
     return Comparison(
         first=one.name,
         second=other.name,
@@ -197,11 +198,10 @@ def _pair(one: Read, other: Read) -> Comparison:
 
 
 def _tally(pairs: Sequence[Pair]) -> Tally:
-    gains = [pair.other.metrics.twsr - pair.one.metrics.twsr for pair in pairs]
+    first = trial_metrics.column((pair.one.metrics for pair in pairs), "twsr")
+    second = trial_metrics.column((pair.other.metrics for pair in pairs), "twsr")
     return Tally(
-        wins=sum(gain > 0.0 for gain in gains),
-        ties=sum(gain == 0.0 for gain in gains),
-        losses=sum(gain < 0.0 for gain in gains),
+        wins=int((second > first).sum()), ties=int((second == first).sum()), losses=int((second < first).sum())
     )
 
 

@@ -77,7 +77,7 @@ def make_matrix(results: Sequence[RunResult]) -> PopulationMatrix:
 
 
 def _cell(result: RunResult) -> Cell:
-    return Cell(sr=result.metrics.sr, twsr=result.metrics.twsr, adoption=result.metrics.adoption)
+    return Cell(sr=result.metrics["sr"], twsr=result.metrics["twsr"], adoption=result.metrics["adoption"])
 
 
 def _worst(results: Sequence[RunResult]) -> dict[str, Worst]:
@@ -90,7 +90,7 @@ def _worst(results: Sequence[RunResult]) -> dict[str, Worst]:
             if result.name == agent and result.humans.model not in human_populations.EXTREMES
         ]
         if len(held) > 1:
-            rates = {result.humans.name: result.metrics.sr.mean or 0.0 for result in held}
+            rates = {result.humans.name: result.metrics["sr"].mean or 0.0 for result in held}
             least, base = min(rates.values()), held[0].humans.name
             found[agent] = Worst(
                 peoples=tuple(name for name, rate in rates.items() if rate == least),

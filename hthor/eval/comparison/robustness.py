@@ -16,13 +16,14 @@ from typing import Literal
 from msgspec import Struct
 
 from hthor.errors import HthorError
+from hthor.eval.metrics import registry
 from hthor.eval.results.result_file import RunResult
 from hthor.eval.statistics.intervals import Estimate
 
 ENDS = ("greedy", "random")
 """The human models at the ends."""
-METRICS = {"sr": "SR", "twsr": "TWSR"}
-"""The metrics that conclusions are drawn from, and what they are called."""
+METRICS = ("sr", "twsr")
+"""The metrics that conclusions are drawn from."""
 Verdict = Literal["holds", "vanishes", "flips"]
 
 
@@ -64,14 +65,6 @@ class Conclusion(Struct, frozen=True, kw_only=True):
     verdict: Verdict
     gaps: tuple[Gap, ...]
     sentence: str
-
-
-Flip = Conclusion
-
-
-def flips(results: Mapping[str, Sequence[RunResult]]) -> tuple[Flip, ...]:
-    """The conclusions that flip inside the bracket; see `conclusions`."""
-    return tuple(found for found in conclusions(results) if found.verdict == "flips")
 
 
 def conclusions(results: Mapping[str, Sequence[RunResult]]) -> tuple[Conclusion, ...]:
@@ -129,7 +122,7 @@ def _conclusion(runs: Sequence[RunResult], pair: tuple[int, int], metric: str, g
         helps=helps,
         verdict=verdict,
         gaps=gaps,
-        sentence=_sentence(better.label, worse.label, METRICS[metric], helps, verdict, gaps),
+        sentence=_sentence(better.label, worse.label, registry.get(metric).symbol, helps, verdict, gaps),
     )
 
 
@@ -166,8 +159,7 @@ def _gap(people: str, runs: Sequence[RunResult], pair: tuple[int, int], metric: 
 
 
 def _estimate(result: RunResult, metric: str) -> Estimate:
-    found: Estimate = getattr(result.metrics, metric)
-    return found
+    return result.metrics[metric]
 
 
 def _mean(result: RunResult, metric: str) -> float:

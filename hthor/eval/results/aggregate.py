@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from functools import partial
-from operator import attrgetter
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import msgspec
 
 from hthor.eval.config import run_config
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.metrics import bounds, trial_metrics
-from hthor.eval.metrics.trial_metrics import TrialMetrics
+from hthor.eval.metrics import registry, trial_metrics
+from hthor.eval.metrics.metric import Metric
 from hthor.eval.records import opened_files, reader, run_isolation, session_restarts
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline, result_file
@@ -92,39 +90,40 @@ def summarise(
 
 def scores(records: Sequence[TrialRecord]) -> Scores:
     """Means and intervals of every metric; trials for which a metric has no value do not count for it."""
-    single = {name: _score(records, name, attrgetter(name)) for name in trial_metrics.NAMES}
-    return Scores(**single, work=_by_name(records, "work"), hindered_by=_by_name(records, "hindered_by"))
+    single = {metric.name: estimate(records, metric) for metric in registry.SINGLE}
+    return Scores(**single, **{metric.name: _by_seat(records, metric) for metric in registry.BY_SEAT})
 
 
 def by_trial(records: Sequence[TrialRecord]) -> tuple[Estimate, ...]:
     """Trust after each trial of a session, in their order."""
-    rated = [record for record in records if record.metrics.trust is not None]
+    rated = [record for record in records if record.metrics["trust"] is not None]
     last = max((record.spec.index for record in rated), default=-1)
+    trust = registry.get("trust")
     return tuple(
-        _score([record for record in rated if record.spec.index == index], "trust", attrgetter("trust"))
-        for index in range(last + 1)
+        estimate([record for record in rated if record.spec.index == index], trust) for index in range(last + 1)
     )
 
 
-def _by_name(records: Sequence[TrialRecord], metric: str) -> dict[str, Estimate]:
-    """An estimate for each name that the metric has values for, in the order in which they first come."""
-    names = dict.fromkeys(name for record in records for name in getattr(record.metrics, metric))
-    return {name: _score(records, metric, partial(_named, metric, name)) for name in names}
+def _by_seat(records: Sequence[TrialRecord], metric: Metric) -> dict[str, Estimate]:
+    """An estimate for each seat that the metric has values for, in order of first appearance."""
+    seats = dict.fromkeys(seat for record in records for seat in record.metrics.by_seat(metric.name))
+    return {seat: estimate(records, metric, seat) for seat in seats}
 
 
-def _named(metric: str, name: str, one: TrialMetrics) -> float | None:
-    values: dict[str, float] = getattr(one, metric)
-    return values.get(name)
-
-
-def _score(records: Sequence[TrialRecord], name: str, value: Callable[[TrialMetrics], float | None]) -> Estimate:
-    measured = [(value(record.metrics), record.spec) for record in records]
-    held = [(float(found), spec) for found, spec in measured if found is not None]
+def estimate(records: Sequence[TrialRecord], metric: Metric, seat: str = "") -> Estimate:
+    """The estimate of a metric, of one seat where it has values by seat."""
+    values: list[float] = []
+    specs = []
+    for record in records:
+        value = record.metrics.by_seat(metric.name).get(seat) if metric.by_seat else record.metrics[metric.name]
+        if value is not None:
+            values.append(float(value))
+            specs.append(record.spec)
     return intervals.estimate(
-        [found for found, _ in held],
-        [spec.task.id for _, spec in held],
-        [spec.participant for _, spec in held],
-        within=bounds.among(name, [found for found, _ in held], [spec.task.time_limit for _, spec in held]),
+        values,
+        [spec.task.id for spec in specs],
+        [spec.participant for spec in specs],
+        within=metric.range_of(values, [spec.task.time_limit for spec in specs]),
     )
 
 

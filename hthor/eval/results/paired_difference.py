@@ -9,16 +9,13 @@ import msgspec
 import numpy as np
 from msgspec import Struct
 
-from hthor.eval.metrics import bounds
+from hthor.eval.metrics import registry
+from hthor.eval.metrics.metric import Metric, mean_limit
 from hthor.eval.results.pairing import Pair
 from hthor.eval.statistics import intervals, power, variance_components
 from hthor.eval.statistics.variance_components import Spread
 
 _DIGITS = 6
-SHARES = ("sr", "twsr", "adoption", "progress")
-"""Metrics that are shares."""
-UNITS = {"sr": "points", "twsr": "points", "adoption": "points", "progress": "points", "time_s": "s", "trust": ""}
-"""The metrics that are compared, and what their differences are counted in."""
 
 
 class Difference(Struct, frozen=True, kw_only=True):
@@ -72,20 +69,19 @@ class McNemar(Struct, frozen=True, kw_only=True):
 
 def paired_difference(pairs: Sequence[Pair], metric: str, *, level: float = intervals.LEVEL) -> Difference | None:
     """The difference in a metric with an interval of this level; None where no trial has it with both."""
-    held = [
-        (getattr(pair.one.metrics, metric), getattr(pair.other.metrics, metric), pair.one.spec)
-        for pair in pairs
-        if getattr(pair.one.metrics, metric) is not None and getattr(pair.other.metrics, metric) is not None
-    ]
-    if not held:
+    values = [(pair.one.metrics[metric], pair.other.metrics[metric], pair.one.spec) for pair in pairs]
+    rows = [(one, other, spec) for one, other, spec in values if one is not None and other is not None]
+    if not rows:
         return None
-    first, second = (np.array([row[k] for row in held], dtype=np.float64) for k in (0, 1))
-    tasks, people = (
-        variance_components.codes([row[2].task.id for row in held]),
-        variance_components.codes([row[2].participant for row in held]),
+    return between(
+        np.array([one for one, _, _ in rows], dtype=np.float64),
+        np.array([other for _, other, _ in rows], dtype=np.float64),
+        variance_components.codes([spec.task.id for _, _, spec in rows]),
+        variance_components.codes([spec.participant for _, _, spec in rows]),
+        registry.get(metric),
+        limit_s=mean_limit([spec.task.time_limit for _, _, spec in rows]),
+        level=level,
     )
-    limit_s = bounds.mean_limit([row[2].task.time_limit for row in held])
-    return between(first, second, tasks, people, share=metric in SHARES, room=bounds.room(metric, limit_s), level=level)
 
 
 def between(
@@ -93,18 +89,18 @@ def between(
     second: np.ndarray,
     tasks: np.ndarray,
     people: np.ndarray,
+    metric: Metric,
     *,
-    share: bool,
-    room: float = math.inf,
+    limit_s: float | None,
     level: float = intervals.LEVEL,
 ) -> Difference:
-    """The difference of two rows of values, (N,) each, of the same trials.
+    """The difference of two rows of values of a metric, (N,) each, of the same trials.
 
     Args:
-        share: as `spread_of` has it. room: as `ends` has it.
+        tasks, people: (N,) indices from 0. limit_s: the mean time limit [s], None where it is not known.
         level: of the interval, two-sided; more than 95 % where it is one of several.
     """
-    count = len(first)
+    count, share, room = len(first), metric.is_share, metric.width(limit_s)
     found = spread_of((second - first)[None], tasks, people, share=share)
     raw, freedom = float(found.mean[0]), float(found.freedom[0])
     known = math.isfinite(float(found.variance[0]))
@@ -195,8 +191,8 @@ def p_value(centre: float, variance: float, freedom: float) -> float:
 
 def mcnemar(pairs: Sequence[Pair]) -> McNemar:
     """The exact test of success."""
-    only_first = sum(pair.one.metrics.sr > pair.other.metrics.sr for pair in pairs)
-    only_second = sum(pair.one.metrics.sr < pair.other.metrics.sr for pair in pairs)
+    only_first = sum(pair.one.met and not pair.other.met for pair in pairs)
+    only_second = sum(pair.other.met and not pair.one.met for pair in pairs)
     return McNemar(only_first=only_first, only_second=only_second, p=exact(only_first, only_second))
 
 
@@ -219,10 +215,10 @@ def holm(p: Sequence[float]) -> list[float]:
 
 def noise(pairs: Sequence[Pair], metric: str) -> Noise:
     """How much single trials of these pairs vary in a metric that all of them have."""
-    values = np.array([[getattr(one.metrics, metric) for one in (pair.one, pair.other)] for pair in pairs], dtype=float)
+    values = np.array([[one.metrics[metric] for one in (pair.one, pair.other)] for pair in pairs], dtype=float)
     tasks = variance_components.codes([pair.one.spec.task.id for pair in pairs])
     people = variance_components.codes([pair.one.spec.participant for pair in pairs])
-    gap = spread_of((values[:, 1] - values[:, 0])[None], tasks, people, share=metric in SHARES)
+    gap = spread_of((values[:, 1] - values[:, 0])[None], tasks, people, share=registry.get(metric).is_share)
     each = variance_components.two_way(values.T, tasks, people)
     count = len(pairs)
     first, second = (count * each.variance).tolist()

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+import msgspec
 from msgspec import Struct
 
 from hthor import documents, jsonio
@@ -11,42 +13,45 @@ from hthor.errors import RunError
 from hthor.eval.config import robot_team, run_config
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
+from hthor.eval.metrics import registry
 from hthor.eval.results.uplift import Kept
-from hthor.eval.statistics.intervals import Estimate
+from hthor.eval.statistics.intervals import NOTHING, Estimate
 from hthor.guest import Isolation, Manifest
 from hthor.types import RobotSeat
 
 SCHEMA = "hthor.result/5"
 
 
-class Scores(Struct, frozen=True, kw_only=True):
-    """The run's metrics as fractions, seconds, trust points and counts a trial; see `hthor.eval.metrics.trial_metrics`.
+class Estimates(Struct, frozen=True, kw_only=True):
+    """Means with intervals by metric: fractions, seconds, trust points and counts a trial, a field for each metric."""
 
-    ``work`` has a share for each seat, ``hindered_by`` seconds for each pair, such as "human by robot".
-    """
+    def __getitem__(self, metric: str) -> Estimate:
+        """The estimate of a metric with one value a trial."""
+        estimate: Estimate = getattr(self, metric)
+        return estimate
 
-    sr: Estimate
-    twsr: Estimate
-    adoption: Estimate
-    time_s: Estimate
-    trust: Estimate
-    progress: Estimate
-    idle_s: Estimate
-    in_way: Estimate
-    hindered_s: Estimate
-    sent: Estimate
-    accepted: Estimate
-    declined: Estimate
-    covered: Estimate
-    unanswered: Estimate
-    false_claims: Estimate
-    precision: Estimate
-    first_useful_s: Estimate
-    interruptions_per_min: Estimate
-    useful: Estimate
-    usefulness: Estimate
-    work: dict[str, Estimate]
-    hindered_by: dict[str, Estimate]
+    def by_seat(self, metric: str) -> dict[str, Estimate]:
+        """The estimates of a metric by seat, or by pair of seats such as "human by robot"."""
+        estimates: dict[str, Estimate] = getattr(self, metric)
+        return estimates
+
+
+if TYPE_CHECKING:
+    Scores = Estimates
+if not TYPE_CHECKING:
+    Scores = msgspec.defstruct(
+        "Scores",
+        [
+            (metric.name, dict[str, Estimate], msgspec.field(default_factory=dict))
+            if metric.by_seat
+            else (metric.name, Estimate, NOTHING)
+            for metric in registry.METRICS
+        ],
+        bases=(Estimates,),
+        module=__name__,
+        frozen=True,
+        kw_only=True,
+    )
 
 
 class Counts(Struct, frozen=True, kw_only=True):

@@ -11,6 +11,8 @@ from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import paired_difference, pairing
 from hthor.eval.results.paired_difference import Difference
 
+METRICS = ("sr", "twsr", "time_s")
+"""The metrics that an uplift is given in."""
 RECORDED = "the control's log was not at hand; these are the numbers that were recorded when it was"
 
 
@@ -46,7 +48,7 @@ def kept(one: Uplift | None) -> Kept | None:
 def over(control: Sequence[TrialRecord], records: Sequence[TrialRecord], *, run: str) -> Uplift | None:
     """The uplift of ``records`` over those of a control whose hash is ``run``; None without a trial in common."""
     pairs = pairing.join(control, records).pairs
-    sr, twsr, time_s = (paired_difference.paired_difference(pairs, metric) for metric in ("sr", "twsr", "time_s"))
+    sr, twsr, time_s = (paired_difference.paired_difference(pairs, metric) for metric in METRICS)
     if sr is None or twsr is None or time_s is None:
         return None
     return Uplift(control=run, sr=sr, twsr=twsr, time_s=time_s)

@@ -8,9 +8,10 @@ import numpy as np
 
 from hthor import rules
 from hthor.eval.config import sessions
-from hthor.eval.metrics import bounds, trial_metrics
+from hthor.eval.metrics import registry
+from hthor.eval.metrics.metric import DIGITS
 from hthor.eval.results import paired_difference
-from hthor.eval.results.uplift import Uplift
+from hthor.eval.results.uplift import METRICS, Uplift
 from hthor.eval.statistics import intervals
 from hthor.eval.statistics.intervals import Estimate
 from hthor.leaderboard.entries.entry import Entry, Group
@@ -33,8 +34,8 @@ def values(held: Outcomes, metric: str, *, alone: bool) -> np.ndarray:
         "sr": held.met.astype(np.float64),
         "twsr": held.twsr / _MILLION,
         "adoption": held.adopted.astype(np.float64),
-        "usefulness": np.round(held.useful[some] / held.accepted[some], trial_metrics.DIGITS),
-        "time_s": np.round(held.time * rules.TICK_S, trial_metrics.DIGITS),
+        "usefulness": np.round(held.useful[some] / held.accepted[some], DIGITS),
+        "time_s": np.round(held.time * rules.TICK_S, DIGITS),
         "trust": held.trust.astype(np.float64),
     }
     found: np.ndarray = columns[metric]
@@ -84,10 +85,10 @@ def uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes) -> U
             values(held, metric, alone=False),
             tasks,
             whose,
-            share=metric in paired_difference.SHARES,
-            room=bounds.room(metric, held.time_limit_s),
+            registry.get(metric),
+            limit_s=held.time_limit_s,
         )
-        for metric in ("sr", "twsr", "time_s")
+        for metric in METRICS
     }
     return Uplift(control=control.hashes.run, sr=found["sr"], twsr=found["twsr"], time_s=found["time_s"])
 
@@ -95,4 +96,4 @@ def uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes) -> U
 def _estimate(some: np.ndarray, whose: Sequence[int], metric: str, limit_s: float | None = None) -> Estimate:
     row = some.tolist()
     tasks = [str(place) for place in range(len(row))]
-    return intervals.estimate(row, tasks, whose[: len(row)], within=bounds.of(metric, limit_s))
+    return intervals.estimate(row, tasks, whose[: len(row)], within=registry.get(metric).range(limit_s))

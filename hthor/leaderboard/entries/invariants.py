@@ -14,7 +14,8 @@ import numpy as np
 
 from hthor import rules
 from hthor.eval.config.sessions import participants_needed
-from hthor.eval.metrics import trial_metrics
+from hthor.eval.metrics.definitions import success
+from hthor.eval.metrics.metric import DIGITS
 from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import File
 from hthor.leaderboard.entries import entry_metrics, overrides
@@ -25,7 +26,7 @@ from hthor.types import TaskSpec
 Found = Iterator[tuple[str, str]]
 _NEAR = 2e-6
 """Numbers have six decimals; the last may differ from machine to machine."""
-_MILLION, _LEAST_S = 1_000_000, 1e-9
+_MILLION = 1_000_000
 
 
 def hashes(entry: Entry, held: Outcomes) -> Found:
@@ -91,9 +92,8 @@ def _of_tasks(held: Outcomes, tasks: Sequence[TaskSpec]) -> Found:
     yield from _first("trials.time", held.time > limits, "longer than the time limit")
     yield from _first("trials.time", ~held.met & (held.time != limits), "not met, but not until the time limit")
     good = np.array([task.t_star for task in tasks])
-    spent = np.round(held.time * rules.TICK_S, trial_metrics.DIGITS)
-    longest = np.maximum(np.maximum(good, spent), _LEAST_S)
-    worth = np.round(_MILLION * np.round(np.where(good + spent > 0.0, good / longest, 1.0), trial_metrics.DIGITS))
+    spent = np.round(held.time * rules.TICK_S, DIGITS)
+    worth = np.round(_MILLION * np.round(success.time_weighted(held.met, good, spent), DIGITS))
     off = held.met & (np.abs(held.twsr - worth) > 1)
     yield from _first("trials.twsr", off, "not what T* and the time spent give")
     for name, (names, codes) in labels(tasks).items():

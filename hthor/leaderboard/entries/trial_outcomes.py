@@ -11,7 +11,8 @@ import numpy as np
 from msgspec import UNSET, Struct
 
 from hthor import rules
-from hthor.eval.metrics import bounds
+from hthor.eval.metrics import trial_metrics
+from hthor.eval.metrics.metric import mean_limit
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.leaderboard.entries import column_packing, merkle
 from hthor.leaderboard.entries.entry import Labels, Trials
@@ -85,20 +86,21 @@ def outcome(row: bytes) -> bytes:
 
 def of(records: Sequence[TrialRecord], leaves: Iterable[bytes]) -> Outcomes:
     """The columns of records, whose lines have these hashes."""
-    values = [one.metrics for one in records]
+    values = {
+        metric: np.nan_to_num(trial_metrics.column((one.metrics for one in records), metric))
+        for metric in ("sr", "adoption", "twsr", "time_s", "trust", *_MESSAGES)
+    }
     return Outcomes(
-        met=np.array([one.sr for one in values], dtype=bool),
-        adopted=np.array([bool(one.adoption) for one in values]),
+        met=values["sr"].astype(bool),
+        adopted=values["adoption"].astype(bool),
         faulty=np.array([bool(one.faults) for one in records]),
-        twsr=_whole([one.twsr * _MILLION for one in values]),
-        time=_whole([one.time_s / rules.TICK_S for one in values]),
-        trust=np.array([one.trust or 0 for one in values], dtype=np.int64),
-        **{
-            name: _counted([getattr(one, name) or 0 for one in values], name) for name in ("sent", "accepted", "useful")
-        },
+        twsr=_whole(values["twsr"] * _MILLION),
+        time=_whole(values["time_s"] / rules.TICK_S),
+        trust=values["trust"].astype(np.int64),
+        **{name: _counted(values[name].astype(np.int64), name) for name in _MESSAGES},
         leaves=list(leaves),
         labels=labels([one.spec.task for one in records]),
-        time_limit_s=bounds.mean_limit([one.spec.task.time_limit for one in records]) if records else None,
+        time_limit_s=mean_limit([one.spec.task.time_limit for one in records]) if records else None,
     )
 
 
@@ -164,14 +166,15 @@ def _read(field: str, read: Callable[..., Any], *given: Any) -> Any:
         raise Unreadable(field, str(error)) from None
 
 
-def _counted(values: Sequence[int], name: str) -> np.ndarray:
+def _counted(values: np.ndarray, name: str) -> np.ndarray:
     """Counts, cut to what their column can hold."""
-    return np.minimum(np.array(values, dtype=np.int64), (1 << (8 * _SIZES[name])) - 1)
+    counts: np.ndarray = np.minimum(values, (1 << (8 * _SIZES[name])) - 1)
+    return counts
 
 
-def _whole(values: Sequence[float]) -> np.ndarray:
+def _whole(values: np.ndarray) -> np.ndarray:
     """Whole numbers that differ from the values only by what a float loses."""
-    held = np.round(np.array(values))
+    held = np.round(values)
     if (np.abs(held - values) > 1e-3).any():
         raise ValueError("a trial's value is finer than an entry can hold")
     return held.astype(np.int64)

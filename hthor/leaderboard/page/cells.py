@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from msgspec import Struct
 
+from hthor.eval.metrics.metric import NUMBER, SHARE, Unit
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import Estimate
 from hthor.leaderboard.entries.verification import ENOUGH, Replayed
@@ -54,7 +55,7 @@ def share(one: Estimate) -> Cell:
     if one.mean is None:
         return Cell(NOTHING, -1.0)
     low, high = (f"{100 * end:.1f}" for end in one.ci95 or (one.mean, one.mean))
-    return Cell(join([f"{100 * one.mean:.1f}", _interval(f"{low}–{high}", one, 100.0)]), one.mean)
+    return Cell(join([f"{100 * one.mean:.1f}", _interval(f"{low}–{high}", one, SHARE)]), one.mean)
 
 
 def amount(one: Estimate, digits: int = 1) -> Cell:
@@ -62,16 +63,16 @@ def amount(one: Estimate, digits: int = 1) -> Cell:
     if one.mean is None:
         return Cell(NOTHING, -1.0)
     low, high = (f"{end:.{digits}f}" for end in one.ci95 or (one.mean, one.mean))
-    return Cell(join([f"{one.mean:.{digits}f}", _interval(f"{low}–{high}", one, 1.0)]), one.mean)
+    return Cell(join([f"{one.mean:.{digits}f}", _interval(f"{low}–{high}", one, NUMBER)]), one.mean)
 
 
-def gain(one: Difference | None, scale: float = 100.0) -> Cell:
+def gain(one: Difference | None, unit: Unit = SHARE) -> Cell:
     """How much more than without a robot, with the interval."""
     if one is None:
         return Cell(NOTHING, -_LAST)
-    low, high = (f"{scale * end:+z.1f}" for end in one.ci95 or (one.difference, one.difference))
+    low, high = (f"{unit.scale * end:+z.1f}" for end in one.ci95 or (one.difference, one.difference))
     ends = _minus(f"{low} to {high}")
-    return Cell(join([_minus(f"{scale * one.difference:+z.1f}"), _interval(ends, one, scale)]), one.difference)
+    return Cell(join([_minus(f"{unit.scale * one.difference:+z.1f}"), _interval(ends, one, unit)]), one.difference)
 
 
 def fresh(one: Row) -> Cell:
@@ -140,9 +141,9 @@ def _small(text: str) -> Markup:
     return tag("small", text, class_="soft")
 
 
-def _interval(ends: str, one: Estimate | Difference, scale: float) -> Markup:
+def _interval(ends: str, one: Estimate | Difference, unit: Unit) -> Markup:
     """The interval; pointing at it tells how many trials it is of, and what they could have seen."""
-    told = f"n {one.n}, could have seen {least(one.mde80, scale, room=scale > 1.0)}"
+    told = f"n {one.n}, could have seen {least(one.mde80, unit)}"
     return tag("small", ends, class_="soft", title=told)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hthor.eval.metrics.metric import SECONDS
 from hthor.leaderboard.page import cells, interval_marks, tables
 from hthor.leaderboard.page import markup as m
 from hthor.leaderboard.page.cells import Cell
@@ -162,7 +163,7 @@ def _cells(row: Row, on: interval_marks.Scale) -> list[Cell]:
         cells.fresh(row),
         cells.share(row.twsr),
         cells.gain(row.uplift.sr if row.uplift else None),
-        cells.gain(row.uplift.time_s if row.uplift else None, 1.0),
+        cells.gain(row.uplift.time_s if row.uplift else None, SECONDS),
         cells.share(row.adoption),
         cells.share(row.usefulness),
         cells.amount(row.trust),

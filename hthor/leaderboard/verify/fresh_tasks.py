@@ -16,7 +16,8 @@ import numpy as np
 
 from hthor import jsonio, tasks
 from hthor.eval.config import sessions, task_selection
-from hthor.eval.metrics import trial_metrics
+from hthor.eval.metrics import registry, trial_metrics
+from hthor.eval.metrics.metric import DIGITS
 from hthor.eval.statistics import intervals
 from hthor.eval.task_check import proof
 from hthor.guest import AgentInputs
@@ -67,10 +68,7 @@ def verify(
         played = replay.perform(entry, whole, replay.player(folder, crew, who, required, given), jobs)
     records = sorted((one for one, _ in played), key=lambda one: (one.spec.participant, one.spec.index))
     owners = [one.spec.participant for one in records]
-    values = {
-        "sr": np.array([float(one.metrics.sr) for one in records]),
-        "twsr": np.array([one.metrics.twsr for one in records]),
-    }
+    values = {name: trial_metrics.column((one.metrics for one in records), name) for name in ("sr", "twsr")}
     return judged(entry, chosen.suite.sha256, values, owners)
 
 
@@ -84,15 +82,15 @@ def judged(entry: Entry, digest: str, values: dict[str, np.ndarray], owners: Seq
     fell = any(one.seen for one in falls.values())
     told = "; ".join(
         f"{title} of {_percent(claimed[name])} was claimed, {_percent(values[name])} came out (p = {falls[name].p:.2g})"
-        for name, title in (("sr", "success"), ("twsr", "time-weighted success"))
+        for name, title in (("sr", "success"), ("twsr", registry.get("twsr").title))
     )
     power = "no fall of success would" if seen is None else f"a fall of success by {100 * seen:.0f} points would"
     return Fresh(
         suite=digest,
         n=len(owners),
         **{name: _estimate(row, owners) for name, row in values.items()},
-        claimed_sr=round(float(claimed["sr"].mean()), trial_metrics.DIGITS),
-        claimed_twsr=round(float(claimed["twsr"].mean()), trial_metrics.DIGITS),
+        claimed_sr=round(float(claimed["sr"].mean()), DIGITS),
+        claimed_twsr=round(float(claimed["twsr"].mean()), DIGITS),
         fell=fell,
         detectable=seen,
         why=f"{told}; {power} have shown in four of five such draws",

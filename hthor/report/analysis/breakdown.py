@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from hthor.eval.metrics import registry
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.statistics import intervals
+from hthor.eval.results import aggregate
 from hthor.eval.statistics.intervals import Estimate
 from hthor.report.analysis.document import Group, Split
 from hthor.report.analysis.load_runs import Run
@@ -55,9 +56,4 @@ def _split(word: str, runs: Sequence[Run], part: Callable[[TrialRecord], str], o
 
 def rate(records: Sequence[TrialRecord]) -> Estimate:
     """Success rate with its interval."""
-    return intervals.estimate(
-        [float(one.metrics.sr) for one in records],
-        [one.spec.task.id for one in records],
-        [one.spec.participant for one in records],
-        within=intervals.SHARE,
-    )
+    return aggregate.estimate(records, registry.get("sr"))

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hthor.eval.metrics import trial_metrics
 from hthor.eval.results import aggregate
 from hthor.report.analysis.document import Curve, Spent
 from hthor.report.analysis.load_runs import Run
@@ -17,10 +18,10 @@ _QUARTILES = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 def spent(run: Run) -> Spent:
     """Minimum, quartiles and maximum of the time spent, and how many were done by when."""
-    times = [record.metrics.time_s for record in run.records]
+    times = trial_metrics.column((record.metrics for record in run.records), "time_s")
     least, lower, median, upper, most = (round(float(value), _DIGITS) for value in np.quantile(times, _QUARTILES))
     unsolved = sum(not record.met for record in run.records)
-    ends = np.sort([record.metrics.time_s for record in run.records if record.met])
+    ends = np.sort(times[[record.met for record in run.records]])
     seconds = np.arange(math.ceil(max(record.spec.task.time_limit for record in run.records)) + 1)
     solved = np.searchsorted(ends, seconds, side="right") / len(times)
     return Spent(

@@ -25,8 +25,8 @@ def extremes(run: Run, alone: Run | None, each: int = EACH) -> list[Shown]:
     def worth(record: TrialRecord) -> tuple[float, float, str]:
         other, own = others.get(pair(record)), record.metrics
         if other is None:
-            return (own.twsr, -own.time_s, record.key)
-        return (round(other.metrics.time_s - own.time_s, 6), own.twsr, record.key)
+            return (own.number("twsr"), -own.number("time_s"), record.key)
+        return (_saved_s(record, other), own.number("twsr"), record.key)
 
     ranked.sort(key=worth)
     each = min(each, len(ranked) // 2)
@@ -35,6 +35,10 @@ def extremes(run: Run, alone: Run | None, each: int = EACH) -> list[Shown]:
         *(_shown(run, "best", record, others.get(pair(record))) for record in best),
         *(_shown(run, "worst", record, others.get(pair(record))) for record in worst),
     ]
+
+
+def _saved_s(record: TrialRecord, alone: TrialRecord) -> float:
+    return round(alone.metrics.number("time_s") - record.metrics.number("time_s"), 6)
 
 
 def _shown(run: Run, rank: str, record: TrialRecord, other: TrialRecord | None) -> Shown:
@@ -49,11 +53,11 @@ def _shown(run: Run, rank: str, record: TrialRecord, other: TrialRecord | None) 
         participant=record.spec.participant,
         index=record.spec.index,
         met=record.met,
-        time_s=record.metrics.time_s,
+        time_s=record.metrics.number("time_s"),
         t_star=task.t_star,
         alone_met=other.met if other is not None else None,
-        alone_s=other.metrics.time_s if other is not None else None,
-        gain_s=round(other.metrics.time_s - record.metrics.time_s, 6) if other is not None else None,
+        alone_s=other.metrics.number("time_s") if other is not None else None,
+        gain_s=_saved_s(record, other) if other is not None else None,
         replay=replay(run, record),
     )
 

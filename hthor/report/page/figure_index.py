@@ -70,7 +70,7 @@ def _of_runs(found: Findings) -> Iterator[Drawing]:
     if found.trust:
         words = "Mean trust by trial of the session, with standard errors"
         yield Drawing(name="trust", words=words, figure=trust.figure(found.trust, found.arms))
-    speaking = [arm for arm in found.arms if (arm.scores.sent.mean or 0.0) > 0.0]
+    speaking = [arm for arm in found.arms if (arm.scores["sent"].mean or 0.0) > 0.0]
     if speaking:
         words = "What became of the robots' messages, how soon they were useful, how often they interrupted"
         yield Drawing(name="channel", words=words, figure=communication.figure(speaking))

@@ -36,7 +36,7 @@ def _alone(found: Findings) -> str:
     rates = listed(
         f"{arm.label} in {100.0 * one.mean:.1f} %" + ("" if one.ci95 is None else _between(one.ci95))
         for arm in found.arms
-        if (one := arm.scores.sr).mean is not None
+        if (one := arm.scores["sr"]).mean is not None
     )
     if found.baseline and len(found.arms) == 1:
         return f"There is only a run without a robot: people succeed in {rates} of its trials."
@@ -54,7 +54,7 @@ def worth_telling(found: Findings) -> Sequence[Comparison]:
 
 def _of_the_best(found: Findings) -> list[Comparison]:
     """Of the robot that does best, the comparisons with the second and with no robot."""
-    ranked = sorted(found.arms, key=lambda arm: -(arm.scores.sr.mean or 0.0))
+    ranked = sorted(found.arms, key=lambda arm: -(arm.scores["sr"].mean or 0.0))
     robots = [arm.label for arm in ranked if arm.label != found.baseline]
     others = {*robots[1:2], found.baseline}
     return [
@@ -66,7 +66,7 @@ def _of_the_best(found: Findings) -> list[Comparison]:
 
 def _better(found: Findings, pairs: Sequence[Comparison]) -> list[str]:
     """Who is better than whom, the best first."""
-    rates = {arm.label: arm.scores.sr.mean or 0.0 for arm in found.arms}
+    rates = {arm.label: arm.scores["sr"].mean or 0.0 for arm in found.arms}
     said = []
     for name in sorted(rates, key=lambda label: -rates[label]):
         won = [pair for pair in pairs if pair.better == name]

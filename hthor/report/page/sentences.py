@@ -109,7 +109,7 @@ def channel(arms: Sequence[Arm]) -> str:
     """How much robots said, and how much of it was taken."""
     said = []
     for arm in arms:
-        sent, taken, useful = arm.scores.sent, arm.scores.accepted, arm.scores.first_useful_s
+        sent, taken, useful = (arm.scores[name] for name in ("sent", "accepted", "first_useful_s"))
         if not sent.mean:
             said.append(f"{_upper(arm.label)} sent no message.")
             continue

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from hthor.eval.metrics.metric import SHARE, Metric, Unit
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import Estimate
 from hthor.report.analysis.document import Arm, Share
 from hthor.report.html.html import Piece, Value
 from hthor.report.html.numbers import plain, signed
 
-_PER_CENT = 100.0
 NOTE = (
     "In brackets: 95 % interval, for new tasks and new people of the same populations. Below: n, the number of trials "
     "that have the value, and mde, the smallest difference from a given number that so many trials would have seen in "
@@ -17,21 +17,22 @@ NOTE = (
 """What the cells of `estimate` say."""
 
 
-def estimate(one: Estimate, scale: float = 100.0, digits: int = 1) -> Piece:
+def estimate(one: Estimate, unit: Unit = SHARE, decimals: int = 1) -> Piece:
     """A mean: "66.7 [45.1, 85.0]", and below "n 60 · mde 9.1"."""
     if one.mean is None:
         return "–"
-    interval = "" if one.ci95 is None else f"[{', '.join(plain(scale * end, digits) for end in one.ci95)}]"
-    return Value(plain(scale * one.mean, digits), interval, _note(one.n, one.mde80, scale, digits))
+    interval = "" if one.ci95 is None else f"[{', '.join(plain(unit.scale * end, decimals) for end in one.ci95)}]"
+    return Value(plain(unit.scale * one.mean, decimals), interval, _note(one.n, one.mde80, unit, decimals))
 
 
-def difference(one: Difference | None, scale: float = 100.0, digits: int = 1) -> Piece:
-    """A difference with its sign; ``scale`` is negative where less is better."""
+def difference(one: Difference | None, metric: Metric) -> Piece:
+    """How much better, with its sign: less of a metric of which less is better."""
     if one is None:
         return "–"
+    scale = metric.sign * metric.unit.scale
     ends = None if one.ci95 is None else sorted(scale * end for end in one.ci95)
-    interval = "" if ends is None else f"[{', '.join(signed(end, digits) for end in ends)}]"
-    return Value(signed(scale * one.difference, digits), interval, _note(one.n, one.mde80, scale, digits))
+    interval = "" if ends is None else f"[{', '.join(map(signed, ends))}]"
+    return Value(signed(scale * one.difference), interval, _note(one.n, one.mde80, metric.unit, 1))
 
 
 def share(value: float | None, of: Share | None) -> Piece:
@@ -51,12 +52,12 @@ def p_value(p: float | None) -> str:
 
 def robots(arms: tuple[Arm, ...]) -> tuple[Arm, ...]:
     """The runs that have robots."""
-    return tuple(arm for arm in arms if arm.scores.sent.n)
+    return tuple(arm for arm in arms if arm.scores["sent"].n)
 
 
-def _note(n: int, mde80: float | None, scale: float, digits: int) -> str:
+def _note(n: int, mde80: float | None, unit: Unit, decimals: int) -> str:
     if not mde80:  # too few, or all alike: no measure of chance
         return f"n {n}"
-    if abs(scale) == _PER_CENT and mde80 >= 1.0:
+    if unit == SHARE and mde80 >= 1.0:
         return f"n {n} · mde > 100"
-    return f"n {n} · mde {plain(abs(scale) * mde80, digits)}"
+    return f"n {n} · mde {plain(unit.scale * mde80, decimals)}"

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 
 from hthor.eval.config.robot_team import NO_ROBOT, NO_ROBOT_AGENT
 from hthor.eval.config.run_config import REALTIME
+from hthor.eval.metrics import registry
+from hthor.eval.metrics.metric import NUMBER, SHARE, Unit
+from hthor.eval.results import uplift
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.results.result_file import RunResult, Scores
 from hthor.eval.statistics.intervals import Estimate
@@ -16,41 +19,8 @@ if TYPE_CHECKING:
 
     from hthor.eval.comparison.population_matrix import PopulationMatrix
 
-Row = tuple[str, str, Estimate]
+Row = tuple[str, Unit, Estimate]
 """Title, unit and value."""
-
-_MAIN = (
-    ("sr", "success rate", "%"),
-    ("twsr", "time-weighted success", "%"),
-    ("progress", "progress", "%"),
-    ("adoption", "adoption", "%"),
-    ("time_s", "time spent", "s"),
-    ("trust", "trust (1 to 7)", ""),
-)
-_MORE = (
-    ("idle_s", "person idle", "s"),
-    ("in_way", "bodies in the way, a trial", ""),
-    ("hindered_s", "person hindered", "s"),
-    ("sent", "messages sent, a trial", ""),
-    ("accepted", "  accepted", ""),
-    ("declined", "  declined", ""),
-    ("covered", "  covered by a newer one", ""),
-    ("unanswered", "  unanswered", ""),
-    ("false_claims", "messages that were false", ""),
-    ("precision", "true among its claims", "%"),
-    ("first_useful_s", "first useful message after", "s"),
-    ("interruptions_per_min", "messages shown, a minute", ""),
-    ("useful", "messages confirmed that were true and new, a trial", ""),
-    ("usefulness", "true and new among the confirmed", "%"),
-)
-_UPLIFT = (
-    ("sr", "success rate", "points"),
-    ("twsr", "time-weighted success", "points"),
-    ("time_s", "time spent", "s"),
-)
-_ONLY_WHERE_KNOWN = ("progress",)
-MAIN = tuple(name for name, _, _ in _MAIN)
-"""The metrics that every table of results has."""
 
 
 def result_table(result: RunResult, *, everything: bool = False) -> Table:
@@ -60,19 +30,18 @@ def result_table(result: RunResult, *, everything: bool = False) -> Table:
         everything: with all that is counted, not only the main metrics.
     """
     title = f"{result.label}: {result.suite.name}, {result.counts.trials} trials, {result.humans.name} people"
-    table = _table(title + (", in real time" if result.mode == REALTIME else ""))
-    for heading in ("mean", "95 % interval", "could have seen", "trials"):
-        table.add_column(heading, justify="right", overflow="fold")
+    title += ", in real time" if result.mode == REALTIME else ""
+    table = new_table(title, "mean", "95 % interval", "could have seen", "trials")
     later = enumerate(result.trust_by_trial if everything else (), 1)
-    rated = ((f"trust after a person's trial {number}", "", estimate) for number, estimate in later)
+    rated = ((f"trust after a participant's trial {number}", NUMBER, estimate) for number, estimate in later)
     for title, unit, estimate in (*_rows(result.metrics, everything), *rated):
-        seen = detectable(estimate, unit)
+        seen = least(estimate.mde80, unit)
         table.add_row(title, number(estimate, unit), interval(estimate, unit), seen, str(estimate.n))
-    for name, title, unit in _UPLIFT if result.uplift else ():
-        gain: Difference = getattr(result.uplift, name)
-        ends = "–" if gain.ci95 is None else " … ".join(_gain(end, unit) for end in gain.ci95)
-        seen = least(gain.mde80, 100.0 if unit == "points" else 1.0, room=unit == "points")
-        table.add_row(f"uplift: {title}", f"{_gain(gain.difference, unit)} {unit}", ends, seen, str(gain.n))
+    for metric in map(registry.get, uplift.METRICS if result.uplift else ()):
+        gain: Difference = getattr(result.uplift, metric.name)
+        ends = "–" if gain.ci95 is None else " … ".join(signed(end, metric.unit) for end in gain.ci95)
+        mean = f"{signed(gain.difference, metric.unit)} {metric.unit.difference}"
+        table.add_row(f"uplift: {metric.title}", mean, ends, least(gain.mde80, metric.unit), str(gain.n))
     return table
 
 
@@ -92,13 +61,9 @@ def notes(results: Iterable[RunResult]) -> Iterator[str]:
 
 def kinds_table(result: RunResult) -> Table:
     """One run of several kinds of task: a column a kind, the main metrics with their intervals below."""
-    table = _table(f"{result.label}: by kind of task (95 % interval)")
-    for kind in result.by_kind:
-        table.add_column(kind.replace("_", " "), justify="right", overflow="fold")
-    for name, title, unit in _MAIN:
-        estimates = [getattr(scores, name) for scores in result.by_kind.values()]
-        if any(estimate.n for estimate in estimates) or name not in _ONLY_WHERE_KNOWN:
-            table.add_row(title, *(_cell(estimate, unit) for estimate in estimates))
+    kinds = [kind.replace("_", " ") for kind in result.by_kind]
+    table = new_table(f"{result.label}: by kind of task (95 % interval)", *kinds)
+    _add_main_rows(table, list(result.by_kind.values()))
     return table
 
 
@@ -106,13 +71,8 @@ def comparison_table(results: Sequence[RunResult]) -> Table:
     """Several runs: a column a run, the mean with its interval below."""
     first = results[0]
     title = f"{first.suite.name}, {first.counts.trials} trials, {first.humans.name} people (95 % interval)"
-    table = _table(title)
-    for result in results:
-        table.add_column(result.label, justify="right", overflow="fold")
-    for name, title, unit in _MAIN:
-        estimates = [getattr(result.metrics, name) for result in results]
-        if any(estimate.n for estimate in estimates) or name not in _ONLY_WHERE_KNOWN:
-            table.add_row(title, *(_cell(estimate, unit) for estimate in estimates))
+    table = new_table(title, *(result.label for result in results))
+    _add_main_rows(table, [result.metrics for result in results])
     if any(result.uplift for result in results):
         table.add_row("uplift of success", *(_uplift_cell(result) for result in results))
     if any(result.counts.faults for result in results):
@@ -122,10 +82,12 @@ def comparison_table(results: Sequence[RunResult]) -> Table:
 
 def peoples_table(matrix: PopulationMatrix) -> Table:
     """Agents with several peoples: a row a people, three columns an agent, the worst of each agent marked."""
-    table = _table(f"{matrix.suite.name}, {matrix.trials} trials with each people")
-    for agent in map(_called, matrix.agents):
-        for heading in (f"{agent}\nsuccess %", "\nTWSR %", "\nadoption %"):
-            table.add_column(heading, justify="right", overflow="fold")
+    headings = [
+        heading
+        for agent in map(_called, matrix.agents)
+        for heading in (f"{agent}\nsuccess %", "\nTWSR %", "\nadoption %")
+    ]
+    table = new_table(f"{matrix.suite.name}, {matrix.trials} trials with each people", *headings)
     for people in matrix.peoples:
         cells: list[str] = []
         for agent, cell in matrix.cells[people.name].items():
@@ -152,55 +114,69 @@ def _called(agent: str) -> str:
 
 
 def _bare(estimate: Estimate) -> str:
-    return "–" if estimate.mean is None else _scaled(estimate.mean, "%")
+    return "–" if estimate.mean is None else f"{SHARE.scale * estimate.mean:.1f}"
+
+
+def _add_main_rows(table: Table, columns: Sequence[Scores]) -> None:
+    """A row for each main metric."""
+    for metric in registry.MAIN:
+        estimates = [scores[metric.name] for scores in columns]
+        if any(estimate.n for estimate in estimates) or not metric.optional:
+            table.add_row(metric.title, *(_cell(estimate, metric.unit) for estimate in estimates))
 
 
 def _rows(scores: Scores, everything: bool) -> Iterator[Row]:
-    for name, title, unit in _MAIN + (_MORE if everything else ()):
-        estimate: Estimate = getattr(scores, name)
-        if estimate.n or name not in _ONLY_WHERE_KNOWN:
-            yield title, unit, estimate
-    if everything:
-        yield from ((f"share of the work: {seat}", "%", estimate) for seat, estimate in scores.work.items())
-        yield from ((f"hindered: {pair}", "s", estimate) for pair, estimate in scores.hindered_by.items())
+    for metric in registry.SINGLE if everything else registry.MAIN:
+        estimate = scores[metric.name]
+        if estimate.n or not metric.optional:
+            yield ("  " if metric.part_of else "") + metric.title, metric.unit, estimate
+    for metric in registry.BY_SEAT if everything else ():
+        for seat, estimate in scores.by_seat(metric.name).items():
+            yield f"{metric.title}: {seat}", metric.unit, estimate
 
 
-def number(estimate: Estimate, unit: str) -> str:
+def number(estimate: Estimate, unit: Unit) -> str:
     """The mean with its unit; a dash where there is none."""
-    return "–" if estimate.mean is None else f"{_scaled(estimate.mean, unit)}{' ' if unit else ''}{unit}"
+    return "–" if estimate.mean is None else f"{unit.scale * estimate.mean:.1f} {unit.name}".rstrip()
 
 
-def interval(estimate: Estimate, unit: str) -> str:
+def interval(estimate: Estimate, unit: Unit) -> str:
     """The interval without its unit; a dash where there is none."""
     if estimate.ci95 is None:
         return "–"
     low, high = estimate.ci95
-    return f"{_scaled(low, unit)} … {_scaled(high, unit)}"
+    return f"{unit.scale * low:.1f} … {unit.scale * high:.1f}"
 
 
-def detectable(estimate: Estimate, unit: str) -> str:
-    """The smallest difference from a given number that these trials could have seen."""
-    return least(estimate.mde80, 100.0 if unit in ("%", "points") else 1.0, room=unit in ("%", "points"))
+def least(mde80: float | None, unit: Unit) -> str:
+    """The smallest difference that so many trials could have seen, as a number.
 
-
-def least(mde80: float | None, scale: float, *, room: bool) -> str:
-    """A smallest difference as a number.
-
-    A dash where the trials are too few to tell, or all alike and no measure of chance.
-
-    Args:
-        room: whether it is a share, of which no two are further apart than 100 points.
+    A dash where the trials are too few to tell, or all alike and no measure of chance. No two shares are further apart
+    than 100 points.
     """
     if not mde80:
         return "–"
-    return "> 100" if room and mde80 > 1.0 else f"{scale * mde80:.1f}"
+    return "> 100" if unit == SHARE and mde80 > 1.0 else f"{unit.scale * mde80:.1f}"
 
 
-def _gain(value: float, unit: str) -> str:
-    return f"{100.0 * value:+z.1f}" if unit == "points" else f"{value:+z.1f}"
+def signed(value: float, unit: Unit) -> str:
+    """A difference with its sign."""
+    return f"{unit.scale * value:+z.1f}"
 
 
-def _cell(estimate: Estimate, unit: str) -> str:
+def new_table(title: str, *headings: str) -> Table:
+    """An empty table: a column of titles, then one of numbers for each heading."""
+    from rich import box
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("", overflow="fold")
+    for heading in headings:
+        table.add_column(heading, justify="right", overflow="fold")
+    return table
+
+
+def _cell(estimate: Estimate, unit: Unit) -> str:
     return "–" if estimate.mean is None else f"{number(estimate, unit)}\n{interval(estimate, unit)}"
 
 
@@ -208,17 +184,5 @@ def _uplift_cell(result: RunResult) -> str:
     if result.uplift is None or result.uplift.sr.ci95 is None:
         return "–"
     gain = result.uplift.sr
-    return f"{_gain(gain.difference, 'points')} points\n" + " … ".join(_gain(end, "points") for end in gain.ci95 or ())
-
-
-def _scaled(value: float, unit: str) -> str:
-    return f"{value * 100.0:.1f}" if unit == "%" else f"{value:.1f}"
-
-
-def _table(title: str) -> Table:
-    from rich import box
-    from rich.table import Table
-
-    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("", overflow="fold")
-    return table
+    ends = " … ".join(signed(end, SHARE) for end in gain.ci95 or ())
+    return f"{signed(gain.difference, SHARE)} {SHARE.difference}\n{ends}"

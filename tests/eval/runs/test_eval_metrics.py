@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 
 from hthor.comms import claims
 from hthor.episode import EpisodeLog
-from hthor.eval.metrics import contribution, interference, trial_metrics
+from hthor.eval.metrics import trial_metrics
+from hthor.eval.metrics.definitions import contribution, interference
+from hthor.eval.metrics.metric import Trial
 from hthor.eval.records.trial_record import make_record
 from hthor.eval.results import aggregate
 from hthor.types import HUMAN, Event, Goal, HouseSpec, Job, Placement, Pose, Room, Send, Snapshot, Thing, ThingState
@@ -149,30 +151,30 @@ def walk(stops: int, ticks: int = 200) -> list[tuple[int, int, int]]:
 def test_a_hindrance_lasts_until_one_is_away_from_there():
     paths = {HUMAN: walk(30), "robot": walk(0), "robot2": walk(500)}
     made = log((20, HUMAN, "in_way", {"by": "robot"}), ticks=200, paths=paths)
-    assert interference.of_person(made) == pytest.approx(1.8), "0.4 m away at tick 38"
-    assert interference.by_pair(made)["human by robot"] == pytest.approx(1.8)
-    assert interference.by_pair(made)["robot by human"] == 0.0
-    assert interference.count(made) == 1
+    assert interference.human_hindered(Trial(TRIAL, made)) == pytest.approx(1.8), "0.4 m away at tick 38"
+    assert interference.hindered_by_pair(Trial(TRIAL, made))["human by robot"] == pytest.approx(1.8)
+    assert interference.hindered_by_pair(Trial(TRIAL, made))["robot by human"] == 0.0
+    assert interference.encounters(Trial(TRIAL, made)) == 1
     endless = log((20, "robot2", "in_way", {"by": HUMAN}), ticks=200, paths=paths)
-    assert interference.by_pair(endless)["robot2 by human"] == interference.LONGEST_S
+    assert interference.hindered_by_pair(Trial(TRIAL, endless))["robot2 by human"] == interference.LONGEST_S
     late = log((190, "robot2", "in_way", {"by": HUMAN}), ticks=200, paths=paths)
-    assert interference.by_pair(late)["robot2 by human"] == pytest.approx(1.0), "not longer than the trial"
+    assert interference.hindered_by_pair(Trial(TRIAL, late))["robot2 by human"] == pytest.approx(1.0), "not longer than the trial"
 
 
 def test_two_hindrances_at_once_cost_no_more_time():
     paths = {HUMAN: walk(30), "robot": walk(0), "robot2": walk(0)}
     rows = ((20, HUMAN, "in_way", {"by": "robot"}), (24, HUMAN, "in_way", {"by": "robot2"}))
     made = log(*rows, ticks=200, paths=paths)
-    assert interference.of_person(made) == pytest.approx(1.8)
-    assert interference.by_pair(made)["human by robot2"] == pytest.approx(1.4)
+    assert interference.human_hindered(Trial(TRIAL, made)) == pytest.approx(1.8)
+    assert interference.hindered_by_pair(Trial(TRIAL, made))["human by robot2"] == pytest.approx(1.4)
 
 
 @given(st.lists(st.integers(0, 199), max_size=8), st.integers(0, 200))
 def test_nobody_loses_more_than_the_trial(ticks: list[int], stops: int):
     rows = [(tick, HUMAN, "in_way", {"by": "robot"}) for tick in sorted(ticks)]
     made = log(*rows, ticks=200, paths={HUMAN: walk(stops), "robot": walk(0)})
-    assert 0.0 <= interference.of_person(made) <= 20.0
-    assert (interference.of_person(made) > 0.0) == bool(ticks)
+    assert 0.0 <= interference.human_hindered(Trial(TRIAL, made)) <= 20.0
+    assert (interference.human_hindered(Trial(TRIAL, made)) > 0.0) == bool(ticks)
 
 
 # ------------------------------------------------------------------------------------------------------------ messages
@@ -204,7 +206,7 @@ def test_every_message_has_one_end():
 def test_ends_of_messages_add_up(ends: list[str]):
     rows = [sent(number, "robot", number) for number in range(len(ends))]
     rows += [(99, HUMAN, end, {"message": number}) for number, end in enumerate(ends) if end]
-    found = trial_metrics.messages(log(*rows))
+    found = trial_metrics.measure(TRIAL, log(*rows))
     assert found.sent == len(ends)
     assert found.sent == found.accepted + found.declined + found.covered + found.unanswered
     assert found.false_claims == 0

@@ -84,8 +84,8 @@ def test_only_a_robots_confirmed_message_is_adopted():
         ((_sent(0, "human"), _answer(0)), 0),
     )
     for events, adopted in cases:
-        assert trial_metrics.adoption(trial, _log(10, True, events)) == adopted
-    assert trial_metrics.adoption(ALONE[0], _log(10, True)) is None
+        assert trial_metrics.measure(trial, _log(10, True, events))["adoption"] == adopted
+    assert trial_metrics.measure(ALONE[0], _log(10, True))["adoption"] is None
 
 
 def test_without_a_robot_there_is_neither_adoption_nor_trust():

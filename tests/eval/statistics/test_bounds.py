@@ -12,7 +12,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from benchmarks import bounded
-from hthor.eval.metrics import bounds
+from hthor.eval.metrics import registry
+from hthor.eval.metrics.metric import AMOUNTS
 from hthor.eval.results import aggregate, paired_difference
 from hthor.eval.statistics import intervals, variance_components
 
@@ -24,7 +25,7 @@ LIMITS = (90.0, 180.0, 0.1)
 def _trials(draw, least: int = 1, metrics=METRICS):
     """A metric, its range, and values within it, of few tasks and people."""
     metric, limit = draw(st.sampled_from(metrics)), draw(st.sampled_from(LIMITS))
-    low, high = bounds.of(metric, limit)
+    low, high = registry.get(metric).range(limit)
     value = st.floats(low, high if math.isfinite(high) else 50.0).map(lambda one: round(one, 6))  # as logs have it
     rows = draw(st.lists(st.tuples(value, value), min_size=least, max_size=30))
     people = draw(st.integers(1, 6))
@@ -35,7 +36,7 @@ def _trials(draw, least: int = 1, metrics=METRICS):
 @given(_trials())
 def test_an_interval_lies_within_the_bounds_and_holds_the_estimate(trials):
     metric, limit, rows, tasks, people = trials
-    low, high = bounds.of(metric, limit)
+    low, high = registry.get(metric).range(limit)
     found = intervals.estimate(rows[:, 0].tolist(), tasks.tolist(), people.tolist(), within=(low, high))
     if found.ci95 is not None:
         assert low <= found.ci95[0] <= found.mean <= found.ci95[1] <= high + 1e-6
@@ -45,9 +46,8 @@ def test_an_interval_lies_within_the_bounds_and_holds_the_estimate(trials):
 @given(_trials(least=2))
 def test_so_does_that_of_a_difference(trials):
     metric, limit, rows, tasks, people = trials
-    room = bounds.room(metric, limit)
-    share = metric in paired_difference.SHARES
-    found = paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, share=share, room=room)
+    room = registry.get(metric).width(limit)
+    found = paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, registry.get(metric), limit_s=limit)
     least, most = found.ci95
     assert -room - 1e-6 <= least <= found.difference <= most <= room + 1e-6
 
@@ -56,9 +56,10 @@ def test_so_does_that_of_a_difference(trials):
 @given(_trials(least=2))
 def test_an_interval_leaves_out_zero_exactly_when_the_test_refuses_it(trials):
     metric, limit, rows, tasks, people = trials
-    share, room = metric in paired_difference.SHARES, bounds.room(metric, limit)
+    record = registry.get(metric)
+    room = record.width(limit)
     for level in (0.95, 0.99):
-        found = paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, share=share, room=room, level=level)
+        found = paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, record, limit_s=limit, level=level)
         least, most = found.ci95
         if abs(least) > 1e-4 * room and abs(most) > 1e-4 * room and math.isfinite(room):  # no rounding decides it
             assert (least > 0.0 or most < 0.0) == (found.p < 1.0 - level)
@@ -68,9 +69,9 @@ def test_an_interval_leaves_out_zero_exactly_when_the_test_refuses_it(trials):
 @given(_trials(least=2))
 def test_a_surer_interval_is_wider(trials):
     metric, limit, rows, tasks, people = trials
-    share, room = metric in paired_difference.SHARES, bounds.room(metric, limit)
+    record = registry.get(metric)
     narrow, wide = (
-        paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, share=share, room=room, level=level).ci95
+        paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, record, limit_s=limit, level=level).ci95
         for level in (0.9, 0.99)
     )
     assert wide[0] <= narrow[0] + 1e-6
@@ -81,7 +82,7 @@ def test_a_surer_interval_is_wider(trials):
 @given(_trials(least=2, metrics=("sr", "twsr", "trust", "time_s")))
 def test_turned_about_the_middle_it_is_the_same_interval_turned(trials):
     metric, limit, rows, tasks, people = trials
-    low, high = within = bounds.of(metric, limit)
+    low, high = within = registry.get(metric).range(limit)
     one, other = (
         variance_components.two_way(row[None], tasks, people) for row in (rows[:, 0], low + high - rows[:, 0])
     )
@@ -92,7 +93,7 @@ def test_turned_about_the_middle_it_is_the_same_interval_turned(trials):
 
 @pytest.mark.parametrize(("metric", "limit"), [("time_s", 90.0), ("twsr", None), ("trust", None)])
 def test_a_higher_value_does_not_lower_the_interval(metric: str, limit: float | None):
-    low, high = within = bounds.of(metric, limit)
+    low, high = within = registry.get(metric).range(limit)
     before = (low, low)
     for level in np.linspace(0.0, 1.0, 21):
         values = low + (high - low) * np.clip(level + np.linspace(-0.1, 0.1, 60), 0.0, 1.0)
@@ -107,7 +108,7 @@ def test_two_people_who_take_nearly_all_their_time_cannot_take_more():
     tasks, people = list(range(20)), [k // 10 for k in range(20)]
     plain = intervals.estimate(times, tasks, people)
     assert plain.ci95[1] > 90.0, "the mean and some standard errors leave what is possible"
-    low, high = intervals.estimate(times, tasks, people, within=bounds.of("time_s", 90.0)).ci95
+    low, high = intervals.estimate(times, tasks, people, within=registry.get("time_s").range(90.0)).ci95
     assert 0.0 < low < high < 90.0
 
 
@@ -116,7 +117,7 @@ def test_two_people_who_take_nearly_all_their_time_cannot_take_more():
 @given(st.lists(st.integers(0, 9), min_size=2, max_size=40))
 def test_counts_have_no_interval_below_nothing(values: list[int]):
     tasks, people = list(range(len(values))), [k // 10 for k in range(len(values))]
-    found = intervals.estimate([float(value) for value in values], tasks, people, within=bounds.AMOUNT)
+    found = intervals.estimate([float(value) for value in values], tasks, people, within=AMOUNTS)
     low, high = found.ci95
     assert 0.0 <= low <= found.mean <= high
     assert low > 0.0 or found.mean == 0.0
@@ -136,10 +137,10 @@ def test_a_runs_times_are_held_within_their_limits():
 
 
 def test_means_of_trials_with_other_limits_end_at_the_mean_limit():
-    assert bounds.among("time_s", [10.0, 170.0], [90.0, 180.0]) == (0.0, 135.0)
-    assert bounds.among("time_s", [91.0, 170.0], [90.0, 180.0]) == bounds.AMOUNT, "such a time is none of a trial's"
-    assert bounds.room("trust") == 6.0
-    assert bounds.room("sent", 90.0) == math.inf
+    assert registry.get("time_s").range_of([10.0, 170.0], [90.0, 180.0]) == (0.0, 135.0)
+    assert registry.get("time_s").range_of([91.0, 170.0], [90.0, 180.0]) == AMOUNTS, "such a time is none of a trial's"
+    assert registry.get("trust").width() == 6.0
+    assert registry.get("sent").width(90.0) == math.inf
 
 
 @pytest.mark.parametrize(("metric", "level"), [("time_s", 2.0), ("twsr", 2.0), ("trust", 2.5)])
@@ -147,7 +148,7 @@ def test_they_hold_the_truth_as_often_near_a_bound_with_few_people(metric: str, 
     sort = next(one for one in bounded.SORTS if one.metric == metric)
     tasks, people = np.arange(60), np.arange(60) // 10
     values = sort.value(next(bounded.latent(tasks, people, level, 800)))
-    within, mean = bounds.of(metric, bounded.LIMIT_S), bounded.truth(sort, level)
+    within, mean = registry.get(metric).range(bounded.LIMIT_S), bounded.truth(sort, level)
     low, high = intervals.interval(variance_components.two_way(values, tasks, people), 60, within)
     assert 0.93 <= np.mean((low <= mean) & (mean <= high)) <= 0.98
 

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hthor.eval.comparison import ranking
+from hthor.eval.metrics import registry
 from hthor.eval.results import paired_difference
 from hthor.eval.statistics import bootstrap
 
@@ -63,7 +64,11 @@ def test_ranks_are_those_that_compare_would_give():
     played = _played([(0.4, 1), (0.6, 1), (0.8, 1), (0.78, 2)])
     versus = [paired_difference.spread_of(played - one, TASKS, PEOPLE, share=True) for one in played]
     pairs = [(one, other) for one in range(4) for other in range(one + 1, 4)]
-    found = [paired_difference.between(played[one], played[other], TASKS, PEOPLE, share=True) for one, other in pairs]
+    success = registry.get("sr")
+    found = [
+        paired_difference.between(played[one], played[other], TASKS, PEOPLE, success, limit_s=None)
+        for one, other in pairs
+    ]
     assert [ranking.adjusted(versus)[pair] for pair in pairs] == paired_difference.holm([gap.p for gap in found])
 
 

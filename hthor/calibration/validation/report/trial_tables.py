@@ -51,7 +51,7 @@ def _row(condition: int, numbers: dict[str, int], record: TrialRecord) -> dict[s
         "met": int(record.met),
         "ticks": record.ticks if record.met else round(record.spec.task.time_limit / rules.TICK_S),
         "messages": messages,
-        "adopted": int(bool(record.metrics.adoption)),
+        "adopted": int(bool(record.metrics["adoption"])),
         "trust": record.trust or 0 if record.spec.robots else 0,
         "valid": 1,
         "counted": int(bool(record.spec.robots)),

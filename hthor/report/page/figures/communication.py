@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from hthor.eval.metrics import registry
 from hthor.report.analysis.document import Arm
 from hthor.report.drawing import text_fit, trial_trace
 from hthor.report.html import matplotlib_svg
@@ -18,7 +19,7 @@ FATES = {
     "covered": ("covered by a newer one", matplotlib_svg.PRIOR),
     "unanswered": ("unanswered", matplotlib_svg.LINE),
 }
-_PANELS = (("first_useful_s", "first useful message [s]"), ("interruptions_per_min", "interruptions a minute"))
+_PANELS = ("first_useful_s", "interruptions_per_min")
 
 
 def figure(arms: Sequence[Arm]) -> Figure:
@@ -34,17 +35,17 @@ def figure(arms: Sequence[Arm]) -> Figure:
         for y, arm in enumerate(arms):
             left = 0.0
             for name, (_, shade) in FATES.items():
-                share = getattr(arm.scores, name).mean or 0.0
+                share = arm.scores[name].mean or 0.0
                 bars.barh(y, share, left=left, height=0.46, facecolor=shade, edgecolor=matplotlib_svg.PAPER, lw=0.6)
                 left += share
         bars.set_title("messages a trial")
         bars.set_xlim(left=0.0)
-        for ax, (metric, title) in zip(others, _PANELS, strict=True):
-            ax.set_title(title)
+        for ax, metric in zip(others, map(registry.get, _PANELS), strict=True):
+            ax.set_title(f"{metric.brief} [{metric.unit.name}]" if metric.unit.name else metric.brief)
             for y, arm in enumerate(arms):
-                one = getattr(arm.scores, metric)
+                one = arm.scores[metric.name]
                 run_styles.estimate(ax, y, one, own[arm.label], 1.0)
-            held = [getattr(arm.scores, metric) for arm in arms]
+            held = [arm.scores[metric.name] for arm in arms]
             most = max((end for one in held for end in (one.mean, *(one.ci95 or ())) if end), default=1.0)
             ax.set_xlim(0.0, 1.06 * most)
         for ax in (bars, *others):

@@ -7,15 +7,11 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from hthor.eval.comparison.compare import Comparison
+from hthor.eval.metrics import registry
+from hthor.eval.results import uplift
 from hthor.report.analysis.document import Arm
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.figures import run_styles
-
-_PANELS = (
-    ("sr", "success [points]", 100.0),
-    ("twsr", "time-weighted [points]", 100.0),
-    ("time_s", "time saved [s]", -1.0),
-)
 
 
 def figure(pairs: Sequence[Comparison], arms: Sequence[Arm]) -> Figure:
@@ -27,13 +23,14 @@ def figure(pairs: Sequence[Comparison], arms: Sequence[Arm]) -> Figure:
     names = [f"{pair.second} − {pair.first}" for pair in pairs]
     with matplotlib_svg.style():
         made = matplotlib_svg.sheet(0.62 + rows * run_styles.high(names, 0.34))
-        panels = made.subplots(1, len(_PANELS), sharey=True)
-        for ax, (name, title, scale) in zip(panels, _PANELS, strict=True):
+        panels = made.subplots(1, len(uplift.METRICS), sharey=True)
+        for ax, metric in zip(panels, map(registry.get, uplift.METRICS), strict=True):
+            scale = metric.sign * metric.unit.scale
             matplotlib_svg.bare(ax)
-            ax.set_title(title)
+            ax.set_title(metric.gain)
             ax.axvline(0.0, color=matplotlib_svg.SOFT, lw=0.9)
             for y, pair in enumerate(pairs):
-                one = pair.success if name == "sr" else pair.differences[name]
+                one = pair.success if metric.name == "sr" else pair.differences[metric.name]
                 ends = None if one.ci95 is None else sorted(scale * end for end in one.ci95)
                 run_styles.interval(ax, y, scale * one.difference, ends, own[pair.second])
             ax.margins(x=0.08)

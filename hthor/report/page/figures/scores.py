@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from hthor.eval.metrics import registry
 from hthor.report.analysis.document import Findings
 from hthor.report.drawing import text_fit
 from hthor.report.html import matplotlib_svg
@@ -16,7 +17,8 @@ from hthor.report.page.figures import run_styles
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-METRICS = {"sr": "success rate", "twsr": "time-weighted success", "adoption": "adoption", "progress": "progress"}
+METRICS = tuple(metric for metric in registry.MAIN if metric.is_share)
+"""The metrics that have a panel."""
 _SHIFT = 0.17
 _MANY = 4
 """So many panels have short titles."""
@@ -25,21 +27,21 @@ _MANY = 4
 def figure(found: Findings) -> Figure:
     """Means with 95 % intervals; diamonds are the article's, with intervals of their own where it tells counts."""
     own, rows = run_styles.of(found.arms), len(found.arms)
-    held = [name for name in METRICS if any(getattr(arm.scores, name).n for arm in found.arms)]
+    held = [metric for metric in METRICS if any(arm.scores[metric.name].n for arm in found.arms)]
     study = found.published is not None and any(arm.condition for arm in found.arms)
     with matplotlib_svg.style():
         made = matplotlib_svg.sheet(0.95 + rows * run_styles.high(arm.label for arm in found.arms))
         panels = made.subplots(1, len(held), sharey=True, squeeze=False)[0]
         for ax, metric in zip(panels, held, strict=True):
             matplotlib_svg.bare(ax)
-            ax.set_title(f"{METRICS[metric] if len(held) < _MANY else METRICS[metric].removesuffix(' success')} [%]")
-            ax.set_xlim(run_styles.window(_ends(found, metric), 10.0, (0.0, 100.0)))
+            ax.set_title(f"{metric.title if len(held) < _MANY else metric.brief} [%]")
+            ax.set_xlim(run_styles.window(_ends(found, metric.name), 10.0, (0.0, 100.0)))
             for y, arm in enumerate(found.arms):
-                one = getattr(arm.scores, metric)
+                one = arm.scores[metric.name]
                 run_styles.estimate(ax, y - _SHIFT if study else y, one, own[arm.label])
                 if one.mean is None:
                     ax.text(0.5, y, "no robot" if not one.n else "", transform=ax.get_yaxis_transform(), **_QUIET)
-                _publish(ax, y + _SHIFT, f"{metric} {arm.condition}", found)
+                _publish(ax, y + _SHIFT, f"{metric.name} {arm.condition}", found)
         panels[0].set_yticks(range(rows), [f"{run_styles.label(arm.label)}\nn = {arm.trials}" for arm in found.arms])
         panels[0].set_ylim(rows - 0.45, -0.55)
         if study and found.published is not None:
@@ -69,7 +71,7 @@ _QUIET = {"ha": "center", "va": "center", "color": matplotlib_svg.SOFT, "fontsiz
 def _ends(found: Findings, metric: str) -> Iterator[float]:
     """Every number of a panel, in per cent."""
     for arm in found.arms:
-        one, name = getattr(arm.scores, metric), f"{metric} {arm.condition}"
+        one, name = arm.scores[metric], f"{metric} {arm.condition}"
         yield from (100.0 * value for value in (one.mean, *(one.ci95 or ())) if value is not None)
         if found.published is not None and name in found.published.figures:
             yield 100.0 * found.published.figures[name]

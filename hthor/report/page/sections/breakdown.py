@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from hthor.eval.metrics import registry
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import NOTHING
 from hthor.report.analysis.document import Findings, Split
@@ -70,14 +71,14 @@ def _made(
     helped = _ordered(found, (label for one in held for by in _gains(found, one).values() for label in by))
     head = ("", *labels, *(f"gain by {label}" for label in helped))
     rows: list[list[Piece] | Band] = []
+    success = registry.get("sr")
     for one in held:
         rows += [Band(one.word)] if len(held) > 1 else []
         gains = _gains(found, one)
         for group in one.groups:
             rates = [table_cells.estimate(group.sr.get(label, NOTHING)) for label in labels]
-            rows.append(
-                [group.name, *rates, *(table_cells.difference(gains.get(group.name, {}).get(one)) for one in helped)]
-            )
+            own = gains.get(group.name, {})
+            rows.append([group.name, *rates, *(table_cells.difference(own.get(one), success) for one in helped)])
     long = any(len(one.groups) > _LONG for one in held)
     told = "Success rates [%]" + (", and gains over no robot [points], trial by trial" if helped else "")
     table = html.table(head, rows, f"{told}. {table_cells.NOTE}")

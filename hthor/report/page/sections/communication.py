@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from hthor.eval.metrics import registry
 from hthor.eval.statistics.intervals import NOTHING
 from hthor.report.analysis.document import Arm, Findings
 from hthor.report.html import html
@@ -11,24 +12,6 @@ from hthor.report.html.html import Band, Piece
 from hthor.report.page import sentences, table_cells
 
 TITLE = "Communication, and being in the way"
-_SAID = (
-    ("adoption", "adoption: trials with a confirmed message [%]", 100.0, 1),
-    ("usefulness", "true and new among the confirmed [%]", 100.0, 1),
-    ("precision", "precision of claims [%]", 100.0, 1),
-    ("false_claims", "false claims a trial", 1.0, 2),
-    ("first_useful_s", "first useful message [s]", 1.0, 1),
-    ("interruptions_per_min", "interruptions a minute", 1.0, 2),
-    ("sent", "messages a trial", 1.0, 2),
-    ("accepted", "… confirmed", 1.0, 2),
-    ("declined", "… declined", 1.0, 2),
-    ("covered", "… covered by a newer one", 1.0, 2),
-    ("unanswered", "… unanswered", 1.0, 2),
-)
-_AROUND = (
-    ("idle_s", "person idle [s a trial]", 1.0, 1),
-    ("hindered_s", "person hindered, by all robots [s a trial]", 1.0, 2),
-    ("in_way", "bodies met in each other's way, times a trial", 1.0, 2),
-)
 
 
 def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
@@ -47,32 +30,34 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         ),
         html.table(
             ("messages", *(arm.label for arm in robots)),
-            _metrics(robots, _SAID),
+            _rows(robots, "messages"),
             f"The robots' messages as a channel; means over trials. {table_cells.NOTE}",
         ),
         html.table(
             ("", *(arm.label for arm in found.arms)),
-            _around(found.arms),
+            [*_rows(found.arms, "bodies"), *_rows_by_seat(found.arms)],
             "Idle time of the person, and how much people and robots were in each other's way; means over trials, "
             "brackets and second lines as before.",
         ),
     ]
 
 
-def _around(arms: tuple[Arm, ...]) -> Iterator[list[Piece] | Band]:
-    yield from _metrics(arms, _AROUND)
-    for pair in dict.fromkeys(name for arm in arms for name in arm.scores.hindered_by):
-        values = (arm.scores.hindered_by.get(pair, NOTHING) for arm in arms)
-        title = f"{pair.replace(' by ', ' hindered by ')} [s a trial]"
-        yield [title, *(table_cells.estimate(one, 1.0, 2) for one in values)]
-    seats = dict.fromkeys(name for arm in arms for name in arm.scores.work)
-    if seats:
-        yield Band("share of the work that was done")
-    for seat in seats:
-        yield [f"by {seat} [%]", *(table_cells.estimate(arm.scores.work.get(seat, NOTHING)) for arm in arms)]
+def _rows(arms: tuple[Arm, ...], section: str) -> Iterator[list[Piece]]:
+    """A row for each metric of a section that some run has a value of."""
+    for metric in registry.SINGLE:
+        own = metric.section or ("" if metric.main else "bodies")
+        if own == section and any(arm.scores[metric.name].n for arm in arms):
+            cells = (table_cells.estimate(arm.scores[metric.name], metric.unit, metric.decimals) for arm in arms)
+            yield [f"{'… ' if metric.part_of else ''}{metric.heading}", *cells]
 
 
-def _metrics(arms: tuple[Arm, ...], metrics: tuple[tuple[str, str, float, int], ...]) -> Iterator[list[Piece]]:
-    for name, title, scale, digits in metrics:
-        if any(getattr(arm.scores, name).n for arm in arms):
-            yield [title, *(table_cells.estimate(getattr(arm.scores, name), scale, digits) for arm in arms)]
+def _rows_by_seat(arms: tuple[Arm, ...]) -> Iterator[list[Piece] | Band]:
+    """Below the name of each metric that has values by seat, a row for each seat or pair of seats."""
+    for metric in registry.BY_SEAT:
+        estimates = [arm.scores.by_seat(metric.name) for arm in arms]
+        seats = dict.fromkeys(seat for by_seat in estimates for seat in by_seat)
+        if seats:
+            yield Band(metric.heading)
+        for seat in seats:
+            cells = (by_seat.get(seat, NOTHING) for by_seat in estimates)
+            yield [seat, *(table_cells.estimate(one, metric.unit, metric.decimals) for one in cells)]

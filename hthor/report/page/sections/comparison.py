@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from hthor.eval.comparison.compare import Comparison
+from hthor.eval.metrics import registry
+from hthor.eval.results import uplift
 from hthor.report.analysis.document import Findings
 from hthor.report.html import html
 from hthor.report.html.html import Piece, Value
@@ -19,7 +21,7 @@ _COLUMNS = (
     "McNemar test of that. Tied: both succeeded, or neither did. p (Holm): two-sided, of no difference in success, "
     "adjusted for all comparisons here."
 )
-_HEAD = ("", "success [points]", "time-weighted [points]", "time saved [s]", "won : lost", "tied", "p (Holm)")
+_HEAD = ("", *(registry.get(name).gain for name in uplift.METRICS), "won : lost", "tied", "p (Holm)")
 
 
 def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
@@ -72,9 +74,10 @@ def _row(pair: Comparison) -> list[Piece]:
     name = f"{pair.second} − {pair.first}"
     return [
         name.replace(" ", "\u00a0") if len(name) <= _SHORT else name,
-        table_cells.difference(pair.success),
-        table_cells.difference(pair.differences.get("twsr")),
-        table_cells.difference(pair.differences.get("time_s"), -1.0),
+        *(
+            table_cells.difference(pair.success if name == "sr" else pair.differences.get(name), registry.get(name))
+            for name in uplift.METRICS
+        ),
         Value(f"{only.only_second} : {only.only_first}", "", told),
         str(pair.n - only.only_first - only.only_second),
         table_cells.p_value(pair.p_holm),

@@ -4,34 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from hthor.eval.metrics import registry
 from hthor.report.analysis.document import Findings
 from hthor.report.html import html
 from hthor.report.html.html import Band, Piece
 from hthor.report.page import sentences, table_cells
 
 TITLE = "Results"
-_COLUMNS = (
-    ("sr", "success [%]", 100.0, 1),
-    ("twsr", "time-weighted success [%]", 100.0, 1),
-    ("adoption", "adoption [%]", 100.0, 1),
-    ("progress", "progress [%]", 100.0, 1),
-    ("time_s", "time spent [s]", 1.0, 1),
-    ("trust", "trust, 1 to 7", 1.0, 2),
-)
 _PUBLISHED = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
 
 
 def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """Of what the section is made."""
-    held = [column for column in _COLUMNS if any(getattr(arm.scores, column[0]).n for arm in found.arms)]
+    metrics = [metric for metric in registry.MAIN if any(arm.scores[metric.name].n for arm in found.arms)]
     rows: list[list[Piece] | Band] = []
     if found.published is not None:
         rows.append(Band(f"These runs: {found.suite.name}, {found.people} people"))
     for arm in found.arms:
-        estimates = (table_cells.estimate(getattr(arm.scores, name), scale, digits) for name, _, scale, digits in held)
+        estimates = (table_cells.estimate(arm.scores[one.name], one.unit, one.decimals) for one in metrics)
         rows.append([arm.label, *estimates])
-    rows += _published(found, [name for name, *_ in held])
-    head = ("robot", *(title for _, title, _, _ in held))
+    rows += _published(found, [metric.name for metric in metrics])
+    head = ("robot", *(metric.heading for metric in metrics))
     return [
         html.table(head, rows, f"Means over trials. {table_cells.NOTE}"),
         html.paragraph(sentences.published(found)),

@@ -1,10 +1,11 @@
-"""Who did how much of what was achieved in a trial: pure functions of its log."""
+"""Which seat did how much of what was achieved in a trial."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
 from hthor.episode import EpisodeLog
+from hthor.eval.metrics.metric import SHARE, SHARES, Metric, Trial
 from hthor.types import HUMAN, Event, TrialSpec
 
 _FINISH = ("placed", "dropped", "lifted", "lowered", "opened", "closed")
@@ -15,19 +16,23 @@ Credit = dict[str, float]
 """Shares by seat."""
 
 
+def work(trial: Trial) -> dict[str, float]:
+    """Each seat's share of what was achieved; no shares where nothing was."""
+    return shares(trial.spec, trial.log) or {}
+
+
 def shares(spec: TrialSpec, log: EpisodeLog) -> Credit | None:
     """Each seat's share of the work, summing to 1; None when nothing was achieved.
 
-    Every rise of the progress (of a goal without parts: its being met) is credited to those whose deeds it took:
+    Every rise of the progress (for a goal without parts: meeting it) is credited in equal parts to these actions:
 
-    - the deed that brought it about, which is the last before it that ends something (an object placed, dropped, lifted
-      or lowered, a thing opened or closed; failing that, picked up), and, while several carry something, their lift;
-    - of its object, the pick before it;
-    - the openings before it of what the object was taken out of or put into, if somebody opened that.
+    - the one that brought it about: the last before it that finishes something (an object placed, dropped, lifted or
+      lowered, a thing opened or closed; failing that, picked up); while several carry something, their lift;
+    - the pick before it of the same object;
+    - the openings before it of what the object was taken out of or put into.
 
-    Each of these counts alike, and one that several bore together counts in equal parts for them. What is found is
-    found by the person, who has to see it, and by whoever opened what it was in. A fall of the progress takes back
-    what was credited last.
+    An action that several seats did together counts in equal parts for them. A find is credited to the human, who has
+    to see the target, and to whoever opened what it was in. A fall of the progress takes back the latest credit.
     """
     ledger: list[tuple[float, Credit]] = []
     for tick, rise in _steps(log):
@@ -119,3 +124,17 @@ def _doers(event: Event) -> tuple[str, ...]:
 
 def _is_of(event: Event, object_: str) -> bool:
     return bool(event.data.get("object") == object_)
+
+
+METRICS = (
+    Metric(
+        name="work",
+        title="share of the work",
+        formula=work,
+        unit=SHARE,
+        rank=900,
+        by_seat=True,
+        needs_robot=True,
+        bounds=SHARES,
+    ),
+)

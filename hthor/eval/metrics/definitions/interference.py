@@ -1,0 +1,103 @@
+"""How much bodies were in each other's way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+
+from hthor import rules
+from hthor.episode import EpisodeLog
+from hthor.eval.metrics.metric import LOWER, SECONDS, Metric, Trial
+from hthor.types import HUMAN
+
+FREED_M = 0.3
+"""A body this far from where it was hindered is free again [m]."""
+LONGEST_S = 5.0
+"""One event hinders nobody longer [s]: by then they could have chosen another way."""
+
+Span = tuple[int, int]
+"""Ticks, from and until."""
+
+
+def encounters(trial: Trial) -> int:
+    """How often a body met another in its way."""
+    return sum(event.kind == "in_way" for event in trial.log.events)
+
+
+def human_hindered(trial: Trial) -> float:
+    """Seconds that the human lost to all robots together, as bodies were in its way."""
+    return _seconds(_spans(trial.log, HUMAN))
+
+
+def hindered_by_pair(trial: Trial) -> dict[str, float]:
+    """Seconds that each seat lost to each other one, by names such as "human by robot2"."""
+    seats = list(trial.log.paths)
+    return {
+        f"{seat} by {other}": _seconds(_spans(trial.log, seat, other))
+        for seat in seats
+        for other in seats
+        if seat != other
+    }
+
+
+def _spans(log: EpisodeLog, seat: str, by: str = "") -> Iterator[Span]:
+    """From each time that the seat was hindered until it was free again."""
+    for event in log.events:
+        if event.kind == "in_way" and event.seat == seat and by in ("", event.data.get("by")):
+            yield event.tick, _freed(log, seat, event.tick)
+
+
+def _freed(log: EpisodeLog, seat: str, tick: int) -> int:
+    path, every = log.paths[seat], rules.LOG_EVERY_TICKS
+    last = min(log.ticks, tick + round(LONGEST_S / rules.TICK_S))
+    first = min(tick // every, len(path) - 1)
+    x, y, _ = path[first]
+    for number in range(first + 1, min(last // every + 1, len(path))):
+        if math.hypot(path[number][0] - x, path[number][1] - y) > 1000.0 * FREED_M:
+            return min(last, number * every)
+    return last
+
+
+def _seconds(spans: Iterable[Span]) -> float:
+    """Length of all spans together [s]; where spans overlap, time counts once."""
+    ticks, end = 0, -1
+    for first, last in sorted(spans):
+        ticks += max(0, last - max(first, end))
+        end = max(end, last)
+    return ticks * rules.TICK_S
+
+
+METRICS = (
+    Metric(
+        name="in_way",
+        title="bodies in the way, a trial",
+        formula=encounters,
+        decimals=2,
+        better=LOWER,
+        rank=120,
+        needs_robot=True,
+    ),
+    Metric(
+        name="hindered_s",
+        title="human hindered",
+        formula=human_hindered,
+        unit=SECONDS,
+        decimals=2,
+        better=LOWER,
+        rank=130,
+        needs_robot=True,
+        timed=True,
+    ),
+    Metric(
+        name="hindered_by",
+        title="hindered",
+        formula=hindered_by_pair,
+        unit=SECONDS,
+        decimals=2,
+        better=LOWER,
+        rank=910,
+        by_seat=True,
+        needs_robot=True,
+        timed=True,
+    ),
+)

@@ -1,0 +1,33 @@
+"""Time spent on the task, and time in which the human did nothing."""
+
+from __future__ import annotations
+
+from hthor import rules
+from hthor.eval.metrics.metric import DIGITS, LOWER, SECONDS, Metric, Trial
+from hthor.types import HUMAN
+
+
+def time_spent(trial: Trial) -> float:
+    """Seconds spent; a trial that was not solved counts with its time limit."""
+    return round(trial.log.ticks * rules.TICK_S, DIGITS) if trial.log.met else trial.spec.task.time_limit
+
+
+def idle(trial: Trial) -> float | None:
+    """Seconds in which the human's body did nothing."""
+    return trial.log.idle[HUMAN] * rules.TICK_S if HUMAN in trial.log.idle else None
+
+
+METRICS = (
+    Metric(
+        name="time_s",
+        title="time spent",
+        short="time",
+        formula=time_spent,
+        unit=SECONDS,
+        better=LOWER,
+        rank=50,
+        main=True,
+        timed=True,
+    ),
+    Metric(name="idle_s", title="human idle", formula=idle, unit=SECONDS, rank=110, timed=True),
+)

@@ -1,0 +1,26 @@
+"""The human's trust in the robots."""
+
+from __future__ import annotations
+
+from hthor import rules
+from hthor.eval.metrics.metric import HIGHER, Metric, Trial
+
+
+def trust(trial: Trial) -> int | None:
+    """The human's rating of the robot after the trial, 1 to 7 (P)."""
+    return trial.log.trust
+
+
+METRICS = (
+    Metric(
+        name="trust",
+        title=f"trust ({rules.TRUST_MIN} to {rules.TRUST_MAX})",
+        formula=trust,
+        decimals=2,
+        better=HIGHER,
+        rank=60,
+        main=True,
+        needs_robot=True,
+        bounds=(float(rules.TRUST_MIN), float(rules.TRUST_MAX)),
+    ),
+)

@@ -1,0 +1,35 @@
+"""All metrics, found by the files of `hthor.eval.metrics.definitions`, in the order of tables."""
+
+from __future__ import annotations
+
+from hthor import plugins
+from hthor.errors import UnknownName
+from hthor.eval.metrics.metric import Metric
+
+
+def _find() -> tuple[Metric, ...]:
+    found = [metric for file in plugins.names("metric") for metric in plugins.load("metric", file)]
+    twice = {metric.name for metric in found if [one.name for one in found].count(metric.name) > 1}
+    if twice:
+        raise ValueError(f"two metrics are called {sorted(twice)[0]}; every metric needs a name of its own")
+    return tuple(sorted(found, key=lambda metric: metric.rank))
+
+
+METRICS = _find()
+SINGLE = tuple(metric for metric in METRICS if not metric.by_seat)
+"""Metrics with one value a trial."""
+BY_SEAT = tuple(metric for metric in METRICS if metric.by_seat)
+MAIN = tuple(metric for metric in SINGLE if metric.main)
+"""The metrics that every table of results has, and that runs are compared in."""
+_BY_NAME = {metric.name: metric for metric in METRICS}
+
+
+def get(name: str) -> Metric:
+    """The metric of this name.
+
+    Raises:
+        UnknownName: when there is none.
+    """
+    if name not in _BY_NAME:
+        raise UnknownName("metric", name, tuple(_BY_NAME))
+    return _BY_NAME[name]
