@@ -141,8 +141,17 @@ METRICS = (
             (230, "declined", "declined", declined, "sent"),
             (240, "covered", "covered by a newer one", covered, "sent"),
             (250, "unanswered", "unanswered", unanswered, "sent"),
-            (260, "false_claims", "messages that were false, a trial", false_claims, ""),
         )
+    ),
+    Metric(
+        name="false_claims",
+        title="messages that were false, a trial",
+        formula=false_claims,
+        decimals=2,
+        better=LOWER,
+        rank=260,
+        section="messages",
+        needs_robot=True,
     ),
     Metric(
         name="precision",
