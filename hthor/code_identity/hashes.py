@@ -24,7 +24,7 @@ def code_sha256(model: str, kinds: Iterable[str]) -> str:
         kinds: the kinds of task.
     """
     own = [*_modules("human model", model), *(name for kind in set(kinds) for name in _modules("task kind", kind))]
-    metrics = [plugins.module("metric", name) for name in plugins.names("metric")]
+    metrics = [plugins.module_name("metric", name) for name in plugins.names("metric")]
     return modules_sha256([*roots(_TRIAL), *metrics, *own])
 
 

@@ -128,7 +128,7 @@ def test_every_metric_is_found_and_says_what_it_is() -> None:
 
 def test_metrics_count_in_the_hash_of_code() -> None:
     sources = code_identity.ours()
-    roots = [plugins.module("metric", name) for name in plugins.names("metric")]
+    roots = [plugins.module_name("metric", name) for name in plugins.names("metric")]
     counted = {module.rpartition(".")[2] for module in sources.closure(roots)}
     assert {"success", "communication", "interference", "metric"} <= counted
 
