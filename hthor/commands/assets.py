@@ -1,4 +1,4 @@
-"""`hthor assets`: furniture packs in the user's cache; knows what the user types, not how a pack is made."""
+"""`hthor assets`: furniture packs in the user's cache."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hthor.console import output
 if TYPE_CHECKING:
     from hthor.looks.pack import Pack
 
-app = typer.Typer(no_args_is_help=True, help="Furniture packs: optional looks for pictures for people.")
+app = typer.Typer(no_args_is_help=True, help="Furniture packs: optional models for rendered images.")
 
 Name = Annotated[str, typer.Argument(metavar="NAME", help="A pack's name ('hthor assets list').")]
 
@@ -30,17 +30,19 @@ def build(
     ] = None,
     cc_by: Annotated[
         bool,
-        typer.Option("--cc-by", help="Take models that ask for attribution too; the pack then holds ATTRIBUTION.md."),
+        typer.Option(
+            "--cc-by", help="Also take models that require attribution; the pack then contains ATTRIBUTION.md."
+        ),
     ] = False,
     name: Annotated[
-        str | None, typer.Option(help="What to call the pack. [default: photoreal, with --cc-by photoreal-by]")
+        str | None, typer.Option(help="Name of the pack. [default: photoreal; with --cc-by photoreal-by]")
     ] = None,
     out: Annotated[
         Path | None, typer.Option(help="The folder to write. [default: the pack's name, in the user's cache]")
     ] = None,
     json: Json = False,
 ) -> None:
-    """Build a pack of furniture models, of those in the public domain only unless told otherwise."""
+    """Build a pack of furniture models; only of public-domain models, unless --cc-by is given."""
     from hthor.looks import pack as packs
     from hthor.looks.pack import debian, making
 
@@ -60,12 +62,12 @@ def build(
     models, kinds = len(made.pack.contents.models), len(made.pack.kinds)
     talk.print(f"{models} models of {kinds} kinds, {_megabytes(made.pack):.1f} MB.", markup=False, highlight=False)
     if (folder / "ATTRIBUTION.md").exists():
-        output.say(f"Show {folder}/ATTRIBUTION.md with its pictures.", talk)
+        output.say(f"Publish {folder}/ATTRIBUTION.md together with its images.", talk)
 
 
 @app.command("list")
 def list_packs(json: Json = False) -> None:
-    """The packs in the user's cache."""
+    """List the packs in the user's cache."""
     from hthor.looks import pack as packs
 
     rows = [_row(packs.load(name)) for name in packs.installed()]
@@ -82,7 +84,7 @@ def list_packs(json: Json = False) -> None:
 
 @app.command("path")
 def path(name: Name, json: Json = False) -> None:
-    """Where a pack lies."""
+    """Print the folder of a pack."""
     from hthor.looks import pack as packs
 
     output.put_files([packs.find(name)], json)

@@ -1,4 +1,4 @@
-"""`hthor compare` and `hthor power`; knows what the user types, not how any of it is worked out."""
+"""`hthor compare` and `hthor power`."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ def compare(
     runs: Annotated[
         list[Path],
         typer.Argument(
-            metavar="RUN RUN...", help="Folders of runs with the same suite, people and seed; baseline first"
+            metavar="RUN RUN...", help="Folders of runs with the same suite, people and seed; the baseline first."
         ),
     ],
     fail_if_worse: Annotated[
-        bool, typer.Option("--fail-if-worse", help="Exit with 6 when a run is worse in success than the first one.")
+        bool, typer.Option("--fail-if-worse", help="Exit with code 6 if a run has a lower success rate than the first.")
     ] = False,
     shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
-    """Say which run is better and by how much, trial by trial, or that these data cannot tell."""
+    """Compare runs trial by trial: which is better, by how much, or that the data cannot tell."""
     from hthor.eval.comparison import compare as comparing
     from hthor.report.terminal import comparison_tables
 
@@ -52,7 +52,9 @@ def compare(
     talk = output.console(talk=True)
     if len(found.pairs) > 1 and not json:
         talk.print(
-            "by kind, split, difficulty and scene: compare two runs, or see --json", markup=False, highlight=False
+            "compare two runs, or use --json, to see kinds, splits, difficulties and scenes",
+            markup=False,
+            highlight=False,
         )
     for party in found.runs:
         if party.trials < party.planned:
@@ -75,23 +77,30 @@ def _rows(pair: Comparison) -> Iterator[dict[str, object]]:
 def power(
     runs: Annotated[
         list[Path] | None,
-        typer.Argument(metavar="[RUN RUN]", help="Two runs to take rates and correlation from.", show_default=False),
+        typer.Argument(
+            metavar="[RUN RUN]", help="Two runs from which to take success rates and correlation.", show_default=False
+        ),
     ] = None,
     rates: Annotated[
-        str, typer.Option(help="Instead, two success rates: 0.73,0.76.", metavar="RATE,RATE", show_default=False)
+        str, typer.Option(help="Two success rates instead of runs: 0.73,0.76.", metavar="RATE,RATE", show_default=False)
     ] = "",
     correlation: Annotated[
         float | None,
-        typer.Option(help="Of the outcomes of the same trial with either robot.", show_default="0.5, or as measured"),
+        typer.Option(
+            help="Correlation between the outcomes of the same trial with the two robots.",
+            show_default="as measured, or 0.5",
+        ),
     ] = None,
     difference: Annotated[
-        float | None, typer.Option(help="Another difference than the two runs have: 0.03.", show_default=False)
+        float | None, typer.Option(help="Another difference than that of the two runs: 0.03.", show_default=False)
     ] = None,
-    wanted: Annotated[float, typer.Option("--power", min=0.5, max=0.99, help="Probability of seeing it.")] = 0.8,
+    wanted: Annotated[
+        float, typer.Option("--power", min=0.5, max=0.99, help="Probability of detecting the difference.")
+    ] = 0.8,
     shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
-    """Say how many tasks and people it takes to see a difference in success, paired and not."""
+    """Compute how many tasks and participants it takes to detect a difference in success, paired and unpaired."""
     from hthor.eval.comparison import sample_size
 
     found = sample_size.plan_study(tuple(runs or ()), rates, correlation, difference, wanted)

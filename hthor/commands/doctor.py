@@ -1,4 +1,4 @@
-"""`hthor doctor`; knows what the user types and how findings look, not what is looked at."""
+"""`hthor doctor`."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _STYLES = {"ok": "green", "warn": "yellow", "fail": "bold red"}
 
 
 def doctor(
-    out: Annotated[Path, typer.Option(help="Where runs are to be written.")] = Path("runs"),
+    out: Annotated[Path, typer.Option(help="The folder where runs will be written.")] = Path("runs"),
     require_isolation: Annotated[
-        str, typer.Option(help="The least level of isolation that will do: L1, L2 or L3.")
+        str, typer.Option(help="The weakest acceptable isolation level: L1, L2 or L3.")
     ] = "L1",
     json: Json = False,
     write_reference: Annotated[bool, typer.Option("--write-reference", hidden=True)] = False,
 ) -> None:
-    """Try out what evaluations need on this machine, and say how to mend what does not work.
+    """Check that this machine can run evaluations, and say how to fix what does not work.
 
     Starts a guest on each level of isolation, draws a frame, plays a trial and compares it with the one that ships, and
     looks at versions, extras, disk, memory, cores and environment. Writes nothing and uses no network. Exit code 5 when
@@ -47,7 +47,7 @@ def doctor(
 
 
 def _renew(json: bool) -> None:
-    """Make the reference anew, for who has changed how trials go, and means it."""
+    """Write the reference again, after a deliberate change of behaviour."""
     from hthor import jsonio
     from hthor.errors import HthorError
     from hthor.eval.doctor import reproducibility, subprocess_probe

@@ -34,7 +34,7 @@ def _group() -> None:
 
 @app.command("list")
 def list_houses(shape: Shape = Format.TABLE, json: Json = False) -> None:
-    """The houses that ship with hthor."""
+    """List the houses that ship with hthor."""
     from hthor import houses
 
     rows = [{"name": name, **_size(house), "sha256": house.sha256} for name, house in _own(houses)]
@@ -51,18 +51,26 @@ def check_house(
     radius: Annotated[
         float | None,
         typer.Option(
-            min=0.01, max=2.0, help="Radius of the body that shall live in it [m]; left out: 0.2, when strict 0.25."
+            min=0.01,
+            max=2.0,
+            help="Radius of the body that must fit through the house [m]. [default: 0.2; with --strict 0.25]",
         ),
     ] = None,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Judge it as one of our own: what foreign houses may lack is an error too.")
+        bool,
+        typer.Option(
+            "--strict", help="Apply the rules of hthor's own houses: what other houses may lack is an error too."
+        ),
     ] = False,
     full: Annotated[
-        bool, typer.Option("--full", help="Strict, and proved by the engine: nothing penetrates, surfaces hold things.")
+        bool,
+        typer.Option(
+            "--full", help="Strict, and also tested in the physics engine: no penetration, and surfaces hold objects."
+        ),
     ] = False,
     json: Json = False,
 ) -> None:
-    """Say whether a house is sound for a body: exit code 1 when it is not, 2 when the file is broken."""
+    """Check whether a house is sound: exit code 1 if it is not, 2 if the file is broken."""
     from hthor import houses
 
     size = radius if radius is not None else 0.25 if strict or full else 0.2
@@ -88,21 +96,22 @@ def check_house(
 
 @app.command("generate")
 def generate(
-    seed: Annotated[int, typer.Option(min=0, help="Equal seeds give equal houses, byte for byte.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same house, byte for byte.")] = 0,
     rooms: Annotated[
-        int | None, typer.Option(min=_ROOMS[0], max=_ROOMS[1], help="How many rooms; left out: 4 to 7, by the seed.")
+        int | None,
+        typer.Option(min=_ROOMS[0], max=_ROOMS[1], help="Number of rooms. [default: 4 to 7, drawn by the seed]"),
     ] = None,
-    count: Annotated[int, typer.Option(min=1, help="How many houses: of this seed and those after it.")] = 1,
+    count: Annotated[int, typer.Option(min=1, help="Number of houses: of this seed and the following ones.")] = 1,
     out: Annotated[
         Path | None,
         typer.Option(
-            help="The file to write, or - for standard output; of several houses their folder. Left out: "
+            help="The file to write, or - for standard output; for several houses, their folder. Left out: "
             "home-ROOMS-SEED.json, of several the folder homes."
         ),
     ] = None,
     json: Json = False,
 ) -> None:
-    """Make houses that are furnished, lived in and proved sound."""
+    """Generate furnished houses that pass every check."""
     if count > 1 and out is not None and str(out) == "-":
         raise typer.BadParameter("several houses need a folder, not standard output", param_hint="--out")
     if json and out is not None and str(out) == "-":
@@ -120,12 +129,12 @@ def generate(
 @app.command("show")
 def show(
     house: House,
-    out: Annotated[Path | None, typer.Option(help="The PNG file to write; left out: HOUSE.png.")] = None,
-    scale: Annotated[float, typer.Option(min=5.0, max=200.0, help="Pixels a metre.")] = 60.0,
-    plain: Annotated[bool, typer.Option("--plain", help="Without the names of rooms.")] = False,
+    out: Annotated[Path | None, typer.Option(help="The PNG file to write. [default: HOUSE.png]")] = None,
+    scale: Annotated[float, typer.Option(min=5.0, max=200.0, help="Resolution [pixels per metre].")] = 60.0,
+    plain: Annotated[bool, typer.Option("--plain", help="Leave out the names of rooms.")] = False,
     json: Json = False,
 ) -> None:
-    """Draw a house from above, its ceilings off, with the names of its rooms and a scale."""
+    """Draw a house from above, without ceilings, with room names and a scale."""
     import cv2
 
     from hthor import houses, jsonio
@@ -145,14 +154,14 @@ def show(
 @app.command("census")
 def census(
     files: Annotated[
-        list[str] | None, typer.Argument(metavar="[HOUSE]...", help="Houses to count: names or house files.")
+        list[str] | None, typer.Argument(metavar="[HOUSE]...", help="Houses to describe: names or house files.")
     ] = None,
-    generated: Annotated[int, typer.Option(min=0, help="Make and count so many houses of 4 to 7 rooms.")] = 0,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the first house that is made.")] = 0,
+    generated: Annotated[int, typer.Option(min=0, help="Also generate this many houses of 4 to 7 rooms.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the first generated house.")] = 0,
     shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
-    """Count rooms, doors, things and ways, side by side: of houses made, of hthor's own, and of those given."""
+    """Compare statistics of rooms, doors, objects and paths: generated houses, hthor's own, and the given ones."""
     from hthor import houses
     from hthor.houses import house_statistics as counting
 
@@ -237,7 +246,7 @@ def _row(home: Home, path: Path | None) -> dict[str, Any]:
 def _words(row: dict[str, Any]) -> str:
     where = row["file"] or "standard output"
     again = f", attempt {row['attempt'] + 1}" if row["attempt"] else ""
-    return f"{where}: {len(row['rooms'])} rooms, {row['area_m2']:.0f} m2, {row['things']} things, proved sound{again}"
+    return f"{where}: {len(row['rooms'])} rooms, {row['area_m2']:.0f} m2, {row['things']} things, sound{again}"
 
 
 def _spread(spread: Any) -> str:

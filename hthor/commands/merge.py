@@ -1,4 +1,4 @@
-"""`hthor merge`; knows what the user types, not how records are joined."""
+"""`hthor merge`."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _MISSING_EXIT, _FAULTS_EXIT = 1, 3
 
 
 def merge(
-    folders: Annotated[list[Path], typer.Argument(metavar="FOLDER...", help="The shards' folders.")],
-    out: Annotated[Path, typer.Option(help="The whole run's folder.")],
+    folders: Annotated[list[Path], typer.Argument(metavar="FOLDER...", help="The folders of the shards.")],
+    out: Annotated[Path, typer.Option(help="The folder of the whole run.")],
     json: Json = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Only say how many trials would be there; write nothing.")
+        bool, typer.Option("--dry-run", help="Print how many trials there would be; write nothing.")
     ] = False,
 ) -> None:
-    """Join the shards of a run that 'hthor eval --shard i/N' played on several machines.
+    """Join the shards of a run, played with 'hthor eval --shard I/N'.
 
     The result is the one of an undivided run, byte for byte but for what it cost. Says what is missing, if anything,
     and the commands that play it; merge again when they are done.
@@ -56,7 +56,7 @@ def merge(
         say(f"{f'shard {gap.number}/{gap.of}' if gap.of > 1 else 'the run'} {lacks}: {gap.command}")
     for name in dict.fromkeys(seat.agent.source.partition(":")[0] for seat in done.plan.robots):
         if name.endswith(".py"):
-            say(f"{name} is the agent's file: name it by its path.")
+            say(f"Replace {name} by the path of the agent's file.")
     if any(gap.of > 1 for gap in done.gaps):
         say("Then merge again.")
     raise typer.Exit(_MISSING_EXIT)

@@ -11,8 +11,9 @@ AgentArgs = Annotated[
     list[str] | None,
     typer.Option(
         metavar="KEY=VALUE",
-        help="An argument for agents of your own: of the class's constructor, or --KEY=VALUE behind a command. A file "
-        "that it names may be read. Part of the agent's identity. Repeat it for several.",
+        help="An argument for your own agents, passed to the constructor of the class, or to a program as "
+        "--KEY=VALUE. If it names a file, the agent may read it. It is part of the agent's identity. Repeat the "
+        "option for several.",
         show_default=False,
     ),
 ]
@@ -20,28 +21,28 @@ Readable = Annotated[
     list[Path] | None,
     typer.Option(
         metavar="PATH",
-        help="A file or folder outside the agent's own that it may read, such as weights; its files are part of the "
-        "agent's identity. Repeat it for several.",
+        help="A file or folder outside the agent's own folder that the agent may read, such as weights. It is part "
+        "of the agent's identity. Repeat the option for several.",
         show_default=False,
     ),
 ]
 
-Run = Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder, such as runs/demo/frontier.")]
-Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output; words go to standard error.")]
+Run = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run, such as runs/demo/frontier.")]
+Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output and messages to standard error.")]
 
 Camera = Annotated[
     str,
     typer.Option(
-        help="The robot's camera: own (as its body says), square, thor, habitat or realsense; docs/robots.md lists "
-        "their fields of view and sizes. What the robot detects does not depend on it."
+        help="The robot's camera: own (as its body defines it), square, thor, habitat or realsense; docs/robots.md "
+        "lists their fields of view and sizes. The camera does not change what the robot detects."
     ),
 ]
 CameraSize = Annotated[
     str,
     typer.Option(
         metavar="WxH",
-        help="The size of its pictures in pixels, such as 320x240. Pixels are square, so another shape than the field "
-        "of view's shows the middle of it.",
+        help="Size of the camera's images [pixels], such as 320x240. Pixels are square, so an image of another shape "
+        "than the field of view is cropped to its middle.",
         show_default="the camera's own",
     ),
 ]

@@ -24,10 +24,12 @@ _SHOWN = 8
 
 @app.command("show")
 def show(
-    target: Annotated[str | None, typer.Argument(metavar="TARGET", help="Only this target's triplets.")] = None,
+    target: Annotated[
+        str | None, typer.Argument(metavar="TARGET", help="Show only the triplets of this target object.")
+    ] = None,
     json: Json = False,
 ) -> None:
-    """The triplets that ship: what is on, in or near what, how often it was seen, how alike the words are, weights."""
+    """Show the scene priors: target, relation, place, frequency, word similarity and weight."""
     from hthor.catalog import priors
 
     rows = priors.triplets() if target is None else priors.of(target)
@@ -47,18 +49,22 @@ def build(
     ] = None,
     check: Annotated[
         bool,
-        typer.Option("--check", help="Compare with the table that ships instead: exit code 1 when a number differs."),
+        typer.Option(
+            "--check", help="Compare with the table that ships instead of writing; exit code 1 if a number differs."
+        ),
     ] = False,
     wheel: Annotated[
         Path | None,
         typer.Option(
-            help="The wheel of procthor to count in. [default: the installed package, of the extra 'priors']",
+            help="The procthor wheel to count in. [default: the installed package, of the extra 'priors']",
             show_default=False,
         ),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="The verdict of --check as JSON, or what was written.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the verdict of --check, or the names of written files, as JSON.")
+    ] = False,
 ) -> None:
-    """Compute the table anew from scenes and a sentence encoder (needs the extra 'priors'; fetches nothing)."""
+    """Recompute the table from scenes and a sentence encoder (needs the extra 'priors'; downloads nothing)."""
     from hthor import jsonio
     from hthor.catalog.priors import making, scenes, words
 

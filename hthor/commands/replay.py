@@ -19,14 +19,20 @@ if TYPE_CHECKING:
 def replay(
     run: Run,
     trial: Annotated[
-        str, typer.Argument(metavar="TRIAL", help="A key or its start, a task's id, or a number counted from 0.")
+        str,
+        typer.Argument(
+            metavar="TRIAL", help="The trial: its key or the start of it, a task id, or a number counted from 0."
+        ),
     ],
     out: Annotated[
         Path | None, typer.Option(help="The file to write.", show_default="RUN/replays/TASK-KEY.png, or .webm")
     ] = None,
-    video: Annotated[bool, typer.Option("--video", help="Write a film instead of a picture.")] = False,
+    video: Annotated[bool, typer.Option("--video", help="Write a video instead of an image.")] = False,
     mind: Annotated[
-        bool, typer.Option("--mind", help="Instead, what the person believed, saw and chose; the session is replayed.")
+        bool,
+        typer.Option(
+            "--mind", help="Show what the simulated person believed, saw and chose; the session is played again."
+        ),
     ] = False,
     agent: Annotated[
         list[str] | None,
@@ -34,12 +40,17 @@ def replay(
     ] = None,
     agent_args: AgentArgs = None,
     readable: Readable = None,
-    humans: Annotated[str, typer.Option(help="With --mind: the people's file, if any.", show_default=False)] = "",
+    humans: Annotated[
+        str, typer.Option(help="With --mind: the file of the people, if the run used one.", show_default=False)
+    ] = "",
     json: Annotated[
-        bool, typer.Option("--json", help="What was written as JSON; with --mind: the thoughts, and no picture.")
+        bool,
+        typer.Option(
+            "--json", help="Print the names of written files as JSON; with --mind, the trace itself, and no image."
+        ),
     ] = False,
 ) -> None:
-    """Draw one trial from above: the paths, the messages and what came of them."""
+    """Draw one trial from above: paths, messages and their outcomes."""
     if mind:
         from hthor.guest.agent import inputs
 
@@ -57,7 +68,7 @@ def replay(
 def _replay_mind(
     run: Path, trial: str, out: Path | None, agents: Sequence[str], humans: str, given: AgentInputs, json: bool
 ) -> None:
-    """Play a person's session again up to one trial, and draw or print what went on in their mind."""
+    """Play a session again up to one trial, and draw or print the trace of the human model."""
     from hthor.eval.records import find
     from hthor.eval.replay import human_trace
     from hthor.report.drawing import human_trace_figure, lettering, render_trial
@@ -68,8 +79,8 @@ def _replay_mind(
     if not stream.same:
         talk = output.console(talk=True)
         talk.print(
-            "the trial went otherwise than it was logged: something here does not repeat itself. What follows is what "
-            "the person thought this time.",
+            "the replayed trial differs from the log, so something here is not reproducible. What follows is the "
+            "trace of the replay.",
             soft_wrap=True,
         )
     if json:

@@ -1,4 +1,4 @@
-"""`hthor report` and `hthor case`; knows what the user types, not what a report is made of."""
+"""`hthor report` and `hthor case`."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import typer
 from hthor.commands.options import AgentArgs, Json, Readable
 from hthor.console import output
 
-Runs = Annotated[list[Path], typer.Argument(metavar="RUN...", help="Runs' folders, such as runs/demo/frontier.")]
+Runs = Annotated[list[Path], typer.Argument(metavar="RUN...", help="Folders of runs, such as runs/demo/frontier.")]
 
 _PAPER = "paper"
 
 
 def report(
     runs: Runs,
-    out: Annotated[Path, typer.Option(help="The report's folder.")] = Path("report"),
+    out: Annotated[Path, typer.Option(help="Folder of the report.")] = Path("report"),
     json: Json = False,
 ) -> None:
-    """Tell of runs of one suite on one page: results against no robot and the article, figures, best and worst trials.
+    """Write a report on runs of one suite: results against no robot and the paper, figures, best and worst trials.
 
     Writes report.html, which needs nothing else, report.json with every number, and figures/*.svg. Runs of several
     peoples make a section by kind of person; the rest is of the first run's people. Nothing is simulated.
@@ -49,25 +49,30 @@ def report(
 
 def case(
     runs: Runs,
-    task: Annotated[str, typer.Argument(metavar="TASK", help="A task's id, such as smoke/maple/navigation-02.")],
-    out: Annotated[Path, typer.Option(help="The folder of the two files.")] = Path("report"),
+    task: Annotated[str, typer.Argument(metavar="TASK", help="A task id, such as smoke/maple/navigation-02.")],
+    out: Annotated[Path, typer.Option(help="Folder for the two files.")] = Path("report"),
     person: Annotated[
         int | None,
-        typer.Option(help="Which participant.", show_default="the first who did the task in every run"),
+        typer.Option(help="The participant, by number.", show_default="the first who did the task in every run"),
     ] = None,
     nice: Annotated[
-        bool, typer.Option("--nice", help="Views with textures and shadows; needs OpenGL, and bytes depend on it.")
+        bool,
+        typer.Option(
+            "--nice", help="Render views with textures and shadows; needs OpenGL, and the pixels depend on it."
+        ),
     ] = False,
     agent: Annotated[
         list[str] | None,
-        typer.Option(help="The file of an agent that is not built in; repeat it for several.", show_default=False),
+        typer.Option(
+            help="The file of an agent that is not built in; repeat the option for several.", show_default=False
+        ),
     ] = None,
     agent_args: AgentArgs = None,
     readable: Readable = None,
-    humans: Annotated[str, typer.Option(help="The people's file, if any.", show_default=False)] = "",
+    humans: Annotated[str, typer.Option(help="The file of the people, if the runs used one.", show_default=False)] = "",
     json: Json = False,
 ) -> None:
-    """Draw one task under several robots: the ways from above, and what person and robot saw at key moments.
+    """Draw one task with several robots: paths from above, and the views of person and robot at key moments.
 
     A row a run, as SVG and as PNG. The person's session is played again for the views, and must go as it was logged.
     """

@@ -1,4 +1,4 @@
-"""`hthor runs`: the runs that lie in folders; knows what the user types and how it looks, not how runs are read."""
+"""`hthor runs`: the runs that lie in folders."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ if TYPE_CHECKING:
     from hthor.eval.browse.run_list import RunSummary
     from hthor.eval.browse.run_view import RunView, TrialLine
 
-app = typer.Typer(no_args_is_help=True, help="Runs that were played, or begun.")
+app = typer.Typer(no_args_is_help=True, help="Finished and unfinished runs.")
 
 
 @app.callback()
 def _group() -> None:
-    """Runs that were played, or begun."""
+    """Finished and unfinished runs."""
 
 
 @app.command("list")
 def list_runs(
     folder: Annotated[
-        Path, typer.Argument(metavar="[FOLDER]", help="Where to look, with all folders below it.")
+        Path, typer.Argument(metavar="[FOLDER]", help="The folder to search, with all folders below it.")
     ] = Path("runs"),
     shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
-    """The runs below a folder, the latest first: who, with whom, how far, and what came of it.
+    """List the runs below a folder, latest first: agents, people, progress and success.
 
     A run that cannot be read is listed with what is wrong with it.
     """
@@ -39,7 +39,7 @@ def list_runs(
     from hthor.eval.browse import run_list
 
     if not folder.is_dir():
-        raise RunError(f"{folder} is no folder. Name the one that your runs are in; 'hthor eval' writes to runs/.")
+        raise RunError(f"{folder} is not a folder. Name the folder of your runs; 'hthor eval' writes to runs/.")
     found = run_list.list_runs(folder)
     if formats.asks_json(json, shape):
         output.put_json(found)
@@ -55,7 +55,7 @@ def list_runs(
         if one.problem:
             output.put_line(f"{one.folder}: cannot be read: {one.problem}", shape)
     if not found.runs:
-        output.put_line(f"there is no run below {folder}; 'hthor eval' plays one.", shape)
+        output.put_line(f"no run below {folder}; 'hthor eval' makes one.", shape)
 
 
 def _row(one: RunSummary) -> tuple[object, ...]:
@@ -69,23 +69,24 @@ def _row(one: RunSummary) -> tuple[object, ...]:
 @app.command("view")
 def view_run(
     run: Run,
-    trials: Annotated[bool, typer.Option("--trials", help="Every trial too, in a line each.")] = False,
-    task: Annotated[str, typer.Option(help="Only trials of this task, or with this target.")] = "",
+    trials: Annotated[bool, typer.Option("--trials", help="Also list every trial.")] = False,
+    task: Annotated[str, typer.Option(help="Only trials of this task, or with this target object.")] = "",
     kind: Annotated[str, typer.Option(help="Only trials of this kind of task.")] = "",
     house: Annotated[str, typer.Option(help="Only trials in this house.")] = "",
     participant: Annotated[
-        int | None, typer.Option(min=0, help="Only this person's trials, counted from 0.", show_default=False)
+        int | None, typer.Option(min=0, help="Only trials of this participant, counted from 0.", show_default=False)
     ] = None,
     met: Annotated[
-        bool | None, typer.Option("--met/--failed", help="Only trials that succeeded, or that did not.")
+        bool | None, typer.Option("--met/--failed", help="Only trials that succeeded, or only trials that did not.")
     ] = None,
     faulty: Annotated[
-        bool | None, typer.Option("--faulty/--sound", help="Only trials in which an agent failed, or none did.")
+        bool | None,
+        typer.Option("--faulty/--sound", help="Only trials with, or only trials without, a fault of an agent."),
     ] = None,
     shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
-    """A run's result, its faults, its trials one by one, and what to do next.
+    """Show a run's result, faults and trials, and the next commands.
 
     Any option that chooses trials lists those that fit. CSV has the trials alone.
     """
@@ -111,7 +112,7 @@ def view_run(
         for note in result_tables.notes([result]):
             output.put_line(note, shape)
     if found.done < found.total:
-        output.put_line(f"{found.done} of {found.total} trials are played; the numbers are of these.", shape)
+        output.put_line(f"{found.done} of {found.total} trials are played so far; the numbers are from these.", shape)
     if result is not None and result.counts.faults:
         kinds = ", ".join(f"{count} {kind}" for kind, count in result.counts.faults_by_kind.items())
         output.put_line(f"an agent failed in {result.counts.faults} of {found.done} trials: {kinds}", shape)

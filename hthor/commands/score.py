@@ -1,4 +1,4 @@
-"""`hthor score` and `replay`: what a run's log tells later; knows what the user types, not how it is worked out."""
+"""`hthor score`: a run's metrics from its log."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ def score(
     run: Run,
     everything: Annotated[
         bool,
-        typer.Option("--all", help="With messages, idle time, bodies in the way, and shares of the work."),
+        typer.Option("--all", help="Also show messages, idle time, interference and shares of the work."),
     ] = False,
     shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
-    """Work out a run's metrics again from its log alone; nothing is simulated."""
+    """Compute the metrics of a run from its log; nothing is simulated."""
     from hthor.eval.results import aggregate as scoring
     from hthor.eval.results import result_file
     from hthor.report.terminal import result_tables
@@ -48,20 +48,20 @@ def score(
         say(note)
     missing = plan.trials - result.counts.trials
     if missing:
-        say(f"{missing} of {plan.trials} trials are missing, so this is no result yet and was not stored.")
+        say(f"{missing} of {plan.trials} trials are missing, so the result is incomplete and was not stored.")
         return
     if stored is None:
         say(f"stored as {run / 'result.json'}.")
     elif stored != result:
-        say(f"differs from {run / 'result.json'} in {_difference(stored, result)}; stored anew.")
+        say(f"differs from {run / 'result.json'} in {_difference(stored, result)}; stored again.")
     else:
-        say(f"the same as {run / 'result.json'}.")
+        say(f"equal to {run / 'result.json'}.")
         return
     result_file.store(run, result)
 
 
 def _rows(result: RunResult, everything: bool) -> Iterator[dict[str, object]]:
-    """A result for a spreadsheet: a row a metric, of all tasks and then of each kind; rates are shares, not percent."""
+    """A result as spreadsheet rows, one per metric, for all tasks and then for each kind; rates are fractions."""
     from hthor.eval.metrics import registry
     from hthor.eval.results import uplift
 

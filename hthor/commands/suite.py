@@ -18,22 +18,20 @@ if TYPE_CHECKING:
     from hthor.tasks.suites.commitment import Commitment
     from hthor.types import HouseSpec, TaskSpec
 
-app = typer.Typer(
-    no_args_is_help=True, help="Official suites: made from a secret salt, in houses that nobody has seen."
-)
+app = typer.Typer(no_args_is_help=True, help="Official suites, generated from a secret salt in unseen houses.")
 
-Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="The suite's folder, as 'hthor suite make' wrote it.")]
-Jobs = Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one a CPU]")]
+Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="The suite's folder, written by 'hthor suite make'.")]
+Jobs = Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one per CPU]")]
 _SALT = "The file with the secret salt ('hthor suite salt'). It is never printed and never part of a result."
 SaltFile = Annotated[Path, typer.Option("--salt-file", help=_SALT)]
 
 
 @app.command("salt")
 def salt(
-    out: Annotated[Path, typer.Option(help="The file to write; only you will be able to read it.")],
+    out: Annotated[Path, typer.Option(help="The file to write, readable only by you.")],
     json: Json = False,
 ) -> None:
-    """Make a secret salt of 256 bits. Keep it: without it no suite can be revealed."""
+    """Make a secret salt of 256 bits. Keep it: the suite cannot be revealed without it."""
     from hthor.tasks.suites import secret_salt as salts
 
     salts.fresh(out)
@@ -43,15 +41,15 @@ def salt(
 
 @app.command("make")
 def make(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="What to call the suite, such as official-2027a.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the suite, such as official-2027a.")],
     salt_file: SaltFile,
-    houses: Annotated[int, typer.Option(min=1, help="How many houses, of 4 to 7 rooms.")] = 40,
-    tasks: Annotated[int, typer.Option(min=1, help="How many tasks over all houses.")] = 2000,
+    houses: Annotated[int, typer.Option(min=1, help="Number of houses, of 4 to 7 rooms each.")] = 40,
+    tasks: Annotated[int, typer.Option(min=1, help="Number of tasks in all houses together.")] = 2000,
     out: Annotated[Path | None, typer.Option(help="The folder to write. [default: NAME]", show_default=False)] = None,
     jobs: Jobs = None,
     json: Json = False,
 ) -> None:
-    """Make a suite from a salt: its houses, its tasks, and the commitment that can be published now."""
+    """Make a suite from a salt: houses, tasks, and a commitment that can be published at once."""
     from hthor import code_identity, installation
     from hthor.errors import HthorError
     from hthor.tasks.generation import secret_suites
@@ -61,7 +59,7 @@ def make(
     secret_suites.unused(name)
     held = _salt(salt_file, folder)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise HthorError(f"{folder} is there and not empty. Choose another folder with --out.")
+        raise HthorError(f"{folder} exists and is not empty. Choose another folder with --out.")
     order = secret_suites.Order(name=name, houses=houses, tasks=tasks)
     files = secret_suites.files(order, held, _proof(), _each(jobs, houses))
     made_with = {**installation.versions(), "code": code_identity.makers_sha256()}
@@ -72,13 +70,13 @@ def make(
         return
     sys.stdout.write(f"{folder}: {made.tasks} tasks in {made.houses} houses, suite {made.suite_sha256[:10]}\n")
     sys.stdout.write(f"publish now:    {path} (salt {made.salt[:10]})\n")
-    sys.stdout.write(f"keep to yourself until the season is over: {salt_file}, and the rest of {folder}\n")
+    sys.stdout.write(f"keep secret until the season is over: {salt_file}, and the rest of {folder}\n")
     sys.stderr.write(f"next:  hthor eval --suite {shlex.quote(str(folder))} --agent frontier\n")
 
 
 @app.command("reveal")
 def reveal(folder: Folder, salt_file: SaltFile, json: Json = False) -> None:
-    """Publish a suite's salt: from now on everybody can make the suite again, and nobody is tested by it."""
+    """Publish the salt of a suite. From then on anybody can make the suite again, so it no longer serves as a test."""
     from hthor.tasks.suites import commitment
 
     path = commitment.reveal(folder, _salt(salt_file, folder))
@@ -91,15 +89,15 @@ def verify(
     folder: Folder,
     published: Annotated[
         Path | None,
-        typer.Option("--commitment", help="The commitment as it was published. [default: FOLDER/commitment.json]"),
+        typer.Option("--commitment", help="The published commitment. [default: FOLDER/commitment.json]"),
     ] = None,
     salt_file: Annotated[
-        Path | None, typer.Option("--salt-file", help="The salt, for who has it before it is revealed.")
+        Path | None, typer.Option("--salt-file", help="The salt, if you have it before it is revealed.")
     ] = None,
     jobs: Jobs = None,
     json: Json = False,
 ) -> None:
-    """Compare a suite with its commitment, and, once the salt is revealed, make it again and compare every byte."""
+    """Check a suite against its commitment; once the salt is revealed, make the suite again and compare every byte."""
     from hthor.tasks.generation import secret_suites
     from hthor.tasks.suites import commitment
 
@@ -123,10 +121,10 @@ def verify(
 
 def _verdict(held: Commitment, state: str, problems: int) -> str:
     if state == "verified":
-        return f"verified: {held.houses} houses and {held.tasks} tasks came out of the salt byte for byte"
+        return f"verified: {held.houses} houses and {held.tasks} tasks follow from the salt, byte for byte"
     if state == "sealed":
         return "sealed: the files are those that were committed to; the salt is not revealed, so no more can be said"
-    return f"NOT what was committed to ({problems} {'problem' if problems == 1 else 'problems'})"
+    return f"NOT the suite of the commitment ({problems} {'problem' if problems == 1 else 'problems'})"
 
 
 def _tell_versions(held: Commitment) -> None:
@@ -137,7 +135,7 @@ def _tell_versions(held: Commitment) -> None:
     other = [f"{key} {held.made_with.get(key, 'unknown')[:10]} (here {value[:10]})" for key, value in here.items()]
     changed = [text for text, key in zip(other, here, strict=True) if held.made_with.get(key) != here[key]]
     if changed:
-        sys.stderr.write(f"it was made with {', '.join(changed)}; with another version it may come out otherwise\n")
+        sys.stderr.write(f"it was made with {', '.join(changed)}; another version may give another result\n")
 
 
 def _salt(path: Path, folder: Path) -> Any:

@@ -15,17 +15,17 @@ from hthor.errors import HthorError
 INTERNAL, USAGE, INTERRUPTED = 1, 2, 130
 
 CODES = {
-    0: "done",
-    INTERNAL: "a check failed (a house, a task, a suite, a table, a gate of a calibration, a merge or an evaluation "
-    "that lacks trials, an entry of the leaderboard), or an error of our own",
+    0: "success",
+    INTERNAL: "a check failed (of a house, task, suite, table, calibration, merge, incomplete evaluation or "
+    "leaderboard entry), or an internal error",
     USAGE: "wrong usage or input",
-    3: "done, but the agent failed in more trials than --max-faults",
+    3: "the agent failed in more trials than --max-faults",
     4: "the agent's file does not load, or breaks the contract",
-    5: "less isolation than is required, or 'hthor doctor' found that something that is needed does not work, or "
+    5: "isolation is weaker than required, 'hthor doctor' found that something necessary does not work, or "
     "'hthor leaderboard verify' refuted an entry",
-    6: "compare --fail-if-worse found a run worse than the first",
-    75: "the run is being written by another process",
-    INTERRUPTED: "interrupted, the same command resumes",
+    6: "compare --fail-if-worse found a run that is worse than the first",
+    75: "another process is writing the run",
+    INTERRUPTED: "interrupted; the same command resumes",
 }
 
 

@@ -337,7 +337,7 @@ def test_faults_of_several_robots_are_told_apart(hthor, tmp_path: Path, monkeypa
     said = hthor("eval", "--robots", "tall:clumsy,small:other", "--suite", "fake", "--out", folder)
     assert said.code == 3
     assert "tender-clumsy+puck-other: fake, 20 trials" in said.out
-    assert "An agent failed in 2 of 20 trials (robot in 2); there the others went on without it." in said.out
+    assert "An agent failed in 2 of 20 trials (robot in 2); there the others continued without it." in said.out
     assert "robot (clumsy), after 7.0 s: raised: ValueError: no" in said.out
     brief, full = hthor("score", folder).out, hthor("score", folder, "--all").out
     for row in ("person idle", "messages sent, a trial", "messages that were false", "share of the work: robot2"):

@@ -225,7 +225,7 @@ def test_runs_are_listed_even_beside_broken_ones(shelf: Path) -> None:
 
 
 def test_a_folder_without_runs_says_so(tmp_path: Path) -> None:
-    assert "there is no run below" in CliRunner().invoke(app, ["runs", "list", str(tmp_path)]).stdout
+    assert "no run below" in CliRunner().invoke(app, ["runs", "list", str(tmp_path)]).stdout
     with pytest.raises(RunError, match=r"none is no folder\."):
         CliRunner().invoke(app, ["runs", "list", str(tmp_path / "none")], catch_exceptions=False)
 

@@ -397,7 +397,7 @@ def test_a_suite_that_was_tampered_with(say, folder: Path, tmp_path: Path):
     code, out, err = say("suite", "verify", folder, "--commitment", published)
     assert code == 1
     assert "suite.json: was changed" in out
-    assert "NOT what was committed to (1 problem)" in out
+    assert "NOT the suite of the commitment (1 problem)" in out
     assert "it was made with hthor 1 (here" in err
 
 

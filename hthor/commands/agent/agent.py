@@ -1,4 +1,4 @@
-"""`hthor agents`, `agent` and `robots`: what there is; evaluates nothing."""
+"""`hthor agents`, `hthor agent` and `hthor robots`."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from hthor.commands.options import Json
 from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
 
-agents = typer.Typer(no_args_is_help=True, help="Robots' minds that ship with hthor.")
-agent = typer.Typer(no_args_is_help=True, help="Your own robot's mind.")
-robots = typer.Typer(no_args_is_help=True, help="Robots' bodies.")
+agents = typer.Typer(no_args_is_help=True, help="Agents that ship with hthor.")
+agent = typer.Typer(no_args_is_help=True, help="Your own agent.")
+robots = typer.Typer(no_args_is_help=True, help="Robot bodies.")
 
 GROUPS = {"agents": agents, "agent": agent, "robots": robots}
 
@@ -27,7 +27,7 @@ for _group in GROUPS.values():
 
 @agents.command("list")
 def list_agents(shape: Shape = Format.TABLE, json: Json = False) -> None:
-    """The robots' minds that ship with hthor, and the privileges that they declare."""
+    """List the built-in agents and the privileges that they declare."""
     from hthor import plugins
 
     rows = []
@@ -42,10 +42,10 @@ def list_agents(shape: Shape = Format.TABLE, json: Json = False) -> None:
 @agent.command("new")
 def new_agent(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The file to write, such as my_agent.py.")],
-    force: Annotated[bool, typer.Option("--force", help="Write over a file that is there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
     json: Json = False,
 ) -> None:
-    """Write a small complete mind to start from."""
+    """Write a small, complete agent to start from."""
     from hthor import agents as minds
     from hthor.errors import AgentError, HthorError
 
@@ -65,7 +65,7 @@ agent.command("run")(agents_of_mine.run)
 
 @robots.command("list")
 def list_robots(shape: Shape = Format.TABLE, json: Json = False) -> None:
-    """The robots' bodies."""
+    """List the robots."""
     from hthor import plugins
     from hthor.eval.config import robot_team
 

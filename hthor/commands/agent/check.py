@@ -1,4 +1,4 @@
-"""`hthor agent run` and `check`: an author looks at one mind of their own; knows what to show, not how it is found."""
+"""`hthor agent run` and `check`: an author looks at one mind of their own."""
 
 from __future__ import annotations
 
@@ -20,30 +20,37 @@ if TYPE_CHECKING:
 _FAULTS_EXIT, _BROKEN_EXIT = 3, 4
 _LOOKS = 5
 Isolation = Annotated[
-    str, typer.Option(help="How the agent is held: L1, L2, L3, or auto, the strongest that there is.")
+    str, typer.Option(help="Isolation of the agent: L1, L2, L3, or auto, the strongest that this machine supports.")
 ]
 
 
 def run(
     run: Run,
     trial: Annotated[
-        str, typer.Argument(metavar="TRIAL", help="A key or its start, a task's id, or a number counted from 0.")
+        str,
+        typer.Argument(
+            metavar="TRIAL", help="The trial: its key or the start of it, a task id, or a number counted from 0."
+        ),
     ],
     agent: Annotated[
         list[str] | None,
-        typer.Option(help="The file of an agent that is not built in; it may have been mended.", show_default=False),
+        typer.Option(
+            help="The file of an agent that is not built in; it may have changed since the run.", show_default=False
+        ),
     ] = None,
     agent_args: AgentArgs = None,
     readable: Readable = None,
     robot: Annotated[
-        list[str] | None, typer.Option(help="The file of a body of your own, if any.", show_default=False)
+        list[str] | None, typer.Option(help="The file of your own robot, if the run used one.", show_default=False)
     ] = None,
-    kind: Annotated[str, typer.Option(help="The file of a kind of task of your own, if any.", show_default=False)] = "",
-    humans: Annotated[str, typer.Option(help="The people's file, if any.", show_default=False)] = "",
+    kind: Annotated[
+        str, typer.Option(help="The file of your own task kind, if the run used one.", show_default=False)
+    ] = "",
+    humans: Annotated[str, typer.Option(help="The file of the people, if the run used one.", show_default=False)] = "",
     isolation: Isolation = "auto",
     json: Json = False,
 ) -> None:
-    """Play one trial of a run once more with your agent as it is now, and say how it went.
+    """Play one trial of a run again with the current version of your agent, and show what happened.
 
     The person's trials before it are played too, as they shape what the person does. Exit code 3 when the agent fails.
     """
@@ -74,14 +81,15 @@ def check(
     agent_args: AgentArgs = None,
     readable: Readable = None,
     robot: Annotated[
-        str, typer.Option(help="The body it is tried in.", show_default="the first that it is made for, or scout")
+        str,
+        typer.Option(help="The robot body to try it with.", show_default="the first that the agent declares, or scout"),
     ] = "",
     camera: Camera = "own",
     camera_size: CameraSize = "",
     isolation: Isolation = "auto",
     json: Json = False,
 ) -> None:
-    """Check that your agent keeps to the contract, in a few short trials: loads, acts, repeats itself, keeps nothing.
+    """Check in a few short trials that your agent keeps the contract: it loads, acts, is reproducible, keeps no state.
 
     Exit code 4 when something is broken; warnings cost nothing.
     """
@@ -116,7 +124,7 @@ def _show_check(report: Report) -> None:
 
 
 def _tell(paper: Console, done: Rerun) -> None:
-    """How the trial went, what failed, and whether that is as it was logged."""
+    """Print what happened in the trial, what failed, and whether it equals the log."""
     from hthor import rules
 
     spec, ended = done.record.spec, done.record.ticks * rules.TICK_S
@@ -136,7 +144,7 @@ def _tell(paper: Console, done: Rerun) -> None:
 
 
 def failure_lines(failure: Failure) -> list[str]:
-    """A failure for its author to read: when and what, the last looks, the last output."""
+    """Lines that describe a failure to the agent's author: when, what, the last observations and the last output."""
     when = f"after {failure.time_s:.1f} s (tick {failure.tick})"
     lines = [f"{failure.seat} ({failure.agent}) failed {when}: {failure.kind}", *_indented(failure.detail)]
     if failure.looks:

@@ -1,4 +1,4 @@
-"""`hthor agent serve`; knows what the user types, not how an agent is served."""
+"""`hthor agent serve`."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def serve(
     ],
     agent_args: AgentArgs = None,
     readable: Readable = None,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="The port to listen at; 0 takes any free one.")] = 8765,
-    host: Annotated[str, typer.Option(help="The address to listen at; 0.0.0.0 lets other machines in.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=0, max=65535, help="The port to listen on; 0 picks a free one.")] = 8765,
+    host: Annotated[str, typer.Option(help="The address to listen on; 0.0.0.0 accepts other machines.")] = "127.0.0.1",
 ) -> None:
-    """Serve an agent for evaluations elsewhere, until interrupted: hthor eval --agent ws://HOST:PORT.
+    """Serve an agent to evaluations on other machines ('hthor eval --agent ws://HOST:PORT') until interrupted.
 
     It runs in this process, with everything that this machine has, and nothing holds it.
     """
@@ -37,7 +37,7 @@ def serve(
         raise HthorError(f"cannot listen at {host}:{port}: {words}. Give another --port, or 0 for any.") from None
     sys.stdout.write(f"{websocket_server.address(server)}\n")
     sys.stdout.flush()
-    sys.stderr.write(f"serves {agent}; stop it with Ctrl-C\n")
+    sys.stderr.write(f"serving {agent}; stop with Ctrl-C\n")
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C, for who stops it from a script
     with server:
         server.serve_forever()

@@ -1,4 +1,4 @@
-"""`hthor calibrate`; knows what the user types, not how anything is fitted."""
+"""`hthor calibrate`."""
 
 from __future__ import annotations
 
@@ -15,35 +15,40 @@ def calibrate(
     target: Annotated[
         list[str] | None,
         typer.Option(
-            help="What to fit to: published results by name or file (paper), or the logs of sessions, "
-            "a run's folder or trials.jsonl; repeat it for several logs.",
+            help="The data to fit: published results by name or file (paper), or logs of sessions (a run's folder or "
+            "trials.jsonl); repeat the option for several logs.",
             show_default="paper",
         ),
     ] = None,
-    suite: Annotated[str, typer.Option(help="The tasks that the people do ('hthor tasks list').")] = "paper",
+    suite: Annotated[str, typer.Option(help="The suite that the people do ('hthor tasks list').")] = "paper",
     out: Annotated[
-        Path | None, typer.Option(help="The folder of the calibration.", show_default="calibration/TARGET-SUITE-SEED")
+        Path | None, typer.Option(help="Folder of the calibration.", show_default="calibration/TARGET-SUITE-SEED")
     ] = None,
-    seed: Annotated[int, typer.Option(help="Equal seeds give the same population, byte for byte.")] = 0,
-    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one a CPU")] = None,
+    seed: Annotated[int, typer.Option(help="The same seed gives the same population, byte for byte.")] = 0,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one per CPU")] = None,
     sessions: Annotated[
-        int | None, typer.Option(min=30, help="Sessions to train on, ten trials each.", show_default="4000")
+        int | None, typer.Option(min=30, help="Number of training sessions, of ten trials each.", show_default="4000")
     ] = None,
     studies: Annotated[
-        int | None, typer.Option(min=10, help="Whole studies to check against.", show_default="200")
+        int | None, typer.Option(min=10, help="Number of simulated studies for the checks.", show_default="200")
     ] = None,
     quick: Annotated[
-        bool, typer.Option("--quick", help="A small one, in minutes: shows that it works, and is not for use.")
+        bool,
+        typer.Option(
+            "--quick",
+            help="A small calibration that takes minutes and shows that everything works; its population is not for "
+            "use.",
+        ),
     ] = False,
     until: Annotated[
         str, typer.Option(help="Stop after this stage, such as training or studies.", show_default="the last")
     ] = "",
-    prior: Annotated[str, typer.Option(help="With logs: the population that they add to.")] = "proxy",
+    prior: Annotated[str, typer.Option(help="With logs: the population to update.")] = "proxy",
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Only say what would be done, and where; write nothing.")
+        bool, typer.Option("--dry-run", help="Print what would be done, and where; write nothing.")
     ] = False,
     json: Json = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print the result only, no progress.")] = False,
 ) -> None:
     """Fit the human proxies to published results, or to logs of sessions.
 
@@ -112,7 +117,7 @@ def calibrate(
 
 
 def _foretell(brief: dict[str, Any], json: bool) -> None:
-    """What a calibration would do. How long each part takes depends on what its folder holds already."""
+    """Print what a calibration would do; how long it takes depends on what its folder holds already."""
     if json:
         output.put_json({"resumes": Path(brief["folder"]).exists(), **brief})
         return

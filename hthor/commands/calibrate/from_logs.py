@@ -1,4 +1,4 @@
-"""`hthor calibrate --target LOGS...`; knows what the user typed, not how anything is estimated."""
+"""`hthor calibrate --target LOGS...`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ OUT = Path("calibration") / "logs"
 
 
 def run(targets: Sequence[str], prior: str, out: Path | None, json: bool) -> None:
-    """Estimate parameters from logs, and bring a population up to date with them."""
+    """Estimate parameters from logs, and update a population with them."""
     from hthor.calibration.from_logs import run
 
     talk, folder = output.console(talk=True), out or OUT

@@ -1,4 +1,4 @@
-"""`hthor eval --dry-run`; knows how a forecast looks, not how it is made."""
+"""`hthor eval --dry-run`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`hthor eval`; knows what the user types, not how any of it is done."""
+"""`hthor eval`."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ def evaluate(
     agent: Annotated[
         list[str] | None,
         typer.Option(
-            help="Who is evaluated: a built-in agent's name ('hthor agents list'); a Python file or module, "
-            "my_agent.py, my_agent.py:MyClass, package.module:MyClass; a program, 'cmd:node my_agent.js'; or a served "
-            "agent, ws://host:port. Repeat it to compare several.",
+            help="The agent to evaluate: the name of a built-in agent ('hthor agents list'); a Python file or module "
+            "(my_agent.py, my_agent.py:MyClass, package.module:MyClass); a program ('cmd:node my_agent.js'); or a "
+            "served agent (ws://host:port). Repeat the option to compare several agents.",
             show_default=False,
         ),
     ] = None,
@@ -32,44 +32,46 @@ def evaluate(
     humans: Annotated[
         list[str] | None,
         typer.Option(
-            help="Who the people are ('hthor humans list'): a population, a kind of people or a human model, or a file "
-            "of one: pop.npz, my_kind.json, my_human.py; cautious@pop.npz is that kind out of that population. Repeat "
-            "it for several, or say 'kinds' (the population and every kind of people) or 'bracket' (the population "
-            "between those who take every offer and those who take none).",
+            help="The people ('hthor humans list'): a population, a kind of people or a human model, by name or as a "
+            "file (pop.npz, my_kind.json, my_human.py). cautious@pop.npz is the kind 'cautious' drawn from pop.npz. "
+            "Repeat the option for several; 'kinds' means the population and every kind of people; 'bracket' means "
+            "the population and two bounds: people who accept every message and people who accept none.",
             show_default="proxy, the calibrated population",
         ),
     ] = None,
     suite: Annotated[
         str,
-        typer.Option(help="The tasks ('hthor tasks list').", show_default="smoke, or the kind's own"),
+        typer.Option(
+            help="The suite of tasks ('hthor tasks list'): a name or a file.", show_default="smoke, or the kind's own"
+        ),
     ] = "",
     kind: Annotated[
         str,
         typer.Option(
-            help="Only tasks of this kind: its name or short name, or a Python file of your own, my_kind.py, of which "
-            "a task is drawn in each of the ten scenes.",
+            help="Play only tasks of this kind, by its name or short name. With a Python file of your own "
+            "(my_kind.py), one task is generated in each of the ten scenes.",
             show_default="all kinds",
         ),
     ] = "",
     robot: Annotated[
         str,
         typer.Option(
-            help="The robot's body ('hthor robots list'), or a Python file, my_robot.py.",
-            show_default="what the kind of task is made for, mostly scout",
+            help="The robot's body: a name ('hthor robots list') or a Python file (my_robot.py).",
+            show_default="the task kind's own, usually scout",
         ),
     ] = "",
     robots: Annotated[
         str,
         typer.Option(
             help="Several robots in one trial, each with its own agent: tall:oracle,small:my_agent.py. A body without "
-            "an agent gets the one of --agent; a comma within an agent is written \\,.",
+            "an agent gets the one of --agent. Write a comma inside an agent as \\,.",
             show_default=False,
         ),
     ] = "",
     detector: Annotated[
         str,
         typer.Option(
-            help="How the robot's detector errs: own (as its body says), ideal, noisy, or rates such as "
+            help="The errors of the robot's detector: own (as its body defines them), ideal, noisy, or rates such as "
             "miss=0.2,false_alarm=0.05,position_sigma=0.03."
         ),
     ] = "own",
@@ -78,53 +80,57 @@ def evaluate(
     assets: Annotated[
         str,
         typer.Option(
-            help="A furniture pack ('hthor assets list'): the robot's camera then shows it, in the profile nice.",
-            show_default="our own furniture, in the profile fast",
+            help="A furniture pack ('hthor assets list') for the robot's camera, rendered in the profile 'nice'.",
+            show_default="built-in furniture, in the profile 'fast'",
         ),
     ] = "",
-    seed: Annotated[int, typer.Option(help="Equal seeds give equal people, dealt the same tasks.")] = 0,
+    seed: Annotated[int, typer.Option(help="The same seed gives the same people with the same tasks.")] = 0,
     participants: Annotated[
         int | None,
         typer.Option(
-            min=1, help="How many people, ten tasks each.", show_default="so many that every task is done once"
+            min=1,
+            help="Number of participants; each does ten tasks.",
+            show_default="as many as it takes to do every task once",
         ),
     ] = None,
     house: Annotated[
         list[str] | None,
         typer.Option(
-            help="Only the suite's tasks in this house; repeat it for several. Or a house file of your own, "
-            "my_house.json: then ten tasks are made in it, as 'hthor tasks make' does, and played.",
-            show_default="all of the suite's",
+            help="Play only the suite's tasks in this house; repeat the option for several houses. With a house file "
+            "of your own (my_house.json), ten tasks are generated in it, as 'hthor tasks make' does, and played.",
+            show_default="all houses of the suite",
         ),
     ] = None,
     difficulty: Annotated[
         Literal["easy", "medium", "hard"] | None,
-        typer.Option(help="Only tasks so hard. A run of a part of a suite is not ranked.", show_default="all"),
+        typer.Option(
+            help="Play only tasks of this difficulty. A run of part of a suite is not ranked.", show_default="all"
+        ),
     ] = None,
     limit: Annotated[
         int | None,
         typer.Option(
             min=1,
-            help="Play only so many of the suite's tasks, always the same ones, spread over its houses and kinds of "
-            "task. Such a run is not ranked.",
-            show_default="all of them",
+            help="Play only this many of the suite's tasks: always the same ones, spread over its houses and task "
+            "kinds. Such a run is not ranked.",
+            show_default="all",
         ),
     ] = None,
     jobs: Annotated[
-        int | None, typer.Option("--jobs", "-j", min=1, help="Worker processes.", show_default="one a CPU")
+        int | None, typer.Option("--jobs", "-j", min=1, help="Worker processes.", show_default="one per CPU")
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
-            help="The run's folder; with several agents the folder of their folders.",
+            help="The run's folder; with several agents, the folder that holds one folder per agent.",
             show_default="runs/NAME-SUITE-HASH",
         ),
     ] = None,
     name: Annotated[
         str,
         typer.Option(
-            help="A name of your own for the run, in tables and as its folder, runs/NAME; of several agents the folder "
-            "of their folders. It changes no trial.",
+            help="A name for the run, shown in tables and used for its folder, runs/NAME. It does not change any "
+            "trial.",
             show_default="the agent's",
         ),
     ] = "",
@@ -132,23 +138,25 @@ def evaluate(
         str,
         typer.Option(
             metavar="I/N",
-            help="Play only the I-th of N shares of the run, counted from 1, in a folder of its own; 'hthor merge' "
-            "joins them.",
+            help="Play only share I of N of the run, counted from 1, in a folder of its own; 'hthor merge' joins the "
+            "shares.",
             show_default=False,
         ),
     ] = "",
     engine: Annotated[
-        str, typer.Option(help="Where trials are played: local, in processes of this machine, or ray, on a cluster.")
+        str, typer.Option(help="Where trials run: local (processes on this machine) or ray (a Ray cluster).")
     ] = "local",
     address: Annotated[
-        str, typer.Option(help="With --engine ray: the cluster's address.", show_default="the one that is here")
+        str,
+        typer.Option(help="With --engine ray: the address of the cluster.", show_default="the cluster of this machine"),
     ] = "",
     trial_limit: Annotated[
         float | None,
         typer.Option(
             min=1.0,
-            help="Seconds that a worker may play a trial; one that takes longer is ended, its session played again.",
-            show_default="600, and with agents of your own as long as their deadlines allow",
+            help="Longest time for one trial [s]. A worker that takes longer is stopped, and its session is played "
+            "again.",
+            show_default="600; with your own agents, as long as their deadlines allow",
         ),
     ] = None,
     step_limit: Annotated[
@@ -157,51 +165,58 @@ def evaluate(
             min=0.01,
             max=3600.0,
             metavar="SECONDS",
-            help="The time that an agent of your own has for each action; one that takes longer has failed in the "
-            "trial. Such a run is not ranked.",
-            show_default="5, and in each trial 60 more for all actions together",
+            help="Time limit for each action of your own agents [s]. An agent that takes longer fails the trial. Such "
+            "a run is not ranked.",
+            show_default="5, plus a reserve of 60 s per trial",
         ),
     ] = None,
     control: Annotated[
         bool,
         typer.Option(
             "--control/--no-control",
-            help="The same people also do the same tasks without a robot, unless such a run lies beside; the result "
-            "has the uplift over it.",
+            help="Also run the same people and tasks without a robot, unless such a run exists already, and report "
+            "the uplift over it.",
         ),
     ] = True,
     realtime: Annotated[
         bool,
         typer.Option(
             "--realtime",
-            help="Thinking takes time: an action comes as late as it was decided on, and the person goes on meanwhile. "
-            "Such trials do not repeat themselves to the byte.",
+            help="Charge thinking time: an action starts as late as the agent decided on it, and the person goes on "
+            "meanwhile. Such trials are not reproducible byte for byte.",
         ),
     ] = False,
     isolation: Annotated[
-        str, typer.Option(help="How agents of your own are held: L1, L2, L3, or auto, the strongest that there is.")
+        str,
+        typer.Option(
+            help="Isolation of your own agents: L1, L2, L3, or auto, the strongest that this machine supports."
+        ),
     ] = "auto",
     require_isolation: Annotated[
-        str, typer.Option(help="The least level that will do; with less, exit code 5.", show_default=False)
+        str,
+        typer.Option(
+            help="The weakest acceptable isolation level; exit with code 5 if it is not available.", show_default=False
+        ),
     ] = "",
     max_faults: Annotated[
         str,
         typer.Option(
             metavar="N|P%",
-            help="How many trials an agent may fail in, or what share of them; with more, exit code 3.",
+            help="Number or share of trials in which an agent may fail; exit with code 3 if there are more.",
         ),
     ] = "0",
     json: Json = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print the result only, no progress.")] = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Only say what would be played, where, and for how long; write nothing.")
+        bool,
+        typer.Option("--dry-run", help="Print what would be played, where, and how long it would take; write nothing."),
     ] = False,
     context: typer.Context = None,  # type: ignore[assignment]
 ) -> None:
-    """Evaluate robots' minds with people over a suite of tasks.
+    """Evaluate robots that help people with a suite of tasks.
 
-    The same command resumes an interrupted run, and only scores a finished one. The same seed gives the same records,
-    byte for byte, with any number of jobs.
+    Running the same command again resumes an interrupted run, and only scores a finished one. The same seed gives the
+    same records, byte for byte, with any number of jobs.
     """
     from hthor.eval.comparison import evaluation, population_matrix
     from hthor.eval.config import human_populations

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def show_run(console: Console, one: FinishedRun) -> None:
-    """A run's table, its first fault, where its files are, and what to do with them."""
+    """Print a run's table, its first fault, its files and the next commands."""
     from hthor.eval.config.shard import whole_folder
     from hthor.eval.records import find
     from hthor.eval.runner import fault_report
@@ -26,7 +26,9 @@ def show_run(console: Console, one: FinishedRun) -> None:
     console.print(result_tables.result_table(result))
     if result.counts.faults:
         faulty, many = find.first_fault(folder), f"{result.counts.faults} of {result.counts.trials}"
-        alone = "there the person went on alone" if len(one.plan.seats) == 1 else "there the others went on without it"
+        alone = (
+            "there the person continued alone" if len(one.plan.seats) == 1 else "there the others continued without it"
+        )
         failed = [f"{seat} in {count}" for seat, count in result.counts.faults_by_seat.items() if count]
         whose = f" ({', '.join(failed)})" if len(one.plan.seats) > 1 else ""
         output.say(f"{'An' if whose else 'The'} agent failed in {many} trials{whose}; {alone}.", console)
@@ -36,7 +38,7 @@ def show_run(console: Console, one: FinishedRun) -> None:
         for line in find.fault_lines(faulty):
             output.say(f"    {line}", console)
         if again := fault_report.rerun_command(folder, faulty.key):
-            output.say(f"look:  {again}", console)
+            output.say(f"see:   {again}", console)
     more = ", suite.json" if (folder / "suite.json").exists() else ""
     if one.plan.shard:
         base, of = shlex.quote(str(whole_folder(folder))), one.plan.shard.of
@@ -56,7 +58,7 @@ def show_run(console: Console, one: FinishedRun) -> None:
 
 
 def show_populations(console: Console, whole: PopulationMatrix) -> None:
-    """All scores, with whom each agent fares worst, and what does not hold for everybody."""
+    """Print all scores, the worst population for each agent, and conclusions that differ between populations."""
     from hthor.report.terminal import result_tables
 
     console.print(result_tables.peoples_table(whole))
@@ -65,4 +67,4 @@ def show_populations(console: Console, whole: PopulationMatrix) -> None:
     for found in sorted(whole.conclusions, key=lambda one: one.verdict != "flips"):
         output.say(f"{'! ' if found.verdict == 'flips' else ''}{found.sentence}", console)
     if whole.conclusions and all(found.verdict != "flips" for found in whole.conclusions):
-        output.say("no conclusion flips inside the bracket", console)
+        output.say("every conclusion holds at both bounds", console)

@@ -15,7 +15,7 @@ from hthor.console.formats import Format, Shape
 if TYPE_CHECKING:
     from hthor.humans.population.describe import Changed, PopulationDescription, Trait
 
-app = typer.Typer(no_args_is_help=True, help="People: populations, kinds of people, human models.")
+app = typer.Typer(no_args_is_help=True, help="Populations, kinds of people and human models.")
 
 _LARGE = 1000.0
 _LEGEND = (
@@ -37,12 +37,12 @@ Name = Annotated[
 
 @app.callback()
 def _group() -> None:
-    """People: populations, kinds of people, human models."""
+    """Populations, kinds of people and human models."""
 
 
 @app.command("list")
 def list_humans(shape: Shape = Format.TABLE, json: Json = False) -> None:
-    """Everybody whom --humans knows by name."""
+    """List every population, kind of people and human model that --humans accepts by name."""
     rows = _everybody()
     if formats.asks_json(json, shape):
         output.put_json(rows)
@@ -57,7 +57,7 @@ def list_humans(shape: Shape = Format.TABLE, json: Json = False) -> None:
 
 @app.command("describe")
 def describe(name: Name, json: Json = False) -> None:
-    """Every parameter with its prior and source, what the data say of it, and where these people are known to fit."""
+    """Show every parameter with its prior, source and posterior, and the conditions these people were validated for."""
     from hthor.humans.population import describe, resolve
 
     found = describe.describe(resolve.find(name))
@@ -69,7 +69,7 @@ def describe(name: Name, json: Json = False) -> None:
         output.put_table(
             ("parameter", "change", "mean before", "after", "reason"), [_change_row(c) for c in found.changes]
         )
-        output.put_line(f"everything else: hthor humans describe {found.population}")
+        output.put_line(f"see also: hthor humans describe {found.population}")
         return
     headings = ("parameter", "mean", "5, 50 and 95 %", "prior 5, 50 and 95 %", "people sd", "grade", "the data")
     output.put_table(headings, [_trait_row(trait) for trait in found.traits])
@@ -83,11 +83,11 @@ def describe(name: Name, json: Json = False) -> None:
 @app.command("sample")
 def sample(
     name: Name,
-    n: Annotated[int, typer.Option("--n", min=1, help="How many people.")] = 18,
-    seed: Annotated[int, typer.Option(help="The study's seed, as in hthor eval.")] = 0,
+    n: Annotated[int, typer.Option("--n", min=1, help="Number of participants.")] = 18,
+    seed: Annotated[int, typer.Option(help="Seed of the study, as in hthor eval.")] = 0,
     json: Json = False,
 ) -> None:
-    """The participants that a study with this seed meets: the traits in which they differ, with --json all of them."""
+    """Show the participants of a study with this seed: the traits in which they differ, or with --json all traits."""
     from hthor.humans.population import describe, resolve
 
     found = resolve.find(name)

@@ -1,4 +1,4 @@
-"""`hthor humans validate`; knows what the user types, not what a validation is."""
+"""`hthor humans validate`."""
 
 from __future__ import annotations
 
@@ -20,40 +20,44 @@ def validate(
         str,
         typer.Argument(
             metavar="[NAME]",
-            help="Whom: a population, a kind of people or a human model ('hthor humans list'), or a file, my_human.py "
-            "or pop.npz.",
+            help="The people: a population, a kind of people or a human model ('hthor humans list'), or a file "
+            "(my_human.py or pop.npz.",
         ),
     ] = "proxy",
     calibration: Annotated[
         Path | None,
         typer.Option(
-            help="Folder of the calibration that these people come from.", show_default="what ships with them"
+            help="Folder of the calibration that produced these people.",
+            show_default="the evidence that ships with them",
         ),
     ] = None,
-    participants: Annotated[int, typer.Option(min=6, help="People in each condition, ten tasks each.")] = 60,
+    participants: Annotated[int, typer.Option(min=6, help="Participants per condition; each does ten tasks.")] = 60,
     suite: Annotated[
         list[str] | None,
         typer.Option(
-            help="Another suite to see whether the robots keep their order on; repeat it.", show_default=False
+            help="Another suite on which to check the order of the robots; repeat the option for several.",
+            show_default=False,
         ),
     ] = None,
-    kinds: Annotated[bool, typer.Option("--kinds", help="Play every kind of people too.")] = False,
-    seed: Annotated[int, typer.Option(help="Equal seeds give equal people.")] = 0,
-    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one a CPU")] = None,
+    kinds: Annotated[bool, typer.Option("--kinds", help="Also play every kind of people.")] = False,
+    seed: Annotated[int, typer.Option(help="The same seed gives the same people.")] = 0,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one per CPU")] = None,
     out: Annotated[
-        Path | None, typer.Option(help="The report's folder.", show_default="runs/validation-NAME-HASH")
+        Path | None, typer.Option(help="Folder of the report.", show_default="runs/validation-NAME-HASH")
     ] = None,
     quick: Annotated[
         bool,
-        typer.Option("--quick", help="Few people and no simple models: shows that it works, judges nothing played."),
+        typer.Option(
+            "--quick", help="A small trial run with few people and no baseline models; too small for any verdict."
+        ),
     ] = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Only say what would be played, and where; write nothing.")
+        bool, typer.Option("--dry-run", help="Print what would be played, and where; write nothing.")
     ] = False,
     json: Json = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print the result only, no progress.")] = False,
 ) -> None:
-    """Set people against the published study, and write what is known of how far they may be trusted.
+    """Compare simulated people with the published study, and write a report on how far to trust them.
 
     Plays NAME on the suite paper without a robot, with the frontier robot and with the oracle; greedy and random people
     stand beside them. Prints the eight published figures with predicted medians and 90 % intervals, and writes

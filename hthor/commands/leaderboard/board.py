@@ -1,4 +1,4 @@
-"""`hthor leaderboard`; knows what the user types, not how any of it is done."""
+"""`hthor leaderboard`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import typer
 from hthor.commands.options import Json
 from hthor.console import output
 
-app = typer.Typer(no_args_is_help=True, help="The leaderboard's files.")
+app = typer.Typer(no_args_is_help=True, help="The files of the leaderboard.")
 
 Board = Annotated[Path, typer.Option(help="The leaderboard's folder.")]
 BOARD = Path("leaderboard")
@@ -20,7 +20,7 @@ _WRONG_EXIT = 1
 
 @app.callback()
 def _group() -> None:
-    """The leaderboard's files."""
+    """The files of the leaderboard."""
 
 
 @app.command("check")
@@ -31,7 +31,7 @@ def check(
     ],
     json: Json = False,
 ) -> None:
-    """See that folders are submissions, without running anything of them."""
+    """Check that folders are valid submissions, without running their code."""
     from hthor.leaderboard.submission import submission
 
     found = []
@@ -45,18 +45,18 @@ def check(
 def unpack(
     archive: Annotated[Path, typer.Argument(metavar="ARCHIVE", help="A .zip or .tar.gz of a submission.")],
     out: Annotated[
-        Path | None, typer.Option(help="The folder to make.", show_default="the archive's name without its ending")
+        Path | None, typer.Option(help="The folder to create.", show_default="the archive's name without its suffix")
     ] = None,
     json: Json = False,
 ) -> None:
-    """Unpack a submission: plain files alone, none outside its folder, and no more than a submission may hold."""
+    """Unpack a submission: only plain files inside its folder, within the limits of a submission."""
     from hthor.errors import HthorError
     from hthor.leaderboard.entries import files
     from hthor.leaderboard.submission import archive as archives
     from hthor.leaderboard.submission import submission
 
     if not archives.is_one(archive):
-        raise HthorError(f"{archive} is no archive; expected a file that ends in {', '.join(archives.SUFFIXES)}.")
+        raise HthorError(f"{archive} is not an archive; expected a file that ends in {', '.join(archives.SUFFIXES)}.")
     folder = out or Path(archives.stem(archive))
     archives.unpack(archive, folder, most_bytes=submission.MAX_BYTES, most_files=submission.MAX_FILES)
     files.refuse(submission.problems(folder))
@@ -65,15 +65,15 @@ def unpack(
 
 @app.command("add")
 def add(
-    run: Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder, or a folder of such.")],
+    run: Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run, or a folder of runs.")],
     board: Board = BOARD,
     submission: Annotated[
         Path | None,
-        typer.Option(help="The folder or archive that the agent was handed in as.", show_default=False),
+        typer.Option(help="The submitted folder or archive of the agent.", show_default=False),
     ] = None,
     json: Json = False,
 ) -> None:
-    """Put whole runs on the leaderboard, with the runs without a robot that they are measured against.
+    """Add complete runs to the leaderboard, together with their runs without a robot.
 
     Each is scored anew from its log. Adding a run again changes nothing.
     """
@@ -96,16 +96,17 @@ def add(
 @app.command("validate")
 def validate(
     paths: Annotated[
-        list[Path] | None, typer.Argument(metavar="ENTRY...", help="Entries' files. [default: all]", show_default=False)
+        list[Path] | None,
+        typer.Argument(metavar="ENTRY...", help="Files of entries. [default: all]", show_default=False),
     ] = None,
     board: Board = BOARD,
     submissions: Annotated[
-        Path | None, typer.Option(help="The folder of submissions, to compare agents' files with their hashes.")
+        Path | None, typer.Option(help="The folder of submissions, to compare the agents' files with their hashes.")
     ] = None,
-    fix: Annotated[bool, typer.Option("--fix", help="Write files that are well but for their spelling anew.")] = False,
+    fix: Annotated[bool, typer.Option("--fix", help="Rewrite valid files that are not in canonical form.")] = False,
     json: Json = False,
 ) -> None:
-    """See that entries follow the schema, are in canonical form, and that every number follows from their trials."""
+    """Check that entries follow the schema, are in canonical form, and that every number follows from their trials."""
     from hthor.leaderboard import board_check, canonical_form
     from hthor.leaderboard.entries import files
 
@@ -119,16 +120,14 @@ def validate(
 @app.command("build")
 def build(
     board: Board = BOARD,
-    check: Annotated[
-        bool, typer.Option("--check", help="Write nothing; say what is not as it would be written.")
-    ] = False,
+    check: Annotated[bool, typer.Option("--check", help="Write nothing; report what differs from the files.")] = False,
     json: Json = False,
 ) -> None:
-    """Make leaderboard.json, schema.json and the page from the entries: the same entries give the same bytes."""
+    """Build leaderboard.json, schema.json and the page from the entries. The same entries give the same bytes."""
     from hthor.leaderboard import publish
 
     if check:
-        _tell(publish.differences(board), json, f"{board} is as its entries say")
+        _tell(publish.differences(board), json, f"{board} agrees with its entries")
         return
     written = publish.build(board)
     if json:
@@ -140,7 +139,7 @@ def build(
 
 @app.command("rescore")
 def rescore(board: Board = BOARD, json: Json = False) -> None:
-    """Work out entries' numbers anew from their trials, where hthor's statistics have changed; nothing is played."""
+    """Recompute the numbers of entries from their trials, after a change of hthor's statistics; nothing is played."""
     from hthor.leaderboard import publish
     from hthor.leaderboard import rescore as rescoring
 
@@ -151,19 +150,19 @@ def rescore(board: Board = BOARD, json: Json = False) -> None:
         return
     for path in changed:
         sys.stdout.write(f"{path}\n")
-    sys.stderr.write(f"{len(changed)} of {len(list(board.glob('entries/*.json')))} entries came out otherwise\n")
+    sys.stderr.write(f"{len(changed)} of {len(list(board.glob('entries/*.json')))} entries have changed\n")
 
 
 @app.command("open")
 def open_(
     season: Annotated[
         Path | None,
-        typer.Argument(metavar="[COMMITMENT]", help="The commitment of an official suite that is to be ranked."),
+        typer.Argument(metavar="[COMMITMENT]", help="The commitment of an official suite to be ranked."),
     ] = None,
     board: Board = BOARD,
     json: Json = False,
 ) -> None:
-    """Let a board take this version's people and suites, and rank an official suite: for the board's keeper.
+    """For the maintainer of a board: admit the people and suites of this version, and rank an official suite.
 
     Writes admission.json, and the commitment to the suite.
     """
@@ -181,7 +180,7 @@ def open_(
 
 
 def _tell(found: list, json: bool, well: str) -> None:  # type: ignore[type-arg]
-    """Every problem on a line of its own; exit code 1 when there are some."""
+    """Print one problem per line; exit with code 1 if there are any."""
     if json:
         output.put_json({"problems": found})
     else:

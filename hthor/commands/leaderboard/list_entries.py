@@ -1,4 +1,4 @@
-"""`hthor leaderboard list`: the board as tables; knows how they look, not how agents are ranked."""
+"""`hthor leaderboard list`: the board as tables."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ _METRICS = ("sr", "twsr", "adoption", "time_s", "trust")
 
 
 def list_entries(
-    board: Annotated[Path, typer.Option(help="The leaderboard's folder.")] = Path("leaderboard"),
+    board: Annotated[Path, typer.Option(help="Folder of the leaderboard.")] = Path("leaderboard"),
     shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
-    """The built board as tables, one for each set of entries that can be compared."""
+    """Show the board as tables, one for each group of comparable entries."""
     from hthor import documents
     from hthor.errors import HthorError
     from hthor.leaderboard.entries import files
@@ -30,7 +30,7 @@ def list_entries(
 
     path = board / files.LIST
     if not path.is_file():
-        raise HthorError(f"{path} is not there. 'hthor leaderboard build --board {board}' makes it from the entries.")
+        raise HthorError(f"{path} does not exist. 'hthor leaderboard build --board {board}' makes it from the entries.")
     found = documents.read(path, Board, HthorError)
     if formats.asks_json(json, shape):
         output.put_json(found)
@@ -58,7 +58,7 @@ def _cells(row: Row) -> tuple[object, ...]:
 
 
 def _flat(row: Row) -> dict[str, object]:
-    """An entry for a spreadsheet: rates as shares, intervals in two columns."""
+    """An entry as a spreadsheet row: rates as fractions, intervals in two columns."""
     ranks = {"rank": row.ranks.sr.rank if row.ranks else None}
     numbers = {f"{name}_{key}": value for name in _METRICS for key, value in formats.flat(getattr(row, name)).items()}
     return {"agent": row.name, "id": row.id, **ranks, **numbers, "faults": row.faults}

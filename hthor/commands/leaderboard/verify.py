@@ -19,42 +19,48 @@ _REFUTED_EXIT = 5
 
 
 def verify(
-    entry: Annotated[Path, typer.Argument(metavar="ENTRY", help="An entry's file.")],
+    entry: Annotated[Path, typer.Argument(metavar="ENTRY", help="The file of an entry.")],
     draw: Annotated[
         str,
-        typer.Option(help="Public chance from after the submission, such as the hash of the commit that merged it."),
+        typer.Option(
+            help="A public random value from after the submission, such as the hash of the commit that merged it."
+        ),
     ],
-    agent: Annotated[str, typer.Option(help="The agent's file, for one that is not hthor's own.")] = "",
+    agent: Annotated[str, typer.Option(help="The agent's file, unless the agent is built in.")] = "",
     agent_args: AgentArgs = None,
     readable: Readable = None,
-    suite: Annotated[str, typer.Option(help="Where the suite lies, when it is not hthor's own.")] = "",
+    suite: Annotated[str, typer.Option(help="The suite's file, unless the suite ships with hthor.")] = "",
     sample: Annotated[
         int | None,
         typer.Option(
             min=1,
-            help="How many trials are drawn; more than there are means all. "
-            "[default: 200; all of an agent that does not repeat itself]",
+            help="Number of trials to play again, at most all of them. "
+            "[default: 200; for an agent that is not reproducible, all]",
             show_default=False,
         ),
     ] = None,
-    fresh: Annotated[int, typer.Option(min=0, help="How many fresh tasks the agent plays; 0 for none.")] = 200,
-    official: Annotated[bool, typer.Option("--official", help="The official workflow made the entry.")] = False,
+    fresh: Annotated[int, typer.Option(min=0, help="Number of fresh tasks to play; 0 for none.")] = 200,
+    official: Annotated[bool, typer.Option("--official", help="The entry was made by the official workflow.")] = False,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Worker processes.")] = None,
-    require_isolation: Annotated[str, typer.Option(help="The least level that holds the agent.")] = "",
-    by: Annotated[str, typer.Option(help="Who verifies, for the record.")] = "",
-    date: Annotated[str, typer.Option(help="When, for the record; nothing looks at a clock.")] = "",
-    board: Annotated[Path | None, typer.Option(help="The leaderboard's folder. [default: the entry's]")] = None,
-    out: Annotated[Path | None, typer.Option(help="Write the outcome to this file.", show_default=False)] = None,
+    require_isolation: Annotated[str, typer.Option(help="The weakest acceptable isolation level.")] = "",
+    by: Annotated[str, typer.Option(help="Name of the verifier, for the record.")] = "",
+    date: Annotated[
+        str, typer.Option(help="Date of the verification, for the record; hthor does not read the clock.")
+    ] = "",
+    board: Annotated[Path | None, typer.Option(help="Folder of the leaderboard. [default: the entry's]")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Also write the verification to this file.", show_default=False)
+    ] = None,
     write: Annotated[
-        bool, typer.Option("--write", help="Put the outcome into the board's folder, and build the board.")
+        bool, typer.Option("--write", help="Put the verification into the board's folder, and build the board.")
     ] = False,
     json: Json = False,
 ) -> None:
-    """Play trials of an entry and of its control again, drawn after it was handed in, and fresh tasks like them.
+    """Verify an entry: play a random sample of its trials again, and fresh tasks like them.
 
-    Trials are compared byte for byte on the platform that they were played on (tier V1), by outcomes on another (V2),
-    statistically for an agent that does not repeat itself (V3). An agent that does worse at tasks which nobody had seen
-    is flagged.
+    The sample is drawn after the submission. Trials are compared byte for byte on the platform of the original run
+    (tier V1), by outcome on another platform (V2), and statistically for an agent that is not reproducible (V3). An
+    agent that does worse on fresh tasks is flagged.
     """
     from hthor.guest.agent import inputs
     from hthor.leaderboard import publish
@@ -90,11 +96,11 @@ def verify(
 
 
 def record(
-    outcome: Annotated[Path, typer.Argument(metavar="VERIFICATION", help="What 'verify --out' wrote.")],
+    outcome: Annotated[Path, typer.Argument(metavar="VERIFICATION", help="The file written by 'verify --out'.")],
     board: Board = BOARD,
     json: Json = False,
 ) -> None:
-    """Put a verification from elsewhere beside the entry that it is of, and build the board: for its keeper."""
+    """For the maintainer of a board: store a verification that was made elsewhere, and build the board."""
     from hthor.leaderboard import publish
     from hthor.leaderboard.entries import files, verification
 
@@ -106,7 +112,7 @@ def record(
 
 
 def _tell_verification(found: Verification) -> None:
-    """The verdicts, a line each."""
+    """Print one line per verdict."""
     from hthor.leaderboard.entries.verification import ENOUGH
 
     for what, one in (("agent", found.trials), ("control", found.control)):
@@ -115,6 +121,6 @@ def _tell_verification(found: Verification) -> None:
             power = f"Three false outcomes in sixty would have been caught with {100 * one.caught:.0f} %"
             sys.stdout.write(f"{what}: {one.tier}: {verdict}: {one.why} {power}.\n")
             if one.passed and one.caught < ENOUGH:
-                sys.stdout.write(f"{what}: that is too little for a rank: draw more trials with --sample\n")
+                sys.stdout.write(f"{what}: that is too little for a rank; draw more trials with --sample\n")
     if found.fresh is not None:
         sys.stdout.write(f"fresh tasks: {'FELL' if found.fell else 'no fall'}: {found.fresh.why}.\n")

@@ -29,7 +29,10 @@ _SAY_EVERY_S = 20.0
 
 def make_suite(
     houses: Annotated[
-        list[str], typer.Argument(metavar="HOUSE...", help="Houses: house files (ProcTHOR's JSON), or names of ours.")
+        list[str],
+        typer.Argument(
+            metavar="HOUSE...", help="Houses: house files (ProcTHOR's JSON) or names of hthor's own houses."
+        ),
     ],
     out: Annotated[
         Path,
@@ -37,26 +40,27 @@ def make_suite(
             help="The suite's file, mysuite.json, with copies of the houses in mysuite.houses; or the folder of both."
         ),
     ] = Path("mysuite.json"),
-    tasks: Annotated[int, typer.Option(min=1, help="How many tasks in each house.")] = 10,
+    tasks: Annotated[int, typer.Option(min=1, help="Number of tasks in each house.")] = 10,
     kind: Annotated[
         list[str] | None,
         typer.Option(
-            help="Tasks of this kind: its name or short name. Repeat it for several.",
-            show_default="a quarter searches, the others deliveries",
+            help="Task kind, by its name or short name; repeat the option for several.",
+            show_default="one quarter searches, three quarters deliveries",
         ),
     ] = None,
     difficulty: Annotated[
-        Literal["easy", "medium", "hard"] | None, typer.Option(help="Only tasks so hard.", show_default="any")
+        Literal["easy", "medium", "hard"] | None,
+        typer.Option(help="Generate only tasks of this difficulty.", show_default="any"),
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Equal seeds give equal tasks in equal houses.")] = 0,
-    name: Annotated[str, typer.Option(help="What to call the suite.", show_default="as the file")] = "",
-    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one a CPU]")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same tasks in the same houses.")] = 0,
+    name: Annotated[str, typer.Option(help="Name of the suite.", show_default="the file's name")] = "",
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one per CPU]")] = None,
     json: Json = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print the result only, no progress.")] = False,
 ) -> None:
-    """Make a suite of tasks in houses of your own, for 'hthor eval --suite'.
+    """Generate a suite of tasks in your own houses, for 'hthor eval --suite'.
 
-    Each task is proved as 'hthor tasks check' does it, and drawn again when it does not pass.
+    Each task is checked as by 'hthor tasks check', and generated again if it does not pass.
     """
     from hthor.eval.config import task_selection
     from hthor.eval.task_check import make_suite as proved
@@ -83,20 +87,20 @@ def make_suite(
         output.put_json({"suite": str(path), "name": recipe.name, "tasks": total, "houses": len(given)})
         return
     where = f"{len(given)} houses" if len(given) > 1 else "one house"
-    sys.stdout.write(f"{path}: {total} tasks in {where}, each proved\n")
+    sys.stdout.write(f"{path}: {total} tasks in {where}, each checked\n")
     sys.stdout.write(f"next:  {command}\n")
 
 
 def check_tasks(
     suites: Annotated[list[str], typer.Argument(metavar="SUITE...", help="Suites to check: names or files.")],
-    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one a CPU]")] = None,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes. [default: one per CPU]")] = None,
     json: Json = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, only the result.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print the result only, no progress.")] = False,
 ) -> None:
-    """Prove that every task is what it says and can be done: exit code 1 when one is not, and all that is wrong.
+    """Check that every task can be done; exit code 1 if one cannot, with every problem listed.
 
-    Each is set up in the real world: everything must stay where it is put, be where the task says, and a person who
-    knows everything must meet the goal, in no less than T* and within the time limit.
+    Each task is set up in the physics engine. Objects must stay where they are put and be where the task says, and an
+    omniscient person must reach the goal within the time limit and in no less than the least time.
     """
     from hthor.eval.task_check import proof
     from hthor.tasks.suites import library

@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from hthor.tasks import Suite
     from hthor.types import Placement, TaskSpec
 
-app = typer.Typer(no_args_is_help=True, help="Tasks and suites of them.")
+app = typer.Typer(no_args_is_help=True, help="Tasks and suites of tasks.")
 
 TaskId = Annotated[str, typer.Argument(metavar="TASK", help="A task's id, such as navigation/alder/apple-in-fridge.")]
 Own = Annotated[
-    str | None, typer.Option("--suite", help="The suite it is in: a name or a file. [default: any of ours]")
+    str | None, typer.Option("--suite", help="The task's suite: a name or a file. [default: search hthor's suites]")
 ]
 
 
 @app.callback()
 def _group() -> None:
-    """Tasks and suites of them."""
+    """Tasks and suites of tasks."""
 
 
 @app.command("list")
@@ -36,22 +36,26 @@ def list_tasks(
     suite: Annotated[
         str | None, typer.Argument(metavar="[SUITE]", help="List the tasks of this suite: a name or a file.")
     ] = None,
-    house: Annotated[str, typer.Option(help="Only tasks in this house.")] = "",
-    kind: Annotated[str, typer.Option(help="Only tasks of this kind, or whose short name is this.")] = "",
-    target: Annotated[str, typer.Option(help="Only tasks with this target.")] = "",
-    difficulty: Annotated[Literal["easy", "medium", "hard"] | None, typer.Option(help="Only tasks so hard.")] = None,
-    split: Annotated[Literal["seen", "new"] | None, typer.Option(help="Only tasks in houses so known.")] = None,
+    house: Annotated[str, typer.Option(help="List only tasks in this house.")] = "",
+    kind: Annotated[str, typer.Option(help="List only tasks of this kind, by its name or short name.")] = "",
+    target: Annotated[str, typer.Option(help="List only tasks with this target object.")] = "",
+    difficulty: Annotated[
+        Literal["easy", "medium", "hard"] | None, typer.Option(help="List only tasks of this difficulty.")
+    ] = None,
+    split: Annotated[
+        Literal["seen", "new"] | None, typer.Option(help="List only tasks in seen or in new houses.")
+    ] = None,
     shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
-    """The suites, or the tasks of one."""
+    """List the suites, or the tasks of one suite."""
     from hthor import tasks as rooms
 
     wanted = {"house": house, "kind": kind, "target": target, "difficulty": difficulty or "", "split": split or ""}
     if suite is None:
         if any(wanted.values()):
             given = next(name for name, value in wanted.items() if value)
-            raise typer.BadParameter("name the suite whose tasks are meant", param_hint=f"--{given}")
+            raise typer.BadParameter("name a suite; this option selects among its tasks", param_hint=f"--{given}")
         rows = [_suite_row(rooms.suite(name)) for name in rooms.suites()]
         output.put_json(rows) if formats.asks_json(json, shape) else put_rows(rows, ("sha256",), shape)
         return
@@ -68,7 +72,7 @@ def list_tasks(
 
 @app.command("show")
 def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
-    """Tell all about a task: what is asked, where everything is, who starts where, how long it takes at least."""
+    """Show a task: instruction, objects, start poses, and the least time it takes."""
     from hthor.tasks.generation import difficulty
     from hthor.tasks.suites import library
 
@@ -109,7 +113,7 @@ def draw_task(
     suite: Own = None,
     json: Json = False,
 ) -> None:
-    """Draw a task from above: objects, destination, starts, and the shortest walk that does it."""
+    """Draw a task from above: objects, destination, start poses, and the shortest solution."""
     from hthor.eval.task_check import omniscient_solver
     from hthor.report.drawing import task_figure
     from hthor.tasks.suites import library
