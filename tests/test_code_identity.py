@@ -200,7 +200,7 @@ def test_pictures_count_only_where_they_are_asked_for(sources: Sources, whole: s
 
 
 def test_processes_and_printing_do_not_count(sources: Sources, whole: str) -> None:
-    for name in ("hthor.guest.protocol.channel", "hthor.report.terminal.result_tables", "hthor.commands.eval.evaluate"):
+    for name in ("hthor.guest.host.channel", "hthor.report.terminal.result_tables", "hthor.commands.eval.evaluate"):
         assert name not in sources.closure(ROOTS)
 
 

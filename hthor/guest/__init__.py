@@ -11,12 +11,12 @@ from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.agent.reference import Reference, is_served
 from hthor.guest.confinement import SERVED, Isolation, IsolationError, suffices
+from hthor.guest.host.channel import GuestFault
 from hthor.guest.host.config import GuestConfig
 from hthor.guest.host.guest import Guest, in_force, load_info
 from hthor.guest.host.guest_pool import GuestPool
 from hthor.guest.host.info import GuestInfo
 from hthor.guest.host.websocket_client import Unreachable
-from hthor.guest.protocol.faults import GuestFault
 
 CODE_PART = "tools"
 

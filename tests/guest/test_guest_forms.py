@@ -15,7 +15,6 @@ from hthor import guest
 from hthor.errors import AgentError, UnknownName
 from hthor.guest import Guest, GuestConfig, GuestFault, IsolationError, load_info
 from hthor.guest.agent import digests, reference
-from hthor.guest.confinement import devices
 from hthor.guest.protocol import wire
 from hthor.types import (
     Action,
@@ -278,7 +277,7 @@ def test_a_program_has_a_process_a_trial_unless_it_says_otherwise(perl: Callable
 
 
 def test_an_agent_that_asks_for_gpus_gets_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(devices, "gpus", lambda: ("/dev/null",))
+    monkeypatch.setattr(paths, "gpu_devices", lambda: ("/dev/null",))
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "3")
     path = tmp_path / "my_agent.py"
     act = "print('sees', os.environ.get('CUDA_VISIBLE_DEVICES'))\nreturn Action()"

@@ -29,12 +29,11 @@ from hthor.errors import AgentError, HthorError, RunError
 from hthor.eval.config import robot_team
 from hthor.eval.runner import engines, trial_runner
 from hthor.guest import AgentInputs, Guest, GuestConfig, GuestFault, IsolationError
+from hthor.guest.agent import agent_files, manifest, source_scan
 from hthor.guest.agent import inputs as giving
-from hthor.guest.agent import manifest, source_scan
 from hthor.guest.agent.agent_paths import Grounds
 from hthor.guest.agent.manifest import File
 from hthor.guest.client import file_recorder
-from hthor.guest.host import snapshot
 from tests.support.guest_agents import BRIEFING, HEAD, look
 
 LEVELS = ("L1", "L2", "L3")
@@ -214,7 +213,7 @@ def test_claims_about_files_that_are_not_the_agents_are_not_believed(tmp_path: P
     grounds = Guest(path).grounds
     known = manifest.of("a", "a.py", {}, ())
     told = ("../secret", "../../etc/passwd", "/etc/passwd", "agent.py", "absent", "./agent.py", "")
-    assert [file.path for file in snapshot.later(told, known, grounds)] == ["agent.py"]
+    assert [file.path for file in agent_files.later(told, known, grounds)] == ["agent.py"]
 
 
 def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Path) -> None:
@@ -228,10 +227,10 @@ def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Pa
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     mind = Guest(f"cmd:sh {tmp_path / 'mind.sh'}")
-    first = snapshot.files_of(mind.reference, AgentInputs(), mind.grounds, ())
+    first = agent_files.files_of(mind.reference, AgentInputs(), mind.grounds, ())
     assert [file.path for file in first] == ["lib/common.sh", "mind.sh", "tool.pl", "weights.bin"]
     (tmp_path / "weights.bin").write_text("2")
-    assert snapshot.files_of(mind.reference, AgentInputs(), mind.grounds, ()) != first
+    assert agent_files.files_of(mind.reference, AgentInputs(), mind.grounds, ()) != first
 
 
 ARGS = """
@@ -398,7 +397,7 @@ def test_compiled_files_beside_a_program_in_python_are_not_run(tmp_path: Path) -
 
 
 def test_a_folder_with_too_many_files_is_not_made_readable(taking: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(snapshot, "_MOST_READABLE", 1)
+    monkeypatch.setattr(agent_files, "_MOST_READABLE", 1)
     config = GuestConfig(inputs=giving.read(readable=[taking.parents[1] / "out"]))
     assert len(names(taking, config)) == 2
     (taking.parents[1] / "out" / "more.txt").write_text("")

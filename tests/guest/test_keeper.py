@@ -13,7 +13,7 @@ import pytest
 
 from hthor import guest
 from hthor.guest import IsolationError
-from hthor.guest.client import preloading
+from hthor.guest.supervisor import preloading
 from tests.redteam.nobody import ROOT, runner
 from tests.support.guest_agents import HEAD, PROCESS_CHAINS, agent, process_chain, start_trial
 
@@ -80,7 +80,7 @@ def test_the_keeper_of_a_guest_is_held(level: str, tmp_path: Path) -> None:
 PRELOADED = """
 import sys
 from pathlib import Path
-from hthor.guest.client.preloading import preload
+from hthor.guest.supervisor.preloading import preload
 sys.argv = ["7", "8"]
 preload(Path(PATH))
 print([name for name in NAMES if name in sys.modules], sys.argv)

@@ -18,7 +18,7 @@ from hthor.eval.agent_check.probe_trials import Rehearsal
 from hthor.eval.config import robot_team
 from hthor.eval.config.robot_team import AgentInfo
 from hthor.guest import AgentInputs, Guest, GuestConfig, Isolation
-from hthor.guest.host import snapshot
+from hthor.guest.agent import agent_files
 from hthor.types.cameras import OWN
 
 SCHEMA = "hthor.check/1"
@@ -73,7 +73,7 @@ def check(
         load_s = time.perf_counter() - began
         (first,) = rehearsal.play(guest, [rehearsal.a])
         known = character.manifest
-        later = snapshot.later(guest.take_opened(), known, guest.grounds, guest.reference.path) if known else ()
+        later = agent_files.later(guest.take_opened(), known, guest.grounds, guest.reference.path) if known else ()
     findings = [criteria.loads(load_s, character), criteria.files(character, later), *criteria.plays(first, agent)]
     figures = {"load_s": load_s, **criteria.figures(first)}
     if not first.faults:

@@ -13,8 +13,8 @@ from hthor.errors import AgentError, RunError
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.guest import Guest, GuestConfig
+from hthor.guest.agent import agent_files
 from hthor.guest.agent.manifest import File, Manifest
-from hthor.guest.host import snapshot
 
 
 def complete_manifests(plan: RunConfig, records: Iterable[TrialRecord]) -> tuple[Manifest, ...]:
@@ -60,6 +60,6 @@ def check_opened_files(
         if used:
             try:
                 grounds = Guest(mind, config=guests).grounds
-                snapshot.examine(sorted(used), grounds, since="since trials of this run were played with it")
+                agent_files.examine(sorted(used), grounds, since="since trials of this run were played with it")
             except AgentError as error:
                 raise AgentError(f"{error} --out FOLDER gives it one.") from None

@@ -13,8 +13,8 @@ from msgspec import Struct
 from hthor import code_identity, gc_freeze, plugins
 from hthor.errors import AgentError, HthorError
 from hthor.eval.runner.agent_recorder import RecordedAgent
+from hthor.guest.agent import agent_files
 from hthor.guest.agent.manifest import File, Manifest
-from hthor.guest.host import snapshot
 from hthor.guest.host.config import GuestConfig
 from hthor.types import Mind, RobotSeat, TrialSpec
 from hthor.types.cameras import OWN
@@ -145,8 +145,8 @@ class TrialRunner:
         """See that the agents' files are the ones that the run began with."""
         for seat, mind in company.minds.items():
             if isinstance(mind, RecordedAgent) and seat in self._sources.manifests:
-                snapshot.check(self._sources.manifests[seat], mind.mind.grounds)
-                snapshot.examine(self._seen.get(seat, ()), mind.mind.grounds)
+                agent_files.check(self._sources.manifests[seat], mind.mind.grounds)
+                agent_files.examine(self._seen.get(seat, ()), mind.mind.grounds)
 
     def _opened(self, company: Participants) -> dict[str, tuple[File, ...]]:
         """What agents opened of their own in the trial that was played, and no manifest lists."""
@@ -154,7 +154,7 @@ class TrialRunner:
         for seat, mind in company.minds.items():
             if isinstance(mind, RecordedAgent) and seat in self._sources.manifests:
                 known, grounds = self._sources.manifests[seat], mind.mind.grounds
-                if files := snapshot.later(mind.mind.take_opened(), known, grounds, mind.mind.reference.path):
+                if files := agent_files.later(mind.mind.take_opened(), known, grounds, mind.mind.reference.path):
                     found[seat] = files
                     self._seen[seat] = tuple(sorted({*self._seen.get(seat, ()), *files}))
         return found
@@ -188,7 +188,7 @@ class TrialRunner:
         guest = make() if step_limit_s is None else make(step_s=step_limit_s, bank_s=0.0)
         known = self._sources.manifests.get(seat.seat)
         if known is not None:
-            snapshot.check(known, guest.grounds)
+            agent_files.check(known, guest.grounds)
         try:
             changed = guest.load().sha256 != seat.agent.sha256
         except Unreachable:  # a server that is gone for a while costs its trials, not the run

@@ -6,12 +6,13 @@ import importlib
 import importlib.util
 import sys
 import traceback
+from importlib.machinery import EXTENSION_SUFFIXES, ExtensionFileLoader, FileFinder, SourceFileLoader
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import Any
 
 from hthor.guest.agent import arguments
-from hthor.guest.client.source_importer import SourceLoader
+from hthor.guest.agent.agent_paths import Grounds
 from hthor.guest.protocol import sanitize, wire
 
 _MODULE = "hthor_guest_agent"  # not the file's name, which could hide a module of the standard library
@@ -19,6 +20,30 @@ _MODULE = "hthor_guest_agent"  # not the file's name, which could hide a module 
 
 class Refusal(Exception):
     """The file does not follow the contract; the message goes to its author."""
+
+
+class SourceLoader(SourceFileLoader):
+    """Compiles a module anew whenever it is imported."""
+
+    def get_code(self, fullname: str) -> CodeType:
+        """The module's code."""
+        path = self.get_filename(fullname)
+        code: CodeType = self.source_to_code(self.get_data(path), path)
+        return code
+
+
+def only_from(grounds: Grounds) -> None:
+    """From now on this process imports what lies in an agent's folder from sources and extension modules."""
+    make = FileFinder.path_hook((ExtensionFileLoader, EXTENSION_SUFFIXES), (SourceLoader, [".py"]))
+
+    def hook(path: str) -> Any:
+        if path != grounds.root and not grounds.owns(path):
+            raise ImportError("not the agent's own", path=path)
+        return make(path)
+
+    sys.path_hooks.insert(0, hook)
+    for path in [path for path in sys.path_importer_cache if path == grounds.root or grounds.owns(path)]:
+        del sys.path_importer_cache[path]
 
 
 def load(order: wire.Load) -> tuple[type[Any], wire.Ready]:

@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import msgspec
 
 from hthor.errors import AgentError, UnknownName
-from hthor.guest.agent import agent_paths, arguments, reference
+from hthor.guest.agent import agent_files, agent_paths, arguments, reference
 from hthor.guest.agent.inputs import AgentInputs
-from hthor.guest.client import loading, source_importer
+from hthor.guest.client import loading
 from hthor.guest.client.agent_loop import play
 from hthor.guest.client.file_recorder import Recorder
 from hthor.guest.client.remote_senses import Gone
 from hthor.guest.confinement import Policy
-from hthor.guest.host import snapshot, websocket_client
 from hthor.guest.protocol import wire
 from hthor.guest.protocol.shared_frames import View
+from hthor.guest.protocol.websocket_library import load_websockets
 
 if TYPE_CHECKING:
     from websockets.sync.server import Server, ServerConnection
@@ -47,13 +47,13 @@ class Socket:
             message: wire.ToGuest = _hosts_words.decode(self._connection.recv(decode=False))
         except msgspec.DecodeError as error:
             raise Gone(str(error)) from None
-        except websocket_client.library().exceptions.ConnectionClosed:
+        except load_websockets().exceptions.ConnectionClosed:
             raise Gone("the connection was closed") from None
         return message
 
     def send(self, message: wire.ToHost) -> None:
         """Say something to the host, unless it is gone."""
-        with contextlib.suppress(websocket_client.library().exceptions.ConnectionClosed):
+        with contextlib.suppress(load_websockets().exceptions.ConnectionClosed):
             self._connection.send(wire.encode(message))
 
     def fail(self) -> NoReturn:
@@ -75,11 +75,11 @@ def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> 
     agent = reference.read(text)
     if agent.form not in ("file", "module"):
         raise UnknownName("agent to serve", text, reference.FORMS[:3], "Only Python agents are served.")
-    sockets = websocket_client.library()
+    sockets = load_websockets()
     version, more = agent.sha256, given or AgentInputs()
     ground = agent_paths.of(agent, more.beyond(agent))
     sys.path.insert(0, agent.root)
-    source_importer.only_from(ground)
+    loading.only_from(ground)
     recorder = Recorder(ground)
     recorder.start()
     try:
@@ -101,7 +101,7 @@ def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> 
     make = arguments.maker(cls, more.args)
 
     def talk(connection: ServerConnection) -> None:
-        files = snapshot.files_of(agent, more, ground, opened)
+        files = agent_files.files_of(agent, more, ground, opened)
         _converse(Socket(connection), make, msgspec.structs.replace(ready, manifest=files))
 
     quiet = logging.getLogger("hthor.guest.client.websocket_server")

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from hthor import jsonio
-from hthor.guest.confinement import hiding
+from hthor.guest.confinement import hidden_paths
 
 PACKAGE = Path(__file__).resolve().parents[2]
 _OURS = ("types", "geometry", "guest", "agents", "navigation", "comms", "catalog", "houses/space")
@@ -21,6 +21,15 @@ _LIBRARIES = ("site-packages", "dist-packages")
 _SYSTEM = ("/usr", "/bin", "/lib", "/lib64", "/lib32", "/etc/ld.so.cache", "/etc/localtime", "/etc/ssl")
 _FACTS = ("/sys/devices/system/cpu", "/proc/cpuinfo", "/proc/meminfo")
 DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
+GPU_VARIABLES = ("CUDA_VISIBLE_DEVICES", "CUDA_DEVICE_ORDER", "NVIDIA_VISIBLE_DEVICES", "NVIDIA_DRIVER_CAPABILITIES")
+"""What in the environment says which of them are meant."""
+GPU_FACTS = ("/proc/driver/nvidia", "/sys/bus/pci", "/sys/devices", "/sys/module/nvidia")
+"""What a driver reads of the machine."""
+
+
+def gpu_devices(root: str = "/dev") -> tuple[str, ...]:
+    """The files of the machine's GPUs."""
+    return tuple(sorted(str(path) for path in Path(root).glob("nvidia*")))
 
 
 def libraries() -> list[str]:
@@ -43,9 +52,9 @@ def readable(agent: str, root: str, hidden: Sequence[str], beyond: Sequence[str]
         found += _open(Path(place), secret)
     if root:
         folder = Path(root)
-        found += _open(folder, [*secret, *hiding.below(folder.resolve(), agent)])
+        found += _open(folder, [*secret, *hidden_paths.below(folder.resolve(), agent)])
     for place in beyond:
-        found += _open(Path(place), [*secret, *hiding.below(Path(place).resolve())])
+        found += _open(Path(place), [*secret, *hidden_paths.below(Path(place).resolve())])
     found.append(agent)
     return _tops(found)
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from hthor.guest.confinement import Policy
-from hthor.guest.protocol.faults import GuestFault
+from hthor.guest.host.channel import GuestFault
 
 _QUOTED = re.compile(r"'([^'\n]+)'|\"([^\"\n]+)\"|(?<![\w'\"])(/[^\s'\":,;()]+)")
 _VARIABLE = re.compile(r"KeyError: '([A-Za-z_]\w*)'")

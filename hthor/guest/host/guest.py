@@ -8,17 +8,16 @@ from pathlib import Path
 from hthor.guest.agent import agent_paths, reference
 from hthor.guest.confinement import AUTO, Isolation
 from hthor.guest.host import failure_explanation, noop_agent
+from hthor.guest.host.channel import GuestFault, Talk
 from hthor.guest.host.config import GuestConfig
 from hthor.guest.host.guest_pool import GuestPool
 from hthor.guest.host.info import GuestInfo
 from hthor.guest.host.process import Process
 from hthor.guest.host.startup import Arrival
+from hthor.guest.host.trial_exchange import Turns
 from hthor.guest.host.websocket_client import Unreachable
 from hthor.guest.process_tools import cpu_affinity
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.channel import Talk
-from hthor.guest.protocol.faults import GuestFault
-from hthor.guest.protocol.trial_exchange import Turns
 from hthor.types import Action, Briefing, Observation
 
 _NOOP_AGENT = Path(noop_agent.__file__)

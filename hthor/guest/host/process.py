@@ -15,12 +15,12 @@ import time
 from collections.abc import Mapping
 
 from hthor.guest.agent.reference import Reference
-from hthor.guest.confinement import Policy, devices, limits, namespaces, paths
+from hthor.guest.confinement import Policy, limits, namespaces, paths
+from hthor.guest.host.channel import HungUp, TimeIsUp
 from hthor.guest.process_tools import cleanup, cpu_affinity, exit_status, resource_usage
 from hthor.guest.protocol import wire
 from hthor.guest.protocol.sanitize import shown
 from hthor.guest.protocol.shared_frames import Window
-from hthor.guest.protocol.transport import HungUp, TimeIsUp
 from hthor.guest.protocol.trial_channel import Channel
 
 _PASSED_ON = ("PATH", "LANG", "LC_ALL", "TZ", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
@@ -251,7 +251,7 @@ def start(
     compiled = os.environ.get("NUMBA_CACHE_DIR", "")
     if compiled:
         os.makedirs(compiled, exist_ok=True)
-    more = ([compiled] if compiled else []) + (list(devices.FACTS) if gpus else [])
+    more = ([compiled] if compiled else []) + (list(paths.GPU_FACTS) if gpus else [])
     read = paths.readable(agent.path, agent.root, hidden, readable)
     ground = "" if level == "L3" else tempfile.mkdtemp(prefix="hthor-guest-")
     policy = Policy(
@@ -262,7 +262,7 @@ def start(
         memory_mb=memory_mb,
         disk_mb=disk_mb,
         execute=bool(agent.words),
-        devices=devices.gpus() if gpus else (),
+        devices=paths.gpu_devices() if gpus else (),
         compiled=compiled,
     )
     try:
@@ -276,7 +276,7 @@ def start(
 
 def _environment(ours: Mapping[str, str], policy: Policy) -> dict[str, str]:
     """Nothing of ours but what an interpreter needs; one thread, and the same hash seed every time."""
-    passed_on = (*_PASSED_ON, *(devices.VARIABLES if policy.devices else ()))
+    passed_on = (*_PASSED_ON, *(paths.GPU_VARIABLES if policy.devices else ()))
     env = {name: ours[name] for name in passed_on if name in ours}
     env.update(dict.fromkeys(_THREADS, "1"))
     env.update(dict.fromkeys(("HOME", "TMPDIR"), policy.scratch))

@@ -8,13 +8,12 @@ from hthor.guest.agent.agent_paths import Grounds
 from hthor.guest.agent.reference import Reference
 from hthor.guest.confinement import Isolation, Policy
 from hthor.guest.host import failure_explanation, info, isolation_level, process, websocket_client
+from hthor.guest.host.channel import GuestFault, Talk
 from hthor.guest.host.config import GuestConfig
 from hthor.guest.host.guest_pool import GuestPool, IdleGuest, Key
 from hthor.guest.host.info import GuestInfo
 from hthor.guest.host.process import Process
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.channel import Talk
-from hthor.guest.protocol.faults import GuestFault
 from hthor.guest.protocol.sanitize import shown
 
 _ENTER_S = 120.0

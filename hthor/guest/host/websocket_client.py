@@ -12,12 +12,13 @@ import socket
 import threading
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
-from hthor.errors import AgentError, MissingExtra
+from hthor.errors import AgentError
 from hthor.guest.confinement import SERVED, Isolation
-from hthor.guest.protocol.transport import HungUp, TimeIsUp
+from hthor.guest.host.channel import HungUp, TimeIsUp
+from hthor.guest.protocol.websocket_library import load_websockets
 
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
@@ -27,25 +28,10 @@ _CLOSING_S = 2.0
 """Longest time for parting in peace."""
 _LOOK_S = 0.25
 _TOO_BIG = 1009
-EXTRA = "served"
 
 
 class Unreachable(AgentError):
     """No server answers at an agent's address."""
-
-
-def library() -> Any:
-    """The library that speaks WebSocket.
-
-    Raises:
-        MissingExtra: when it is not installed.
-    """
-    try:
-        import websockets.sync.client
-        import websockets.sync.server
-    except ImportError:
-        raise MissingExtra("an agent that is served", EXTRA) from None
-    return websockets
 
 
 def connect(url: str, seconds: float) -> Served:
@@ -56,7 +42,7 @@ def connect(url: str, seconds: float) -> Served:
     """
     from hthor.guest.protocol.wire import MOST_BYTES
 
-    sockets, parts = library(), urlsplit(url)
+    sockets, parts = load_websockets(), urlsplit(url)
     hint = "Is it running? hthor agent serve my_agent.py --port PORT"
     try:
         near = socket.create_connection((parts.hostname, parts.port), timeout=seconds)
@@ -125,7 +111,7 @@ class Served:
         self._alarm.set(end)
         try:
             self._connection.send(body)
-        except (OSError, library().exceptions.ConnectionClosed) as error:
+        except (OSError, load_websockets().exceptions.ConnectionClosed) as error:
             self._end = str(error)
             raise (TimeIsUp if self._late else HungUp) from None
         finally:
@@ -138,7 +124,7 @@ class Served:
             body = self._connection.recv(timeout=max(0.0, end - time.monotonic()), decode=False)
         except TimeoutError:
             raise TimeIsUp from None
-        except library().exceptions.ConnectionClosed as error:
+        except load_websockets().exceptions.ConnectionClosed as error:
             if self._late:
                 raise TimeIsUp from None
             if error.sent is not None and error.sent.code == _TOO_BIG:

@@ -6,11 +6,11 @@ import os
 import socket
 from collections.abc import Callable, Iterable
 
+from hthor.guest.client import trial_process
 from hthor.guest.confinement import limits
 from hthor.guest.confinement.landlock import Ruleset
 from hthor.guest.protocol import trial_channel, wire
 from hthor.guest.protocol.trial_channel import Ends
-from hthor.guest.supervisor import trial_process
 
 
 def fork(ends: Ends, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool = False) -> int:

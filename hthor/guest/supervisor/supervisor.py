@@ -14,14 +14,14 @@ import socket
 import sys
 from pathlib import Path
 
-from hthor.guest.client.preloading import preload
-from hthor.guest.client.remote_senses import Pipe
-from hthor.guest.confinement import holding, kernel, limits
-from hthor.guest.confinement.holding import Refused
+from hthor.guest.confinement import enforcement, kernel, limits
+from hthor.guest.confinement.enforcement import Refused
 from hthor.guest.process_tools import cleanup
 from hthor.guest.protocol import trial_channel, wire
+from hthor.guest.protocol.pipe import Pipe
 from hthor.guest.supervisor import forking, watchdog
 from hthor.guest.supervisor.forking import Spare
+from hthor.guest.supervisor.preloading import preload
 from hthor.guest.supervisor.scratch_folder import Home
 
 _SUBREAPER = 36
@@ -49,9 +49,9 @@ def main(tell: int, parent: int) -> None:
         limits.renounce()
         if sys.platform == "linux":
             kernel.prctl("adopting orphans", _SUBREAPER, 1)
-        holding.keep(order.policy)
+        enforcement.keep(order.policy)
         home = Home(order.policy.scratch)
-        held = holding.rules(order.policy)
+        held = enforcement.rules(order.policy)
     except Refused as error:
         own.send(wire.Failed(kind="confinement", detail=str(error)))
         return
@@ -65,7 +65,7 @@ def main(tell: int, parent: int) -> None:
         told = watchdog.watch(pid, order, tell)
         if home.tidy() and held is not None:  # rules are for the folder that was there
             held.close()
-            held = holding.rules(order.policy)
+            held = enforcement.rules(order.policy)
             if spare:
                 spare.discard()
                 spare = None

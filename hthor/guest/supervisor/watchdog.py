@@ -6,10 +6,10 @@ import os
 import select
 import signal
 
+from hthor.guest.client import trial_process
 from hthor.guest.confinement import Policy, limits
 from hthor.guest.process_tools import cleanup, cpu_affinity, exit_status
 from hthor.guest.protocol import wire
-from hthor.guest.supervisor import trial_process
 
 _LOOK_MS = 50
 

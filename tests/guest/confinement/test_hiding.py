@@ -10,7 +10,7 @@ import pytest
 
 from hthor import houses, jsonio, tasks
 from hthor.guest import Guest, GuestConfig, GuestFault
-from hthor.guest.confinement import hiding, paths
+from hthor.guest.confinement import hidden_paths, paths
 from hthor.humans.population import population_file
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites import secret_salt
@@ -101,8 +101,8 @@ def test_the_walk_is_bounded_and_what_it_did_not_come_to_is_hidden(home: Path, m
     deep = home.joinpath(*("x" * 60))
     deep.mkdir(parents=True)
     (deep / "trials.jsonl").write_bytes(LINE)
-    monkeypatch.setattr(hiding, "_ENTRIES_MAX", 60)
-    found = hiding.below(home)
+    monkeypatch.setattr(hidden_paths, "_ENTRIES_MAX", 60)
+    found = hidden_paths.below(home)
     assert any(deep.is_relative_to(place) for place in found)
     assert len(found) < 60
 
@@ -110,7 +110,7 @@ def test_the_walk_is_bounded_and_what_it_did_not_come_to_is_hidden(home: Path, m
 def test_a_loop_of_links_and_a_folder_that_cannot_be_read_are_passed_over(tmp_path: Path) -> None:
     (tmp_path / "self").symlink_to(tmp_path)
     (tmp_path / "closed").mkdir(mode=0)
-    found = hiding.below(tmp_path)
+    found = hidden_paths.below(tmp_path)
     (tmp_path / "closed").chmod(0o700)
     assert found == ()
 

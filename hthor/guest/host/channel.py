@@ -3,17 +3,73 @@
 from __future__ import annotations
 
 import time
+from typing import Protocol
 
 import msgspec
 
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.faults import GuestFault
 from hthor.guest.protocol.sanitize import shown
-from hthor.guest.protocol.transport import HungUp, Line, TimeIsUp
 
 _guests_words = msgspec.msgpack.Decoder(wire.ToHost)
 _MOST_OPENED, _LONGEST = 20_000, 1000
 _keepers_words = msgspec.msgpack.Decoder(wire.KeeperToHost)
+
+
+class GuestFault(Exception):
+    """A submitted agent failed; its process is gone.
+
+    Attributes:
+        kind: raised, timeout, died, killed (from outside, as it seems), memory, disk, garbage, wrong_type, oversized
+            or not_finite.
+        detail: what happened; for "raised" the traceback of the agent's own frames.
+        traceback: the same traceback, empty for the other kinds.
+        log: the end of what the agent printed.
+    """
+
+    def __init__(self, kind: str, detail: str, traceback: str = "", log: str = "") -> None:
+        self.kind, self.traceback, self.log = kind, traceback, log
+        self.detail = traceback or detail
+        super().__init__(f"{kind}: {detail}")
+
+
+class TimeIsUp(Exception):
+    """The other end was not ready in time."""
+
+
+class HungUp(Exception):
+    """The other end is gone."""
+
+
+class Line(Protocol):
+    """A guest that can be talked to."""
+
+    @property
+    def pid(self) -> int:
+        """The first of its processes on this machine, 0 when there is none."""
+
+    @property
+    def log(self) -> str:
+        """The end of what it printed, empty where that cannot be had."""
+
+    def write(self, body: bytes, end: float) -> None:
+        """Send a message before a moment of the monotonic clock.
+
+        Raises:
+            TimeIsUp, HungUp: when it cannot.
+        """
+
+    def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
+        """The next message: whether it is the keeper's, and its bytes, or its size when it has more than ``most``.
+
+        Raises:
+            TimeIsUp, HungUp: when there is none.
+        """
+
+    def obituary(self) -> tuple[str, str]:
+        """How it ended: a fault's kind and its words."""
+
+    def kill(self) -> None:
+        """Let it go for good."""
 
 
 class Talk:

@@ -12,16 +12,15 @@ from collections.abc import Callable
 import msgspec
 
 from hthor.guest.agent import arguments
-from hthor.guest.client import loading, source_importer
+from hthor.guest.client import exec_program, loading
 from hthor.guest.client.agent_loop import play
 from hthor.guest.client.file_recorder import Recorder
-from hthor.guest.client.remote_senses import Pipe
-from hthor.guest.confinement import holding, seccomp
-from hthor.guest.confinement.holding import Refused
+from hthor.guest.confinement import enforcement, seccomp
+from hthor.guest.confinement.enforcement import Refused
 from hthor.guest.confinement.landlock import Ruleset
 from hthor.guest.protocol import sanitize, shared_frames, wire
+from hthor.guest.protocol.pipe import Pipe
 from hthor.guest.protocol.trial_channel import Ends
-from hthor.guest.supervisor import exec_program
 
 ORDERLY = 97
 """Exit status of a trial that came to its end, which an agent would hardly choose for itself."""
@@ -37,7 +36,7 @@ def serve(awaited: Callable[[], Ends | None], order: wire.Load, held: Ruleset | 
     """
     word = seccomp.new_word() if order.words and held is not None else b""
     try:
-        holding.confine(order.policy, held, word)
+        enforcement.confine(order.policy, held, word)
     except Refused as error:
         problem = str(error)
     else:
@@ -77,7 +76,7 @@ def _watched(order: wire.Load) -> Recorder | None:
     """Take down what the agent opens from here on, and import its own modules from their sources alone."""
     if order.grounds is None:
         return None
-    source_importer.only_from(order.grounds)
+    loading.only_from(order.grounds)
     recorder = Recorder(order.grounds)
     recorder.start()
     return recorder

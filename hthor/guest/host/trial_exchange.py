@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import msgspec
 
-from hthor.guest.protocol import sensor_replies, wire
-from hthor.guest.protocol.channel import Talk
-from hthor.guest.protocol.faults import GuestFault
+from hthor.guest.host.channel import GuestFault, Talk
+from hthor.guest.protocol import wire
 from hthor.guest.protocol.shared_frames import Window
 from hthor.types import Action, Observation
 
 _T = TypeVar("_T")
 _ASKS = 100
 """How often an agent may ask for something within one ``act``; what it has read once it need not ask for again."""
+
+
+_CHEAP = ("detections", "scan")
+_SENSES = ("detections", "scan", "rgb", "depth", "segmentation", "camera")
+
+
+class Unknown(Exception):
+    """Something was asked for that there is not."""
 
 
 class Turns:
@@ -32,7 +39,7 @@ class Turns:
         self._talk, self._window = talk, window
         self._step_s, self._bank = step_s, bank_s
         self._allowed = f"{step_s:g} s" + (f" and what was left of {bank_s:g} s more" if bank_s else "")
-        self._habits = sensor_replies.Habits() if ahead else None
+        self._habits = Habits() if ahead else None
         if window is not None:
             window.wipe()
 
@@ -76,16 +83,61 @@ class Turns:
 
     def _given(self, observation: Observation, ask: wire.Ask) -> wire.Given:
         try:
-            return self._sensed(sensor_replies.answer, observation, ask, self._window)
-        except sensor_replies.Unknown as error:
+            return self._sensed(answer, observation, ask, self._window)
+        except Unknown as error:
             raise self._talk.fault("garbage", str(error)) from None
 
     def _sensed(self, sense: Callable[..., _T], *values: object) -> _T:
         """What sensing gives. A failure to sense is ours, so the guest is let go and the error passed on."""
         try:
             return sense(*values)
-        except sensor_replies.Unknown:
+        except Unknown:
             raise
         except Exception:
             self._talk.close()
             raise
+
+
+def answer(observation: Observation, ask: wire.Ask, window: Window | None) -> wire.Given:
+    """What was asked for.
+
+    Args:
+        window: where pictures go that are asked for in shared memory; None where there is none.
+
+    Raises:
+        Unknown: when there is no such thing.
+        Exception: whatever sensing raises, which is not the guest's doing.
+    """
+    value = _sensed(observation, ask)
+    placed = window.put(value) if window is not None and ask.shared else None
+    return wire.Given(value=msgspec.Raw(wire.encode(value if placed is None else placed)))
+
+
+class Habits:
+    """What an agent has read in both of its last two steps, which is likely what it reads next.
+
+    To be sent along with the next observation: every question costs two changes of process.
+    """
+
+    def __init__(self) -> None:
+        self._before: set[str] = set()
+        self._now: set[str] = set()
+
+    def read(self, *what: str) -> None:
+        """It has read this."""
+        self._now.update(one for one in what if one in _CHEAP)
+
+    def ahead(self, observation: Observation) -> dict[str, msgspec.Raw]:
+        """Begin a step with this; raises whatever sensing raises."""
+        likely = sorted(self._before & self._now)
+        self._before, self._now = self._now, set()
+        return {what: msgspec.Raw(wire.encode(getattr(observation.senses, what)())) for what in likely}
+
+
+def _sensed(observation: Observation, ask: wire.Ask) -> Any:
+    if ask.what in _SENSES:
+        return getattr(observation.senses, ask.what)()
+    pictures = [message.image for message in observation.inbox if message.id == ask.which]
+    if ask.what == "image" and pictures and callable(pictures[0]):
+        return pictures[0]()
+    raise Unknown(f"asked for '{ask.what[:80]}', which there is not")

@@ -1,0 +1,152 @@
+"""An agent's files with their hashes: listed when a run begins, and compared with the disk around every trial.
+
+The agent says which files it has opened. The host adds what the sources name and what the user made readable, and
+hashes all of it itself.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from hthor.errors import AgentError
+from hthor.guest.agent import command, digests, source_scan
+from hthor.guest.agent.agent_paths import Grounds
+from hthor.guest.agent.inputs import AgentInputs
+from hthor.guest.agent.manifest import File, Manifest
+from hthor.guest.agent.reference import Reference
+from hthor.guest.confinement import hidden_paths
+
+_SKIPPED = (".git", "runs", "__pycache__")
+_RUN = "run.json"
+_MOST_READABLE = 20_000
+
+
+def files_of(agent: Reference, given: AgentInputs, grounds: Grounds, opened: Iterable[str]) -> tuple[File, ...]:
+    """The files of an agent, with their hashes, sorted.
+
+    Args:
+        opened: names of files that it has said it opened.
+
+    Raises:
+        AgentError: when a file cannot be read.
+    """
+    first = [str(path) for path in _first(agent)]
+    first += [value for value in given.args.values() if os.path.isabs(value) and os.path.isfile(value)]
+    first += [str(path) for path in _real(opened, grounds)]
+    hidden = _hidden(agent.root, agent.path)
+    named = {path for path in source_scan.closure(first, grounds) if not _below_any(path, hidden)}
+    paths = {*named, *_readable(grounds)}
+    return tuple(sorted({_file(path, grounds) for path in paths}))
+
+
+def later(names: Iterable[str], known: Manifest, grounds: Grounds, agent: str = "") -> tuple[File, ...]:
+    """Files that an agent has opened and that are not in its manifest.
+
+    Args:
+        agent: the agent's own file.
+
+    Raises:
+        AgentError: when one of them cannot be read.
+    """
+    new = list(_real(set(names) - {file.path for file in known.files}, grounds))
+    hidden = _hidden(grounds.root, agent) if new else []
+    return tuple(sorted({_file(str(path), grounds) for path in new if not _below_any(str(path), hidden)}))
+
+
+def check(known: Manifest, grounds: Grounds) -> None:
+    """See that an agent's files are as they were when its run began.
+
+    Raises:
+        AgentError: names the first that is not.
+    """
+    if known.claimed:
+        return
+    held = {file.path: file for file in known.files}
+    for path in _readable(grounds):
+        name = grounds.name(path)
+        if name is not None and name not in held:
+            raise AgentError(changed(path, "is new: it was not there when its run began"))
+    examine(held.values(), grounds)
+
+
+def examine(files: Iterable[File], grounds: Grounds, *, since: str = "while its run was going on") -> None:
+    """See that these files are as their hashes say.
+
+    Raises:
+        AgentError: names the first that is not.
+    """
+    for file in files:
+        path = grounds.find(file.path)
+        try:
+            same = digests.read(path)[0] == file.sha256
+        except OSError:
+            raise AgentError(changed(str(path), f"was removed {since}")) from None
+        if not same:
+            raise AgentError(changed(str(path), f"was changed {since}"))
+
+
+def changed(path: str, what: str) -> str:
+    """What to tell a user whose agent is not the one that a run began with."""
+    return (
+        f"{path} {what}. Change it back and repeat the command to finish this run, or evaluate the new version in a "
+        "run of its own."
+    )
+
+
+def _first(agent: Reference) -> list[Path]:
+    """The files that are the agent by its name alone."""
+    if agent.words:
+        return command.own_files(agent.words) or [Path(agent.words[0])]
+    return [Path(agent.path)]
+
+
+def _real(names: Iterable[str], grounds: Grounds) -> Iterator[Path]:
+    """The files of these names, without what is no file of the agent's, whoever claims that."""
+    for name in sorted(set(names)):
+        path = grounds.find(name)
+        if grounds.name(str(path)) == name and path.is_file():
+            yield path
+
+
+def _readable(grounds: Grounds) -> Iterator[str]:
+    """Every file that the user lets the agent read beyond its own folder."""
+    for place in grounds.readable:
+        if os.path.isfile(place):
+            yield place
+            continue
+        hidden, count = _hidden(place), 0
+        for folder, inner, names in os.walk(place):
+            inner[:] = sorted(
+                name for name in inner if name not in _SKIPPED and not os.path.isfile(os.path.join(folder, name, _RUN))
+            )
+            for name in sorted(names):
+                path = os.path.join(folder, name)
+                if not os.path.isfile(path) or _below_any(path, hidden):
+                    continue
+                count += 1
+                if count > _MOST_READABLE:
+                    raise AgentError(
+                        f"--readable {place} has more than {_MOST_READABLE} files, all of which would be part of the "
+                        "agent. Name the folders or files in there that it needs."
+                    )
+                yield path
+
+
+def _hidden(folder: str, agent: str = "") -> list[str]:
+    """What in a folder isolation hides from every agent. It is no part of one, though at L1 it could be read."""
+    return [str(path) for path in hidden_paths.below(Path(folder).resolve(), agent)] if folder else []
+
+
+def _below_any(path: str, folders: Iterable[str]) -> bool:
+    return any(Path(path).is_relative_to(folder) for folder in folders)
+
+
+def _file(path: str, grounds: Grounds) -> File:
+    name = grounds.name(path) or f"../{os.path.basename(path)}"
+    try:
+        sha256, size = digests.read(Path(path))
+    except OSError as error:
+        raise AgentError(f"cannot read the agent's file {path}: {error.strerror}.") from None
+    return File(path=name, sha256=sha256, bytes=size)
