@@ -54,7 +54,7 @@ def replay(
     if mind:
         from hthor.guest.agent import inputs
 
-        _replay_mind(run, trial, out, agent or (), humans, inputs.read(agent_args or (), readable or ()), json)
+        _replay_mind(run, trial, out, agent or (), humans, inputs.parse_inputs(agent_args or (), readable or ()), json)
         return
     from hthor.eval.records import find
     from hthor.report.drawing import render_trial

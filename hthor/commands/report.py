@@ -79,7 +79,7 @@ def case(
     from hthor.guest.agent import inputs
     from hthor.report.page import case_study as cases
 
-    more = inputs.read(agent_args or (), readable or ())
+    more = inputs.parse_inputs(agent_args or (), readable or ())
     profile = "nice" if nice else "fast"
     paths = cases.study(runs, task, out, person=person, profile=profile, agents=agent or (), humans=humans, given=more)
     output.put_files(paths, json, task=task)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.agent.manifest import File, Manifest
-from hthor.guest.agent.reference import Reference, is_served
+from hthor.guest.agent.reference import AgentReference, is_served
 from hthor.guest.confinement import SERVED, Isolation, IsolationError, suffices
 from hthor.guest.host.channel import GuestFault
 from hthor.guest.host.config import GuestConfig
@@ -23,6 +23,7 @@ CODE_PART = "tools"
 __all__ = [
     "SERVED",
     "AgentInputs",
+    "AgentReference",
     "File",
     "Guest",
     "GuestConfig",
@@ -32,7 +33,6 @@ __all__ = [
     "Isolation",
     "IsolationError",
     "Manifest",
-    "Reference",
     "Unreachable",
     "in_force",
     "is_served",

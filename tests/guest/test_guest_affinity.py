@@ -113,7 +113,7 @@ def test_two_guests_share_the_place_and_what_starts_meanwhile_is_free(tmp_path: 
     ):
         one.begin(BRIEFING)
         here = os.sched_getaffinity(0)
-        with cpu_affinity.anywhere():
+        with cpu_affinity.unpinned():
             assert os.sched_getaffinity(0) == everywhere
         other.begin(BRIEFING)
         assert os.sched_getaffinity(0) == here
@@ -144,9 +144,9 @@ def test_other_threads_go_where_they_like() -> None:
 
     thread = threading.Thread(target=other)
     thread.start()
-    assert cpu_affinity.stay() >= 0
+    assert cpu_affinity.pin_thread() >= 0
     started.set()
     thread.join()
-    cpu_affinity.leave()
-    cpu_affinity.leave()
+    cpu_affinity.unpin_thread()
+    cpu_affinity.unpin_thread()
     assert seen == [everywhere]

@@ -15,6 +15,7 @@ from hthor import guest
 from hthor.errors import AgentError, UnknownName
 from hthor.guest import Guest, GuestConfig, GuestFault, IsolationError, load_info
 from hthor.guest.agent import digests, reference
+from hthor.guest.confinement import paths
 from hthor.guest.protocol import wire
 from hthor.types import (
     Action,
@@ -92,7 +93,7 @@ def test_a_wrong_form_is_answered_by_the_right_one(
     monkeypatch.chdir(tmp_path)
     Path("my_agent.py").touch()
     with pytest.raises((UnknownName, AgentError)) as caught:
-        reference.read(text)
+        reference.parse_reference(text)
     assert told in str(caught.value)
     if isinstance(caught.value, UnknownName):
         assert "cmd:PROGRAM ARGS, ws://HOST:PORT[/PATH]" in str(caught.value)
@@ -104,7 +105,7 @@ def test_a_reference_means_the_same_in_every_folder(tmp_path: Path, monkeypatch:
     Path("tool").write_text("#!/usr/bin/env -S perl -w\nexit 0;\n")
     Path("tool").chmod(0o755)
     texts = ("my_agent.py:Agent", "cmd:./tool --fast", "cmd:perl my_agent.py", "ws://gpu:8765/frontier")
-    read = [reference.read(text) for text in texts]
+    read = [reference.parse_reference(text) for text in texts]
     assert [one.source for one in read] == [
         "my_agent.py:Agent",
         "cmd:perl -w tool --fast",
@@ -113,7 +114,7 @@ def test_a_reference_means_the_same_in_every_folder(tmp_path: Path, monkeypatch:
     ]
     hashes = [one.sha256 for one in read]
     monkeypatch.chdir("/")
-    assert [reference.read(one.text).sha256 for one in read] == hashes
+    assert [reference.parse_reference(one.text).sha256 for one in read] == hashes
     (tmp_path / "my_agent.py").write_text("x = 2\n")
     changed = [one.sha256 != before for one, before in zip(read, hashes, strict=True)]
     assert changed == [True, False, True, False]
@@ -138,7 +139,7 @@ def test_a_module_is_imported_by_its_name(package: Path) -> None:
             mind.begin(BRIEFING)
             assert mind.act(look()) == Action(motion=Move(forward=0.25))
     assert (info.name, info.source) == ("minds.careful:Agent", "minds.careful:Agent")
-    assert info.sha256 == digests.of_file(package / "minds" / "careful.py")
+    assert info.sha256 == digests.file_sha256(package / "minds" / "careful.py")
     assert "minds" not in sys.modules
     with pytest.raises(AgentError, match="no agent class 'Brave'"):
         load_info("minds.careful:Brave")

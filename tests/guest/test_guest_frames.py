@@ -25,8 +25,8 @@ TYPES = st.sampled_from(["u1", "<f4", "<i4", "<f8", "?"])
 
 @given(st.lists(TYPES.flatmap(lambda dtype: arrays.arrays(dtype, SHAPES)), max_size=4))
 def test_what_is_put_in_comes_out_the_same(given_arrays: list[Any]) -> None:
-    window = shared_frames.Window()
-    view = shared_frames.View(window.handle)
+    window = shared_frames.FrameWriter()
+    view = shared_frames.FrameReader(window.handle)
     told = [window.put(array) for array in given_arrays]
     for array, value in zip(given_arrays, told, strict=True):
         assert value is not None
@@ -38,7 +38,7 @@ def test_what_is_put_in_comes_out_the_same(given_arrays: list[Any]) -> None:
 
 
 def test_nobody_but_the_host_can_change_it() -> None:
-    window = shared_frames.Window()
+    window = shared_frames.FrameWriter()
     with pytest.raises(PermissionError):
         mmap.mmap(window.handle, shared_frames.SIZE, mmap.MAP_SHARED, mmap.PROT_READ | mmap.PROT_WRITE)
     with pytest.raises(PermissionError):
@@ -50,7 +50,7 @@ def test_nobody_but_the_host_can_change_it() -> None:
 
 
 def test_what_does_not_fit_or_is_no_picture_travels_otherwise() -> None:
-    window = shared_frames.Window()
+    window = shared_frames.FrameWriter()
     assert window.put(np.zeros(shared_frames.SIZE + 1, np.uint8)) is None
     assert window.put(np.array([object()])) is None
     assert window.put("text") is None

@@ -13,7 +13,7 @@ import pytest
 from hthor.errors import KILLED, AgentKilled
 from hthor.guest import Guest, GuestConfig, GuestFault
 from hthor.guest.host import guest, startup
-from hthor.guest.host.process import Process
+from hthor.guest.host.process import GuestProcess
 from hthor.guest.process_tools import exit_status
 from tests.support.guest_agents import (
     HEAD,
@@ -56,9 +56,9 @@ def _alive(pid: int) -> bool:
 
 @pytest.mark.parametrize("level", [level for level, _ in PROCESS_CHAINS[:2]] + [pytest.param("L3", marks=needs_bwrap)])
 def test_one_killed_while_it_starts_costs_no_level(level: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    real: Callable[..., Process] = startup.process.start
+    real: Callable[..., GuestProcess] = startup.process.start
 
-    def start(*words: object, **more: object) -> Process:
+    def start(*words: object, **more: object) -> GuestProcess:
         one = real(*words, **more)
         while level == "L3" and len(process_chain(one.pid)) < 3:  # earlier, bubblewrap's two do not end together
             time.sleep(0.001)
@@ -92,9 +92,9 @@ def test_one_killed_while_it_loads_its_file_is_told_as_such(tmp_path: Path):
     ],
 )
 def test_what_an_agent_does_to_itself_is_its_own(code: int, kind: str, words: str):
-    assert exit_status.told(code) == (kind, words)
+    assert exit_status.describe_exit(code) == (kind, words)
 
 
 def test_bubblewraps_words_for_a_signal_are_understood():
-    assert exit_status.told(exit_status.unwrapped(137)) == (KILLED, "killed by SIGKILL")
-    assert exit_status.unwrapped(3) == 3
+    assert exit_status.describe_exit(exit_status.unwrap_bwrap(137)) == (KILLED, "killed by SIGKILL")
+    assert exit_status.unwrap_bwrap(3) == 3

@@ -31,7 +31,7 @@ from hthor.eval.runner import engines, trial_runner
 from hthor.guest import AgentInputs, Guest, GuestConfig, GuestFault, IsolationError
 from hthor.guest.agent import agent_files, manifest, source_scan
 from hthor.guest.agent import inputs as giving
-from hthor.guest.agent.agent_paths import Grounds
+from hthor.guest.agent.agent_paths import AgentPaths
 from hthor.guest.agent.manifest import File
 from hthor.guest.client import file_recorder
 from tests.support.guest_agents import BRIEFING, HEAD, look
@@ -138,7 +138,7 @@ def test_libraries_and_this_package_are_no_part_of_an_agent_beside_them(tmp_path
     path = write(tmp_path / "a", top="import numpy, hthor.navigation")
     (tmp_path / "a" / "venv").mkdir()
     grounds = Guest(path).grounds
-    inside = Grounds(root="/home/me", base="/home/me", apart=("/home/me/.venv",))
+    inside = AgentPaths(root="/home/me", base="/home/me", apart=("/home/me/.venv",))
     assert grounds.name(str(path)) == "agent.py"
     assert inside.name("/home/me/.venv/lib/numpy/__init__.py") is None
     assert inside.name("/home/me/x/y.py") == "x/y.py"
@@ -175,7 +175,7 @@ def test_a_recorder_names_each_file_once_and_only_the_agents_own(tmp_path: Path)
     for name in ("a.txt", "b.txt"):
         (own / name).write_text("")
     (tmp_path / "other.txt").write_text("")
-    recorder = file_recorder.Recorder(Grounds(root=str(own), base=str(own)))
+    recorder = file_recorder.FileRecorder(AgentPaths(root=str(own), base=str(own)))
     for path in (own / "b.txt", own / "a.txt", own / "a.txt", tmp_path / "other.txt", own / "absent", own, 3, b"\xff"):
         recorder._hear("open", (path, "r", os.O_RDONLY))
     recorder._hear("open", (own / "new.txt", "w", os.O_WRONLY))
@@ -188,7 +188,7 @@ def test_a_recorder_names_each_file_once_and_only_the_agents_own(tmp_path: Path)
 def test_a_file_that_no_manifest_can_list_is_not_opened_unseen(tmp_path: Path, name: bytes) -> None:
     path = os.fsencode(tmp_path) + b"/" + name
     Path(os.fsdecode(path)).write_bytes(b"")
-    recorder = file_recorder.Recorder(Grounds(root=str(tmp_path), base=str(tmp_path)))
+    recorder = file_recorder.FileRecorder(AgentPaths(root=str(tmp_path), base=str(tmp_path)))
     for _ in range(2):
         with pytest.raises(PermissionError, match="printable letters"):
             recorder._hear("open", (path, "r", os.O_RDONLY))
@@ -203,7 +203,7 @@ def test_scanning_never_leaves_the_agents_folder(tmp_path: Path, words: list[str
     (tmp_path / "outside.txt").write_text("")
     (own / "inside.txt").write_text("")
     (own / "x.py").write_text(f"WORDS = {[*words, '../outside.txt', '..', 'inside.txt', str(tmp_path)]!r}")
-    found = source_scan.closure([str(own / "x.py")], Grounds(root=str(own), base=str(own)))
+    found = source_scan.referenced_files([str(own / "x.py")], AgentPaths(root=str(own), base=str(own)))
     assert found == {str(own / "x.py"), str(own / "inside.txt")}
 
 
@@ -211,9 +211,9 @@ def test_claims_about_files_that_are_not_the_agents_are_not_believed(tmp_path: P
     path = write(tmp_path / "a")
     (tmp_path / "secret").write_text("")
     grounds = Guest(path).grounds
-    known = manifest.of("a", "a.py", {}, ())
+    known = manifest.make_manifest("a", "a.py", {}, ())
     told = ("../secret", "../../etc/passwd", "/etc/passwd", "agent.py", "absent", "./agent.py", "")
-    assert [file.path for file in agent_files.later(told, known, grounds)] == ["agent.py"]
+    assert [file.path for file in agent_files.unlisted_files(told, known, grounds)] == ["agent.py"]
 
 
 def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Path) -> None:
@@ -227,10 +227,10 @@ def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Pa
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     mind = Guest(f"cmd:sh {tmp_path / 'mind.sh'}")
-    first = agent_files.files_of(mind.reference, AgentInputs(), mind.grounds, ())
+    first = agent_files.list_files(mind.reference, AgentInputs(), mind.grounds, ())
     assert [file.path for file in first] == ["lib/common.sh", "mind.sh", "tool.pl", "weights.bin"]
     (tmp_path / "weights.bin").write_text("2")
-    assert agent_files.files_of(mind.reference, AgentInputs(), mind.grounds, ()) != first
+    assert agent_files.list_files(mind.reference, AgentInputs(), mind.grounds, ()) != first
 
 
 ARGS = """
@@ -258,7 +258,7 @@ def taking(tmp_path: Path) -> Path:
 def test_arguments_reach_the_constructor_and_a_file_among_them_is_readable(taking: Path, level: str) -> None:
     at(level)
     out = taking.parents[1] / "out" / "net.txt"
-    given = giving.read([f"checkpoint={out}", "speed=0.25", "loud=yes"])
+    given = giving.parse_inputs([f"checkpoint={out}", "speed=0.25", "loud=yes"])
     with Guest(taking, config=GuestConfig(isolation=level, inputs=given)) as mind:
         mind.begin(BRIEFING)
         action = mind.act(look())
@@ -271,7 +271,7 @@ def test_arguments_are_part_of_who_an_agent_is(taking: Path) -> None:
     out = taking.parents[1] / "out" / "net.txt"
     found = []
     for words in ([], ["speed=0.1"], ["speed=0.2"], [f"checkpoint={out}"]):
-        config = GuestConfig(inputs=giving.read(words))
+        config = GuestConfig(inputs=giving.parse_inputs(words))
         found.append(robot_team.load_agent_info(str(taking), config))
     out.write_text("more")
     found.append(robot_team.load_agent_info(str(taking), config))
@@ -302,13 +302,13 @@ def test_arguments_are_part_of_who_an_agent_is(taking: Path) -> None:
 def test_wrong_arguments_are_told_apart(taking: Path, words: list[str], told: str, monkeypatch: Any) -> None:
     monkeypatch.chdir(taking.parent)
     with pytest.raises(HthorError) as caught:
-        guest.load_info(taking, config=GuestConfig(inputs=giving.read(words)))
+        guest.load_info(taking, config=GuestConfig(inputs=giving.parse_inputs(words)))
     assert told in str(caught.value)
 
 
 def test_an_agent_without_arguments_says_so(tmp_path: Path) -> None:
     with pytest.raises(AgentError, match="Its constructor takes no arguments"):
-        guest.load_info(write(tmp_path / "a"), config=GuestConfig(inputs=giving.read(["speed=1"])))
+        guest.load_info(write(tmp_path / "a"), config=GuestConfig(inputs=giving.parse_inputs(["speed=1"])))
 
 
 def test_a_command_gets_arguments_as_words(tmp_path: Path) -> None:
@@ -316,7 +316,7 @@ def test_a_command_gets_arguments_as_words(tmp_path: Path) -> None:
     with pytest.raises(AgentError, match=r"\['--speed=1', '--mode=fast'\]"):
         guest.load_info(
             f"cmd:{sys.executable} {tmp_path / 'mind.py'}",
-            config=GuestConfig(inputs=giving.read(["speed=1", "mode=fast"])),
+            config=GuestConfig(inputs=giving.parse_inputs(["speed=1", "mode=fast"])),
         )
 
 
@@ -334,7 +334,7 @@ def test_what_isolation_hides_is_named_and_readable_shows_it(tmp_path: Path, lev
             mind.begin(BRIEFING)
         assert f"The file 'net.txt' is there, but isolation {level} hides it" in caught.value.detail
         assert "--readable" in caught.value.detail
-    given = giving.read(readable=[tmp_path / "out"])
+    given = giving.parse_inputs(readable=[tmp_path / "out"])
     with Guest(path, config=GuestConfig(isolation=level, inputs=given)) as mind:
         mind.begin(BRIEFING)
         if level != "L1":
@@ -352,11 +352,11 @@ def test_a_missing_environment_variable_is_explained(tmp_path: Path) -> None:
 
 def test_what_is_readable_must_be_there(tmp_path: Path) -> None:
     with pytest.raises(HthorError, match="there is no such file or folder"):
-        giving.read(readable=[tmp_path / "absent"])
+        giving.parse_inputs(readable=[tmp_path / "absent"])
     for place in ("a/w", "b/w"):
         (tmp_path / place).mkdir(parents=True)
     with pytest.raises(HthorError, match="two files or folders called 'w'"):
-        giving.read(readable=[tmp_path / "a" / "w", tmp_path / "b" / "w"])
+        giving.parse_inputs(readable=[tmp_path / "a" / "w", tmp_path / "b" / "w"])
 
 
 def test_a_served_agent_says_what_it_consists_of_and_that_is_marked(taking: Path) -> None:
@@ -364,7 +364,7 @@ def test_a_served_agent_says_what_it_consists_of_and_that_is_marked(taking: Path
     from hthor.guest.client import websocket_server
 
     out = taking.parents[1] / "out" / "net.txt"
-    server = websocket_server.serve(str(taking), "127.0.0.1", 0, giving.read([f"checkpoint={out}"]))
+    server = websocket_server.serve(str(taking), "127.0.0.1", 0, giving.parse_inputs([f"checkpoint={out}"]))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     try:
         url = websocket_server.address(server)
@@ -380,7 +380,7 @@ def test_a_served_agent_says_what_it_consists_of_and_that_is_marked(taking: Path
         out.write_text("more")
         assert robot_team.load_agent_info(url).ref.sha256 != first.ref.sha256
         with pytest.raises(HthorError, match="--agent-args is for 'hthor agent serve' there"):
-            Guest(url, config=GuestConfig(inputs=giving.read(["speed=1"])))
+            Guest(url, config=GuestConfig(inputs=giving.parse_inputs(["speed=1"])))
     finally:
         server.shutdown()
 
@@ -398,7 +398,7 @@ def test_compiled_files_beside_a_program_in_python_are_not_run(tmp_path: Path) -
 
 def test_a_folder_with_too_many_files_is_not_made_readable(taking: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(agent_files, "_MOST_READABLE", 1)
-    config = GuestConfig(inputs=giving.read(readable=[taking.parents[1] / "out"]))
+    config = GuestConfig(inputs=giving.parse_inputs(readable=[taking.parents[1] / "out"]))
     assert len(names(taking, config)) == 2
     (taking.parents[1] / "out" / "more.txt").write_text("")
     with pytest.raises(AgentError, match=r"has more than 1 files.*Name the folders or files in there"):
@@ -410,7 +410,7 @@ def test_what_no_source_names_can_be_made_part_of_an_agent(tmp_path: Path) -> No
     (tmp_path / "a" / "w").mkdir()
     (tmp_path / "a" / "w" / "net.bin").write_bytes(b"1")
     assert names(path) == ["agent.py"]
-    config = GuestConfig(inputs=giving.read(readable=[tmp_path / "a" / "w"]))
+    config = GuestConfig(inputs=giving.parse_inputs(readable=[tmp_path / "a" / "w"]))
     assert names(path, config) == ["agent.py", "w/net.bin"]
 
 

@@ -19,11 +19,11 @@ from tests.support.guest_agents import HEAD, PROCESS_CHAINS, agent, process_chai
 
 TRIED = """
 import json, os, resource, socket, subprocess, sys
-from hthor.guest.confinement import Policy, holding, limits, paths
+from hthor.guest.confinement import Policy, enforcement, limits, paths
 scratch = sys.argv[1] + "/home"
 os.mkdir(scratch)
-limits.renounce()
-holding.keep(Policy(level="L2", read=paths.readable("", "", []), listed=(), scratch=scratch, memory_mb=1, disk_mb=1))
+limits.drop_privileges()
+enforcement.confine_supervisor(Policy(level="L2", read=paths.readable_paths("", "", []), listed=(), scratch=scratch, memory_mb=1, disk_mb=1))
 done = {}
 for name, what in {
     "read the machine": lambda: open("/etc/passwd").read(1),

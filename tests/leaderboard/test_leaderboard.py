@@ -391,7 +391,7 @@ def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path
     mine = shutil.copytree(runs, tmp_path / "runs") / "helper"
     plan = run_config.load_config(mine)
     ref = plan.robots[0].agent
-    about = manifest.of(ref.name, ref.source, {}, [one for one in played if one.path == "agent.py"])
+    about = manifest.make_manifest(ref.name, ref.source, {}, [one for one in played if one.path == "agent.py"])
     plan = msgspec.structs.replace(plan, agents=(msgspec.structs.replace(about, sha256=ref.sha256),))
     jsonio.write(mine / "run.json", jsonio.pretty(plan))
     board = committed(tmp_path / "board")

@@ -17,7 +17,7 @@ def pipe():
     frame = sys._getframe()
     while frame:
         for value in frame.f_locals.values():
-            if type(value).__name__ == "Pipe":
+            if type(value).__name__ == "HostPipe":
                 return value
         frame = frame.f_back
 """

@@ -60,7 +60,7 @@ def run(
 
     wanted = find.find_trial(run, trial)
     files = rerun.RunFiles(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
-    done = rerun.rerun_trial(run, wanted, files, isolation, inputs.read(agent_args or (), readable or ()))
+    done = rerun.rerun_trial(run, wanted, files, isolation, inputs.parse_inputs(agent_args or (), readable or ()))
     if json:
         output.put_json(done)
     else:
@@ -97,7 +97,7 @@ def check(
     from hthor.guest.agent import inputs
     from hthor.types import cameras
 
-    more = inputs.read(agent_args or (), readable or ())
+    more = inputs.parse_inputs(agent_args or (), readable or ())
     seen = cameras.tidy(camera, camera_size)
     report = checks.check(agent, robot=robot, camera=seen, isolation=isolation, given=more)
     if json:

@@ -31,7 +31,7 @@ def serve(
     from hthor.guest.client import websocket_server
 
     try:
-        server = websocket_server.serve(agent, host, port, inputs.read(agent_args or (), readable or ()))
+        server = websocket_server.serve(agent, host, port, inputs.parse_inputs(agent_args or (), readable or ()))
     except OSError as error:
         words = os.strerror(error.errno) if error.errno else str(error)
         raise HthorError(f"cannot listen at {host}:{port}: {words}. Give another --port, or 0 for any.") from None

@@ -71,7 +71,7 @@ def verify(
     request = verifying.Request(
         word=draw,
         agent=agent,
-        given=inputs.read(agent_args or (), readable or ()),
+        given=inputs.parse_inputs(agent_args or (), readable or ()),
         suite=suite,
         sample=sample,
         fresh=fresh,

@@ -73,7 +73,9 @@ def check(
         load_s = time.perf_counter() - began
         (first,) = rehearsal.play(guest, [rehearsal.a])
         known = character.manifest
-        later = agent_files.later(guest.take_opened(), known, guest.grounds, guest.reference.path) if known else ()
+        later = (
+            agent_files.unlisted_files(guest.take_opened(), known, guest.grounds, guest.reference.path) if known else ()
+        )
     findings = [criteria.loads(load_s, character), criteria.files(character, later), *criteria.plays(first, agent)]
     figures = {"load_s": load_s, **criteria.figures(first)}
     if not first.faults:

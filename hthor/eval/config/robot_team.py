@@ -264,7 +264,7 @@ def _submitted_agent(text: str, config: GuestConfig | None) -> AgentInfo:
     with Guest(text, config=config) as guest:
         info = guest.load()
         name = _file_safe("-".join([info.name, *(_argument_text(*pair) for pair in guest.inputs.args.items())]))
-        made = snapshot.settle(guest, name)
+        made = snapshot.take_manifest(guest, name)
         ref = AgentRef(name=name, source=info.source, sha256=made.sha256, privileges=tuple(info.privileges))
         return AgentInfo(
             ref=ref,

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hthor.eval.doctor.result import CheckResult
 from hthor.guest import Isolation, IsolationError, in_force
-from hthor.guest.confinement import LEVELS, known, suffices
+from hthor.guest.confinement import LEVELS, check_level, suffices
 
 _LANDLOCK_SINCE = (5, 13)
 _UNCONFINED = "docker run --security-opt seccomp=unconfined --security-opt apparmor=unconfined ..., or leave it"
@@ -21,7 +21,7 @@ def check(required: str) -> None:
     Raises:
         UnknownName: when there is not.
     """
-    known(required, auto=False)
+    check_level(required, auto=False)
 
 
 def findings(required: str) -> list[CheckResult]:

@@ -60,6 +60,6 @@ def check_opened_files(
         if used:
             try:
                 grounds = Guest(mind, config=guests).grounds
-                agent_files.examine(sorted(used), grounds, since="since trials of this run were played with it")
+                agent_files.check_hashes(sorted(used), grounds, since="since trials of this run were played with it")
             except AgentError as error:
                 raise AgentError(f"{error} --out FOLDER gives it one.") from None

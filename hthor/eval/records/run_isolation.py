@@ -12,7 +12,7 @@ from pathlib import Path
 from hthor import documents
 from hthor.errors import RunError
 from hthor.guest import Isolation, IsolationError
-from hthor.guest.confinement import known, suffices
+from hthor.guest.confinement import check_level, suffices
 
 NAME = "isolation.json"
 
@@ -28,7 +28,7 @@ def resolve_isolation(wanted: str, required: str, minds: Collection[str]) -> Iso
         IsolationError: when the level cannot be had, or is less than required.
     """
     if required:
-        known(required, auto=False)
+        check_level(required, auto=False)
     if not minds:
         return None
     from hthor import guest

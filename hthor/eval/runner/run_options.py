@@ -198,7 +198,7 @@ def _parts(
 
 def guest_config(options: RunOptions) -> GuestConfig:
     """How submitted agents are isolated, and what they are given."""
-    given = inputs.read(options.agent_args, options.readable)
+    given = inputs.parse_inputs(options.agent_args, options.readable)
     return GuestConfig(isolation=options.isolation, hidden=hidden(options), inputs=given)
 
 

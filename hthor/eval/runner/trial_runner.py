@@ -145,8 +145,8 @@ class TrialRunner:
         """See that the agents' files are the ones that the run began with."""
         for seat, mind in company.minds.items():
             if isinstance(mind, RecordedAgent) and seat in self._sources.manifests:
-                agent_files.check(self._sources.manifests[seat], mind.mind.grounds)
-                agent_files.examine(self._seen.get(seat, ()), mind.mind.grounds)
+                agent_files.check_unchanged(self._sources.manifests[seat], mind.mind.grounds)
+                agent_files.check_hashes(self._seen.get(seat, ()), mind.mind.grounds)
 
     def _opened(self, company: Participants) -> dict[str, tuple[File, ...]]:
         """What agents opened of their own in the trial that was played, and no manifest lists."""
@@ -154,7 +154,9 @@ class TrialRunner:
         for seat, mind in company.minds.items():
             if isinstance(mind, RecordedAgent) and seat in self._sources.manifests:
                 known, grounds = self._sources.manifests[seat], mind.mind.grounds
-                if files := agent_files.later(mind.mind.take_opened(), known, grounds, mind.mind.reference.path):
+                if files := agent_files.unlisted_files(
+                    mind.mind.take_opened(), known, grounds, mind.mind.reference.path
+                ):
                     found[seat] = files
                     self._seen[seat] = tuple(sorted({*self._seen.get(seat, ()), *files}))
         return found
@@ -188,7 +190,7 @@ class TrialRunner:
         guest = make() if step_limit_s is None else make(step_s=step_limit_s, bank_s=0.0)
         known = self._sources.manifests.get(seat.seat)
         if known is not None:
-            agent_files.check(known, guest.grounds)
+            agent_files.check_unchanged(known, guest.grounds)
         try:
             changed = guest.load().sha256 != seat.agent.sha256
         except Unreachable:  # a server that is gone for a while costs its trials, not the run

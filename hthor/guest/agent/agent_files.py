@@ -12,10 +12,10 @@ from pathlib import Path
 
 from hthor.errors import AgentError
 from hthor.guest.agent import command, digests, source_scan
-from hthor.guest.agent.agent_paths import Grounds
+from hthor.guest.agent.agent_paths import AgentPaths
 from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.agent.manifest import File, Manifest
-from hthor.guest.agent.reference import Reference
+from hthor.guest.agent.reference import AgentReference
 from hthor.guest.confinement import hidden_paths
 
 _SKIPPED = (".git", "runs", "__pycache__")
@@ -23,7 +23,9 @@ _RUN = "run.json"
 _MOST_READABLE = 20_000
 
 
-def files_of(agent: Reference, given: AgentInputs, grounds: Grounds, opened: Iterable[str]) -> tuple[File, ...]:
+def list_files(
+    agent: AgentReference, given: AgentInputs, grounds: AgentPaths, opened: Iterable[str]
+) -> tuple[File, ...]:
     """The files of an agent, with their hashes, sorted.
 
     Args:
@@ -36,12 +38,12 @@ def files_of(agent: Reference, given: AgentInputs, grounds: Grounds, opened: Ite
     first += [value for value in given.args.values() if os.path.isabs(value) and os.path.isfile(value)]
     first += [str(path) for path in _real(opened, grounds)]
     hidden = _hidden(agent.root, agent.path)
-    named = {path for path in source_scan.closure(first, grounds) if not _below_any(path, hidden)}
+    named = {path for path in source_scan.referenced_files(first, grounds) if not _below_any(path, hidden)}
     paths = {*named, *_readable(grounds)}
     return tuple(sorted({_file(path, grounds) for path in paths}))
 
 
-def later(names: Iterable[str], known: Manifest, grounds: Grounds, agent: str = "") -> tuple[File, ...]:
+def unlisted_files(names: Iterable[str], known: Manifest, grounds: AgentPaths, agent: str = "") -> tuple[File, ...]:
     """Files that an agent has opened and that are not in its manifest.
 
     Args:
@@ -55,7 +57,7 @@ def later(names: Iterable[str], known: Manifest, grounds: Grounds, agent: str = 
     return tuple(sorted({_file(str(path), grounds) for path in new if not _below_any(str(path), hidden)}))
 
 
-def check(known: Manifest, grounds: Grounds) -> None:
+def check_unchanged(known: Manifest, grounds: AgentPaths) -> None:
     """See that an agent's files are as they were when its run began.
 
     Raises:
@@ -67,11 +69,11 @@ def check(known: Manifest, grounds: Grounds) -> None:
     for path in _readable(grounds):
         name = grounds.name(path)
         if name is not None and name not in held:
-            raise AgentError(changed(path, "is new: it was not there when its run began"))
-    examine(held.values(), grounds)
+            raise AgentError(change_message(path, "is new: it was not there when its run began"))
+    check_hashes(held.values(), grounds)
 
 
-def examine(files: Iterable[File], grounds: Grounds, *, since: str = "while its run was going on") -> None:
+def check_hashes(files: Iterable[File], grounds: AgentPaths, *, since: str = "while its run was going on") -> None:
     """See that these files are as their hashes say.
 
     Raises:
@@ -80,14 +82,14 @@ def examine(files: Iterable[File], grounds: Grounds, *, since: str = "while its 
     for file in files:
         path = grounds.find(file.path)
         try:
-            same = digests.read(path)[0] == file.sha256
+            same = digests.hash_file(path)[0] == file.sha256
         except OSError:
-            raise AgentError(changed(str(path), f"was removed {since}")) from None
+            raise AgentError(change_message(str(path), f"was removed {since}")) from None
         if not same:
-            raise AgentError(changed(str(path), f"was changed {since}"))
+            raise AgentError(change_message(str(path), f"was changed {since}"))
 
 
-def changed(path: str, what: str) -> str:
+def change_message(path: str, what: str) -> str:
     """What to tell a user whose agent is not the one that a run began with."""
     return (
         f"{path} {what}. Change it back and repeat the command to finish this run, or evaluate the new version in a "
@@ -95,14 +97,14 @@ def changed(path: str, what: str) -> str:
     )
 
 
-def _first(agent: Reference) -> list[Path]:
+def _first(agent: AgentReference) -> list[Path]:
     """The files that are the agent by its name alone."""
     if agent.words:
         return command.own_files(agent.words) or [Path(agent.words[0])]
     return [Path(agent.path)]
 
 
-def _real(names: Iterable[str], grounds: Grounds) -> Iterator[Path]:
+def _real(names: Iterable[str], grounds: AgentPaths) -> Iterator[Path]:
     """The files of these names, without what is no file of the agent's, whoever claims that."""
     for name in sorted(set(names)):
         path = grounds.find(name)
@@ -110,7 +112,7 @@ def _real(names: Iterable[str], grounds: Grounds) -> Iterator[Path]:
             yield path
 
 
-def _readable(grounds: Grounds) -> Iterator[str]:
+def _readable(grounds: AgentPaths) -> Iterator[str]:
     """Every file that the user lets the agent read beyond its own folder."""
     for place in grounds.readable:
         if os.path.isfile(place):
@@ -136,17 +138,17 @@ def _readable(grounds: Grounds) -> Iterator[str]:
 
 def _hidden(folder: str, agent: str = "") -> list[str]:
     """What in a folder isolation hides from every agent. It is no part of one, though at L1 it could be read."""
-    return [str(path) for path in hidden_paths.below(Path(folder).resolve(), agent)] if folder else []
+    return [str(path) for path in hidden_paths.hidden_below(Path(folder).resolve(), agent)] if folder else []
 
 
 def _below_any(path: str, folders: Iterable[str]) -> bool:
     return any(Path(path).is_relative_to(folder) for folder in folders)
 
 
-def _file(path: str, grounds: Grounds) -> File:
+def _file(path: str, grounds: AgentPaths) -> File:
     name = grounds.name(path) or f"../{os.path.basename(path)}"
     try:
-        sha256, size = digests.read(Path(path))
+        sha256, size = digests.hash_file(Path(path))
     except OSError as error:
         raise AgentError(f"cannot read the agent's file {path}: {error.strerror}.") from None
     return File(path=name, sha256=sha256, bytes=size)

@@ -9,13 +9,13 @@ from pathlib import Path
 from msgspec import Struct
 
 from hthor.guest.agent import command
-from hthor.guest.agent.reference import Reference
+from hthor.guest.agent.reference import AgentReference
 from hthor.guest.confinement import paths
 
 _NEVER = ("__pycache__", ".git")
 
 
-class Grounds(Struct, frozen=True, kw_only=True):
+class AgentPaths(Struct, frozen=True, kw_only=True):
     """The folders that an agent's files lie in.
 
     Attributes:
@@ -56,7 +56,7 @@ class Grounds(Struct, frozen=True, kw_only=True):
         return Path(self.root, name)
 
 
-def of(agent: Reference, readable: tuple[str, ...] = ()) -> Grounds:
+def find_agent_paths(agent: AgentReference, readable: tuple[str, ...] = ()) -> AgentPaths:
     """The grounds of an agent."""
     root = agent.root
     base = root
@@ -68,16 +68,16 @@ def of(agent: Reference, readable: tuple[str, ...] = ()) -> Grounds:
     if agent.words:  # a command names files anywhere; where it names none of its own, the program is what there is
         named = [str(path) for path in command.own_files(agent.words)] or [agent.words[0]]
         readable += tuple(path for path in named if not (root and _below(path, root)))
-    return Grounds(root=root, base=base, apart=tuple(sorted(set(apart))), readable=tuple(dict.fromkeys(readable)))
+    return AgentPaths(root=root, base=base, apart=tuple(sorted(set(apart))), readable=tuple(dict.fromkeys(readable)))
 
 
 def _libraries() -> list[str]:
-    return [os.path.realpath(folder) for folder in paths.libraries()]
+    return [os.path.realpath(folder) for folder in paths.library_folders()]
 
 
 def _strangers() -> list[str]:
     """Folders whose files are no agent's own, wherever they lie."""
-    places = [sys.prefix, sys.base_prefix, sys.exec_prefix, *paths.libraries(), str(paths.PACKAGE), "runs"]
+    places = [sys.prefix, sys.base_prefix, sys.exec_prefix, *paths.library_folders(), str(paths.PACKAGE), "runs"]
     if compiled := os.environ.get("NUMBA_CACHE_DIR", ""):
         places.append(compiled)
     return [form for place in places for form in (os.path.abspath(place), os.path.realpath(place))]

@@ -15,11 +15,11 @@ _KEY = re.compile(r"[A-Za-z_]\w*")
 _YES, _NO = ("true", "yes", "1", "on"), ("false", "no", "0", "off")
 
 
-class Unfit(ValueError):
+class ArgumentMismatch(ValueError):
     """An argument that the agent does not take; the message goes to the user."""
 
 
-def read(texts: Iterable[str]) -> dict[str, str]:
+def parse_arguments(texts: Iterable[str]) -> dict[str, str]:
     """The arguments that a user typed as ``key=value``; the path of a file that exists is made absolute.
 
     Raises:
@@ -37,7 +37,7 @@ def read(texts: Iterable[str]) -> dict[str, str]:
     return found
 
 
-def fit(cls: type[Any], given: Mapping[str, str]) -> dict[str, Any]:
+def convert_arguments(cls: type[Any], given: Mapping[str, str]) -> dict[str, Any]:
     """The same arguments with values of the types that the constructor's parameters have, by annotation or default.
 
     Raises:
@@ -58,16 +58,18 @@ def fit(cls: type[Any], given: Mapping[str, str]) -> dict[str, Any]:
             near = difflib.get_close_matches(key, named, n=1, cutoff=0.5)
             guess = f" Did you mean '{near[0]}'?" if near else ""
             takes = f"It takes: {', '.join(named)}." if named else "Its constructor takes no arguments."
-            raise Unfit(f"{cls.__name__} has no argument '{key}' (--agent-args {key}=...).{guess} {takes}")
+            raise ArgumentMismatch(f"{cls.__name__} has no argument '{key}' (--agent-args {key}=...).{guess} {takes}")
     missing = [name for name, one in named.items() if one.default is inspect.Parameter.empty and name not in given]
     if missing:
-        raise Unfit(f"{cls.__name__} needs the argument '{missing[0]}'. Give it: --agent-args {missing[0]}=VALUE")
+        raise ArgumentMismatch(
+            f"{cls.__name__} needs the argument '{missing[0]}'. Give it: --agent-args {missing[0]}=VALUE"
+        )
     return {key: _typed(key, value, named.get(key)) for key, value in given.items()}
 
 
-def maker(cls: type[Any], given: Mapping[str, str]) -> Callable[[], Any]:
+def make_factory(cls: type[Any], given: Mapping[str, str]) -> Callable[[], Any]:
     """What makes new agents with these arguments, which fit."""
-    values = fit(cls, given)
+    values = convert_arguments(cls, given)
     return lambda: cls(**values)
 
 
@@ -86,9 +88,9 @@ def _typed(key: str, value: str, parameter: inspect.Parameter | None) -> Any:
             return value.lower() in _YES
         return {"int": int, "float": float}.get(name, str)(value)
     except ValueError:
-        raise Unfit(f"--agent-args {key}={value}: the agent takes {name} there.") from None
+        raise ArgumentMismatch(f"--agent-args {key}={value}: the agent takes {name} there.") from None
 
 
-def as_words(given: Mapping[str, str]) -> tuple[str, ...]:
+def as_options(given: Mapping[str, str]) -> tuple[str, ...]:
     """The arguments as words of a command, ``--key=value``."""
     return tuple(f"--{key}={value}" for key, value in given.items())

@@ -17,7 +17,7 @@ _SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib64", sys.prefix, sys.base_prefi
 _ENV = ("/usr/bin/env", "/bin/env")
 
 
-def split(text: str) -> tuple[str, ...]:
+def parse_command(text: str) -> tuple[str, ...]:
     """The words of a command, with the program found and files made absolute, as it will be started.
 
     A script that names its interpreter by ``env`` gets the interpreter in front: a held program starts no second one.
@@ -67,23 +67,23 @@ def _comes_with_the_machine(path: Path) -> bool:
     return any(place.is_relative_to(root) for place in (path, path.resolve()) for root in _SYSTEM)
 
 
-def sha256(words: Sequence[str]) -> str:
+def command_sha256(words: Sequence[str]) -> str:
     """The hash of the words, without folders, and of the own files; of the program where there are none.
 
     Raises:
         AgentError: when a file cannot be read.
     """
     own = own_files(words) or [Path(words[0])]
-    parts = [*(_bare(word) for word in words), *(digests.of_file(path) for path in own)]
+    parts = [*(_bare(word) for word in words), *(digests.file_sha256(path) for path in own)]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
-def joined(words: Sequence[str]) -> str:
+def as_text(words: Sequence[str]) -> str:
     """The command as one text, to be split again."""
     return "cmd:" + shlex.join(words)
 
 
-def shown(words: Sequence[str]) -> str:
+def as_source(words: Sequence[str]) -> str:
     """The command without the machine's folders."""
     return "cmd:" + shlex.join(_bare(word) for word in words)
 

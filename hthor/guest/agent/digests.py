@@ -16,20 +16,20 @@ _SETTLED_NS = 2_000_000_000
 _known: dict[str, tuple[_Sign, str]] = {}
 
 
-def of_file(path: Path) -> str:
+def file_sha256(path: Path) -> str:
     """The hash of a file's bytes.
 
     Raises:
         AgentError: when it cannot be read.
     """
     try:
-        return read(path)[0]
+        return hash_file(path)[0]
     except OSError as error:
         hint = "Write one to start from: hthor agent new my_agent.py"
         raise AgentError(f"cannot read the agent's file {path}: {error.strerror}. {hint}") from None
 
 
-def read(path: Path) -> tuple[str, int]:
+def hash_file(path: Path) -> tuple[str, int]:
     """The hash of a file's bytes, and how many they are; not read again while nothing about the file has changed.
 
     Raises:

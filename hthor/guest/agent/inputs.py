@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from hthor.errors import HthorError
 from hthor.guest.agent import arguments
-from hthor.guest.agent.reference import Reference
+from hthor.guest.agent.reference import AgentReference
 
 _HINT = "Name the folder with --readable too, so that the agent may read it and its files count as the agent's."
 
@@ -21,7 +21,7 @@ class AgentInputs(Struct, frozen=True, kw_only=True):
     args: dict[str, str] = {}
     readable: tuple[str, ...] = ()
 
-    def beyond(self, agent: Reference) -> tuple[str, ...]:
+    def beyond(self, agent: AgentReference) -> tuple[str, ...]:
         """What this agent may read that does not lie in its own folder.
 
         Raises:
@@ -41,7 +41,7 @@ class AgentInputs(Struct, frozen=True, kw_only=True):
         return tuple(dict.fromkeys(found))
 
 
-def read(args: Iterable[str] = (), readable: Iterable[Path | str] = ()) -> AgentInputs:
+def parse_inputs(args: Iterable[str] = (), readable: Iterable[Path | str] = ()) -> AgentInputs:
     """What a user typed.
 
     Raises:
@@ -55,7 +55,7 @@ def read(args: Iterable[str] = (), readable: Iterable[Path | str] = ()) -> Agent
     names = [os.path.basename(place) for place in places]
     if twice := sorted({name for name in names if names.count(name) > 1 and len(set(places)) == len(places)}):
         raise HthorError(f"--readable names two files or folders called '{twice[0]}'; rename one of them.")
-    found = arguments.read(args)
+    found = arguments.parse_arguments(args)
     folders = [place for place in places if os.path.isdir(place)]
     for key, value in found.items():  # a folder without a slash in its name, which could be any word
         if os.path.isdir(value) and os.path.realpath(value) in folders:

@@ -43,7 +43,7 @@ class Manifest(Struct, frozen=True, kw_only=True):
     claimed: bool = False
 
 
-def of(name: str, source: str, args: dict[str, str], files: Iterable[File], library: str = "") -> Manifest:
+def make_manifest(name: str, source: str, args: dict[str, str], files: Iterable[File], library: str = "") -> Manifest:
     """The manifest of an agent that runs here."""
     kept = tuple(sorted(set(files)))
     args = dict(sorted(args.items()))

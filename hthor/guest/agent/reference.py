@@ -25,7 +25,7 @@ _MODULE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*")
 _COMMANDS = ("cmd", "command", "exec", "run", "program", "process", "shell")
 
 
-class Reference(Struct, frozen=True, kw_only=True):
+class AgentReference(Struct, frozen=True, kw_only=True):
     """An agent before anything of it runs.
 
     Attributes:
@@ -58,8 +58,8 @@ class Reference(Struct, frozen=True, kw_only=True):
             AgentError: when a file cannot be read.
         """
         if self.words:
-            return command.sha256(self.words)
-        return digests.of_file(Path(self.path)) if self.path else ""
+            return command.command_sha256(self.words)
+        return digests.file_sha256(Path(self.path)) if self.path else ""
 
 
 def is_served(text: str) -> bool:
@@ -67,7 +67,7 @@ def is_served(text: str) -> bool:
     return "://" in text
 
 
-def read(text: str, cls: str | None = None) -> Reference:
+def parse_reference(text: str, cls: str | None = None) -> AgentReference:
     """Understand what somebody typed.
 
     Raises:
@@ -86,13 +86,13 @@ def read(text: str, cls: str | None = None) -> Reference:
     raise UnknownName("agent", text, plugins.names("agent"), _guess(text) + HINT)
 
 
-def _file(file: Path, cls: str, colon: str) -> Reference:
+def _file(file: Path, cls: str, colon: str) -> AgentReference:
     try:
         path = file.resolve()
     except RuntimeError:
         raise AgentError(f"cannot read the agent's file {file}: its link leads back to itself.") from None
     tail = f":{cls}" if colon or cls else ""
-    return Reference(
+    return AgentReference(
         form="file",
         text=f"{path}{tail}",
         source=f"{file.name}{tail}",
@@ -103,13 +103,13 @@ def _file(file: Path, cls: str, colon: str) -> Reference:
     )
 
 
-def _module(text: str) -> Reference:
+def _module(text: str) -> AgentReference:
     module, _, cls = text.partition(":")
     for root in dict.fromkeys([Path.cwd(), *(Path(place).absolute() for place in sys.path if place)]):
         base = root.joinpath(*module.split("."))
         for path in (base / "__init__.py", base.parent / f"{base.name}.py"):
             if path.is_file():
-                return Reference(
+                return AgentReference(
                     form="module",
                     text=text,
                     source=text,
@@ -123,13 +123,13 @@ def _module(text: str) -> Reference:
     raise AgentError(f"agent '{text}': there is no module '{module}' {where}. {_guess(text)}{HINT}")
 
 
-def _command(text: str) -> Reference:
-    words = command.split(text.removeprefix("cmd:"))
+def _command(text: str) -> AgentReference:
+    words = command.parse_command(text.removeprefix("cmd:"))
     own = command.own_files(words)
-    return Reference(
+    return AgentReference(
         form="command",
-        text=command.joined(words),
-        source=command.shown(words),
+        text=command.as_text(words),
+        source=command.as_source(words),
         name=(own[0] if own else Path(words[0])).stem,
         path=words[0],
         root=str(own[0].parent) if own else "",
@@ -137,7 +137,7 @@ def _command(text: str) -> Reference:
     )
 
 
-def _served(text: str) -> Reference:
+def _served(text: str) -> AgentReference:
     parts = urlsplit(text)
     try:
         port = parts.port
@@ -147,7 +147,7 @@ def _served(text: str) -> Reference:
         raise UnknownName("agent", text, plugins.names("agent"), _guess(text) + HINT)
     if parts.username or parts.password or parts.query or parts.fragment:
         raise AgentError(f"agent '{text}': an address is ws://HOST:PORT[/PATH], without user, password, ? or #.")
-    return Reference(form="served", text=text, source=text, name=f"{parts.hostname}-{port}", url=text)
+    return AgentReference(form="served", text=text, source=text, name=f"{parts.hostname}-{port}", url=text)
 
 
 def _guess(text: str) -> str:

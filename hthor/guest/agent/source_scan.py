@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from hthor.guest.agent.agent_paths import Grounds
+from hthor.guest.agent.agent_paths import AgentPaths
 
 _MOST_BYTES = 4 << 20
 """Longest file that is looked into."""
@@ -21,7 +21,7 @@ _DEEPEST = 3
 """Folders within folders whose names a source gives one by one."""
 
 
-def closure(first: Iterable[str], grounds: Grounds) -> set[str]:
+def referenced_files(first: Iterable[str], grounds: AgentPaths) -> set[str]:
     """These files, and every file of the agent's own that they name, and so on. All paths are absolute."""
     found: set[str] = set()
     left = sorted(set(first))
@@ -35,7 +35,7 @@ def closure(first: Iterable[str], grounds: Grounds) -> set[str]:
     return found
 
 
-def _named(path: str, grounds: Grounds) -> Iterator[str]:
+def _named(path: str, grounds: AgentPaths) -> Iterator[str]:
     try:
         if os.path.getsize(path) > _MOST_BYTES:
             return
@@ -73,7 +73,7 @@ def _python(data: bytes) -> tuple[set[str], set[tuple[int, str]]]:
     return words, modules
 
 
-def _modules(level: int, name: str, folder: str, grounds: Grounds) -> Iterator[str]:
+def _modules(level: int, name: str, folder: str, grounds: AgentPaths) -> Iterator[str]:
     """Files that an import reads: the module's and those of the packages around it."""
     base = grounds.root
     if level:
@@ -88,7 +88,7 @@ def _modules(level: int, name: str, folder: str, grounds: Grounds) -> Iterator[s
                 yield path
 
 
-def _files(words: Iterable[str], suffix: str, bases: Iterable[str], grounds: Grounds) -> Iterator[str]:
+def _files(words: Iterable[str], suffix: str, bases: Iterable[str], grounds: AgentPaths) -> Iterator[str]:
     """Files that are named, in these folders or in folders of theirs that are named too."""
     usable = sorted(word for word in words if word and len(word) <= _LONGEST and "\0" not in word and "\n" not in word)
     folders = set(bases)

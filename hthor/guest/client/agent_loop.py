@@ -9,14 +9,16 @@ from typing import Any
 import msgspec
 
 from hthor.guest.client import file_recorder, loading
-from hthor.guest.client.file_recorder import Recorder
-from hthor.guest.client.remote_senses import Gone, RemoteSenses, Wire
+from hthor.guest.client.file_recorder import FileRecorder
+from hthor.guest.client.remote_senses import HostConnection, HostGone, RemoteSenses
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.sanitize import shown
+from hthor.guest.protocol.sanitize import sanitize_text
 from hthor.types import Action, Message
 
 
-def play(pipe: Wire, make: Callable[[], Any], order: wire.Begin, recorder: Recorder | None = None) -> None:
+def run_trial(
+    pipe: HostConnection, make: Callable[[], Any], order: wire.Begin, recorder: FileRecorder | None = None
+) -> None:
     """One trial. A failure is the agent's last word; the host then ends the process.
 
     Args:
@@ -28,27 +30,31 @@ def play(pipe: Wire, make: Callable[[], Any], order: wire.Begin, recorder: Recor
         pipe.send(wire.Done(files=recorder.take() if recorder else ()))
         while isinstance(look := pipe.receive(), wire.Look):
             said = _act(pipe, agent, look)
-            if recorder and recorder.waiting and len(wire.encode(said)) <= wire.MOST_BYTES - 2 * file_recorder.MOST:
+            if (
+                recorder
+                and recorder.waiting
+                and len(wire.encode(said)) <= wire.MOST_BYTES - 2 * file_recorder.BATCH_BYTES
+            ):
                 said = msgspec.structs.replace(said, files=recorder.take())
             pipe.send(said)
-    except Gone:
+    except HostGone:
         raise
     except BaseException as error:
         failed = _failed(error)
         pipe.send(msgspec.structs.replace(failed, files=recorder.take() if recorder else ()))
 
 
-def _act(pipe: Wire, agent: Any, look: wire.Look) -> wire.Acted | wire.Failed:
+def _act(pipe: HostConnection, agent: Any, look: wire.Look) -> wire.Acted | wire.Failed:
     observation, senses = look.observation, RemoteSenses(pipe, look.ahead)
     inbox = tuple(_with_image(message, senses) for message in observation.inbox)
     action = agent.act(msgspec.structs.replace(observation, senses=senses, inbox=inbox))
     senses.expire()
     if not isinstance(action, Action):
         detail = f"act must return an hthor.types.Action, got {type(action).__name__}: {repr(action)[:200]}"
-        return wire.Failed(kind="wrong_type", detail=shown(detail))
+        return wire.Failed(kind="wrong_type", detail=sanitize_text(detail))
     try:
-        message = wire.Acted(action=wire.plain(action), read=senses.read)
-    except wire.Unfit as error:
+        message = wire.Acted(action=wire.to_plain_action(action), read=senses.read)
+    except wire.InvalidAction as error:
         return wire.Failed(kind="garbage", detail=f"act returned an Action that cannot be taken: {error}")
     size = len(wire.encode(message))
     if size > wire.MOST_BYTES:
@@ -63,5 +69,5 @@ def _with_image(message: Message, senses: RemoteSenses) -> Message:
 
 
 def _failed(error: BaseException) -> wire.Failed:
-    detail = shown(traceback.format_exception_only(error)[-1].strip())[: wire.TEXT_MAX]
-    return wire.Failed(kind="raised", detail=detail, traceback=loading.shown(error))
+    detail = sanitize_text(traceback.format_exception_only(error)[-1].strip())[: wire.TEXT_MAX]
+    return wire.Failed(kind="raised", detail=detail, traceback=loading.format_traceback(error))

@@ -19,7 +19,7 @@ _FRAMES = 3
 _MOST_FOLDERS = 1000
 
 
-def become(words: Sequence[str], folder: str, pipes: tuple[int, int], shared: int, word: bytes) -> NoReturn:
+def exec_program(words: Sequence[str], folder: str, pipes: tuple[int, int], shared: int, word: bytes) -> NoReturn:
     """Start it in this process's place.
 
     Args:
@@ -44,7 +44,7 @@ def become(words: Sequence[str], folder: str, pipes: tuple[int, int], shared: in
         for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores them, and a program would inherit that
             signal.signal(number, signal.SIG_DFL)
         if word:
-            seccomp.start(words, env, word)
+            seccomp.exec_with_token(words, env, word)
         os.execve(words[0], list(words), env)
     except OSError as error:
         raise Refused(f"starting {words[0]}: {error.strerror}") from None

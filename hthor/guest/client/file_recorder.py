@@ -12,9 +12,9 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from hthor.guest.agent.agent_paths import Grounds
+from hthor.guest.agent.agent_paths import AgentPaths
 
-MOST = 16 << 10
+BATCH_BYTES = 16 << 10
 """Bytes of names in one message; the rest goes with later ones."""
 
 
@@ -22,10 +22,10 @@ class UnprintableName(PermissionError):
     """A file of the agent's own that no manifest can list, and that it may not open for that."""
 
 
-class Recorder:
+class FileRecorder:
     """Every file of the agent's own that was opened for reading since `start`, each named once."""
 
-    def __init__(self, grounds: Grounds) -> None:
+    def __init__(self, grounds: AgentPaths) -> None:
         self._grounds = grounds
         self._seen: set[str] = set()
         self._fresh: list[str] = []
@@ -55,7 +55,7 @@ class Recorder:
         size, count = 0, 0
         for name in self._fresh:
             size += len(name.encode(errors="replace")) + 4
-            if count and size > MOST:
+            if count and size > BATCH_BYTES:
                 break
             count += 1
         taken, self._fresh = self._fresh[:count], self._fresh[count:]

@@ -12,13 +12,13 @@ from types import CodeType, ModuleType
 from typing import Any
 
 from hthor.guest.agent import arguments
-from hthor.guest.agent.agent_paths import Grounds
+from hthor.guest.agent.agent_paths import AgentPaths
 from hthor.guest.protocol import sanitize, wire
 
 _MODULE = "hthor_guest_agent"  # not the file's name, which could hide a module of the standard library
 
 
-class Refusal(Exception):
+class ContractViolation(Exception):
     """The file does not follow the contract; the message goes to its author."""
 
 
@@ -32,7 +32,7 @@ class SourceLoader(SourceFileLoader):
         return code
 
 
-def only_from(grounds: Grounds) -> None:
+def import_from_sources(grounds: AgentPaths) -> None:
     """From now on this process imports what lies in an agent's folder from sources and extension modules."""
     make = FileFinder.path_hook((ExtensionFileLoader, EXTENSION_SUFFIXES), (SourceLoader, [".py"]))
 
@@ -46,7 +46,7 @@ def only_from(grounds: Grounds) -> None:
         del sys.path_importer_cache[path]
 
 
-def load(order: wire.Load) -> tuple[type[Any], wire.Ready]:
+def load_agent(order: wire.Load) -> tuple[type[Any], wire.Ready]:
     """The class of an agent's file or module, and what it says of itself.
 
     Raises:
@@ -58,21 +58,23 @@ def load(order: wire.Load) -> tuple[type[Any], wire.Ready]:
     privileges = _names(cls, "privileges", path)
     unknown = [name for name in privileges if name not in wire.PRIVILEGES]
     if unknown:
-        raise Refusal(f"{path}: {cls.__name__}.privileges names '{unknown[0]}'. Valid: {', '.join(wire.PRIVILEGES)}.")
+        raise ContractViolation(
+            f"{path}: {cls.__name__}.privileges names '{unknown[0]}'. Valid: {', '.join(wire.PRIVILEGES)}."
+        )
     ready = wire.Ready(
         name=path.stem,
         privileges=privileges,
         robots=_names(cls, "robots", path),
         absent=bool(getattr(cls, "absent", False)),
         persistent=bool(getattr(cls, "persistent", False)),
-        doc=sanitize.shown(str(cls.__doc__ or module.__doc__ or "").strip())[: wire.TEXT_MAX],
+        doc=sanitize.sanitize_text(str(cls.__doc__ or module.__doc__ or "").strip())[: wire.TEXT_MAX],
         ahead=True,
         gpus=_gpus(cls, path),
     )
     try:
-        arguments.fit(cls, order.args)
-    except arguments.Unfit as error:
-        raise Refusal(f"{path}: {error}") from None
+        arguments.convert_arguments(cls, order.args)
+    except arguments.ArgumentMismatch as error:
+        raise ContractViolation(f"{path}: {error}") from None
     return cls, ready
 
 
@@ -83,25 +85,27 @@ def _import(path: Path, order: wire.Load) -> ModuleType:
         return _by_name(path, order.module) if order.module else _by_file(path)
     except SyntaxError as error:
         line = f":{error.lineno}" if error.lineno else ""
-        raise Refusal(f"{error.filename or path}{line}: {error.msg}") from None
-    except Refusal:
+        raise ContractViolation(f"{error.filename or path}{line}: {error.msg}") from None
+    except ContractViolation:
         raise
     except BaseException as error:
-        raise Refusal(f"{path}: importing it failed.\n{shown(error)}") from None
+        raise ContractViolation(f"{path}: importing it failed.\n{format_traceback(error)}") from None
 
 
 def _by_name(path: Path, name: str) -> ModuleType:
     module = importlib.import_module(name)
     file = Path(module.__file__ or "").resolve()
     if file != path:
-        raise Refusal(f"{name}: another file of this name was imported than the one that was asked for: {file}")
+        raise ContractViolation(
+            f"{name}: another file of this name was imported than the one that was asked for: {file}"
+        )
     return module
 
 
 def _by_file(path: Path) -> ModuleType:
     spec = importlib.util.spec_from_file_location(_MODULE, path, loader=SourceLoader(_MODULE, str(path)))
     if spec is None or spec.loader is None:
-        raise Refusal(f"{path}: not a Python file; an agent is one file that ends in .py")
+        raise ContractViolation(f"{path}: not a Python file; an agent is one file that ends in .py")
     module = importlib.util.module_from_spec(spec)
     sys.modules[_MODULE] = module
     spec.loader.exec_module(module)
@@ -121,33 +125,39 @@ def _pick(module: ModuleType, path: Path, wanted: str) -> type[Any]:
     listed = ", ".join(found) or "none"
     if wanted:
         if wanted not in found:
-            raise Refusal(f"{path}: no agent class '{wanted}' (a class with begin and act). Found: {listed}.")
+            raise ContractViolation(f"{path}: no agent class '{wanted}' (a class with begin and act). Found: {listed}.")
         return found[wanted]
     if not found:
-        raise Refusal(f"{path}: no agent class found. Define 'class Agent' with begin(briefing) and act(observation).")
+        raise ContractViolation(
+            f"{path}: no agent class found. Define 'class Agent' with begin(briefing) and act(observation)."
+        )
     if len(found) > 1 and "Agent" not in found:
-        raise Refusal(f"{path}: several agent classes: {listed}. Say which one: {path.name}:{next(iter(found))}.")
+        raise ContractViolation(
+            f"{path}: several agent classes: {listed}. Say which one: {path.name}:{next(iter(found))}."
+        )
     return found.get("Agent") or next(iter(found.values()))
 
 
 def _names(cls: type[Any], attribute: str, path: Path) -> tuple[str, ...]:
     value = getattr(cls, attribute, ())
     if not isinstance(value, (tuple, list)) or not all(isinstance(name, str) for name in value):
-        raise Refusal(f"{path}: {cls.__name__}.{attribute} must be a tuple of names, got {value!r}.")
+        raise ContractViolation(f"{path}: {cls.__name__}.{attribute} must be a tuple of names, got {value!r}.")
     return tuple(value)
 
 
 def _gpus(cls: type[Any], path: Path) -> float:
     value = getattr(cls, "gpus", 0.0)
     if isinstance(value, bool) or not isinstance(value, (int, float)) or value < 0:
-        raise Refusal(f"{path}: {cls.__name__}.gpus must be a number from 0 on, such as 0.25 or 1, got {value!r}.")
+        raise ContractViolation(
+            f"{path}: {cls.__name__}.gpus must be a number from 0 on, such as 0.25 or 1, got {value!r}."
+        )
     return float(value)
 
 
-def shown(error: BaseException) -> str:
+def format_traceback(error: BaseException) -> str:
     """The traceback without our own frames in front, its end kept when it is long."""
     ours = (str(Path(__file__).parents[1]), importlib.__file__ or "", "<frozen importlib")
     trace = error.__traceback__
     while trace is not None and trace.tb_frame.f_code.co_filename.startswith(ours):
         trace = trace.tb_next
-    return sanitize.shown("".join(traceback.format_exception(type(error), error, trace)))[-wire.TEXT_MAX :]
+    return sanitize.sanitize_text("".join(traceback.format_exception(type(error), error, trace)))[-wire.TEXT_MAX :]

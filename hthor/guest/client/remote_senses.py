@@ -14,14 +14,14 @@ from hthor.types import Camera, Detection, Scan
 _PICTURES = ("rgb", "depth", "segmentation", "image")
 
 
-class Gone(BaseException):
+class HostGone(BaseException):
     """There is nobody to talk to any more; no agent is to catch this."""
 
 
-class Wire(Protocol):
+class HostConnection(Protocol):
     """A guest's end of whatever carries messages; ``view`` are the shared frames, if any."""
 
-    view: shared_frames.View | None
+    view: shared_frames.FrameReader | None
 
     def receive(self) -> wire.ToGuest: ...
     def send(self, message: wire.ToHost) -> None: ...
@@ -31,7 +31,7 @@ class Wire(Protocol):
 class RemoteSenses:
     """Asks the host for what the agent reads, each thing once; useless after `expire`."""
 
-    def __init__(self, pipe: Wire, ahead: Mapping[str, msgspec.Raw] | None = None) -> None:
+    def __init__(self, pipe: HostConnection, ahead: Mapping[str, msgspec.Raw] | None = None) -> None:
         self._pipe, self._known, self._fresh = pipe, dict[tuple[str, int], Any](), True
         self._ahead = dict(ahead or {})
 

@@ -13,20 +13,20 @@ import msgspec
 
 from hthor.guest.agent import arguments
 from hthor.guest.client import exec_program, loading
-from hthor.guest.client.agent_loop import play
-from hthor.guest.client.file_recorder import Recorder
+from hthor.guest.client.agent_loop import run_trial
+from hthor.guest.client.file_recorder import FileRecorder
 from hthor.guest.confinement import enforcement, seccomp
 from hthor.guest.confinement.enforcement import Refused
 from hthor.guest.confinement.landlock import Ruleset
 from hthor.guest.protocol import sanitize, shared_frames, wire
-from hthor.guest.protocol.pipe import Pipe
-from hthor.guest.protocol.trial_channel import Ends
+from hthor.guest.protocol.pipe import HostPipe
+from hthor.guest.protocol.trial_channel import GuestEnds
 
-ORDERLY = 97
+COMPLETED = 97
 """Exit status of a trial that came to its end, which an agent would hardly choose for itself."""
 
 
-def serve(awaited: Callable[[], Ends | None], order: wire.Load, held: Ruleset | None, *, first: bool) -> None:
+def run_trials(awaited: Callable[[], GuestEnds | None], order: wire.Load, held: Ruleset | None, *, first: bool) -> None:
     """Play one trial, or, with an agent that says ``persistent = True``, all of them.
 
     Args:
@@ -34,9 +34,9 @@ def serve(awaited: Callable[[], Ends | None], order: wire.Load, held: Ruleset | 
             of the agent is read.
         held: rules for files. first: say what holds this process, and what the file is.
     """
-    word = seccomp.new_word() if order.words and held is not None else b""
+    word = seccomp.new_token() if order.words and held is not None else b""
     try:
-        enforcement.confine(order.policy, held, word)
+        enforcement.confine_trial(order.policy, held, word)
     except Refused as error:
         problem = str(error)
     else:
@@ -51,7 +51,7 @@ def serve(awaited: Callable[[], Ends | None], order: wire.Load, held: Ruleset | 
         pipe.send(_confined(held))
     if order.words:
         try:
-            exec_program.become(order.words, order.root, pipe.handles, pipe.shared, word)
+            exec_program.exec_program(order.words, order.root, pipe.handles, pipe.shared, word)
         except Refused as error:
             pipe.send(wire.Failed(kind="contract", detail=str(error)))
             return
@@ -59,30 +59,30 @@ def serve(awaited: Callable[[], Ends | None], order: wire.Load, held: Ruleset | 
     os.chdir(order.root)
     recorder = _watched(order)
     try:
-        cls, ready = loading.load(order)
-    except loading.Refusal as error:
-        pipe.send(wire.Failed(kind="contract", detail=sanitize.shown(str(error))[-wire.TEXT_MAX :]))
+        cls, ready = loading.load_agent(order)
+    except loading.ContractViolation as error:
+        pipe.send(wire.Failed(kind="contract", detail=sanitize.sanitize_text(str(error))[-wire.TEXT_MAX :]))
         return
     if first:
         pipe.send(msgspec.structs.replace(ready, files=recorder.take() if recorder else ()))
-    make = arguments.maker(cls, order.args)
+    make = arguments.make_factory(cls, order.args)
     while isinstance(begin := pipe.receive(), wire.Begin):
-        play(pipe, make, begin, recorder)
+        run_trial(pipe, make, begin, recorder)
         if not ready.persistent:
             return
 
 
-def _watched(order: wire.Load) -> Recorder | None:
+def _watched(order: wire.Load) -> FileRecorder | None:
     """Take down what the agent opens from here on, and import its own modules from their sources alone."""
     if order.grounds is None:
         return None
-    loading.only_from(order.grounds)
-    recorder = Recorder(order.grounds)
+    loading.import_from_sources(order.grounds)
+    recorder = FileRecorder(order.grounds)
     recorder.start()
     return recorder
 
 
-def _taken(ends: Ends) -> Pipe:
+def _taken(ends: GuestEnds) -> HostPipe:
     """The wire of this trial, with standard input and output that are its own too."""
     nothing = os.open(os.devnull, os.O_RDONLY)
     for handle, number in ((nothing, 0), (ends.printed, 1), (ends.printed, 2)):
@@ -91,21 +91,21 @@ def _taken(ends: Ends) -> Pipe:
     os.close(ends.printed)
     if ends.shared >= 0:
         os.environ[shared_frames.VARIABLE] = str(ends.shared)
-    return Pipe(ends.read, ends.write, ends.shared)
+    return HostPipe(ends.read, ends.write, ends.shared)
 
 
 def _confined(held: Ruleset | None) -> wire.Confined:
-    return wire.Confined(landlock_abi=held.abi if held else 0, seccomp=held is not None, spaces=SPACES)
+    return wire.Confined(landlock_abi=held.abi if held else 0, seccomp=held is not None, spaces=NAMESPACES)
 
 
-def spaces() -> dict[str, str]:
+def namespaces() -> dict[str, str]:
     """The namespaces of this process that isolation is about."""
     if sys.platform != "linux":
         return {}
     return {name: os.readlink(f"/proc/self/ns/{name}") for name in ("net", "pid")}
 
 
-SPACES = spaces()
+NAMESPACES = namespaces()
 
 
 def _tidy_numba(scratch: str) -> None:

@@ -18,12 +18,12 @@ from hthor.errors import AgentError, UnknownName
 from hthor.guest.agent import agent_files, agent_paths, arguments, reference
 from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.client import loading
-from hthor.guest.client.agent_loop import play
-from hthor.guest.client.file_recorder import Recorder
-from hthor.guest.client.remote_senses import Gone
+from hthor.guest.client.agent_loop import run_trial
+from hthor.guest.client.file_recorder import FileRecorder
+from hthor.guest.client.remote_senses import HostGone
 from hthor.guest.confinement import Policy
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.shared_frames import View
+from hthor.guest.protocol.shared_frames import FrameReader
 from hthor.guest.protocol.websocket_library import load_websockets
 
 if TYPE_CHECKING:
@@ -33,10 +33,10 @@ _hosts_words = msgspec.msgpack.Decoder(wire.ToGuest)
 _NO_POLICY = Policy(level="", read=(), listed=(), scratch="", memory_mb=0, disk_mb=0)
 
 
-class Socket:
+class WebSocketConnection:
     """The guest's end of a connection."""
 
-    view: View | None = None
+    view: FrameReader | None = None
 
     def __init__(self, connection: ServerConnection) -> None:
         self._connection = connection
@@ -46,9 +46,9 @@ class Socket:
         try:
             message: wire.ToGuest = _hosts_words.decode(self._connection.recv(decode=False))
         except msgspec.DecodeError as error:
-            raise Gone(str(error)) from None
+            raise HostGone(str(error)) from None
         except load_websockets().exceptions.ConnectionClosed:
-            raise Gone("the connection was closed") from None
+            raise HostGone("the connection was closed") from None
         return message
 
     def send(self, message: wire.ToHost) -> None:
@@ -58,7 +58,7 @@ class Socket:
 
     def fail(self) -> NoReturn:
         """The host does not keep to the wire."""
-        raise Gone("not what was asked for")
+        raise HostGone("not what was asked for")
 
 
 def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> Server:
@@ -72,15 +72,15 @@ def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> 
         UnknownName, AgentError: when it is no such agent, or cannot be loaded.
         OSError: when the port cannot be had.
     """
-    agent = reference.read(text)
+    agent = reference.parse_reference(text)
     if agent.form not in ("file", "module"):
         raise UnknownName("agent to serve", text, reference.FORMS[:3], "Only Python agents are served.")
     sockets = load_websockets()
     version, more = agent.sha256, given or AgentInputs()
-    ground = agent_paths.of(agent, more.beyond(agent))
+    ground = agent_paths.find_agent_paths(agent, more.beyond(agent))
     sys.path.insert(0, agent.root)
-    loading.only_from(ground)
-    recorder = Recorder(ground)
+    loading.import_from_sources(ground)
+    recorder = FileRecorder(ground)
     recorder.start()
     try:
         order = wire.Load(
@@ -92,17 +92,17 @@ def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> 
             args=more.args,
             grounds=ground,
         )
-        cls, ready = loading.load(order)
-    except loading.Refusal as error:
+        cls, ready = loading.load_agent(order)
+    except loading.ContractViolation as error:
         raise AgentError(str(error)) from None
     ready = msgspec.structs.replace(ready, name=agent.name, version=version, persistent=True)
 
     opened = recorder.take()
-    make = arguments.maker(cls, more.args)
+    make = arguments.make_factory(cls, more.args)
 
     def talk(connection: ServerConnection) -> None:
-        files = agent_files.files_of(agent, more, ground, opened)
-        _converse(Socket(connection), make, msgspec.structs.replace(ready, manifest=files))
+        files = agent_files.list_files(agent, more, ground, opened)
+        _converse(WebSocketConnection(connection), make, msgspec.structs.replace(ready, manifest=files))
 
     quiet = logging.getLogger("hthor.guest.client.websocket_server")
     quiet.addHandler(logging.NullHandler())
@@ -119,8 +119,8 @@ def address(server: Server) -> str:
     return f"ws://{host}:{port}"
 
 
-def _converse(socket: Socket, make: Callable[[], Any], ready: wire.Ready) -> None:
+def _converse(socket: WebSocketConnection, make: Callable[[], Any], ready: wire.Ready) -> None:
     socket.send(ready)
-    with contextlib.suppress(Gone):
+    with contextlib.suppress(HostGone):
         while isinstance(begin := socket.receive(), wire.Begin):
-            play(socket, make, begin)
+            run_trial(socket, make, begin)

@@ -6,7 +6,7 @@ namespaces of its own. See `Isolation` for what a result says of it.
 
 from __future__ import annotations
 
-from hthor.guest.confinement.isolation import AUTO, LEVELS, SERVED, Isolation, IsolationError, known, suffices
+from hthor.guest.confinement.isolation import AUTO, LEVELS, SERVED, Isolation, IsolationError, check_level, suffices
 from hthor.guest.confinement.policy import Policy
 
-__all__ = ["AUTO", "LEVELS", "SERVED", "Isolation", "IsolationError", "Policy", "known", "suffices"]
+__all__ = ["AUTO", "LEVELS", "SERVED", "Isolation", "IsolationError", "Policy", "check_level", "suffices"]

@@ -130,14 +130,14 @@ DENIED = {
     "clock_adjtime": 305,
     "vhangup": 153,
 }
-KEEPERS = ("fork", "vfork", "pidfd_open", "sched_setaffinity")
+SUPERVISOR_CALLS = ("fork", "vfork", "pidfd_open", "sched_setaffinity")
 """Those that whoever starts and watches a guest's processes is not refused."""
 ABSENT = {"clone3": 435, "memfd_create": 319, "mincore": 27, "cachestat": 451}
 """Said not to exist, so that libraries take the older way: clone3 hides what it does behind a pointer, and the last two
 tell which parts of a shared file somebody has read."""
 UNSUPPORTED = {"fallocate": 285}
 """Said not to be supported: libraries then write, which is counted while it happens."""
-IDLE = {
+IGNORED = {
     "chmod": 90,
     "fchmod": 91,
     "fchmodat": 268,

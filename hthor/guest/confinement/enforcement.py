@@ -14,11 +14,11 @@ from hthor.guest.confinement.kernel import Refused
 from hthor.guest.confinement.landlock import Ruleset
 from hthor.guest.confinement.policy import Policy
 
-__all__ = ["Refused", "confine", "keep", "rules"]
+__all__ = ["Refused", "confine_supervisor", "confine_trial", "make_ruleset"]
 _PROCESSES = ("/proc",)
 
 
-def rules(policy: Policy) -> Ruleset | None:
+def make_ruleset(policy: Policy) -> Ruleset | None:
     """What a guest may do to files, for all its trials; None at the lowest level.
 
     Raises:
@@ -38,7 +38,7 @@ def rules(policy: Policy) -> Ruleset | None:
     )
 
 
-def keep(policy: Policy) -> None:
+def confine_supervisor(policy: Policy) -> None:
     """Hold the trusted part of a guest for good, before it imports what an agent names.
 
     It may do what its agents may, and what it takes to start them, to watch them and to clear up behind them.
@@ -58,10 +58,10 @@ def keep(policy: Policy) -> None:
     )
     own.put_on()
     own.close()
-    seccomp.put_on_keeper(execute=policy.execute)
+    seccomp.install_supervisor_filter(execute=policy.execute)
 
 
-def confine(policy: Policy, held: Ruleset | None, word: bytes = b"") -> None:
+def confine_trial(policy: Policy, held: Ruleset | None, word: bytes = b"") -> None:
     """Hold this process, which has given up its privileges, to a policy for good.
 
     Args:
@@ -70,12 +70,12 @@ def confine(policy: Policy, held: Ruleset | None, word: bytes = b"") -> None:
     Raises:
         Refused: when a layer cannot be put on, or does not hold.
     """
-    limits.bound(0 if policy.devices else policy.memory_mb, policy.disk_mb, processes=held is None)
+    limits.set_limits(0 if policy.devices else policy.memory_mb, policy.disk_mb, processes=held is None)
     if held is None:
         return
     held.put_on()
     held.close()
-    seccomp.put_on(os.getpid(), word, driven=bool(policy.devices))
+    seccomp.install_filter(os.getpid(), word, driven=bool(policy.devices))
     _prove()
 
 

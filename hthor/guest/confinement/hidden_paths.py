@@ -29,7 +29,7 @@ _FRESH_S = 30.0
 _known: dict[tuple[str, str], tuple[float, tuple[Path, ...]]] = {}
 
 
-def below(root: Path, agent: str = "") -> tuple[Path, ...]:
+def hidden_below(root: Path, agent: str = "") -> tuple[Path, ...]:
     """Files and folders below ``root`` that no agent may read.
 
     Args:

@@ -51,7 +51,7 @@ class Isolation(Struct, frozen=True, kw_only=True):
             raise ValueError(f"level is '{self.level}', valid are {', '.join((SERVED, *LEVELS))}")
 
 
-def known(level: str, *, auto: bool = True) -> str:
+def check_level(level: str, *, auto: bool = True) -> str:
     """The same level, if there is one of this name.
 
     Raises:

@@ -29,13 +29,13 @@ def die_with(parent: int) -> None:
         os._exit(0)
 
 
-def undumpable() -> None:
+def make_undumpable() -> None:
     """Keep this process's memory and environment from others of the same user."""
     if sys.platform == "linux":
         kernel.prctl("hiding memory", kernel.PR_SET_DUMPABLE, 0)
 
 
-def renounce() -> None:
+def drop_privileges() -> None:
     """Give up every privilege, root's too, and all hope of any; leave no core, and be the first to go for memory."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     if sys.platform != "linux":
@@ -51,7 +51,7 @@ def renounce() -> None:
         kernel.syscall("dropping privileges", _CAPSET, head, ctypes.create_string_buffer(bytes(24), 24))
 
 
-def bound(memory_mb: int, disk_mb: int, *, processes: bool) -> None:
+def set_limits(memory_mb: int, disk_mb: int, *, processes: bool) -> None:
     """Bound memory (0: not by a limit, as a GPU's does not fit one), files and, where it may start any, processes."""
     if memory_mb:
         _lower(resource.RLIMIT_DATA, memory_mb << 20)
@@ -69,7 +69,7 @@ def resident_mb(pid: int) -> float:
         return 0.0
 
 
-def held_mb(pid: int) -> float:
+def process_memory_mb(pid: int) -> float:
     """All that a process keeps in memory [MB], with what was swapped out and the tables of its pages.
 
     The tables can be many times as large as the pages: one that was only read takes none, but a place in a table.
@@ -90,7 +90,7 @@ def written_mb(pid: int) -> float:
         return 0.0
 
 
-def crowd(folder: str) -> tuple[float, int]:
+def folder_usage(folder: str) -> tuple[float, int]:
     """Size of all files in a folder [MB] and their number; stops counting at `_MOST_FILES`.
 
     Raises:
@@ -111,15 +111,15 @@ def crowd(folder: str) -> tuple[float, int]:
     return size / (1 << 20), count
 
 
-def excess(pid: int, scratch: str, memory_mb: int, disk_mb: int) -> tuple[str, str] | None:
+def find_excess(pid: int, scratch: str, memory_mb: int, disk_mb: int) -> tuple[str, str] | None:
     """What a process has too much of, as a fault's kind and detail; None while it keeps within its bounds.
 
     How much it had when it was looked at is chance, and no part of the detail.
     """
-    if held_mb(pid) > memory_mb:
+    if process_memory_mb(pid) > memory_mb:
         return "memory", f"the agent held more than {memory_mb} MB of memory"
     try:
-        size, count = crowd(scratch)
+        size, count = folder_usage(scratch)
     except OSError as error:
         return "disk", f"a folder of the agent's cannot be looked into: {error.strerror}"
     size = max(size, written_mb(pid))

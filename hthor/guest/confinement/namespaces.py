@@ -22,7 +22,7 @@ def unavailable() -> str:
     return "" if shutil.which("bwrap") else f"bubblewrap is not installed. {_HELP}"
 
 
-def command(policy: Policy, inner: Sequence[str]) -> list[str]:
+def bwrap_command(policy: Policy, inner: Sequence[str]) -> list[str]:
     """The command that runs another one inside."""
     words = [shutil.which("bwrap") or "bwrap", *_APART, *_NOBODY, "--hostname", "guest"]
     words += ["--die-with-parent", "--cap-drop", "ALL", "--proc", "/proc", "--dev", "/dev"]
@@ -37,7 +37,7 @@ def command(policy: Policy, inner: Sequence[str]) -> list[str]:
     return [*words, "--remount-ro", "/", "--chdir", "/", "--", *inner]
 
 
-def excuse(said: str) -> str:
+def failure_reason(said: str) -> str:
     """Why it did not start, from what it said, and what to do about it."""
     lines = [line for line in said.splitlines() if line.strip()]
     reason = lines[-1] if lines else "bubblewrap ended without a word"

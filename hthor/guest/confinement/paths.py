@@ -32,12 +32,12 @@ def gpu_devices(root: str = "/dev") -> tuple[str, ...]:
     return tuple(sorted(str(path) for path in Path(root).glob("nvidia*")))
 
 
-def libraries() -> list[str]:
+def library_folders() -> list[str]:
     """Folders of installed libraries."""
     return [path for path in sys.path if Path(path).name in _LIBRARIES and Path(path).is_dir()]
 
 
-def readable(agent: str, root: str, hidden: Sequence[str], beyond: Sequence[str] = ()) -> tuple[str, ...]:
+def readable_paths(agent: str, root: str, hidden: Sequence[str], beyond: Sequence[str] = ()) -> tuple[str, ...]:
     """Files and folders that a guest may read, folders with everything in them.
 
     Args:
@@ -47,21 +47,21 @@ def readable(agent: str, root: str, hidden: Sequence[str], beyond: Sequence[str]
     """
     secret = [PACKAGE, *(Path(path).resolve() for path in hidden)]
     found = [str(path) for path in _ours()]
-    roots = [sys.prefix, sys.base_prefix, sys.exec_prefix, os.path.realpath(sys.executable), *libraries()]
+    roots = [sys.prefix, sys.base_prefix, sys.exec_prefix, os.path.realpath(sys.executable), *library_folders()]
     for place in (*_SYSTEM, *_FACTS, *roots):
         found += _open(Path(place), secret)
     if root:
         folder = Path(root)
-        found += _open(folder, [*secret, *hidden_paths.below(folder.resolve(), agent)])
+        found += _open(folder, [*secret, *hidden_paths.hidden_below(folder.resolve(), agent)])
     for place in beyond:
-        found += _open(Path(place), [*secret, *hidden_paths.below(Path(place).resolve())])
+        found += _open(Path(place), [*secret, *hidden_paths.hidden_below(Path(place).resolve())])
     found.append(agent)
     return _tops(found)
 
 
-def listed(root: str) -> tuple[str, ...]:
+def listed_folders(root: str) -> tuple[str, ...]:
     """Folders whose names a guest may read, since Python looks for modules by name there."""
-    return (str(PACKAGE), *libraries(), *([root] if root else []))
+    return (str(PACKAGE), *library_folders(), *([root] if root else []))
 
 
 def _ours() -> Iterable[Path]:

@@ -40,12 +40,12 @@ def unavailable() -> str:
     return "" if machine == "x86_64" else f"the system call filter is written for x86_64, this machine is {machine}"
 
 
-def new_word() -> bytes:
+def new_token() -> bytes:
     """What is to be said to start a program."""
     return os.urandom(_WORD.size)
 
 
-def start(words: Sequence[str], env: Mapping[str, str], word: bytes) -> NoReturn:
+def exec_with_token(words: Sequence[str], env: Mapping[str, str], word: bytes) -> NoReturn:
     """Become another program.
 
     Raises:
@@ -57,7 +57,7 @@ def start(words: Sequence[str], env: Mapping[str, str], word: bytes) -> NoReturn
     raise Refused(f"starting {words[0]}: nothing came of it")
 
 
-def put_on(me: int, word: bytes = b"", *, driven: bool = False) -> None:
+def install_filter(me: int, word: bytes = b"", *, driven: bool = False) -> None:
     """Filter this process's system calls for good. It needs no_new_privs, and a single thread.
 
     Args:
@@ -67,24 +67,24 @@ def put_on(me: int, word: bytes = b"", *, driven: bool = False) -> None:
     Raises:
         Refused: when it cannot be.
     """
-    load(program(me, word, driven=driven))
+    load_filter(filter_program(me, word, driven=driven))
 
 
-def put_on_keeper(*, execute: bool) -> None:
+def install_supervisor_filter(*, execute: bool) -> None:
     """Filter the calls of whoever starts and watches held processes. It starts no program but as one of them.
 
     Raises:
         Refused: when it cannot be.
     """
-    needed = (*calls.KEEPERS, *(["execve"] if execute else []))
+    needed = (*calls.SUPERVISOR_CALLS, *(["execve"] if execute else []))
     refused = {**calls.DENIED, "execve": calls.EXECVE}
     lines = _begin()
     for number in (number for name, number in refused.items() if name not in needed):
         lines += _on(number, [_no(errno.EPERM)])
-    load(_assembled(lines))
+    load_filter(_assembled(lines))
 
 
-def load(code: bytes) -> None:
+def load_filter(code: bytes) -> None:
     """Put a filter's instructions on this process for good.
 
     Raises:
@@ -97,14 +97,14 @@ def load(code: bytes) -> None:
     kernel.prctl("filtering system calls", kernel.PR_SET_SECCOMP, _FILTER, ctypes.cast(head, ctypes.c_void_p))
 
 
-def program(me: int, word: bytes = b"", *, driven: bool = False) -> bytes:
+def filter_program(me: int, word: bytes = b"", *, driven: bool = False) -> bytes:
     """The filter's instructions; arguments as `put_on`."""
     refuse = _no(errno.EPERM)
     answers = {
         errno.EPERM: calls.DENIED,
         errno.ENOSYS: calls.ABSENT,
         errno.EOPNOTSUPP: calls.UNSUPPORTED,
-        0: calls.IDLE,
+        0: calls.IGNORED,
     }
     lines = _begin()
     for code, table in answers.items():

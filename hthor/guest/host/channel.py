@@ -8,11 +8,11 @@ from typing import Protocol
 import msgspec
 
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.sanitize import shown
+from hthor.guest.protocol.sanitize import sanitize_text
 
 _guests_words = msgspec.msgpack.Decoder(wire.ToHost)
 _MOST_OPENED, _LONGEST = 20_000, 1000
-_keepers_words = msgspec.msgpack.Decoder(wire.KeeperToHost)
+_keepers_words = msgspec.msgpack.Decoder(wire.SupervisorToHost)
 
 
 class GuestFault(Exception):
@@ -32,15 +32,15 @@ class GuestFault(Exception):
         super().__init__(f"{kind}: {detail}")
 
 
-class TimeIsUp(Exception):
+class DeadlinePassed(Exception):
     """The other end was not ready in time."""
 
 
-class HungUp(Exception):
+class PeerGone(Exception):
     """The other end is gone."""
 
 
-class Line(Protocol):
+class Transport(Protocol):
     """A guest that can be talked to."""
 
     @property
@@ -72,7 +72,7 @@ class Line(Protocol):
         """Let it go for good."""
 
 
-class Talk:
+class MessageChannel:
     """A conversation over a line, or over none once the guest is gone.
 
     ``loaded`` says that the guest is up: from then on a message that it failed is a fault. ``opened`` are the files
@@ -80,12 +80,12 @@ class Talk:
     """
 
     def __init__(self) -> None:
-        self.line: Line | None = None
+        self.line: Transport | None = None
         self.loaded = False
         self.opened: set[str] = set()
         self._log = ""
 
-    def open(self, line: Line) -> None:
+    def open(self, line: Transport) -> None:
         """Talk to this guest from now on."""
         self.line, self.loaded = line, False
 
@@ -102,9 +102,9 @@ class Talk:
         end = time.monotonic() + seconds
         try:
             self._running().write(body, end)
-        except TimeIsUp:
+        except DeadlinePassed:
             raise self.fault("timeout", f"the agent read nothing for {allowed or f'{seconds:g} s'}") from None
-        except HungUp:
+        except PeerGone:
             raise self.fault(*self._running().obituary()) from None
         return max(0.0, end - time.monotonic())
 
@@ -120,9 +120,9 @@ class Talk:
         end = time.monotonic() + seconds
         try:
             keepers, body = self._running().read(wire.MOST_BYTES, end)
-        except TimeIsUp:
+        except DeadlinePassed:
             raise self.fault("timeout", f"the agent gave no answer within {allowed or f'{seconds:g} s'}") from None
-        except HungUp:
+        except PeerGone:
             raise self.fault(*self._running().obituary()) from None
         if isinstance(body, int):
             raise self.fault("oversized", f"a message of {body} bytes, at most {wire.MOST_BYTES} are taken")
@@ -149,7 +149,7 @@ class Talk:
         log = self.log
         self.close()
         kind = kind if kind in wire.FAULTS else "garbage"
-        return GuestFault(kind, shown(detail)[: wire.TEXT_MAX], shown(traceback)[-wire.TEXT_MAX :], log)
+        return GuestFault(kind, sanitize_text(detail)[: wire.TEXT_MAX], sanitize_text(traceback)[-wire.TEXT_MAX :], log)
 
     @property
     def log(self) -> str:
@@ -168,7 +168,7 @@ class Talk:
             self._log = line.log
             line.kill()
 
-    def _running(self) -> Line:
+    def _running(self) -> Transport:
         if self.line is None:
             raise GuestFault("died", "the agent's process is gone")
         return self.line

@@ -5,7 +5,7 @@ from __future__ import annotations
 from msgspec import Struct
 
 from hthor.guest.agent.inputs import AgentInputs
-from hthor.guest.confinement import AUTO, known
+from hthor.guest.confinement import AUTO, check_level
 
 
 class GuestConfig(Struct, frozen=True, kw_only=True):
@@ -27,4 +27,4 @@ class GuestConfig(Struct, frozen=True, kw_only=True):
         Raises:
             UnknownName: when there is no such level.
         """
-        known(self.isolation)
+        check_level(self.isolation)

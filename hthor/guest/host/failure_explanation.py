@@ -15,15 +15,15 @@ _VARIABLE = re.compile(r"KeyError: '([A-Za-z_]\w*)'")
 _ENVIRONMENT = ("os.environ", "<frozen os>", "/os.py")
 
 
-def explained(fault: GuestFault, policy: Policy, root: str) -> GuestFault:
+def explain_fault(fault: GuestFault, policy: Policy, root: str) -> GuestFault:
     """The fault, with a sentence more where isolation is the reason."""
-    more = reason(fault.detail, policy, root) if fault.kind == "raised" else ""
+    more = isolation_reason(fault.detail, policy, root) if fault.kind == "raised" else ""
     if not more:
         return fault
     return GuestFault(fault.kind, f"{fault.detail.rstrip()}\n{more}", "", fault.log)
 
 
-def reason(text: str, policy: Policy, root: str) -> str:
+def isolation_reason(text: str, policy: Policy, root: str) -> str:
     """What isolation has to do with a failure, a sentence; empty where it has nothing to do with it.
 
     Args:

@@ -8,13 +8,13 @@ from pathlib import Path
 from hthor.guest.agent import agent_paths, reference
 from hthor.guest.confinement import AUTO, Isolation
 from hthor.guest.host import failure_explanation, noop_agent
-from hthor.guest.host.channel import GuestFault, Talk
+from hthor.guest.host.channel import GuestFault, MessageChannel
 from hthor.guest.host.config import GuestConfig
 from hthor.guest.host.guest_pool import GuestPool
 from hthor.guest.host.info import GuestInfo
-from hthor.guest.host.process import Process
-from hthor.guest.host.startup import Arrival
-from hthor.guest.host.trial_exchange import Turns
+from hthor.guest.host.process import GuestProcess
+from hthor.guest.host.startup import GuestStartup
+from hthor.guest.host.trial_exchange import TrialExchange
 from hthor.guest.host.websocket_client import Unreachable
 from hthor.guest.process_tools import cpu_affinity
 from hthor.guest.protocol import wire
@@ -49,7 +49,7 @@ class Guest:
     Not for use from several threads; on Linux the process dies when the thread that started it ends.
 
     Args:
-        path: the agent, as `reference.read` reads it: a file, a module, a command or an address.
+        path: the agent, as `reference.parse_reference` reads it: a file, a module, a command or an address.
         cls: the class to use when the file has several.
         start_s: seconds for coming up, and again for every ``begin``.
         step_s: seconds for each ``act``; what the host takes to answer (rendering) does not count.
@@ -79,12 +79,12 @@ class Guest:
         memory_mb: int = 4096,
         disk_mb: int = 256,
     ) -> None:
-        self._gathered, self._talk = False, Talk()
+        self._gathered, self._talk = False, MessageChannel()
         config = config or GuestConfig()
         self.inputs = config.inputs
-        self.reference = reference.read(str(path), cls)
-        self.grounds = agent_paths.of(self.reference, self.inputs.beyond(self.reference))
-        self._arrival = Arrival(
+        self.reference = reference.parse_reference(str(path), cls)
+        self.grounds = agent_paths.find_agent_paths(self.reference, self.inputs.beyond(self.reference))
+        self._arrival = GuestStartup(
             self._talk,
             self.reference,
             config=config,
@@ -96,7 +96,7 @@ class Guest:
         )
         self._start_s, self._step_s, self._bank_s = start_s, step_s, bank_s
         self._info: GuestInfo | None = None
-        self._turns: Turns | None = None
+        self._turns: TrialExchange | None = None
         self._ending = False
 
     def load(self) -> GuestInfo:
@@ -109,7 +109,7 @@ class Guest:
         """
         if self._talk.line is None or self._info is None:
             self._info = None
-            with cpu_affinity.anywhere():
+            with cpu_affinity.unpinned():
                 self._info = self._arrival.come()
         return self._info
 
@@ -130,7 +130,7 @@ class Guest:
         process = self._process
         self._gathered = process is not None and process.gather()
         window = process.frames if process else None
-        turns = Turns(talk, step_s=self._step_s, bank_s=self._bank_s, ahead=self._arrival.ahead, window=window)
+        turns = TrialExchange(talk, step_s=self._step_s, bank_s=self._bank_s, ahead=self._arrival.ahead, window=window)
         talk.send(wire.Begin(briefing=briefing), self._start_s)
         try:
             answer, left = talk.receive(self._start_s)
@@ -202,17 +202,17 @@ class Guest:
     def _explained(self, fault: GuestFault) -> GuestFault:
         """The fault, with what isolation has to do with it."""
         policy = self._arrival.policy
-        return failure_explanation.explained(fault, policy, self.reference.root) if policy else fault
+        return failure_explanation.explain_fault(fault, policy, self.reference.root) if policy else fault
 
     @property
-    def _process(self) -> Process | None:
-        return self._talk.line if isinstance(self._talk.line, Process) else None
+    def _process(self) -> GuestProcess | None:
+        return self._talk.line if isinstance(self._talk.line, GuestProcess) else None
 
     def _scatter(self) -> None:
         """Let this thread run on any CPU again."""
         if self._gathered:
             self._gathered = False
-            cpu_affinity.leave()
+            cpu_affinity.unpin_thread()
 
     def _await_end(self) -> None:
         """Wait until the last trial's process has come to its end; whoever will not is ended with its keeper."""

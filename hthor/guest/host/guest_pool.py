@@ -11,7 +11,7 @@ import weakref
 from msgspec import Struct
 
 from hthor.guest.host.info import GuestInfo
-from hthor.guest.host.process import Process
+from hthor.guest.host.process import GuestProcess
 
 _MOST = 4
 Key = tuple[object, ...]
@@ -21,7 +21,7 @@ Key = tuple[object, ...]
 class IdleGuest(Struct, frozen=True, kw_only=True):
     """A guest's process between two users, and what its agent said of itself."""
 
-    process: Process
+    process: GuestProcess
     info: GuestInfo
     ahead: bool
 

@@ -10,10 +10,10 @@ from msgspec import Struct
 
 from hthor.errors import AgentError
 from hthor.guest.agent.manifest import File
-from hthor.guest.agent.reference import Reference
+from hthor.guest.agent.reference import AgentReference
 from hthor.guest.confinement import Isolation
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.sanitize import is_name, shown
+from hthor.guest.protocol.sanitize import is_printable_name, sanitize_text
 
 
 class GuestInfo(Struct, frozen=True, kw_only=True):
@@ -37,7 +37,7 @@ class GuestInfo(Struct, frozen=True, kw_only=True):
     isolation: Isolation
 
 
-def describe(reference: Reference, sha256: str, ready: wire.Ready, held: Isolation) -> GuestInfo:
+def make_info(reference: AgentReference, sha256: str, ready: wire.Ready, held: Isolation) -> GuestInfo:
     """What is known of an agent that has come up.
 
     Raises:
@@ -46,15 +46,15 @@ def describe(reference: Reference, sha256: str, ready: wire.Ready, held: Isolati
     unknown = [name for name in ready.privileges if name not in wire.PRIVILEGES]
     if unknown:
         valid = ", ".join(wire.PRIVILEGES)
-        raise AgentError(f"{reference.text}: its privileges name '{shown(unknown[0][:80])}'. Valid: {valid}.")
+        raise AgentError(f"{reference.text}: its privileges name '{sanitize_text(unknown[0][:80])}'. Valid: {valid}.")
     if ready.wire != wire.VERSION:
         raise AgentError(f"{reference.text}: it speaks version {ready.wire} of the wire, valid is {wire.VERSION}.")
     if not math.isfinite(ready.gpus) or ready.gpus < 0:
         raise AgentError(f"{reference.text}: gpus must be a number from 0 on, got {ready.gpus}.")
     for name in (ready.name, *ready.robots):
-        if not is_name(name, wire.NAME_MAX):
+        if not is_printable_name(name, wire.NAME_MAX):
             most = f"at most {wire.NAME_MAX} characters that can be seen"
-            raise AgentError(f"{reference.text}: a name has {most}, got '{shown(name[:80])}'.")
+            raise AgentError(f"{reference.text}: a name has {most}, got '{sanitize_text(name[:80])}'.")
     python = reference.form in ("file", "module")
     served = reference.form == "served"
     return GuestInfo(
@@ -65,7 +65,7 @@ def describe(reference: Reference, sha256: str, ready: wire.Ready, held: Isolati
         robots=ready.robots,
         absent=ready.absent,
         persistent=ready.persistent or served,
-        doc=shown(ready.doc)[: wire.TEXT_MAX],
+        doc=sanitize_text(ready.doc)[: wire.TEXT_MAX],
         gpus=ready.gpus,
         manifest=ready.manifest if served else (),
         isolation=held,

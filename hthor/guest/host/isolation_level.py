@@ -9,7 +9,7 @@ import os
 from collections.abc import Callable
 
 from hthor.guest.confinement import AUTO, LEVELS, Isolation, IsolationError, namespaces
-from hthor.guest.host.process import Process
+from hthor.guest.host.process import GuestProcess
 from hthor.guest.protocol import wire
 
 _HINT = "'hthor eval --isolation auto' takes the strongest level that there is; see docs/isolation.md."
@@ -17,8 +17,8 @@ _HINT = "'hthor eval --isolation auto' takes the strongest level that there is; 
 
 def start_at_level(
     level: str,
-    launch: Callable[[str], Process],
-    enter: Callable[[Process], wire.Confined | str],
+    launch: Callable[[str], GuestProcess],
+    enter: Callable[[GuestProcess], wire.Confined | str],
     unavailable: dict[str, str],
     memory_mb: int,
 ) -> Isolation:
@@ -50,7 +50,7 @@ def start_at_level(
             answer = enter(process)
             if isinstance(answer, wire.Confined):
                 return _describe(rung, answer, memory_mb, not_higher)
-            reason = namespaces.excuse(answer) if rung == "L3" else answer
+            reason = namespaces.failure_reason(answer) if rung == "L3" else answer
         unavailable[rung] = reason
         not_higher = not_higher or f"{rung}: {reason}"
     raise IsolationError(f"isolation {level} cannot be had on this machine: {reason}. {_HINT}")

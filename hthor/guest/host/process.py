@@ -14,14 +14,14 @@ import tempfile
 import time
 from collections.abc import Mapping
 
-from hthor.guest.agent.reference import Reference
+from hthor.guest.agent.reference import AgentReference
 from hthor.guest.confinement import Policy, limits, namespaces, paths
-from hthor.guest.host.channel import HungUp, TimeIsUp
+from hthor.guest.host.channel import DeadlinePassed, PeerGone
 from hthor.guest.process_tools import cleanup, cpu_affinity, exit_status, resource_usage
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.sanitize import shown
-from hthor.guest.protocol.shared_frames import Window
-from hthor.guest.protocol.trial_channel import Channel
+from hthor.guest.protocol.sanitize import sanitize_text
+from hthor.guest.protocol.shared_frames import FrameWriter
+from hthor.guest.protocol.trial_channel import HostEnds
 
 _PASSED_ON = ("PATH", "LANG", "LC_ALL", "TZ", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -37,7 +37,7 @@ _HOME = "home"
 """The scratch folder elsewhere, within a folder that is made for the guest: its keeper may have to make it anew."""
 
 
-class Process:
+class GuestProcess:
     """A running guest: a line to its keeper, a pipe for what that prints, and the channel of one trial after another.
 
     Args:
@@ -47,13 +47,13 @@ class Process:
     def __init__(self, policy: Policy, ground: str) -> None:
         self.policy, self._ground = policy, ground
         self._log = b""
-        limits.undumpable()
+        limits.make_undumpable()
         self._line, tell = socket.socketpair()
         self._keeper = self._line.fileno()
         self._err, printed = os.pipe()
         for handle in (self._keeper, self._err):
             os.set_blocking(handle, False)
-        self._channel = Channel()
+        self._channel = HostEnds()
         spaces = policy.level == "L3"
         words = [
             sys.executable,
@@ -65,7 +65,7 @@ class Process:
             "0" if spaces else str(os.getpid()),
         ]
         if spaces:
-            words = namespaces.command(policy, words)
+            words = namespaces.bwrap_command(policy, words)
         try:
             self._process = subprocess.Popen(
                 words,
@@ -100,7 +100,7 @@ class Process:
             self._say.register(handle, select.POLLIN)
 
     @property
-    def frames(self) -> Window | None:
+    def frames(self) -> FrameWriter | None:
         """Pictures that are shared with the trial's process."""
         return self._channel.frames
 
@@ -111,22 +111,22 @@ class Process:
     def gather(self) -> bool:
         """Play the trial that begins on one CPU with this thread, if that can be; then `affinity.leave` ends it."""
         if (
-            self.policy.level == "L1" or (cpu := cpu_affinity.stay()) < 0
+            self.policy.level == "L1" or (cpu := cpu_affinity.pin_thread()) < 0
         ):  # at L1 an agent may start processes of its own
             return False
-        cpu_affinity.tell(self._keeper, cpu)
+        cpu_affinity.send_cpu(self._keeper, cpu)
         return True
 
     def write(self, body: bytes, end: float) -> None:
         """As `TrialLine` says."""
-        left = memoryview(wire.framed(body))
+        left = memoryview(wire.add_length(body))
         while left:
             try:
                 left = left[os.write(self._channel.out, left) :]
             except BlockingIOError:
                 self._wait(self._say, (self._channel.out,), end)
             except OSError:
-                raise HungUp from None
+                raise PeerGone from None
 
     def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
         """As `TrialLine` says; a message of a trial comes before one of the keeper."""
@@ -141,14 +141,14 @@ class Process:
                 except ConnectionResetError:  # a keeper that ended before it had read all
                     chunk = b""
                 if not chunk:
-                    raise HungUp
+                    raise PeerGone
                 self._buffers[handle] += chunk
 
     def renew(self) -> None:
         """Begin a channel for the next trial; what the last one left half said is gone with its own."""
         self._drain()
         self._channel.close()
-        self._channel = Channel()
+        self._channel = HostEnds()
         self._open()
 
     def _next(self, handle: int, most: int) -> bytes | int | None:
@@ -170,7 +170,7 @@ class Process:
             if found := [handle for handle in wanted if handle in ready]:
                 return found
             if not ready or time.monotonic() > end:  # a flood of words does not lengthen it
-                raise TimeIsUp
+                raise DeadlinePassed
             if not self._drain():
                 time.sleep(0.001)  # the log was closed; do not spin on it
 
@@ -183,7 +183,7 @@ class Process:
     def log(self) -> str:
         """The end of what was printed, 16 KiB at most."""
         self._drain()
-        return shown(self._log.decode(errors="replace"))
+        return sanitize_text(self._log.decode(errors="replace"))
 
     def _drain(self) -> bool:
         """Take in what was printed, as much of it as has come by now; false when nothing more can come of something."""
@@ -211,7 +211,7 @@ class Process:
         code = self._process.returncode
         if code is None:
             return "died", "the agent closed its pipe"
-        return exit_status.told(exit_status.unwrapped(code) if self.policy.level == "L3" else code)
+        return exit_status.describe_exit(exit_status.unwrap_bwrap(code) if self.policy.level == "L3" else code)
 
     def kill(self) -> None:
         """End everything that the guest has started, close the pipes, and remove what it wrote."""
@@ -227,18 +227,18 @@ class Process:
         self._line.close()
         os.close(self._err)
         self._channel.close()
-        remove(self._ground)
+        remove_folder(self._ground)
 
 
-def remove(ground: str) -> None:
+def remove_folder(ground: str) -> None:
     """Remove what a guest may have written, and the folder that it was in; an empty name is none."""
     if ground:
-        cleanup.empty(ground)
+        cleanup.empty_folder(ground)
         shutil.rmtree(ground, ignore_errors=True)
 
 
-def start(
-    agent: Reference,
+def start_process(
+    agent: AgentReference,
     level: str,
     *,
     hidden: tuple[str, ...],
@@ -246,18 +246,18 @@ def start(
     disk_mb: int,
     gpus: bool = False,
     readable: tuple[str, ...] = (),
-) -> Process:
+) -> GuestProcess:
     """A fresh guest on this level; what it says first tells whether the level is in force."""
     compiled = os.environ.get("NUMBA_CACHE_DIR", "")
     if compiled:
         os.makedirs(compiled, exist_ok=True)
     more = ([compiled] if compiled else []) + (list(paths.GPU_FACTS) if gpus else [])
-    read = paths.readable(agent.path, agent.root, hidden, readable)
+    read = paths.readable_paths(agent.path, agent.root, hidden, readable)
     ground = "" if level == "L3" else tempfile.mkdtemp(prefix="hthor-guest-")
     policy = Policy(
         level=level,
         read=(*read, *more),
-        listed=(*paths.listed(agent.root), *(place for place in readable if os.path.isdir(place))),
+        listed=(*paths.listed_folders(agent.root), *(place for place in readable if os.path.isdir(place))),
         scratch=os.path.join(ground, _HOME) if ground else _INSIDE,
         memory_mb=memory_mb,
         disk_mb=disk_mb,
@@ -268,9 +268,9 @@ def start(
     try:
         if ground:
             os.mkdir(policy.scratch)
-        return Process(policy, ground)
+        return GuestProcess(policy, ground)
     except OSError:
-        remove(ground)
+        remove_folder(ground)
         raise
 
 
@@ -282,5 +282,5 @@ def _environment(ours: Mapping[str, str], policy: Policy) -> dict[str, str]:
     env.update(dict.fromkeys(("HOME", "TMPDIR"), policy.scratch))
     env["GLIBC_TUNABLES"] = _MEMORY
     env.update(PYTHONHASHSEED="0", PYTHONDONTWRITEBYTECODE="1", USER="agent", LOGNAME="agent")
-    env["PYTHONPATH"] = os.pathsep.join([str(paths.PACKAGE.parent), *paths.libraries()])
+    env["PYTHONPATH"] = os.pathsep.join([str(paths.PACKAGE.parent), *paths.library_folders()])
     return env

@@ -7,14 +7,14 @@ from collections.abc import Iterable
 
 from hthor import code_identity, rules
 from hthor.guest.agent import agent_files, manifest
-from hthor.guest.agent.agent_paths import Grounds
+from hthor.guest.agent.agent_paths import AgentPaths
 from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.host.channel import GuestFault
 from hthor.guest.host.guest import Guest
 from hthor.types import BodySpec, Briefing
 
 
-def settle(guest: Guest, name: str) -> Manifest:
+def take_manifest(guest: Guest, name: str) -> Manifest:
     """The manifest of an agent; its guest is brought up, and of no further use.
 
     Args:
@@ -29,11 +29,11 @@ def settle(guest: Guest, name: str) -> Manifest:
     if not info.absent and not agent.words:
         _try_beginning(guest, info.privileges)
     args = {key: _shown(value, grounds) for key, value in guest.inputs.args.items()}
-    files = agent_files.files_of(agent, guest.inputs, grounds, guest.take_opened())
-    return manifest.of(name, info.source, args, files, _library(files, grounds))
+    files = agent_files.list_files(agent, guest.inputs, grounds, guest.take_opened())
+    return manifest.make_manifest(name, info.source, args, files, _library(files, grounds))
 
 
-def _library(files: Iterable[File], grounds: Grounds) -> str:
+def _library(files: Iterable[File], grounds: AgentPaths) -> str:
     """Hash of what the Python files among these import of hthor, and of all that needs."""
     python = [grounds.find(file.path) for file in files if file.path.endswith(".py")]
     read = [path for path in python if code_identity.is_python(path)]
@@ -83,7 +83,7 @@ def _try_beginning(guest: Guest, privileges: tuple[str, ...]) -> None:
     guest.finish()
 
 
-def _shown(value: str, grounds: Grounds) -> str:
+def _shown(value: str, grounds: AgentPaths) -> str:
     """An argument as a result shows it: a path as the manifest has it, without the folders of this machine."""
     if not os.path.isabs(value) or not os.path.exists(value):
         return value

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from hthor.errors import KILLED, AgentError, AgentKilled
 from hthor.guest.agent import arguments
-from hthor.guest.agent.agent_paths import Grounds
-from hthor.guest.agent.reference import Reference
+from hthor.guest.agent.agent_paths import AgentPaths
+from hthor.guest.agent.reference import AgentReference
 from hthor.guest.confinement import Isolation, Policy
 from hthor.guest.host import failure_explanation, info, isolation_level, process, websocket_client
-from hthor.guest.host.channel import GuestFault, Talk
+from hthor.guest.host.channel import GuestFault, MessageChannel
 from hthor.guest.host.config import GuestConfig
 from hthor.guest.host.guest_pool import GuestPool, IdleGuest, Key
 from hthor.guest.host.info import GuestInfo
-from hthor.guest.host.process import Process
+from hthor.guest.host.process import GuestProcess
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.sanitize import shown
+from hthor.guest.protocol.sanitize import sanitize_text
 
 _ENTER_S = 120.0
 """Seconds until a process must say what holds it: the start of an interpreter, and the libraries an agent names."""
@@ -26,20 +26,20 @@ _ONE_PROGRAM = (
 )
 
 
-class Arrival:
+class GuestStartup:
     """Brings an agent up, and up again after it has failed. The arguments are those of `Guest`."""
 
     def __init__(
         self,
-        talk: Talk,
-        agent: Reference,
+        talk: MessageChannel,
+        agent: AgentReference,
         *,
         config: GuestConfig,
         pool: GuestPool,
         start_s: float,
         memory_mb: int,
         disk_mb: int,
-        grounds: Grounds,
+        grounds: AgentPaths,
     ) -> None:
         self._talk, self._agent = talk, agent
         self._config, self._pool, self._grounds = config, pool, grounds
@@ -72,10 +72,10 @@ class Arrival:
         if not isinstance(ready, wire.Ready):
             talk.close()
             said = _instead(agent, ready)
-            why = failure_explanation.reason(said, self.policy, agent.root) if self.policy else ""
+            why = failure_explanation.isolation_reason(said, self.policy, agent.root) if self.policy else ""
             raise AgentError(f"{said}\n{why}".rstrip())
         try:
-            found = info.describe(agent, digest, ready, held)
+            found = info.make_info(agent, digest, ready, held)
         except AgentError:
             talk.close()
             raise
@@ -89,7 +89,7 @@ class Arrival:
     def leave(self, found: GuestInfo) -> bool:
         """Let the guest, which has no trial, wait for whoever wants the same; false when it is to end."""
         line = self._talk.line
-        if not isinstance(line, Process):
+        if not isinstance(line, GuestProcess):
             return False
         waiting = IdleGuest(process=line, info=found, ahead=self.ahead)
         if left := self._pool.put(self._key(found.sha256), waiting):
@@ -112,8 +112,8 @@ class Arrival:
             self._config.isolation, self._launch, self._enter, self._pool.unavailable, self._memory_mb
         )
 
-    def _launch(self, level: str) -> Process:
-        return process.start(
+    def _launch(self, level: str) -> GuestProcess:
+        return process.start_process(
             self._agent,
             level,
             hidden=self._config.hidden,
@@ -123,7 +123,7 @@ class Arrival:
             readable=self._grounds.readable,
         )
 
-    def _enter(self, started: Process) -> wire.Confined | str:
+    def _enter(self, started: GuestProcess) -> wire.Confined | str:
         """What a process that has just started says of its confinement, or why it has none."""
         self._talk.open(started)
         self.policy = started.policy
@@ -133,7 +133,7 @@ class Arrival:
             cls=agent.cls,
             policy=started.policy,
             module=agent.module,
-            words=(*agent.words, *arguments.as_words(args)) if agent.words else (),
+            words=(*agent.words, *arguments.as_options(args)) if agent.words else (),
             root=agent.root,
             args=args,
             grounds=self._grounds,
@@ -151,10 +151,10 @@ class Arrival:
         return said.detail if isinstance(said, wire.Failed) else f"unexpected {type(said).__name__}"
 
 
-def _instead(agent: Reference, said: object) -> str:
+def _instead(agent: AgentReference, said: object) -> str:
     """What came in place of what an agent says of itself."""
     if isinstance(said, wire.Failed):
-        return shown(said.detail)
+        return sanitize_text(said.detail)
     if isinstance(said, wire.Over):
         return f"{agent.text}: its process ended before it had said what it is."
     return f"{agent.text}: it said {type(said).__name__} before it had said what it is."

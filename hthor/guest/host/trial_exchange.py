@@ -7,9 +7,9 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from hthor.guest.host.channel import GuestFault, Talk
+from hthor.guest.host.channel import GuestFault, MessageChannel
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.shared_frames import Window
+from hthor.guest.protocol.shared_frames import FrameWriter
 from hthor.types import Action, Observation
 
 _T = TypeVar("_T")
@@ -21,11 +21,11 @@ _CHEAP = ("detections", "scan")
 _SENSES = ("detections", "scan", "rgb", "depth", "segmentation", "camera")
 
 
-class Unknown(Exception):
+class UnknownSensor(Exception):
     """Something was asked for that there is not."""
 
 
-class Turns:
+class TrialExchange:
     """A trial that has begun.
 
     Args:
@@ -35,11 +35,13 @@ class Turns:
         window: where pictures are shared, None for nowhere.
     """
 
-    def __init__(self, talk: Talk, *, step_s: float, bank_s: float, ahead: bool, window: Window | None) -> None:
+    def __init__(
+        self, talk: MessageChannel, *, step_s: float, bank_s: float, ahead: bool, window: FrameWriter | None
+    ) -> None:
         self._talk, self._window = talk, window
         self._step_s, self._bank = step_s, bank_s
         self._allowed = f"{step_s:g} s" + (f" and what was left of {bank_s:g} s more" if bank_s else "")
-        self._habits = Habits() if ahead else None
+        self._habits = ReadAhead() if ahead else None
         if window is not None:
             window.wipe()
 
@@ -64,7 +66,7 @@ class Turns:
                 if habits:
                     habits.read(said.what)
             elif isinstance(said, wire.Acted):
-                if wrong := wire.objection(said.action):
+                if wrong := wire.find_action_fault(said.action):
                     raise talk.fault(*wrong)
                 if habits:
                     habits.read(*said.read)
@@ -83,22 +85,22 @@ class Turns:
 
     def _given(self, observation: Observation, ask: wire.Ask) -> wire.Given:
         try:
-            return self._sensed(answer, observation, ask, self._window)
-        except Unknown as error:
+            return self._sensed(make_reply, observation, ask, self._window)
+        except UnknownSensor as error:
             raise self._talk.fault("garbage", str(error)) from None
 
     def _sensed(self, sense: Callable[..., _T], *values: object) -> _T:
         """What sensing gives. A failure to sense is ours, so the guest is let go and the error passed on."""
         try:
             return sense(*values)
-        except Unknown:
+        except UnknownSensor:
             raise
         except Exception:
             self._talk.close()
             raise
 
 
-def answer(observation: Observation, ask: wire.Ask, window: Window | None) -> wire.Given:
+def make_reply(observation: Observation, ask: wire.Ask, window: FrameWriter | None) -> wire.Given:
     """What was asked for.
 
     Args:
@@ -113,7 +115,7 @@ def answer(observation: Observation, ask: wire.Ask, window: Window | None) -> wi
     return wire.Given(value=msgspec.Raw(wire.encode(value if placed is None else placed)))
 
 
-class Habits:
+class ReadAhead:
     """What an agent has read in both of its last two steps, which is likely what it reads next.
 
     To be sent along with the next observation: every question costs two changes of process.
@@ -140,4 +142,4 @@ def _sensed(observation: Observation, ask: wire.Ask) -> Any:
     pictures = [message.image for message in observation.inbox if message.id == ask.which]
     if ask.what == "image" and pictures and callable(pictures[0]):
         return pictures[0]()
-    raise Unknown(f"asked for '{ask.what[:80]}', which there is not")
+    raise UnknownSensor(f"asked for '{ask.what[:80]}', which there is not")

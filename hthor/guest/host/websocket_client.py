@@ -17,7 +17,7 @@ from urllib.parse import urlsplit
 
 from hthor.errors import AgentError
 from hthor.guest.confinement import SERVED, Isolation
-from hthor.guest.host.channel import HungUp, TimeIsUp
+from hthor.guest.host.channel import DeadlinePassed, PeerGone
 from hthor.guest.protocol.websocket_library import load_websockets
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class Unreachable(AgentError):
     """No server answers at an agent's address."""
 
 
-def connect(url: str, seconds: float) -> Served:
+def connect(url: str, seconds: float) -> WebSocketTransport:
     """A line to the agent at this address.
 
     Raises:
@@ -47,7 +47,7 @@ def connect(url: str, seconds: float) -> Served:
     try:
         near = socket.create_connection((parts.hostname, parts.port), timeout=seconds)
         near.settimeout(None)
-        return Served(
+        return WebSocketTransport(
             sockets.sync.client.connect(
                 url,
                 sock=near,  # the library follows no redirection with a socket that it was given
@@ -67,7 +67,7 @@ def connect(url: str, seconds: float) -> Served:
         raise Unreachable(f"cannot reach the agent at {url}: {words}. {hint}") from None
 
 
-class Alarm:
+class DeadlineTimer:
     """Calls somebody once, when a moment passes that was set; a thread of its own looks from time to time.
 
     Whatever a server does to the library that speaks WebSocket, which may wait for it while it holds all its locks, a
@@ -94,7 +94,7 @@ class Alarm:
                 return
 
 
-class Served:
+class WebSocketTransport:
     """A connection to a served agent."""
 
     log = ""
@@ -104,7 +104,7 @@ class Served:
         self._connection = connection.__enter__()
         self._late = False
         self._end = ""
-        self._alarm = Alarm(self._hang_up)
+        self._alarm = DeadlineTimer(self._hang_up)
 
     def write(self, body: bytes, end: float) -> None:
         """As `TrialLine` says."""
@@ -113,7 +113,7 @@ class Served:
             self._connection.send(body)
         except (OSError, load_websockets().exceptions.ConnectionClosed) as error:
             self._end = str(error)
-            raise (TimeIsUp if self._late else HungUp) from None
+            raise (DeadlinePassed if self._late else PeerGone) from None
         finally:
             self._alarm.set()
 
@@ -123,14 +123,14 @@ class Served:
         try:
             body = self._connection.recv(timeout=max(0.0, end - time.monotonic()), decode=False)
         except TimeoutError:
-            raise TimeIsUp from None
+            raise DeadlinePassed from None
         except load_websockets().exceptions.ConnectionClosed as error:
             if self._late:
-                raise TimeIsUp from None
+                raise DeadlinePassed from None
             if error.sent is not None and error.sent.code == _TOO_BIG:
                 return False, most + 1
             self._end = str(error)
-            raise HungUp from None
+            raise PeerGone from None
         finally:
             self._alarm.set()
         return False, body

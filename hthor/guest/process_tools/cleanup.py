@@ -14,7 +14,7 @@ _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW
 def end_descendants(ancestor: int) -> None:
     """End all that a process has started, and what those have started; it adopts what loses its parent."""
     for _ in range(20):
-        below_each = families()
+        below_each = children_by_parent()
         line, left = [ancestor], []
         while line:
             below = below_each.get(line.pop(), [])
@@ -28,7 +28,7 @@ def end_descendants(ancestor: int) -> None:
         time.sleep(0.001)
 
 
-def families() -> dict[int, list[int]]:
+def children_by_parent() -> dict[int, list[int]]:
     """Living processes by their parents."""
     found: dict[int, list[int]] = {}
     for stat in Path("/proc").glob("[0-9]*/stat"):
@@ -39,7 +39,7 @@ def families() -> dict[int, list[int]]:
     return found
 
 
-def empty(folder: str) -> None:
+def empty_folder(folder: str) -> None:
     """Remove all that is in a folder, however deep and however it was locked; nothing that a link leads to.
 
     It starts no program and holds one folder open at a time, so neither depth nor names stop it.

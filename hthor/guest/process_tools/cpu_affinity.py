@@ -26,7 +26,7 @@ class _Here(threading.local):
 _here = _Here()
 
 
-def stay() -> int:
+def pin_thread() -> int:
     """Keep this thread on the CPU that it runs on until `leave` was called as often; -1 where that cannot be had."""
     if sys.platform != "linux":
         return -1
@@ -41,7 +41,7 @@ def stay() -> int:
     return min(os.sched_getaffinity(0))
 
 
-def leave() -> None:
+def unpin_thread() -> None:
     """One guest less to stay for."""
     if _here.guests:
         _here.guests -= 1
@@ -50,7 +50,7 @@ def leave() -> None:
 
 
 @contextlib.contextmanager
-def anywhere() -> Iterator[None]:
+def unpinned() -> Iterator[None]:
     """Let what is started meanwhile run on every CPU, as this thread does when it stays nowhere."""
     if not _here.guests:
         yield
@@ -63,19 +63,19 @@ def anywhere() -> Iterator[None]:
         _move(0, now)
 
 
-def tell(handle: int, cpu: int) -> None:
+def send_cpu(handle: int, cpu: int) -> None:
     """Say to whom watches a guest where its evaluation stays."""
     with contextlib.suppress(OSError):  # it is gone, which others will notice
         os.write(handle, cpu.to_bytes(_BYTES, "little"))
 
 
-def heard(handle: int) -> int:
+def receive_cpu(handle: int) -> int:
     """What `tell` said; -1 when nothing can come any more."""
     said = os.read(handle, _BYTES)
     return int.from_bytes(said, "little") if len(said) == _BYTES else -1
 
 
-class Joined:
+class PinnedProcess:
     """A guest's process that was moved to its evaluation's CPU, unless it has several threads."""
 
     def __init__(self, pid: int, cpu: int) -> None:

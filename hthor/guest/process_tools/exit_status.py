@@ -10,7 +10,7 @@ from hthor.guest.confinement.calls import FROM_OUTSIDE
 _SHELLS = 128
 
 
-def told(code: int) -> tuple[str, str]:
+def describe_exit(code: int) -> tuple[str, str]:
     """Kind and words for an exit code as `subprocess` has it.
 
     By some signals only a machine or a person ends a process, one that ran out of memory or is going down, so what
@@ -21,7 +21,7 @@ def told(code: int) -> tuple[str, str]:
     return KILLED if -code in FROM_OUTSIDE else "died", f"killed by {_name(-code)}"
 
 
-def unwrapped(code: int) -> int:
+def unwrap_bwrap(code: int) -> int:
     """The exit code of what bubblewrap ran, which tells of a signal as shells do."""
     return _SHELLS - code if code > _SHELLS else code
 

@@ -12,13 +12,13 @@ from hthor.guest.protocol import shared_frames, wire
 _hosts_words = msgspec.msgpack.Decoder(wire.ToGuest)
 
 
-class Pipe:
+class HostPipe:
     """The guest's end of the wire. Reads exactly one frame at a time, so that a fork shares nothing half read."""
 
     def __init__(self, read: int, write: int, shared: int = -1) -> None:
         self._read, self._write = read, write
         self.handles, self.shared = (read, write), shared
-        self.view = shared_frames.View(shared) if shared >= 0 else None
+        self.view = shared_frames.FrameReader(shared) if shared >= 0 else None
 
     def receive(self) -> wire.ToGuest:
         """The host's next message; ends the process when the host is gone."""
@@ -26,7 +26,7 @@ class Pipe:
         message: wire.ToGuest = _hosts_words.decode(self._exactly(size))
         return message
 
-    def send(self, message: wire.ToHost | wire.KeeperToHost) -> None:
+    def send(self, message: wire.ToHost | wire.SupervisorToHost) -> None:
         data = memoryview(wire.frame(message))
         while data:
             data = data[os.write(self._write, data) :]

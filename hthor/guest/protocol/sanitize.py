@@ -14,11 +14,11 @@ _ESCAPED = {
 }
 
 
-def shown(text: str) -> str:
+def sanitize_text(text: str) -> str:
     """The same text, with escapes for what is not to be seen; line ends stay."""
     return text.replace("\r\n", "\n").translate(_ESCAPED)
 
 
-def is_name(text: str, most: int) -> bool:
+def is_printable_name(text: str, most: int) -> bool:
     """Whether this can stand in a table or a file's name."""
     return text.isprintable() and len(text) <= most

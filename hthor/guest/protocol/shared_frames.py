@@ -24,7 +24,7 @@ _KINDS = "biuf"
 """What arrays may hold: truth, whole numbers, numbers."""
 
 
-class Window:
+class FrameWriter:
     """The host's end."""
 
     def __init__(self) -> None:
@@ -63,17 +63,17 @@ class Window:
         os.close(self.handle)
 
 
-def window() -> Window | None:
+def open_frames() -> FrameWriter | None:
     """A new one, None where the system has no such memory."""
     if sys.platform != "linux":
         return None
     try:
-        return Window()
+        return FrameWriter()
     except OSError:
         return None
 
 
-class View:
+class FrameReader:
     """The guest's end, which can only read."""
 
     def __init__(self, handle: int) -> None:

@@ -17,7 +17,7 @@ _F_SETPIPE_SZ = 1031
 _SIGN = b"c"
 
 
-class Channel:
+class HostEnds:
     """The host's ends of a trial's channel.
 
     Attributes:
@@ -28,7 +28,7 @@ class Channel:
         read, self.out = os.pipe()
         self.words, write = os.pipe()
         self.err, printed = os.pipe()
-        self.frames = shared_frames.window()
+        self.frames = shared_frames.open_frames()
         self._far: tuple[int, ...] = (read, write, printed)
         for handle in (self.out, self.words, self.err):
             os.set_blocking(handle, False)
@@ -56,7 +56,7 @@ class Channel:
             os.close(handle)
 
 
-class Ends:
+class GuestEnds:
     """The guest's ends of a trial's channel.
 
     Attributes:
@@ -86,7 +86,7 @@ class Ends:
             os.close(handle)
 
 
-def awaited(line: socket.socket) -> Ends | None:
+def receive_ends(line: socket.socket) -> GuestEnds | None:
     """The ends that are given over a line, when they come; None when nothing can come any more.
 
     Other words on the line were meant for the trial before, and are passed over.
@@ -97,6 +97,6 @@ def awaited(line: socket.socket) -> Ends | None:
         except ConnectionResetError:
             return None
         if handles:
-            return Ends(*handles)
+            return GuestEnds(*handles)
         if not said:
             return None

@@ -14,7 +14,7 @@ import numpy as np
 from msgspec import Struct
 
 from hthor.errors import KILLED
-from hthor.guest.agent.agent_paths import Grounds
+from hthor.guest.agent.agent_paths import AgentPaths
 from hthor.guest.agent.manifest import File
 from hthor.guest.confinement import Policy
 from hthor.types import Action, Briefing, Observation
@@ -37,7 +37,7 @@ OWN_FAULTS = ("raised", "wrong_type", "garbage", "oversized")
 """Those that a guest may report of itself; the others are for its keeper and the host to find."""
 
 
-class Unfit(ValueError):
+class InvalidAction(ValueError):
     """An action with a value of the wrong type; the message names the field."""
 
 
@@ -58,7 +58,7 @@ class Load(Struct, tag="load", frozen=True, kw_only=True):
     words: tuple[str, ...] = ()
     root: str = ""
     args: dict[str, str] = {}
-    grounds: Grounds | None = None
+    grounds: AgentPaths | None = None
 
 
 class Begin(Struct, tag="begin", frozen=True, kw_only=True):
@@ -158,7 +158,7 @@ class Failed(Struct, tag="failed", frozen=True, kw_only=True):
 
 ToGuest = Load | Begin | Look | Given | End
 ToHost = Confined | Ready | Done | Ask | Acted | Failed
-KeeperToHost = Over | Failed
+SupervisorToHost = Over | Failed
 
 
 def _encode_array(value: object) -> object:
@@ -176,7 +176,7 @@ def _as_list(value: object) -> object:
     raise TypeError(f"a {type(value).__name__} has no place in an Action")
 
 
-def plain(action: Action) -> Action:
+def to_plain_action(action: Action) -> Action:
     """The same action with NumPy's numbers and arrays turned into Python's.
 
     Raises:
@@ -186,7 +186,7 @@ def plain(action: Action) -> Action:
         return _action_decoder.decode(_plain_encoder.encode(action))
     except (msgspec.ValidationError, TypeError, OverflowError) as error:
         problem, _, place = str(error).partition(" - at `$.")
-        raise Unfit(f"{place.rstrip('`')}: {problem}" if place else problem) from None
+        raise InvalidAction(f"{place.rstrip('`')}: {problem}" if place else problem) from None
 
 
 def decode_array(value: dict[str, Any]) -> Any:
@@ -204,17 +204,17 @@ def encode(message: object) -> bytes:
     return _encoder.encode(message)
 
 
-def frame(message: ToGuest | ToHost | KeeperToHost) -> bytes:
+def frame(message: ToGuest | ToHost | SupervisorToHost) -> bytes:
     """One message as it goes through a pipe."""
-    return framed(encode(message))
+    return add_length(encode(message))
 
 
-def framed(body: bytes) -> bytes:
+def add_length(body: bytes) -> bytes:
     """An encoded message with its length in front."""
     return len(body).to_bytes(4, "little") + body
 
 
-def objection(action: Action) -> tuple[str, str] | None:
+def find_action_fault(action: Action) -> tuple[str, str] | None:
     """What is wrong with an action, as a fault's kind and detail; None when it is sound."""
     for part in (action.motion, action.say):
         if part is None:

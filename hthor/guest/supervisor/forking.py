@@ -10,10 +10,10 @@ from hthor.guest.client import trial_process
 from hthor.guest.confinement import limits
 from hthor.guest.confinement.landlock import Ruleset
 from hthor.guest.protocol import trial_channel, wire
-from hthor.guest.protocol.trial_channel import Ends
+from hthor.guest.protocol.trial_channel import GuestEnds
 
 
-def fork(ends: Ends, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool = False) -> int:
+def fork_trial(ends: GuestEnds, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool = False) -> int:
     """A child that plays one trial; its process id.
 
     Args:
@@ -23,7 +23,7 @@ def fork(ends: Ends, tell: int, order: wire.Load, held: Ruleset | None, *, first
     return _forked(lambda: ends, (tell,), order, held, first=first)
 
 
-class Spare:
+class SpareProcess:
     """A child that is held already, and waits for its trial without having seen anything of the agent.
 
     So nothing of one trial can reach the next by it: what it imports, it imports when its turn has come.
@@ -32,13 +32,13 @@ class Spare:
         playing: the channel of the trial that goes on meanwhile, which is none of its business.
     """
 
-    def __init__(self, playing: Ends, tell: int, order: wire.Load, held: Ruleset | None) -> None:
+    def __init__(self, playing: GuestEnds, tell: int, order: wire.Load, held: Ruleset | None) -> None:
         self._go, wait = socket.socketpair()
         secret = (*playing.handles, tell, self._go.fileno())
         self._pid = _forked(lambda: _received(wait), secret, order, held)
         wait.close()
 
-    def start(self, ends: Ends) -> int:
+    def start(self, ends: GuestEnds) -> int:
         """Let it play a trial with this channel; its process id, or 0 if it is gone."""
         try:
             ends.pass_on(self._go)
@@ -54,13 +54,13 @@ class Spare:
         os.waitpid(self._pid, 0)
 
 
-def _received(wait: socket.socket) -> Ends | None:
+def _received(wait: socket.socket) -> GuestEnds | None:
     with wait:
-        return trial_channel.awaited(wait)
+        return trial_channel.receive_ends(wait)
 
 
 def _forked(
-    ends: Callable[[], Ends | None],
+    ends: Callable[[], GuestEnds | None],
     secret: Iterable[int],
     order: wire.Load,
     held: Ruleset | None,
@@ -75,7 +75,7 @@ def _forked(
         limits.die_with(me)
         for handle in secret:
             os.close(handle)
-        trial_process.serve(ends, order, held, first=first)
-        os._exit(trial_process.ORDERLY)
+        trial_process.run_trials(ends, order, held, first=first)
+        os._exit(trial_process.COMPLETED)
     finally:
         os._exit(1)

@@ -63,7 +63,7 @@ def _installed(name: str) -> bool:
     spec = importlib.util.find_spec(name)
     if spec is None or name == "hthor":
         return False
-    places = [Path(sys.prefix), Path(sys.base_prefix), *map(Path, paths.libraries())]
+    places = [Path(sys.prefix), Path(sys.base_prefix), *map(Path, paths.library_folders())]
     return spec.origin in ("built-in", "frozen") or any(Path(spec.origin or "").is_relative_to(at) for at in places)
 
 

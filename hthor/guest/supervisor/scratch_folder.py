@@ -8,7 +8,7 @@ import os
 from hthor.guest.process_tools import cleanup
 
 
-class Home:
+class ScratchFolder:
     """Keeps the folder.
 
     Args:
@@ -25,7 +25,7 @@ class Home:
 
         A folder that had many files can stay large when they are gone, which would tell of them.
         """
-        cleanup.empty(self._folder)
+        cleanup.empty_folder(self._folder)
         outgrown = os.stat(self._folder).st_size != self._size
         if outgrown:
             with contextlib.suppress(OSError):  # at L3 it is a file system of its own, which cannot be replaced

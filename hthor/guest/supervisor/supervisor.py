@@ -18,11 +18,11 @@ from hthor.guest.confinement import enforcement, kernel, limits
 from hthor.guest.confinement.enforcement import Refused
 from hthor.guest.process_tools import cleanup
 from hthor.guest.protocol import trial_channel, wire
-from hthor.guest.protocol.pipe import Pipe
+from hthor.guest.protocol.pipe import HostPipe
 from hthor.guest.supervisor import forking, watchdog
-from hthor.guest.supervisor.forking import Spare
+from hthor.guest.supervisor.forking import SpareProcess
 from hthor.guest.supervisor.preloading import preload
-from hthor.guest.supervisor.scratch_folder import Home
+from hthor.guest.supervisor.scratch_folder import ScratchFolder
 
 _SUBREAPER = 36
 
@@ -38,20 +38,20 @@ def main(tell: int, parent: int) -> None:
     os.set_inheritable(tell, False)
     os.dup2(2, 1)
     sys.stdout = sys.stderr
-    line, own = socket.socket(fileno=tell), Pipe(-1, tell)
-    ends = trial_channel.awaited(line)
-    order = Pipe(ends.read, ends.write).receive() if ends else None
+    line, own = socket.socket(fileno=tell), HostPipe(-1, tell)
+    ends = trial_channel.receive_ends(line)
+    order = HostPipe(ends.read, ends.write).receive() if ends else None
     if ends is None or not isinstance(order, wire.Load):
         os._exit(1)
     if parent:
         _leave_guard((tell, *ends.handles), os.path.dirname(order.policy.scratch))
     try:
-        limits.renounce()
+        limits.drop_privileges()
         if sys.platform == "linux":
             kernel.prctl("adopting orphans", _SUBREAPER, 1)
-        enforcement.keep(order.policy)
-        home = Home(order.policy.scratch)
-        held = enforcement.rules(order.policy)
+        enforcement.confine_supervisor(order.policy)
+        home = ScratchFolder(order.policy.scratch)
+        held = enforcement.make_ruleset(order.policy)
     except Refused as error:
         own.send(wire.Failed(kind="confinement", detail=str(error)))
         return
@@ -59,26 +59,26 @@ def main(tell: int, parent: int) -> None:
     if not order.words:
         preload(Path(order.path), order.module)
         home.tidy()
-    pid = forking.fork(ends, tell, order, held, first=True)
-    spare: Spare | None = None
+    pid = forking.fork_trial(ends, tell, order, held, first=True)
+    spare: SpareProcess | None = None
     while True:
-        told = watchdog.watch(pid, order, tell)
+        told = watchdog.watch_trial(pid, order, tell)
         if home.tidy() and held is not None:  # rules are for the folder that was there
             held.close()
-            held = enforcement.rules(order.policy)
+            held = enforcement.make_ruleset(order.policy)
             if spare:
                 spare.discard()
                 spare = None
         own.send(told)
-        if (fresh := trial_channel.awaited(line)) is None:
+        if (fresh := trial_channel.receive_ends(line)) is None:
             return
         ends.close()
         ends = fresh
         if not _called(ends.read):
             return
-        pid = (spare.start(ends) if spare else 0) or forking.fork(ends, tell, order, held)
+        pid = (spare.start(ends) if spare else 0) or forking.fork_trial(ends, tell, order, held)
         if order.policy.level != "L1":  # there all that the keeper has started ends with each trial
-            spare = Spare(ends, tell, order, held)
+            spare = SpareProcess(ends, tell, order, held)
 
 
 def _called(read: int) -> bool:
@@ -115,7 +115,7 @@ def _leave_guard(pipes: tuple[int, ...], ground: str) -> None:
             ended, found = os.waitpid(-1, os.WNOHANG)
             code = os.waitstatus_to_exitcode(found) if ended == pid else None
         cleanup.end_descendants(me)
-        cleanup.empty(ground)
+        cleanup.empty_folder(ground)
         os.rmdir(ground)
     finally:
         if code is not None and code < 0:  # so that the host hears how the keeper ended

@@ -14,7 +14,7 @@ from hthor.guest.protocol import wire
 _LOOK_MS = 50
 
 
-def watch(pid: int, order: wire.Load, tell: int) -> wire.KeeperToHost:
+def watch_trial(pid: int, order: wire.Load, tell: int) -> wire.SupervisorToHost:
     """Wait for a child's end, which comes early if it takes too much; what to say of it.
 
     Args:
@@ -30,9 +30,9 @@ def watch(pid: int, order: wire.Load, tell: int) -> wire.KeeperToHost:
     code = os.waitstatus_to_exitcode(status)
     if found:
         return wire.Failed(kind=found[0], detail=found[1])
-    if code == trial_process.ORDERLY or (bool(order.words) and code == 0):
+    if code == trial_process.COMPLETED or (bool(order.words) and code == 0):
         return wire.Over()
-    kind, words = exit_status.told(code)
+    kind, words = exit_status.describe_exit(code)
     return wire.Failed(kind=kind, detail=f"the agent's process {'was ' * (code < 0)}{words}")
 
 
@@ -44,11 +44,11 @@ def _excess(pid: int, policy: Policy, tell: int) -> tuple[str, str] | None:
         poll.register(handle, select.POLLIN)
     while found is None and ended not in (ready := [handle for handle, _ in poll.poll(_LOOK_MS)]):
         if not ready:
-            found = limits.excess(pid, policy.scratch, policy.memory_mb, policy.disk_mb)
+            found = limits.find_excess(pid, policy.scratch, policy.memory_mb, policy.disk_mb)
             if joined:
                 joined.part()
-        elif (cpu := cpu_affinity.heard(tell)) >= 0:
-            joined = cpu_affinity.Joined(pid, cpu)
+        elif (cpu := cpu_affinity.receive_cpu(tell)) >= 0:
+            joined = cpu_affinity.PinnedProcess(pid, cpu)
         else:
             poll.unregister(tell)
     os.close(ended)

@@ -73,7 +73,7 @@ def listed(folder: Path) -> tuple[File, ...]:
     found = []
     for path in folder.rglob("*"):
         if path.is_file() and not path.is_symlink():
-            sha256, size = digests.read(path)
+            sha256, size = digests.hash_file(path)
             found.append(File(path=path.relative_to(folder).as_posix(), sha256=sha256, bytes=size))
     return tuple(sorted(found))
 

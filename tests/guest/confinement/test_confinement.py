@@ -11,7 +11,17 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from hthor.errors import UnknownName
-from hthor.guest.confinement import LEVELS, SERVED, Policy, calls, devices, known, namespaces, paths, seccomp, suffices
+from hthor.guest.confinement import (
+    LEVELS,
+    SERVED,
+    Policy,
+    calls,
+    check_level,
+    namespaces,
+    paths,
+    seccomp,
+    suffices,
+)
 
 
 def covered(path: Path, allowed: tuple[str, ...]) -> bool:
@@ -32,7 +42,7 @@ def agent(tmp_path: Path) -> Path:
 
 def test_an_agent_reads_its_folder_but_for_what_is_hidden(agent: Path) -> None:
     home = agent.parent
-    allowed = paths.readable(str(agent), str(home), [str(home / "suite.json")])
+    allowed = paths.readable_paths(str(agent), str(home), [str(home / "suite.json")])
     assert covered(agent, allowed)
     assert covered(home / "weights" / "w.npz", allowed)
     for secret in (home / "runs" / "x" / "trials.jsonl", home / "suite.json", home.parent / "else" / "salt.txt"):
@@ -40,7 +50,7 @@ def test_an_agent_reads_its_folder_but_for_what_is_hidden(agent: Path) -> None:
 
 
 def test_of_this_package_only_what_minds_are_made_with_is_read(agent: Path) -> None:
-    allowed = paths.readable(str(agent), str(agent.parent), [])
+    allowed = paths.readable_paths(str(agent), str(agent.parent), [])
     for name in ("types/acting.py", "navigation/map.py", "errors.py", "houses/freespace.py"):
         assert covered(paths.PACKAGE / name, allowed), name
     secrets = [path for path in paths.PACKAGE.rglob("*.json") if "catalog" not in path.parts]
@@ -53,7 +63,7 @@ def test_levels_are_ordered_and_named() -> None:
     assert [suffices(level, "L2") for level in LEVELS] == [False, True, True]
     assert not suffices(SERVED, "L1")
     with pytest.raises(UnknownName, match=r"unknown isolation level 'l2'\. Did you mean 'L2'"):
-        known("l2")
+        check_level("l2")
 
 
 def verdict(code: bytes, number: int, *values: int, machine: int = 0xC000003E) -> int:
@@ -127,22 +137,22 @@ CALLS = {
 
 @pytest.mark.parametrize("answer", CALLS)
 def test_the_filter_does_what_it_says(answer: int) -> None:
-    code = seccomp.program(77)
+    code = seccomp.filter_program(77)
     for call in CALLS[answer]:
         assert verdict(code, *call) == answer, call
 
 
 def test_every_call_of_the_tables_is_answered_as_they_say() -> None:
-    code = seccomp.program(77)
+    code = seccomp.filter_program(77)
     assert {verdict(code, number) for number in calls.DENIED.values()} == {REFUSE}
-    assert {verdict(code, number) for number in calls.IDLE.values()} == {DONE}
+    assert {verdict(code, number) for number in calls.IGNORED.values()} == {DONE}
     assert verdict(code, 0, machine=0x40000003) == KILL
 
 
 @pytest.mark.parametrize("driven", [False, True])
 @given(command=st.integers(0, 2**32 - 1))
 def test_no_command_changes_what_stays_with_a_file_or_a_terminal(driven: bool, command: int) -> None:
-    answer = verdict(seccomp.program(77, driven=driven), 16, 3, command)
+    answer = verdict(seccomp.filter_program(77, driven=driven), 16, 3, command)
     if (command >> 8 & 0xFF) in calls.FILE_IOCTLS or command in calls.TERMINAL_IOCTLS:
         assert answer == NO_TERMINAL
     elif driven or command in calls.IOCTLS:
@@ -156,21 +166,21 @@ def test_no_command_changes_what_stays_with_a_file_or_a_terminal(driven: bool, c
 def test_a_program_is_started_by_a_word_and_by_no_other(word: bytes, bit: int) -> None:
     spoken = struct.unpack("<3Q", word)
     wrong = struct.unpack("<3Q", (int.from_bytes(word, "little") ^ 1 << bit).to_bytes(24, "little"))
-    code = seccomp.program(77, word)
+    code = seccomp.filter_program(77, word)
     assert verdict(code, 59, 1, 2, 3, *spoken) == ALLOW
     assert verdict(code, 59, 1, 2, 3, *wrong) == REFUSE
     assert verdict(code, 322, 1, 2, 3, *spoken) == REFUSE, "execveat has no word"
-    assert verdict(seccomp.program(77), 59, 1, 2, 3, *spoken) == REFUSE, "without a word nothing is started"
+    assert verdict(seccomp.filter_program(77), 59, 1, 2, 3, *spoken) == REFUSE, "without a word nothing is started"
 
 
 def test_gpus_are_let_through_where_they_are_asked_for(tmp_path: Path) -> None:
     for name in ("nvidia0", "nvidiactl", "nvidia-uvm", "sda"):
         (tmp_path / name).touch()
-    found = devices.gpus(str(tmp_path))
+    found = paths.gpu_devices(str(tmp_path))
     assert [Path(path).name for path in found] == ["nvidia-uvm", "nvidia0", "nvidiactl"]
     policy = Policy(level="L3", read=(), listed=(), scratch="/tmp/x", memory_mb=1, disk_mb=1)
-    assert "--dev-bind-try" not in namespaces.command(policy, ["true"])
-    words = namespaces.command(replace(policy, devices=found), ["true"])
+    assert "--dev-bind-try" not in namespaces.bwrap_command(policy, ["true"])
+    words = namespaces.bwrap_command(replace(policy, devices=found), ["true"])
     assert [words[at + 1] for at, word in enumerate(words) if word == "--dev-bind-try"] == list(found)
 
 
@@ -186,7 +196,7 @@ def test_an_agent_in_a_second_checkout_reads_neither_its_suites_nor_its_houses(t
         copy.parent.mkdir(parents=True, exist_ok=True)
         copy.write_bytes(path.read_bytes())
     (other / "agent.py").write_text("")
-    allowed = paths.readable(str(other / "agent.py"), str(other), [])
+    allowed = paths.readable_paths(str(other / "agent.py"), str(other), [])
     assert covered(other / "agent.py", allowed)
     for path in copies:
         assert not covered(path, allowed), path

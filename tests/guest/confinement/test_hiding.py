@@ -72,7 +72,7 @@ def covered(path: Path, allowed: tuple[str, ...]) -> bool:
 
 
 def test_what_is_hthors_is_hidden_wherever_it_lies(home: Path) -> None:
-    allowed = paths.readable(str(home / "agent.py"), str(home), [])
+    allowed = paths.readable_paths(str(home / "agent.py"), str(home), [])
     for name in (*SECRETS, "season/word", "shortcut/trials.jsonl"):
         assert not covered(home / name, allowed), name
     for name in OWN:
@@ -81,7 +81,7 @@ def test_what_is_hthors_is_hidden_wherever_it_lies(home: Path) -> None:
 
 def test_a_name_that_is_no_text_is_in_no_list(home: Path) -> None:
     Path(os.fsdecode(os.fsencode(home) + b"/weights\xff.npz")).write_bytes(b"")
-    allowed = paths.readable(str(home / "agent.py"), str(home), [])
+    allowed = paths.readable_paths(str(home / "agent.py"), str(home), [])
     assert all(jsonio.is_text(path) for path in allowed)
     assert covered(home / "weights" / "policy.npz", allowed)
 
@@ -89,11 +89,11 @@ def test_a_name_that_is_no_text_is_in_no_list(home: Path) -> None:
 def test_an_agent_that_lies_in_a_runs_folder_reads_its_own_files_still(home: Path) -> None:
     run = home / "study" / "one"
     (run / "helper.py").write_bytes(b"")
-    allowed = paths.readable(str(run / "agent.py"), str(run), [])
+    allowed = paths.readable_paths(str(run / "agent.py"), str(run), [])
     assert covered(run / "helper.py", allowed)
     for name in ("run.json", "trials.jsonl", "faults/d39adb2d0789d898.json", "control/run.json"):
         assert not covered(run / name, allowed), name
-    inner = paths.readable(str(run / "code" / "agent.py"), str(home), [])
+    inner = paths.readable_paths(str(run / "code" / "agent.py"), str(home), [])
     assert not covered(run / "trials.jsonl", inner)
 
 
@@ -102,7 +102,7 @@ def test_the_walk_is_bounded_and_what_it_did_not_come_to_is_hidden(home: Path, m
     deep.mkdir(parents=True)
     (deep / "trials.jsonl").write_bytes(LINE)
     monkeypatch.setattr(hidden_paths, "_ENTRIES_MAX", 60)
-    found = hidden_paths.below(home)
+    found = hidden_paths.hidden_below(home)
     assert any(deep.is_relative_to(place) for place in found)
     assert len(found) < 60
 
@@ -110,7 +110,7 @@ def test_the_walk_is_bounded_and_what_it_did_not_come_to_is_hidden(home: Path, m
 def test_a_loop_of_links_and_a_folder_that_cannot_be_read_are_passed_over(tmp_path: Path) -> None:
     (tmp_path / "self").symlink_to(tmp_path)
     (tmp_path / "closed").mkdir(mode=0)
-    found = hidden_paths.below(tmp_path)
+    found = hidden_paths.hidden_below(tmp_path)
     (tmp_path / "closed").chmod(0o700)
     assert found == ()
 

@@ -160,7 +160,7 @@ def test_nothing_outlives_a_killed_host(level: str, tmp_path: Path) -> None:
 
 
 def _descendants(pid: int) -> list[int]:
-    families = cleanup.families()
+    families = cleanup.children_by_parent()
     line, found = [pid], []
     while line:
         found += families.get(line[-1], [])
@@ -260,10 +260,10 @@ os.symlink(foreign, scratch + "/link")
 os.symlink(foreign, scratch + "/deep/link")
 os.chmod(scratch + "/deep", 0)
 os.chmod(scratch, 0o500)
-cleanup.empty(scratch)
+cleanup.empty_folder(scratch)
 print(os.listdir(scratch), os.listdir(foreign), oct(os.stat(foreign + "/kept").st_mode & 0o777))
 os.symlink(foreign, top + "/instead")
-cleanup.empty(top + "/instead")
+cleanup.empty_folder(top + "/instead")
 print(os.listdir(foreign))
 """
 
