@@ -23,7 +23,8 @@ from hthor.guest.confinement import Policy, enforcement, limits, paths
 scratch = sys.argv[1] + "/home"
 os.mkdir(scratch)
 limits.drop_privileges()
-enforcement.confine_supervisor(Policy(level="L2", read=paths.readable_paths("", "", []), listed=(), scratch=scratch, memory_mb=1, disk_mb=1))
+read = paths.readable_paths("", "", [])
+enforcement.confine_supervisor(Policy(level="L2", read=read, listed=(), scratch=scratch, memory_mb=1, disk_mb=1))
 done = {}
 for name, what in {
     "read the machine": lambda: open("/etc/passwd").read(1),
