@@ -3,43 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from hthor.navigation import grid_search_kernel
-from hthor.navigation.grid_map import CELL_M
-from hthor.navigation.search_window import Window
+from hthor.navigation.grid_map import CELL_M, GridMap
+from hthor.navigation.search_window import ESCAPE_CELLS, SearchWindow, price
 from hthor.types import Vec2
 
-if TYPE_CHECKING:
-    from hthor.navigation.planner import Planner
-
-ESCAPE_CELLS = 14
-"""A place where the body cannot stand is replaced by the nearest one at most this far away."""
+Pull = Callable[[SearchWindow, int, Vec2 | None], tuple[Vec2, ...]]
+"""The path [m] to a cell of the window, by its flat index, pulled tight; it ends at the point [m] if one is given."""
 
 
 class Field:
-    """Shortest ways from ``a`` [m] to everywhere in a window, as the map stood when it was made.
+    """Shortest paths from one place to everywhere in a window, as the map stood when it was made.
 
     Args:
-        start: the cell where the ways begin, None when ``a`` is nowhere near a place to stand. escape: whether that
-            is not the cell of ``a``.
+        grid: the map.
+        window: the search from that place; None when no place to stand is near.
+        pull: makes a path of the cells that the search came by.
     """
 
-    def __init__(
-        self,
-        planner: Planner,
-        a: Vec2,
-        start: tuple[int, int] | None,
-        escape: bool,
-        edges: tuple[int, int, int, int],
-    ) -> None:
-        grid = planner.grid
-        self._planner, self._a, self._escape = planner, a, escape
+    def __init__(self, grid: GridMap, window: SearchWindow | None, pull: Pull) -> None:
+        self._grid, self.window, self._pull = grid, window, pull
         self._frame = (grid.left, grid.bottom, *grid.cells.shape)
-        self.window = None if start is None else Window(grid.cells, planner.levels, planner.optimistic, edges, start)
 
     def distance(self, b: Vec2, within: float = 0.0) -> float:
         """Walking distance [m] to ``b``, or to the nearest place within ``within`` metres of it; infinite if none.
@@ -100,13 +88,11 @@ class Field:
 
     def path(self, b: Vec2, within: float = 0.0) -> tuple[Vec2, ...] | None:
         """Way points [m] as `Planner.path` gives them. Ask before the map grows; afterwards None is given."""
-        planner = self._planner
-        flat = self._best(b, within)
-        grid = planner.grid
+        flat, grid = self._best(b, within), self._grid
         if flat < 0 or self.window is None or self._frame != (grid.left, grid.bottom, *grid.cells.shape):
             return None
         exact = b if flat == self._index(b) else None
-        return planner.pulled(self.window, flat, self._a, exact, self._escape)
+        return self._pull(self.window, flat, exact)
 
     def metres(self, flat: int) -> float:
         """Length [m] of the way to a cell of the window that was reached."""
@@ -167,8 +153,3 @@ class Field:
         rank = np.where(good, cost if within > 0.0 else apart, np.inf)
         j, i = divmod(int(np.argmin(rank)), i1 + 1 - i0)
         return window.flat(j + j0, i + i0) if good[j, i] else -1
-
-
-def price(metres: float) -> int:
-    """What a way of so many metres of clear cells costs, rounded up."""
-    return grid_search_kernel.FAR if math.isinf(metres) else math.floor(metres / CELL_M * grid_search_kernel.STEP) + 1

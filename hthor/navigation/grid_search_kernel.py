@@ -267,7 +267,7 @@ def steps(came: Any, width: int, start: int, end: int, most: int) -> int:
 @numba.njit("void(int8[::1], int32[::1], int64, int64, int64, int64, float64[:,::1], float64[::1])", cache=True)
 def trace(came: Any, cost: Any, width: int, end: int, left: int, bottom: int, points: Any, costs: Any) -> None:
     """The last cells of the way to ``end``, as many as ``points`` holds, as
-    `hthor.navigation.search_window.Window.trace`.
+    `hthor.navigation.search_window.SearchWindow.trace`.
     """
     offsets = _offsets(width)
     here = end

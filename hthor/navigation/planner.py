@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hthor.navigation import grid_search_kernel, path_smoothing_kernel, scan_kernel
-from hthor.navigation.distance_field import ESCAPE_CELLS, Field, price
+from hthor.navigation.distance_field import Field
 from hthor.navigation.grid_map import CELL_M, GridMap
-from hthor.navigation.search_window import Window
+from hthor.navigation.search_window import ESCAPE_CELLS, SearchWindow, price
 from hthor.types import Vec2
 
 _HARD_M = 0.026
@@ -58,9 +58,9 @@ class Planner:
             goal = (spot[1] + 0.5, spot[0] + 0.5) if snapped else goal
         apart = abs(start[1] - math.floor(goal[0])), abs(start[0] - math.floor(goal[1]))
         key = grid_search_kernel.rank(*apart, within / CELL_M)
-        window = Window(self._cells, self._level, self.optimistic, self._window(start, (a, b)), start, key)
+        window = SearchWindow(self._cells, self._level, self.optimistic, self._window(start, (a, b)), start, key)
         end = window.seek(*goal, within / CELL_M, price(most))
-        return None if end < 0 else self.pulled(window, end, a, None if snapped else b, escape)
+        return None if end < 0 else self._pulled(window, end, a, None if snapped else b, escape)
 
     def distance(self, a: Vec2, b: Vec2, within: float = 0.0) -> float:
         """Length [m] of `path`; infinite when there is none."""
@@ -71,7 +71,9 @@ class Planner:
         """Shortest ways from ``a`` to every cell of the known map and of the box around ``cover`` [m]."""
         self._follow()
         start, escape = self._enter(a)
-        return Field(self, a, start, escape, self._window(start, (a, *cover)))
+        edges = self._window(start, (a, *cover))
+        window = None if start is None else SearchWindow(self._cells, self._level, self.optimistic, edges, start)
+        return Field(self.grid, window, lambda window, end, b: self._pulled(window, end, a, b, escape))
 
     def distances(self, a: Vec2, points: Sequence[Vec2], most: float = math.inf) -> tuple[float, ...]:
         """Walking distance [m] from ``a`` to each point; infinite where there is no way, or none up to ``most`` metres.
@@ -186,7 +188,7 @@ class Planner:
         start = self._nearest(a)
         return start, start is not None and start != self._row_column(a)
 
-    def pulled(self, window: Window, end: int, a: Vec2, b: Vec2 | None, escape: bool) -> tuple[Vec2, ...]:
+    def _pulled(self, window: SearchWindow, end: int, a: Vec2, b: Vec2 | None, escape: bool) -> tuple[Vec2, ...]:
         """The way that a search found to its cell ``end``, pulled tight like a string, from ``a`` and to ``b`` exactly.
 
         With ``escape`` it first leads from ``a`` to the cell where the search began.

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from hthor.navigation import frontier_kernel, grid_search_kernel
+from hthor.navigation.grid_map import CELL_M
 
+ESCAPE_CELLS = 14
+"""A place where the body cannot stand is replaced by the nearest one at most this far away [cells]."""
 _LONGEST = 8192
 
 
-class Window:
+def price(metres: float) -> int:
+    """What a path of so many metres through clear cells costs, rounded up."""
+    return grid_search_kernel.FAR if math.isinf(metres) else math.floor(metres / CELL_M * grid_search_kernel.STEP) + 1
+
+
+class SearchWindow:
     """The cheapest ways from one cell through a window of a map.
 
     Rows and columns are the map's; ``flat`` indices are the window's own, which has a border of one cell.

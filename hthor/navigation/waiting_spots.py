@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hthor.navigation.grid_map import CELL_M, FREE, GridMap
 from hthor.navigation.grid_search_kernel import _DX, _DY, FAR, nearest
 from hthor.navigation.planner import Planner
-from hthor.navigation.search_window import Window
+from hthor.navigation.search_window import SearchWindow
 from hthor.types import Vec2
 
 BERTH_M = 0.45
@@ -62,7 +62,7 @@ def _traffic(cells: NDArray[np.uint8], x: float, y: float) -> NDArray[np.int64] 
         return None
     rows, columns = (np.flatnonzero(cells.any(axis=axis)).tolist() for axis in (1, 0))
     x0, x1, y0, y1 = edges = columns[0], columns[-1], rows[0], rows[-1]
-    ways = Window(cells, level, False, edges, divmod(int(end), nx))
+    ways = SearchWindow(cells, level, False, edges, divmod(int(end), nx))
     ways.spread(0)
     run: NDArray[np.int64] = np.zeros(ways.cost.size, dtype=np.int64)
     _pour(ways.cost, ways.came, ways.width, ways.start, run)

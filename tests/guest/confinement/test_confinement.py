@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from hthor import code_identity
 from hthor.errors import UnknownName
 from hthor.guest.confinement import (
     LEVELS,
@@ -49,14 +50,42 @@ def test_an_agent_reads_its_folder_but_for_what_is_hidden(agent: Path) -> None:
         assert not covered(secret, allowed), secret
 
 
-def test_of_this_package_only_what_minds_are_made_with_is_read(agent: Path) -> None:
+ROOMS = {"agents", "catalog", "comms", "geometry", "guest", "houses", "navigation", "types"}
+"""Folders of this package that agents are made with. Of `houses` neither houses nor what makes and checks them."""
+SECRET = ("world", "humans", "tasks", "eval", "report", "calibration", "leaderboard", "looks", "commands")
+
+
+def test_agents_can_read_only_the_rooms_that_they_are_made_with(agent: Path) -> None:
     allowed = paths.readable_paths(str(agent), str(agent.parent), [])
-    for name in ("types/acting.py", "navigation/map.py", "errors.py", "houses/freespace.py"):
-        assert covered(paths.PACKAGE / name, allowed), name
-    secrets = [path for path in paths.PACKAGE.rglob("*.json") if "catalog" not in path.parts]
-    assert len(secrets) > 10
-    for path in [*secrets, paths.PACKAGE / "world" / "__init__.py", paths.PACKAGE / "houses" / "generator"]:
+    ours = [Path(one) for one in allowed if Path(one).is_relative_to(paths.PACKAGE)]
+    assert {
+        one.relative_to(paths.PACKAGE).parts[0] for one in ours if one.parent != paths.PACKAGE or one.is_dir()
+    } == ROOMS
+    assert paths.PACKAGE not in ours
+    assert paths.PACKAGE / "houses" not in ours
+    for room in SECRET:
+        for path in (paths.PACKAGE / room).rglob("*"):
+            assert not covered(path, allowed), path
+    documents = [path for path in paths.PACKAGE.rglob("*.json") if "catalog" not in path.parts]
+    assert len(documents) > 10
+    for path in [*documents, *(paths.PACKAGE / "houses" / "generator").rglob("*.py")]:
         assert not covered(path, allowed), path
+
+
+def test_all_that_built_in_agents_import_can_be_read(agent: Path) -> None:
+    """Found by following imports from the agents, and from what runs in a trial's process."""
+    allowed = paths.readable_paths(str(agent), str(agent.parent), [])
+    roots = [
+        ".".join(path.relative_to(paths.PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
+        for room in ("agents", "navigation", "guest/client", "guest/supervisor")
+        for path in sorted((paths.PACKAGE / room).rglob("*.py"))
+    ]
+    needed = code_identity.ours().closure(roots)
+    assert "hthor.houses.space.free_space" in needed
+    for name in needed:
+        base = paths.PACKAGE.parent.joinpath(*name.split("."))
+        path = base / "__init__.py" if base.is_dir() else base.with_suffix(".py")
+        assert covered(path, allowed), name
 
 
 def test_levels_are_ordered_and_named() -> None:
@@ -187,7 +216,7 @@ def test_gpus_are_let_through_where_they_are_asked_for(tmp_path: Path) -> None:
 def test_an_agent_in_a_second_checkout_reads_neither_its_suites_nor_its_houses(tmp_path: Path) -> None:
     other = tmp_path / "checkout"
     secrets = [
-        *(paths.PACKAGE / "tasks" / "suites").glob("smoke*.json"),
+        *(paths.PACKAGE / "tasks").rglob("smoke*.json"),
         *(paths.PACKAGE / "houses").rglob("alder.json"),
     ]
     assert len(secrets) > 1
