@@ -78,7 +78,7 @@ def measure(scene: Scene, suite: str, repeats: int) -> dict[str, float]:
 def composer_environment(scene: Scene) -> Any:
     """dm_control's environment of the same house, bodies and objects, with default settings."""
     world = scene.world
-    split = inventory.split(world.house, _objects(scene))
+    split = inventory.split_things(world.house, _objects(scene))
     task = HouseTask(world.house, split, world.bodies)
     task.starts = {placed.id: (placed.position, placed.yaw) for placed in scene.task.objects}
     environment = composer.Environment(task, random_state=0)

@@ -19,7 +19,7 @@ from tqdm import tqdm
 from hthor import jsonio
 from hthor.houses import generator, loader
 from hthor.world.validation import generate_valid
-from hthor.world.validation.house_soundness import prove
+from hthor.world.validation.house_soundness import check_soundness
 
 
 class Try(Struct, frozen=True, kw_only=True):
@@ -45,7 +45,7 @@ def main() -> None:
     options.add_argument("--first", type=int, default=0, help="the first of them")
     options.add_argument("--reasons", type=int, default=12, help="how many faults to print in words")
     given = options.parse_args()
-    generate_valid.make(given.first, 5)  # so that compiling is not counted
+    generate_valid.generate_valid_home(given.first, 5)  # so that compiling is not counted
     seeds = range(given.first, given.first + given.seeds)
     tries = [_try(seed, 4 + seed % 4) for seed in tqdm(seeds, disable=None, leave=False)]
     _print(tries, given.reasons)
@@ -56,11 +56,11 @@ def _try(seed: int, rooms: int) -> Try:
     document, errors = _first(seed, rooms)
     made = time.process_time()
     if document is not None:
-        house = loader.build(document, generate_valid.name(seed, rooms))
-        found = prove(house, generate_valid.RADIUS_M)
+        house = loader.build(document, generate_valid.home_name(seed, rooms))
+        found = check_soundness(house, generate_valid.RADIUS_M)
         errors = tuple((finding.rule, str(finding)) for finding in found if finding.severity == "error")
     proved = time.process_time()
-    home = generate_valid.make(seed, rooms) if errors else None
+    home = generate_valid.generate_valid_home(seed, rooms) if errors else None
     whole = time.process_time()
     same = jsonio.canonical(_first(seed, rooms)[0]) == jsonio.canonical(document)
     return Try(

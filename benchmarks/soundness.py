@@ -79,8 +79,8 @@ def _generated(given: argparse.Namespace, folder: Path) -> list[str]:
     paths = []
     for seed in range(given.first, given.first + given.generated):
         rooms = 4 + seed % 4
-        path = folder / f"{generate_valid.name(seed, rooms)}.json"
-        jsonio.write(path, jsonio.pretty(generate_valid.make(seed, rooms).document))
+        path = folder / f"{generate_valid.home_name(seed, rooms)}.json"
+        jsonio.write(path, jsonio.pretty(generate_valid.generate_valid_home(seed, rooms).document))
         paths.append(str(path))
     return paths
 

@@ -255,7 +255,7 @@ class _Episode:
         """The same event; what was sent, with how far it is from the truth."""
         if event.kind != "sent":
             return event
-        claim = claims.off(send, event.data["position"], self.world.snapshot(), self.world.house)
+        claim = claims.claim_error(send, event.data["position"], self.world.snapshot(), self.world.house)
         return msgspec.structs.replace(event, data={**event.data, **claim})
 
     def _rest(self, seat: str, resting: bool) -> None:

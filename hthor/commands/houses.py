@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from hthor.houses.checks.findings import Finding
     from hthor.types import HouseSpec
-    from hthor.world.validation.generate_valid import Home
+    from hthor.world.validation.generate_valid import ValidHome
 
 app = typer.Typer(no_args_is_help=True, help="Floor plans.")
 
@@ -76,9 +76,9 @@ def check_house(
     size = radius if radius is not None else 0.25 if strict or full else 0.2
     spec = houses.load(house)
     if full:
-        from hthor.world.validation.house_soundness import prove
+        from hthor.world.validation.house_soundness import check_soundness
 
-        findings = prove(spec, size)
+        findings = check_soundness(spec, size)
     else:
         findings = houses.check(spec, size, strict=strict)
     errors = sum(finding.severity == "error" for finding in findings)
@@ -205,7 +205,7 @@ def _put_findings(findings: Sequence[Finding]) -> None:
             sys.stdout.write(f"warning: and {number - _SHOWN} more ({rule})\n")
 
 
-def _made(seed: int, rooms: int | None, count: int) -> Iterable[Home]:
+def _made(seed: int, rooms: int | None, count: int) -> Iterable[ValidHome]:
     """The homes of ``count`` seeds one by one, with progress on standard error where somebody watches."""
     from tqdm import tqdm
 
@@ -214,10 +214,12 @@ def _made(seed: int, rooms: int | None, count: int) -> Iterable[Home]:
     low, high = _ROOMS
     watched = output.live() and count > 1
     for number in tqdm(range(seed, seed + count), disable=not watched, leave=False, unit="house"):
-        yield generate_valid.make(number, rooms if rooms is not None else low + number % (high - low + 1))
+        yield generate_valid.generate_valid_home(
+            number, rooms if rooms is not None else low + number % (high - low + 1)
+        )
 
 
-def _keep(home: Home, out: Path | None, count: int) -> Path | None:
+def _keep(home: ValidHome, out: Path | None, count: int) -> Path | None:
     """Write a home where the user wants it; None when that is standard output."""
     from hthor import jsonio
 
@@ -230,7 +232,7 @@ def _keep(home: Home, out: Path | None, count: int) -> Path | None:
     return path
 
 
-def _row(home: Home, path: Path | None) -> dict[str, Any]:
+def _row(home: ValidHome, path: Path | None) -> dict[str, Any]:
     tally = Counter(finding.rule for finding in home.refused)
     return {
         "file": None if path is None else str(path),

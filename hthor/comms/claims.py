@@ -13,7 +13,7 @@ OFF_M = 1.0
 """A claim is false when what it is about is farther than this from where the message says it is."""
 
 
-def off(send: Send, position: Vec3 | None, snapshot: Snapshot, house: HouseSpec) -> dict[str, float | None]:
+def claim_error(send: Send, position: Vec3 | None, snapshot: Snapshot, house: HouseSpec) -> dict[str, float | None]:
     """What the log keeps of a claim: ``{"off": metres}``, empty where nothing is claimed.
 
     A message claims something when it names an ``object`` and a ``position``: that the thing of this id, or a thing of
@@ -26,7 +26,7 @@ def off(send: Send, position: Vec3 | None, snapshot: Snapshot, house: HouseSpec)
     """
     if not isinstance(send.object, str) or not send.object:
         return {}
-    ways = list(_ways(send.object, position or (0.0, 0.0, 0.0), snapshot, house))
+    ways = list(_distances(send.object, position or (0.0, 0.0, 0.0), snapshot, house))
     if position is None and ways:
         return {}
     return {"off": round(min(ways), 3) if ways else None}
@@ -37,15 +37,15 @@ def is_false(data: Mapping[str, Any]) -> bool:
     return "off" in data and (data["off"] is None or data["off"] > OFF_M)
 
 
-def _ways(name: str, position: Vec3, snapshot: Snapshot, house: HouseSpec) -> Iterator[float]:
+def _distances(name: str, position: Vec3, snapshot: Snapshot, house: HouseSpec) -> Iterator[float]:
     """Distances [m] to everything that has this name, or is of the kind of this name."""
     spot = (position[0], position[1])
     for thing in house.things:
-        if name in (thing.id, thing.kind) and _stands(thing, snapshot):
+        if name in (thing.id, thing.kind) and _is_in_place(thing, snapshot):
             yield plane.distance_to_rectangle(spot, thing.centre[:2], thing.size[:2], thing.yaw)
     known = {thing.id: thing for thing in house.things}
     for state in snapshot.things.values():
-        if name in (state.id, state.kind) and not (state.id in known and _stands(known[state.id], snapshot)):
+        if name in (state.id, state.kind) and not (state.id in known and _is_in_place(known[state.id], snapshot)):
             yield math.dist(state.position, position)
     for room in house.rooms:
         if name in (room.id, room.kind):
@@ -54,7 +54,7 @@ def _ways(name: str, position: Vec3, snapshot: Snapshot, house: HouseSpec) -> It
         yield math.dist((snapshot.poses[name].x, snapshot.poses[name].y), spot)
 
 
-def _stands(thing: Thing, snapshot: Snapshot) -> bool:
+def _is_in_place(thing: Thing, snapshot: Snapshot) -> bool:
     """Whether the thing is where the house's plan has it."""
     state = snapshot.things.get(thing.id)
     return state is None or math.dist(state.position, thing.centre) < 1e-6

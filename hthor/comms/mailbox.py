@@ -45,9 +45,9 @@ class Mailbox:
             return (self._refused(tick, sender, reason),)
         events = self._cover(tick, sender)
         number = len(self._messages)
-        written, cut = text.tidy(send.text, rules.TEXT_MAX)
-        name, _ = text.tidy(send.object, _NAME_MAX)
-        position = None if send.position is None else text.point(send.position)
+        written, cut = text.clean_text(send.text, rules.TEXT_MAX)
+        name, _ = text.clean_text(send.object, _NAME_MAX)
+        position = None if send.position is None else text.parse_point(send.position)
         self._messages.append(
             Message(id=number, sender=sender, tick=tick, text=written, object=name, position=position, image=image)
         )
@@ -122,7 +122,7 @@ class Mailbox:
         written: tuple[Any, Any] = (send.text, send.object)
         if not all(isinstance(part, str) for part in written):
             return "text and object must be str"
-        if send.position is not None and text.point(send.position) is None:
+        if send.position is not None and text.parse_point(send.position) is None:
             return "position must be None or three finite numbers x, y, z in metres of the house frame"
         return ""
 

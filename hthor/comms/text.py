@@ -9,17 +9,17 @@ from typing import Any
 
 from hthor.types import Vec3
 
-_LOOKED_AT = 8
+_READ_FACTOR = 8
 """Times the limit: what a text has beyond that is not even looked at, so that a long one costs no more."""
 
 
-def tidy(text: str, limit: int) -> tuple[str, int]:
+def clean_text(text: str, limit: int) -> tuple[str, int]:
     """The text on one line, without control and formatting characters, at most ``limit`` characters long.
 
     Returns:
         the text, and how many characters were cut from its end.
     """
-    seen = text[: limit * _LOOKED_AT]
+    seen = text[: limit * _READ_FACTOR]
     spaced = "".join(" " if char.isspace() else char for char in seen)
     plain = " ".join("".join(char for char in spaced if unicodedata.category(char)[0] != "C").split())
     plain = unicodedata.normalize("NFC", plain)
@@ -27,7 +27,7 @@ def tidy(text: str, limit: int) -> tuple[str, int]:
     return kept, len(plain) - len(kept) + len(text) - len(seen)
 
 
-def point(value: Any) -> Vec3 | None:
+def parse_point(value: Any) -> Vec3 | None:
     """The three finite numbers of a position as plain floats, or None when it is something else."""
     if isinstance(value, (str, bytes)) or not (isinstance(value, Sequence) or hasattr(value, "__array__")):
         return None

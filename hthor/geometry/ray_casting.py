@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 
 @numba.njit(cache=True)  # type: ignore[misc, unused-ignore]
-def blocked(
+def is_blocked(
     eye: Floats, point: Floats, half: Any, pos: Any, mat: Any, radius: Any, ids: Any, skip0: int, skip1: int
 ) -> bool:
     """Whether the segment from ``eye`` to ``point`` (3,) [m] meets any box of ``ids``.

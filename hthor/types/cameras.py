@@ -25,7 +25,7 @@ _SIZE = re.compile(r"([1-9][0-9]{0,4})x([1-9][0-9]{0,4})")
 _EXAMPLE = "Expected WIDTHxHEIGHT in pixels, such as 320x240"
 
 
-def read(text: str) -> CameraSpec:
+def parse(text: str) -> CameraSpec:
     """The camera of a name ("own" or one of `NAMED`), of a size ("320x240"), or of both ("thor:128x128").
 
     Raises:
@@ -43,7 +43,7 @@ def read(text: str) -> CameraSpec:
     return CameraSpec(name=f"{name}:{width}x{height}", size=(width, height), fov=spec.fov)
 
 
-def tidy(name: str, size: str = "") -> str:
+def canonical_name(name: str, size: str = "") -> str:
     """The same camera in one spelling.
 
     Args:
@@ -54,7 +54,7 @@ def tidy(name: str, size: str = "") -> str:
     """
     if size and (":" in name or _SIZE.fullmatch(name)):
         raise HthorError(f"the camera '{name}' has a size already; leave out the size '{size}'.")
-    return read(f"{name}:{size}" if size else name).name
+    return parse(f"{name}:{size}" if size else name).name
 
 
 def _size(text: str) -> tuple[int, int]:

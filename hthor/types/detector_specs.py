@@ -16,7 +16,7 @@ _RATES = ("miss", "false_alarm", "position_sigma")
 _VALID = "own, ideal, noisy, or rates such as miss=0.2,false_alarm=0.05,position_sigma=0.03"
 
 
-def read(text: str) -> DetectorSpec:
+def parse(text: str) -> DetectorSpec:
     """The detector of a name, "ideal" or "noisy", or of rates: "miss=0.2,false_alarm=0.05,position_sigma=0.03".
 
     Rates that are left out are 0. The record's name is the same text in one spelling: rates in order, zeros left out.
@@ -40,13 +40,13 @@ def read(text: str) -> DetectorSpec:
     return DetectorSpec(name=listed or IDEAL.name, **rates)
 
 
-def tidy(text: str) -> str:
+def canonical_name(text: str) -> str:
     """The same detector in one spelling, "own" kept as it is.
 
     Raises:
         HthorError: as `read`.
     """
-    return OWN if text == OWN else read(text).name
+    return OWN if text == OWN else parse(text).name
 
 
 def _rate(name: str, number: str) -> float:

@@ -80,7 +80,7 @@ class Scan(Struct, frozen=True, kw_only=True):
 
 
 class CameraSpec(Struct, frozen=True, kw_only=True):
-    """Which pictures a seat's camera takes, as `hthor.types.cameras.read` reads its name.
+    """Which pictures a seat's camera takes, as `hthor.types.cameras.parse` reads its name.
 
     ``size`` is (width, height) [pixels], None for the body's own. ``fov`` [rad] is the horizontal field of view of the
     pictures, None for the body's; what a detector reports goes by the body's alone.

@@ -17,7 +17,7 @@ class BodySpec(Struct, frozen=True, kw_only=True):
     bounds what its detector reports, ``scan_range`` [m] its range scan. ``reach`` [m] is horizontal, from the body's
     axis; ``reach_low`` and ``reach_high`` [m] bound the height of a grasp; ``strength`` [kg] what it can lift.
     ``handling`` [s] is how long pick, place, open and close take. ``pitch_limit`` [rad] bounds the camera either way.
-    ``detector`` is how its detector errs unless a trial says otherwise, as `hthor.types.detector_specs.read` reads it.
+    ``detector`` is how its detector errs unless a trial says otherwise, as `hthor.types.detector_specs.parse` reads it.
     """
 
     name: str
@@ -138,9 +138,9 @@ class AgentRef(Struct, frozen=True, kw_only=True):
 
 
 class RobotSeat(Struct, frozen=True, kw_only=True):
-    """One robot of a trial: its body and its mind. ``detector`` as `hthor.types.detector_specs.read` reads it.
+    """One robot of a trial: its body and its mind. ``detector`` as `hthor.types.detector_specs.parse` reads it.
 
-    ``camera`` is there only where it is not the body's own, as `hthor.types.cameras.read` reads it.
+    ``camera`` is there only where it is not the body's own, as `hthor.types.cameras.parse` reads it.
     ``robot_sha256`` is the hash of the body's code: of the file of a user's own, of the syntax of one that ships
     with hthor.
     """

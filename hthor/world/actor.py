@@ -1,7 +1,7 @@
 """A hand on one body: calls that take as long as they take, and what the body sees and says.
 
 Each call here starts motions and lets ticks pass until the body is free again; the other bodies stand meanwhile, unless
-something else moves them. An umpire, which moves all bodies at once, uses `hthor.world.simulation.TickedWorld` instead.
+something else moves them. An umpire, which moves all bodies at once, uses `hthor.world.simulation.Simulation` instead.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from hthor.world.world import World
 
 _EPS = 1e-9
-FARTHEST_M = 1000.0
+MOVE_CALL_MAX_M = 1000.0
 """The longest way of one call."""
 
 
@@ -93,11 +93,11 @@ class Actor:
         Returns:
             the outcome of the last step; a step that is blocked is the last.
         """
-        if not (numbers.finite(forward) and numbers.finite(left)):
+        if not (numbers.is_finite(forward) and numbers.is_finite(left)):
             return self.do(Move(forward=forward, left=left))  # which says what is wrong with them
         length = math.hypot(forward, left)
-        if length > FARTHEST_M:
-            reason = f"move is {numbers.short(length)} m long; at most {FARTHEST_M:.0f} m at once"
+        if length > MOVE_CALL_MAX_M:
+            reason = f"move is {numbers.format_number(length)} m long; at most {MOVE_CALL_MAX_M:.0f} m at once"
             return Outcome(motion="move", ok=False, reason=reason)
         steps = max(1, math.ceil(length / rules.MOVE_MAX_M - _EPS))
         outcome = Outcome(motion="move", ok=True)

@@ -11,15 +11,15 @@ from hthor.errors import StaleObservation
 from hthor.types import Camera, Detection, Scan, Sighting, View
 
 if TYPE_CHECKING:
-    from hthor.world.sensing_simulation import SeenWorld
+    from hthor.world.sensing_simulation import SensingSimulation
 
 
-class Senses:
+class SeatSenses:
     """A seat's detector, range scanner and camera at the tick at which this was made."""
 
     __slots__ = ("_detections", "_drawn", "_moment", "_scan", "_seat", "_view", "_world")
 
-    def __init__(self, world: SeenWorld, seat: str) -> None:
+    def __init__(self, world: SensingSimulation, seat: str) -> None:
         self._world, self._seat, self._moment = world, seat, world.moment
         self._detections: tuple[Detection, ...] | None = None
         self._scan: Scan | None = None

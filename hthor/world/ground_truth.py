@@ -6,21 +6,21 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from hthor.errors import StaleObservation
 from hthor.types import HUMAN, Pose, Snapshot, ThingState
-from hthor.world.perception.visibility import Gaze
-from hthor.world.state.body_state import Seat
+from hthor.world.perception.visibility import Visibility
+from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors
 from hthor.world.state.objects import Objects
 
 
-class Truth:
+class GroundTruth:
     """States of all objects and of all things that open, and what the person has in view."""
 
-    def __init__(self, objects: Objects, doors: Doors, gaze: Gaze, seats: Sequence[Seat]) -> None:
+    def __init__(self, objects: Objects, doors: Doors, gaze: Visibility, seats: Sequence[BodyState]) -> None:
         self._objects, self._doors, self._gaze, self._seats = objects, doors, gaze, seats
         self._human = next(seat for seat in seats if seat.name == HUMAN)
         self._things: dict[str, ThingState] = {}
         self._version = (-1, -1)
-        self._view: InView | None = None
+        self._view: LazyInView | None = None
 
     def snapshot(self, tick: int) -> Snapshot:
         """Everything at this tick."""
@@ -51,11 +51,11 @@ class Truth:
             things.update((state.id, state) for state in self._doors.states())
         return {id: things[id] for id in sorted(things)} if gone or len(things) != known else things
 
-    def _in_view(self, tick: int) -> InView:
+    def _in_view(self, tick: int) -> LazyInView:
         """The same as long as nothing changes."""
         moment = (self._human.pose, self._objects.changes, self._doors.changes)
         if self._view is None or self._view.moment != moment:
-            self._view = InView(self, moment, tick)
+            self._view = LazyInView(self, moment, tick)
         return self._view
 
     def look(self, moment: tuple[Pose, int, int], tick: int) -> tuple[str, ...]:
@@ -72,12 +72,12 @@ class Truth:
         return self._gaze.in_view(self._human)
 
 
-class InView(Mapping[str, tuple[str, ...]]):
+class LazyInView(Mapping[str, tuple[str, ...]]):
     """What `hthor.types.Snapshot.in_view` holds: worked out when it is first read, which few tasks do."""
 
     __slots__ = ("_found", "_tick", "_truth", "moment")
 
-    def __init__(self, truth: Truth, moment: tuple[Pose, int, int], tick: int) -> None:
+    def __init__(self, truth: GroundTruth, moment: tuple[Pose, int, int], tick: int) -> None:
         self._truth, self._tick, self.moment = truth, tick, moment
         self._found: tuple[str, ...] | None = None
 

@@ -11,7 +11,7 @@ from hthor.geometry import plane
 from hthor.types import Pose, Vec2, Vec3
 
 
-def finite(value: object) -> bool:
+def is_finite(value: object) -> bool:
     """Whether it is a number, and neither infinite, nor undefined, nor too large for a float."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return False
@@ -21,7 +21,7 @@ def finite(value: object) -> bool:
         return False
 
 
-def shown(value: object) -> str:
+def quoted(value: object) -> str:
     """What was given, for a message."""
     try:
         return f"{value!r:.40}"
@@ -29,7 +29,7 @@ def shown(value: object) -> str:
         return "a number of thousands of digits"
 
 
-def short(value: float) -> str:
+def format_number(value: float) -> str:
     """A number for a message: to the hundredth, or as a power of ten where that would be long."""
     return f"{value:.2f}" if abs(value) < 1e6 else f"{value:.3g}"
 
@@ -41,15 +41,15 @@ def number(name: str, value: object, unit: str, low: float = -math.inf, high: fl
         HthorError: when it is no finite number, or not from ``low`` to ``high``; says what it is called and its unit.
     """
     plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value  # numpy's own
-    if not finite(plain):
-        raise HthorError(f"{name} must be a finite number of {unit}, got {shown(value)}")
+    if not is_finite(plain):
+        raise HthorError(f"{name} must be a finite number of {unit}, got {quoted(value)}")
     if not low <= plain <= high:
         limits = f"at least {low:g}" if high == math.inf else f"at most {high:g}" if low == -math.inf else ""
-        raise HthorError(f"{name} must be {limits or f'from {low:g} to {high:g}'} {unit}, got {shown(value)}")
+        raise HthorError(f"{name} must be {limits or f'from {low:g} to {high:g}'} {unit}, got {quoted(value)}")
     return float(plain)
 
 
-def whole(name: str, value: object, low: int, high: int) -> int:
+def whole_number(name: str, value: object, low: int, high: int) -> int:
     """``value`` as an int.
 
     Raises:
@@ -57,7 +57,7 @@ def whole(name: str, value: object, low: int, high: int) -> int:
     """
     plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value
     if isinstance(plain, bool) or not isinstance(plain, int) or not low <= plain <= high:
-        raise HthorError(f"{name} must be a whole number from {low} to {high}, got {shown(value)}")
+        raise HthorError(f"{name} must be a whole number from {low} to {high}, got {quoted(value)}")
     return plain
 
 
@@ -83,5 +83,5 @@ def pose(value: Pose) -> Pose:
 def _vector(name: str, value: object, size: int, unit: str) -> tuple[float, ...]:
     parts = list(value) if isinstance(value, Iterable) and not isinstance(value, (str, bytes, dict)) else []
     if len(parts) != size:
-        raise HthorError(f"{name} must be {size} numbers of {unit}, got {shown(value)}")
+        raise HthorError(f"{name} must be {size} numbers of {unit}, got {quoted(value)}")
     return tuple(number(f"{name}[{axis}]", part, unit) for axis, part in enumerate(parts))

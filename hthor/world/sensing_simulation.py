@@ -23,23 +23,23 @@ from hthor.types import (
 )
 from hthor.types import cameras as hthor_cameras
 from hthor.world import numbers
-from hthor.world.body_senses import Senses as SeatSenses
+from hthor.world.body_senses import SeatSenses as SeatSenses
 from hthor.world.model import inventory
 from hthor.world.perception import view_frustum
-from hthor.world.rendering.lazy_images import Pictures, Size
-from hthor.world.simulation import TickedWorld
+from hthor.world.rendering.lazy_images import LazyImages, Size
+from hthor.world.simulation import Simulation
 
 
-class SeenWorld(TickedWorld):
-    """A `TickedWorld` with eyes.
+class SensingSimulation(Simulation):
+    """A `Simulation` with eyes.
 
     Args:
-        house, robots, objects, detectors: see `TickedWorld`.
+        house, robots, objects, detectors: see `Simulation`.
         profile: how pictures are drawn unless a call says otherwise: "fast" needs the processor alone, "nice" is for
             people and needs OpenGL.
         assets: a furniture pack, or its name, that the profile "nice" shows instead of our own furniture where it can.
         cameras: what pictures the robots' cameras take, in their order: a record, or what
-            `hthor.types.cameras.read` reads;
+            `hthor.types.cameras.parse` reads;
             where there is none, the body's own.
 
     """
@@ -56,13 +56,15 @@ class SeenWorld(TickedWorld):
     ) -> None:
         self._pack = (packs.load(assets) if assets else None) if isinstance(assets, str) else assets
         super().__init__(house, robots, objects, detectors)
-        given = [hthor_cameras.read(one) if isinstance(one, str) else one for one in cameras]
+        given = [hthor_cameras.parse(one) if isinstance(one, str) else one for one in cameras]
         if len(given) > len(self.seats) - 1:
             raise HthorError(
                 f"there are {len(given)} cameras and {len(self.seats) - 1} robots; give one camera a robot"
             )
         self.cameras = dict(zip(self.seats[1:], given, strict=False))
-        self._pictures = Pictures(self.house, self._env, self._scene, self._seats, self._studio, profile, self.cameras)
+        self._pictures = LazyImages(
+            self.house, self._env, self._scene, self._seats, self._studio, profile, self.cameras
+        )
 
     # -------------------------------------------------------------------------------------------------------- senses
 
@@ -88,7 +90,7 @@ class SeenWorld(TickedWorld):
         eye, item = numbers.point3("eye", eye), self._objects.known(id)
         if item is None:
             raise UnknownName("object", id, [one.id for one in self._objects])
-        return all(self._scene.hidden(eye, point, id) for point in view_frustum.points(item.position, item.size))
+        return all(self._scene.hidden(eye, point, id) for point in view_frustum.look_points(item.position, item.size))
 
     def scan(self, seat: str) -> Scan:
         """What the seat's range scanner measures now."""
@@ -144,9 +146,9 @@ class SeenWorld(TickedWorld):
 
     def _studio(self) -> Any:
         """What draws the profile nice; its module wakes OpenGL, so it is loaded only now."""
-        from hthor.world.rendering.opengl_renderer import Studio
+        from hthor.world.rendering.opengl_renderer import OpenGLRenderer
 
-        return Studio(self.house, self._contents, self.bodies, self._env.model, self._scene, self._pack)
+        return OpenGLRenderer(self.house, self._contents, self.bodies, self._env.model, self._scene, self._pack)
 
     @property
     def top_view_bounds(self) -> tuple[float, float, float, float]:

@@ -27,32 +27,32 @@ from hthor.types import (
     Vec3,
 )
 from hthor.world import numbers
-from hthor.world.carrying.joint_carrying import Together
-from hthor.world.ground_truth import Truth
+from hthor.world.carrying.joint_carrying import JointCarrying
+from hthor.world.ground_truth import GroundTruth
 from hthor.world.interaction import manipulation
-from hthor.world.interaction.action_dispatch import Starting
-from hthor.world.interaction.manipulation import Hands
-from hthor.world.interaction.opening import Hinges
-from hthor.world.interaction.scene_editing import Arranging
+from hthor.world.interaction.action_dispatch import ActionDispatch
+from hthor.world.interaction.manipulation import Manipulation
+from hthor.world.interaction.opening import DoorHandling
+from hthor.world.interaction.scene_editing import SceneEditor
 from hthor.world.model import inventory
 from hthor.world.model.bodies import avatar, bodies
-from hthor.world.model.composer_env import FastEnv
+from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.composer_task import HouseTask
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.geom_index import GeomIndex
 from hthor.world.motion import spawn
 from hthor.world.perception import detector_noise
-from hthor.world.perception.range_scanner import Scanner
-from hthor.world.perception.visibility import Gaze
-from hthor.world.state.body_state import Seat, Seats
+from hthor.world.perception.range_scanner import RangeScanner
+from hthor.world.perception.visibility import Visibility
+from hthor.world.state.body_state import BodyState, BodyStates
 from hthor.world.state.doors import Doors
-from hthor.world.state.doorways import Passages
+from hthor.world.state.doorways import Doorways
 from hthor.world.state.objects import Objects
-from hthor.world.state.overlap_test import Touch
-from hthor.world.state.room_tracker import Whereabouts
-from hthor.world.state.support_surfaces import Places
+from hthor.world.state.overlap_test import OverlapTest
+from hthor.world.state.room_tracker import RoomTracker
+from hthor.world.state.support_surfaces import SupportSurfaces
 
 
-class TickedWorld:
+class Simulation:
     """A house, one person and any number of robots.
 
     The model is compiled once, here; `reset` only writes poses. After it a world gives the same states for the same
@@ -63,7 +63,7 @@ class TickedWorld:
         robots: the robots' bodies or their names; they sit at "robot", "robot2", ...
         objects: (id, kind) pairs of the movable objects that tasks may place, besides the house's own.
         detectors: how the robots' detectors err, in their order: a record, or what
-            `hthor.types.detector_specs.read` reads; "own",
+            `hthor.types.detector_specs.parse` reads; "own",
             and where there is none, stands for what the body declares.
 
     Attributes:
@@ -81,44 +81,44 @@ class TickedWorld:
         self.house = houses.load(house) if isinstance(house, str) else house
         specs: list[BodySpec] = [avatar.HUMAN]
         robots = (robots,) if isinstance(robots, str) else robots
-        specs += [bodies.robot(robot) if isinstance(robot, str) else robot for robot in robots]
+        specs += [bodies.load_robot(robot) if isinstance(robot, str) else robot for robot in robots]
         self.seats = bodies.seat_names(len(specs) - 1)
         self.bodies = dict(zip(self.seats, specs, strict=True))
         self.space = {seat: FreeSpace.of(self.house, spec.radius, spec.height) for seat, spec in self.bodies.items()}
-        self.detectors = detector_noise.assign(self.seats[1:], self.bodies, detectors)
-        self._contents = inventory.split(self.house, objects)
+        self.detectors = detector_noise.assign_detectors(self.seats[1:], self.bodies, detectors)
+        self._contents = inventory.split_things(self.house, objects)
         with collection_paused():
             self._task = HouseTask(self.house, self._contents, self.bodies)
-            self._env = FastEnv(self._task)
+            self._env = LazyComposerEnv(self._task)
             self._assemble()
         self.tick, self._episode = 0, 0
-        spawn.stand(tuple(self._seats.values()), self.house.start, ())
+        spawn.place_bodies(tuple(self._seats.values()), self.house.start, ())
         self._begin({})
 
     def _assemble(self) -> None:
         """The parts that share the compiled model."""
         statics, env = self._contents.statics, self._env
-        places = Places(statics)
-        self._scene = Scene(env, self._task)
-        touch = Touch(env, self._scene)
+        places = SupportSurfaces(statics)
+        self._scene = GeomIndex(env, self._task)
+        touch = OverlapTest(env, self._scene)
         self._objects = Objects(self._contents.movables, env, self._scene, places, touch)
         self._doors = Doors(self._task.doors, env, places)
-        self._seats = Seats((name, Seat(name, spec, self.space[name])) for name, spec in self.bodies.items())
-        self._scanners = {name: Scanner(seat.spec, seat.space, self.house) for name, seat in self._seats.items()}
+        self._seats = BodyStates((name, BodyState(name, spec, self.space[name])) for name, spec in self.bodies.items())
+        self._scanners = {name: RangeScanner(seat.spec, seat.space, self.house) for name, seat in self._seats.items()}
         seats = tuple(self._seats.values())
-        self._whereabouts = Whereabouts(self.house, self.seats)
-        self._passages = Passages(seats, self.space)
-        self._hinges = Hinges(self._scene, self._objects, self._doors, places, self._passages, seats)
-        self._together = Together(self.house, self._objects, self._doors, touch, seats)
-        self._hands = Hands(
+        self._whereabouts = RoomTracker(self.house, self.seats)
+        self._passages = Doorways(seats, self.space)
+        self._hinges = DoorHandling(self._scene, self._objects, self._doors, places, self._passages, seats)
+        self._together = JointCarrying(self.house, self._objects, self._doors, touch, seats)
+        self._hands = Manipulation(
             self.house, self._scene, self._objects, self._doors, places, self._hinges, touch, self._together
         )
-        self._arranging = Arranging(self.house, self._task, env, self._scene, self._objects, places, touch)
-        self._gaze = Gaze(self._scene, self._objects, self._doors, statics, self.house.openings, seats)
-        self._starting = Starting(self.house, self._hands, self._doors, seats)
-        self._truth = Truth(self._objects, self._doors, self._gaze, seats)
+        self._arranging = SceneEditor(self.house, self._task, env, self._scene, self._objects, places, touch)
+        self._gaze = Visibility(self._scene, self._objects, self._doors, statics, self.house.openings, seats)
+        self._starting = ActionDispatch(self.house, self._hands, self._doors, seats)
+        self._truth = GroundTruth(self._objects, self._doors, self._gaze, seats)
         self._detectors = {
-            name: detector_noise.Detector(spec, self._seats[name], self._scene, places)
+            name: detector_noise.NoisyDetector(spec, self._seats[name], self._scene, places)
             for name, spec in self.detectors.items()
             if spec.miss or spec.false_alarm or spec.position_sigma
         }
@@ -148,7 +148,7 @@ class TickedWorld:
         _check_numbers(task)
         self._begin({placement.id: placement for placement in task.objects}, task.id)
         self._seed = seed
-        spawn.stand(tuple(self._seats.values()), task.human_start, task.robot_starts)
+        spawn.place_bodies(tuple(self._seats.values()), task.human_start, task.robot_starts)
 
     def _begin(self, placements: dict[str, Placement], task: str = "") -> None:
         movables = {movable.id: movable for movable in self._contents.movables}
@@ -187,7 +187,7 @@ class TickedWorld:
             f"{seat} is busy with another motion" if body.activity is not None else self._starting.refusal(body, action)
         )
         if reason:
-            verb = manipulation.verb_of(action)
+            verb = manipulation.motion_name(action)
             body.outcome = Outcome(motion=verb, ok=False, reason=reason)
             data = {"motion": verb, "reason": reason}
             self._events.append(Event(tick=self.tick, seat=seat, kind="refused", data=data))
@@ -255,7 +255,7 @@ class TickedWorld:
             centre = item.position if item is not None else leaf.thing.centre if leaf is not None else None
             if centre is None:
                 return ""
-            body = Seat(seat, body.spec, body.space)
+            body = BodyState(seat, body.spec, body.space)
             body.pose = Pose(x=place[0], y=place[1], yaw=math.atan2(centre[1] - place[1], centre[0] - place[0]))
         return self._hands.out_of_hand(body, id)
 
@@ -270,9 +270,10 @@ class TickedWorld:
         limit = body.spec.pitch_limit
         if abs(pose.pitch) > limit + 1e-9:
             raise HthorError(
-                f"pitch must be from {-limit:.2f} to {limit:.2f} rad for {seat}, got {numbers.short(pose.pitch)} rad"
+                f"pitch must be from {-limit:.2f} to {limit:.2f} rad for {seat}, "
+                f"got {numbers.format_number(pose.pitch)} rad"
             )
-        here = f"({numbers.short(pose.x)}, {numbers.short(pose.y)})"
+        here = f"({numbers.format_number(pose.x)}, {numbers.format_number(pose.y)})"
         if not body.space.is_free(pose.x, pose.y):
             raise HthorError(f"{here} is not free for {seat}; try space['{seat}'].nearest_free")
         for other in self._seats.values():

@@ -111,7 +111,7 @@ def _taken(world: World, actor: Actor, goal: Vec2) -> bool:
 def _point(world: World, target: Vec2) -> Vec2:
     x, y = target
     if not any(plane.inside((x, y), room.polygon) for room in world.house.rooms):
-        place = f"({numbers.short(x)}, {numbers.short(y)})"
+        place = f"({numbers.format_number(x)}, {numbers.format_number(y)})"
         raise HthorError(f"{place} is in no room of the house; give a point indoors, or the id of a thing")
     return (x, y)
 
@@ -137,7 +137,7 @@ def _around(world: World, actor: Actor) -> FreeSpace:
         if seat != actor.seat:
             radius = world.bodies[seat].radius + _MARGIN_M
             rows += [(pose.x, pose.y, a * radius, b * radius, 0.0) for a, b in _ROUND]
-    return doorways.without(world.space[actor.seat], rows)
+    return doorways.with_obstacles(world.space[actor.seat], rows)
 
 
 def _leg(actor: Actor, point: Vec2) -> Outcome:

@@ -31,21 +31,21 @@ from hthor.types import (
 from hthor.world import numbers
 from hthor.world.actor import Actor
 from hthor.world.motion import spawn
-from hthor.world.sensing_simulation import SeenWorld
+from hthor.world.sensing_simulation import SensingSimulation
 
-_LIMIT_TICKS = 36_000
+_MOTION_TICKS_MAX = 36_000
 """An hour: a call that is not done by then never will be."""
 
 
-_MOST_TICKS = 864_000
+_STEP_TICKS_MAX = 864_000
 """A day: more than any study, and not yet without end."""
 
 
-class World(SeenWorld):
+class World(SensingSimulation):
     """A house with one person and any number of robots in it, for notebooks, studies and scripts.
 
-    Everything of `TickedWorld` and `SeenWorld` is here too. ``human``, ``robot`` and ``actor(seat)`` are the bodies;
-    calls on them take as long as their motions take.
+    It has all members of `Simulation` and `SensingSimulation`. ``human``, ``robot`` and ``actor(seat)`` are the bodies;
+    a call on one of them lets time pass until its motion ends.
 
     Args:
         house: a name of `scenes`, the path of a house file, or a `HouseSpec`.
@@ -72,7 +72,7 @@ class World(SeenWorld):
             return
         self._begin({})
         self._seed = seed
-        spawn.stand(tuple(self._seats.values()), self.house.start, ())
+        spawn.place_bodies(tuple(self._seats.values()), self.house.start, ())
 
     def objects(self, kind: str = "", room: str = "") -> tuple[ThingState, ...]:
         """True states of the objects that can be picked up, by id; of one kind, or in one room (its id), when given.
@@ -80,7 +80,7 @@ class World(SeenWorld):
         Raises:
             UnknownName: when there is no such room or kind.
         """
-        _known(kind)
+        _check_kind(kind)
         where = self._room(room).polygon if room else ()
         states = (item.state() for item in self._objects if item.present and kind in ("", item.kind))
         return tuple(state for state in states if not where or plane.inside(state.position[:2], where))
@@ -91,7 +91,7 @@ class World(SeenWorld):
         Raises:
             UnknownName: when there is no such room or kind.
         """
-        _known(kind)
+        _check_kind(kind)
         where = self._room(room).id if room else ""
         things = self._contents.statics
         return tuple(thing for thing in things if kind in ("", thing.kind) and where in ("", thing.room))
@@ -155,7 +155,7 @@ class World(SeenWorld):
     def run(self, seat: str, motion: Motion) -> Outcome:
         """Start a motion and let ticks pass until it has ended."""
         self.start(seat, motion)
-        for _ in range(_LIMIT_TICKS):
+        for _ in range(_MOTION_TICKS_MAX):
             self.step()
             if self.idle(seat):
                 break
@@ -166,7 +166,7 @@ class World(SeenWorld):
     def step(self, ticks: int = 1) -> tuple[Event, ...]:
         """Let ``ticks`` of 0.1 s pass; returns what happened in them, which `events` keeps too."""
         news: list[Event] = []
-        for _ in range(numbers.whole("ticks", ticks, 0, _MOST_TICKS)):
+        for _ in range(numbers.whole_number("ticks", ticks, 0, _STEP_TICKS_MAX)):
             happened = self.advance()
             self.note(happened)
             news += happened
@@ -174,7 +174,9 @@ class World(SeenWorld):
 
     def settle(self, seconds: float = 10.0) -> bool:
         """Let time pass until nothing falls, rolls or swings, at most ``seconds``; says whether all is still."""
-        for _ in range(round(numbers.number("seconds", seconds, "seconds", 0.0, _LIMIT_TICKS * rules.TICK_S) * 10)):
+        for _ in range(
+            round(numbers.number("seconds", seconds, "seconds", 0.0, _MOTION_TICKS_MAX * rules.TICK_S) * 10)
+        ):
             self.step()
             if self.still:
                 return True
@@ -204,7 +206,7 @@ class World(SeenWorld):
         raise UnknownName("room", name, [room.name for room in self.house.rooms])
 
 
-def _known(kind: str) -> None:
+def _check_kind(kind: str) -> None:
     """Complain of a kind that does not exist; "" stands for all."""
     if kind:
         catalog.kind(kind)

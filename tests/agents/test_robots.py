@@ -22,7 +22,7 @@ from hthor.world import World
 from hthor.world.model.bodies import avatar, bodies
 
 NAMES = plugins.names("robot")
-SPECS = [bodies.robot(name) for name in NAMES]
+SPECS = [bodies.load_robot(name) for name in NAMES]
 FIGURES = [avatar.HUMAN, *SPECS]
 _HANDS_M = 0.17
 """How far fingers or a tray may stick out beyond the middle of the hand."""
@@ -32,7 +32,7 @@ every_body = pytest.mark.parametrize("spec", FIGURES, ids=[spec.name for spec in
 
 
 def test_the_four_robots_differ_in_what_they_are_for() -> None:
-    scout, tender, puck, porter = (bodies.robot(name) for name in ("scout", "tender", "puck", "porter"))
+    scout, tender, puck, porter = (bodies.load_robot(name) for name in ("scout", "tender", "puck", "porter"))
     assert scout.capabilities == puck.capabilities == {"navigate"}
     assert tender.capabilities == porter.capabilities == {"navigate", "pick", "open"}
     assert puck.height < scout.height < porter.height < tender.height
@@ -47,7 +47,7 @@ def test_the_four_robots_differ_in_what_they_are_for() -> None:
 @every_robot
 def test_a_robot_is_called_what_its_file_is(spec: RobotSpec) -> None:
     assert isinstance(spec, RobotSpec)
-    assert bodies.robot(spec.name) is spec
+    assert bodies.load_robot(spec.name) is spec
     assert spec.title
 
 
@@ -181,7 +181,7 @@ def test_the_eye_is_in_the_head(spec: RobotSpec) -> None:
 @given(share=st.floats(-1.0, 1.0))
 def test_the_head_turns_about_the_neck_and_looks_where_the_camera_does(spec: RobotSpec, share: float) -> None:
     pitch = share * spec.pitch_limit
-    rotation, offset = bodies.head(spec, pitch)
+    rotation, offset = bodies.head_transform(spec, pitch)
     neck = np.array(bodies.neck(spec))
     assert rotation @ neck + offset == pytest.approx(neck)
     assert rotation @ rotation.T == pytest.approx(np.eye(3))
@@ -199,7 +199,7 @@ def test_what_is_held_lies_on_the_hand_within_reach(spec: RobotSpec) -> None:
     assert x > 0.0
     for name in catalog.TARGETS:
         size = catalog.kind(name).size
-        centre = bodies.grasp(spec, size)
+        centre = bodies.grasp_point(spec, size)
         assert centre[:2] == (x, y)
         assert centre[2] - size[2] / 2 == pytest.approx(z)
         beside = [part for part in bodies.look(spec) if not part.moves]
@@ -304,13 +304,13 @@ def look():
 def test_a_user_s_robot_is_one_file(tmp_path: Path) -> None:
     file = tmp_path / "rover_of_mine.py"
     file.write_text(MINE.format(name="rover_of_mine"))
-    spec = bodies.robot(str(file))
+    spec = bodies.load_robot(str(file))
     assert spec.name == "rover_of_mine"
     assert [part.shape for part in bodies.look(spec)] == ["sphere"]
     assert len(bodies.pieces(spec)) == 1
     world = World(tiny.house(), robots=(str(file),))
     assert world.bodies["robot"] == spec
-    assert bodies.robot("rover_of_mine") == spec, "known by its name once it was loaded"
+    assert bodies.load_robot("rover_of_mine") == spec, "known by its name once it was loaded"
     assert len(plugins.sha256(str(file))) == 64
 
 
@@ -322,7 +322,7 @@ def test_a_run_knows_the_file_and_notices_a_change(tmp_path: Path) -> None:
     (seat,) = robot_team.form_team([shape], ["frontier"]).seats
     assert seat.robot_sha256 == plugins.sha256(str(file))
     stage = trial_runner.TrialRunner(trial_runner.Sources(bodies={"robot": shape.path}))
-    assert stage._body(seat) == bodies.robot(str(file))
+    assert stage._body(seat) == bodies.load_robot(str(file))
     file.write_text(file.read_text() + "# faster")
     with pytest.raises(HthorError, match="was changed while its run was going on"):
         stage._body(seat)
@@ -337,7 +337,7 @@ def test_robots_that_ship_with_hthor_are_covered_by_the_code_s_hash() -> None:
 
 
 def test_a_body_made_from_a_record_has_a_plain_look() -> None:
-    spec = msgspec.structs.replace(bodies.robot("scout"), name="nobody_s")
+    spec = msgspec.structs.replace(bodies.load_robot("scout"), name="nobody_s")
     assert len(bodies.look(spec)) == 3
     assert bodies.neck(spec)[2] < spec.height
     assert World(tiny.house(), robots=(spec,)).bodies["robot"].name == "nobody_s"
@@ -357,21 +357,21 @@ def test_a_body_made_from_a_record_has_a_plain_look() -> None:
 def test_bad_files_are_refused_with_the_reason(tmp_path: Path, name: str, text: str, expected: str) -> None:
     (tmp_path / name).write_text(text)
     with pytest.raises(HthorError, match=expected):
-        bodies.robot(str(tmp_path / name))
+        bodies.load_robot(str(tmp_path / name))
 
 
 def test_two_files_of_one_name_are_told_apart(tmp_path: Path) -> None:
     for folder in ("a", "b"):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "twin.py").write_text(MINE.format(name="twin"))
-    bodies.robot(str(tmp_path / "a" / "twin.py"))
-    assert bodies.robot(str(tmp_path / "a" / "twin.py")).name == "twin"
+    bodies.load_robot(str(tmp_path / "a" / "twin.py"))
+    assert bodies.load_robot(str(tmp_path / "a" / "twin.py")).name == "twin"
     with pytest.raises(HthorError, match="rename one of them"):
-        bodies.robot(str(tmp_path / "b" / "twin.py"))
+        bodies.load_robot(str(tmp_path / "b" / "twin.py"))
 
 
 def test_unknown_robots_are_named() -> None:
     with pytest.raises(UnknownName, match="Did you mean 'scout'"):
-        bodies.robot("scot")
+        bodies.load_robot("scot")
     with pytest.raises(UnknownName, match="must lead to a Python file"):
-        bodies.robot("nowhere/robot.py")
+        bodies.load_robot("nowhere/robot.py")

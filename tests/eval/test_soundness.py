@@ -15,9 +15,9 @@ from hthor.errors import HthorError
 from hthor.houses.checks.findings import error, sound
 from hthor.houses.checks.house_checks import check
 from hthor.world.validation import drop_test, generate_valid, penetration
-from hthor.world.validation.drop_test import drops
-from hthor.world.validation.house_soundness import prove
-from hthor.world.validation.penetration import DEEP_M, penetrations
+from hthor.world.validation.drop_test import drop_findings
+from hthor.world.validation.house_soundness import check_soundness
+from hthor.world.validation.penetration import PENETRATION_MAX_M, penetration_findings
 
 FURNITURE = [
     name for name in catalog.names() if not catalog.kind(name).pickable and not catalog.kind(name).wall_mounted
@@ -26,7 +26,11 @@ RECEPTACLES = [name for name in FURNITURE if catalog.kind(name).rests()]
 
 
 def pairs(*things):
-    return {pair: depth for pair, depth in penetration.depths(house(*things)).items() if depth > DEEP_M}
+    return {
+        pair: depth
+        for pair, depth in penetration.penetration_depths(house(*things)).items()
+        if depth > PENETRATION_MAX_M
+    }
 
 
 def test_what_stands_apart_or_rests_does_not_penetrate():
@@ -56,12 +60,12 @@ def test_an_empty_space_under_a_table_is_no_penetration():
 def test_walls_and_the_floor_count_and_are_named():
     sunk = thing("sunk", "bin", 1.0, 1.0, bottom=-0.02)
     stuck = thing("stuck", "dresser", 2.5, 0.05 + 0.24 - 0.03)
-    words = {finding.where: finding.problem for finding in penetrations(house(sunk, stuck))}
+    words = {finding.where: finding.problem for finding in penetration_findings(house(sunk, stuck))}
     assert words == {"sunk": "the bin is 20 mm deep in the floor", "stuck": "the dresser is 30 mm deep in the wall"}
 
 
 def test_both_things_are_named():
-    (finding,) = penetrations(house(TABLE, thing("other", "dining_table", 3.0, 2.5)))
+    (finding,) = penetration_findings(house(TABLE, thing("other", "dining_table", 3.0, 2.5)))
     assert finding.rule == "penetration"
     assert "'table' (dining table)" in f"'{finding.where}' {finding.problem}"
     assert "'other'" in finding.problem or finding.where == "other"
@@ -75,17 +79,17 @@ def test_every_surface_of_every_kind_takes_every_target(name: str):
     spec = house(thing("it", name, 2.5, 2.5, math.pi / 2))
     trials = list(drop_test._trials(spec))
     assert len(trials) == len(catalog.kind(name).rests()) * len(catalog.TARGETS)
-    assert [str(finding) for finding in drops(spec)] == []
+    assert [str(finding) for finding in drop_findings(spec)] == []
 
 
 def test_a_full_surface_takes_nothing_and_says_what_does_not_fit():
     table = thing("it", "side_table", 2.5, 2.5)
     (board,) = catalog.kind("side_table").rests()
     spec = house(table, on("lamp", "lamp", table))
-    problems = [finding.problem for finding in drops(spec)]
+    problems = [finding.problem for finding in drop_findings(spec)]
     assert any("no free place for the lettuce" in problem and board.name in problem for problem in problems)
     assert not any("remote control" in problem for problem in problems)
-    assert {finding.rule for finding in drops(spec)} == {"surface-takes"}
+    assert {finding.rule for finding in drop_findings(spec)} == {"surface-takes"}
 
 
 def test_what_does_not_stay_is_told(monkeypatch: pytest.MonkeyPatch):
@@ -96,7 +100,7 @@ def test_what_does_not_stay_is_told(monkeypatch: pytest.MonkeyPatch):
         return [(place.centre[0] + place.half[0] + 0.05, place.centre[1], place.centre[2] + size[2] / 2 + 0.005)]
 
     monkeypatch.setattr(drop_test, "candidates", edge)
-    problems = [finding.problem for finding in drops(house(table))]
+    problems = [finding.problem for finding in drop_findings(house(table))]
     assert any("the apple put on the top of the side table strays" in problem for problem in problems)
 
 
@@ -105,7 +109,7 @@ def test_objects_tried_together_do_not_meet():
     spec = house(thing("it", "stool", 2.5, 2.5))
     spots = {trial.at[:2] for trial in drop_test._trials(spec) if trial.at is not None}
     assert len(spots) == 1
-    assert drops(spec) == ()
+    assert drop_findings(spec) == ()
 
 
 # --------------------------------------------------------------------------------------------------------------- homes
@@ -123,20 +127,20 @@ def test_a_home_that_the_proof_refuses_is_followed_by_the_next_attempt(monkeypat
     monkeypatch.setattr(generate_valid.generator, "generate", generate)
     monkeypatch.setattr(generate_valid.loader, "build", lambda document, name: house())
     monkeypatch.setattr(generate_valid, "prove", lambda spec, radius: next(verdicts))
-    home = generate_valid.make(7, 5)
+    home = generate_valid.generate_valid_home(7, 5)
     assert tried == [(7, 5, 0, generate_valid.ATTEMPTS), (7, 5, 2, generate_valid.ATTEMPTS)]
     assert (home.attempt, home.refused) == (3, (refusal,))
     monkeypatch.setattr(generate_valid, "prove", lambda spec, radius: (refusal,))
     with pytest.raises(HthorError, match=r"seed 7 gave no sound home of 5 rooms.*deep in the wall.*another seed"):
-        generate_valid.make(7, 5)
+        generate_valid.generate_valid_home(7, 5)
 
 
 def test_a_home_is_sound_and_the_same_every_time():
-    home = generate_valid.make(11, 4)
-    assert prove(home.house, generate_valid.RADIUS_M) == home.findings
+    home = generate_valid.generate_valid_home(11, 4)
+    assert check_soundness(home.house, generate_valid.RADIUS_M) == home.findings
     assert sound(home.findings)
     assert len(home.house.rooms) == 4
-    assert generate_valid.make(11, 4).document == home.document
+    assert generate_valid.generate_valid_home(11, 4).document == home.document
 
 
 # --------------------------------------------------------------------------------------------------------------- proof
@@ -144,10 +148,10 @@ def test_a_home_is_sound_and_the_same_every_time():
 
 def test_a_proof_is_the_strict_check_and_the_engine_s_word():
     spec = house(TABLE, thing("stuck", "dresser", 2.5, 0.05 + 0.24 - 0.03), start=(1.0, 1.5))
-    findings = prove(spec)
+    findings = check_soundness(spec)
     assert set(check(spec, 0.25, strict=True)) < set(findings)
     assert {finding.rule for finding in findings} == {"penetration", "receptacles-present"}
-    assert prove(spec) == findings
+    assert check_soundness(spec) == findings
 
 
 def test_the_leaf_in_a_doorway_needs_room_to_swing():
@@ -156,7 +160,9 @@ def test_the_leaf_in_a_doorway_needs_room_to_swing():
     hung = msgspec.structs.replace(spec, openings=(msgspec.structs.replace(spec.openings[0], openable=True),))
     for x, hit in ((SIDE - 0.7, True), (SIDE + 0.7, False)):
         things = (TABLE, thing("bin", "bin", x, SIDE / 2 - 0.2))
-        found = [f for f in prove(msgspec.structs.replace(hung, things=things), 0.2) if f.rule == "swing-free"]
+        found = [
+            f for f in check_soundness(msgspec.structs.replace(hung, things=things), 0.2) if f.rule == "swing-free"
+        ]
         assert [f.where for f in found] == ["door"] * hit
         assert all("in 'bin'" in f.problem for f in found)
 
@@ -165,4 +171,4 @@ def test_a_furnished_room_is_proved_sound_but_for_what_it_lacks():
     bed = thing("bed", "bed", 0.9, SIDE - 0.05 - 1.06, math.pi)
     fridge = thing("fridge", "fridge", SIDE + 2.5, SIDE - 0.05 - 0.37, math.pi)
     spec = house(TABLE, bed, fridge, on("egg", "egg", fridge, v=0.8, surface=2), on("pillow", "pillow", bed, v=-0.6))
-    assert {finding.rule for finding in prove(spec)} == {"receptacles-present"}
+    assert {finding.rule for finding in check_soundness(spec)} == {"receptacles-present"}

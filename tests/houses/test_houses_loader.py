@@ -20,7 +20,7 @@ from hthor.errors import HouseError, UnknownName
 from hthor.geometry.plane import inside, rectangle, signed_area, turn
 from hthor.houses.checks.polygons import crossing, distance_to_segment, overlap_area, simplified
 from hthor.types import HouseSpec, Opening, Vec2, Wall
-from hthor.world.validation.house_soundness import prove
+from hthor.world.validation.house_soundness import check_soundness
 
 OWN = houses.names()
 DATA = Path(houses.__file__).parent / "data"
@@ -57,7 +57,7 @@ def test_there_are_ten_houses_of_many_sizes() -> None:
 @pytest.mark.parametrize("name", OWN)
 def test_a_house_of_our_own_is_proved_sound(name: str) -> None:
     """Every rule, the engine's among them: nothing floats, sticks in something or bars a door; all can be reached."""
-    assert [str(finding) for finding in prove(houses.load(name))] == []
+    assert [str(finding) for finding in check_soundness(houses.load(name))] == []
 
 
 def test_rooms_tile_the_floor_and_have_names_of_their_own(house: HouseSpec) -> None:

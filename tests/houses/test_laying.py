@@ -97,7 +97,7 @@ def test_what_lies_on_a_small_thing_lies_on_it_where_that_is_laid():
     (top,) = catalog.kind("plate").surfaces(plate.size)
     assert bottom(plate) == pytest.approx(house[plate.parent].centre[2] + house[plate.parent].size[2] / 2)
     assert bottom(book) == pytest.approx(plate.centre[2] + top.centre[2])
-    assert {"a plate", "a book"} <= {one.id for one in inventory.split(stacked(), ()).movables}
+    assert {"a plate", "a book"} <= {one.id for one in inventory.split_things(stacked(), ()).movables}
 
 
 def test_what_cannot_lie_there_stays_where_the_file_has_it():
@@ -106,7 +106,7 @@ def test_what_cannot_lie_there_stays_where_the_file_has_it():
     assert len(kept) > 10, "a metre over a table there is nothing to lie on"
     assert not any(thing.lift for thing in house.things if thing.id in kept)
     assert all(abs(thing.lift) <= 0.3 for thing in house.things)
-    assert kept <= {thing.id for thing in inventory.split(house, ()).statics}
+    assert kept <= {thing.id for thing in inventory.split_things(house, ()).statics}
 
 
 def test_the_height_of_the_file_is_still_judged():

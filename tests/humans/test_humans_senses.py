@@ -30,7 +30,7 @@ from hthor.types import HUMAN, Briefing, Detection, Job, Observation, Open, Pose
 from hthor.world import World
 from hthor.world.model.bodies import avatar
 from hthor.world.perception import view_frustum, visibility_kernel, visible_fraction
-from hthor.world.perception.occluders import Hiders
+from hthor.world.perception.occluders import Occluders
 
 TRAITS = Parameters()
 angle, ecc, share, beside = st.floats(1e-3, 1.0), st.floats(0.0, 1.5), st.floats(0.0, 1.0), st.integers(0, 20)
@@ -96,12 +96,15 @@ def test_a_closer_look_finds_what_ray_after_ray_finds(seed, yaw, pitch):
     middle = np.array([0.1, -0.2, 1.0]) + chance.uniform(0.3, 4.0) * np.array([math.cos(ahead), math.sin(ahead), 0.0])
     others = middle + chance.normal(0.0, 0.4, (count, 3))
     size = tuple(chance.uniform(0.03, 0.4, 3))
-    points = visible_fraction.samples(tuple(middle), size, float(chance.uniform(-3, 3)), (tuple(middle),))
+    points = visible_fraction.sample_points(tuple(middle), size, float(chance.uniform(-3, 3)), (tuple(middle),))
     others[0] = middle
     begin = chance.integers(0, 58, count)
     wanted = np.column_stack([chance.choice([0.0, 1.0], count, p=[0.2, 0.8]), begin, begin + 2]).astype(float)
     pose = Pose(x=0.1, y=-0.2, yaw=yaw, pitch=pitch)
-    view, bodies = view_frustum.camera(pose, avatar.HUMAN), (scene.half, scene.pos, scene.mat, scene.radius, scene.ids)
+    view, bodies = (
+        view_frustum.view_vector(pose, avatar.HUMAN),
+        (scene.half, scene.pos, scene.mat, scene.radius, scene.ids),
+    )
     whole = slowly(
         view, 0, [point[None] for point in points], [99.0] * len(points), [tuple(wanted[0, 1:])] * len(points), *bodies
     )
@@ -118,13 +121,13 @@ def test_a_closer_look_finds_what_ray_after_ray_finds(seed, yaw, pitch):
     crowd = slowly(
         view, 0, [others[k][None] for k in near], [99.0] * len(near), [tuple(wanted[k, 1:]) for k in near], *bodies
     )
-    hiders = Hiders(scene)
+    hiders = Occluders(scene)
     hiders.follow(1)
     around = hiders.groups, hiders.spheres, hiders.boxes, hiders.firm, hiders.count
-    eye = pose.x, pose.y, avatar.HUMAN.eye, yaw, pitch, *view_frustum.lens(avatar.HUMAN)
-    found = visible_fraction.look(*eye, points, 0, others, wanted, *around)
+    eye = pose.x, pose.y, avatar.HUMAN.eye, yaw, pitch, *view_frustum.half_fov_tangents(avatar.HUMAN)
+    found = visible_fraction.measure(*eye, points, 0, others, wanted, *around)
     assert found == (len(whole) / len(points), len(crowd))
-    assert visibility_kernel.facing(*eye) == pytest.approx(tuple(view))
+    assert visibility_kernel.view_axes(*eye) == pytest.approx(tuple(view))
 
 
 @pytest.fixture(scope="module")

@@ -373,13 +373,13 @@ def test_detailed_models_need_the_extra(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_a_world_takes_a_pack_before_our_own(built: making.Made) -> None:
     from hthor.world import World
-    from hthor.world.rendering.scene.asset_source import Fabric
+    from hthor.world.rendering.scene.asset_source import AssetSource
 
-    fabric, size = Fabric(built.pack), catalog.kind("dining_table").size
+    fabric, size = AssetSource(built.pack), catalog.kind("dining_table").size
     texture = fabric.look("dining_table", size, 0)[0].material.texture
     assert texture.startswith("pack:")
     assert np.array_equal(fabric.texture(texture), built.pack.texture(texture.removeprefix("pack:")))
-    assert fabric.look("fridge", catalog.kind("fridge").size, 0) == Fabric().look(
+    assert fabric.look("fridge", catalog.kind("fridge").size, 0) == AssetSource().look(
         "fridge", catalog.kind("fridge").size, 0
     )
     with pytest.raises(UnknownName, match="furniture pack"):

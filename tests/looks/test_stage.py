@@ -21,10 +21,10 @@ from hthor.world import World
 from hthor.world.model import inventory
 from hthor.world.rendering import contact_sheet
 from hthor.world.rendering.scene import lights, outdoors, wall_meshes
-from hthor.world.rendering.scene.asset_source import Fabric
-from hthor.world.rendering.scene.compile_scene import Dressing
+from hthor.world.rendering.scene.asset_source import AssetSource
+from hthor.world.rendering.scene.compile_scene import SceneBuilder
 from hthor.world.rendering.scene.grids import facet, slab
-from hthor.world.rendering.scene.pose_sync import Puppets
+from hthor.world.rendering.scene.pose_sync import PoseSync
 
 AT_THE_FRIDGE = Pose(x=0.75, y=2.5, yaw=math.pi / 2)
 
@@ -67,9 +67,9 @@ def drawn(world: World) -> World:
 
 def undressed(world: World, pack: Any = None) -> Any:
     """The visual model of a world, without any OpenGL."""
-    split = inventory.split(world.house, inventory.DEFAULT_OBJECTS)
-    dressing = Dressing(world.house, split, Puppets(world.model, world._scene), Fabric(pack))
-    return dressing.build(world.bodies, lights.Lamps(world.house))
+    split = inventory.split_things(world.house, inventory.DEFAULT_OBJECTS)
+    dressing = SceneBuilder(world.house, split, PoseSync(world.model, world._scene), AssetSource(pack))
+    return dressing.build(world.bodies, lights.RoomLights(world.house))
 
 
 # ------------------------------------------------------------------------------------------------- without any OpenGL
@@ -90,7 +90,7 @@ def test_a_facet_has_its_area_and_faces_one_way(width: float, height: float, yaw
 
 @pytest.mark.parametrize("name", houses.names()[:4])
 def test_walls_meet_without_two_in_one_place(name: str) -> None:
-    pieces = list(wall_meshes.slabs(houses.load(name)))
+    pieces = list(wall_meshes.wall_slabs(houses.load(name)))
     assert len(pieces) > 20
     for a, b in itertools.combinations(pieces, 2):
         if a.face.id != b.face.id:
@@ -102,7 +102,7 @@ def test_walls_meet_without_two_in_one_place(name: str) -> None:
 @pytest.mark.parametrize("name", houses.names()[:4])
 def test_walls_close_every_corner_and_leave_every_opening(name: str) -> None:
     house = houses.load(name)
-    pieces = list(wall_meshes.slabs(house))
+    pieces = list(wall_meshes.wall_slabs(house))
 
     def solid(x: float, y: float, z: float) -> bool:
         return any(
@@ -122,7 +122,7 @@ def test_walls_close_every_corner_and_leave_every_opening(name: str) -> None:
         assert solid(x, y, opening.high + 0.1)
 
 
-def _extent(piece: wall_meshes.Slab) -> tuple[float, float, float]:
+def _extent(piece: wall_meshes.WallSlab) -> tuple[float, float, float]:
     cos, sin = abs(math.cos(piece.yaw)), abs(math.sin(piece.yaw))
     return (cos * piece.half[0] + sin * piece.half[1], sin * piece.half[0] + cos * piece.half[1], piece.half[2])
 
@@ -130,7 +130,7 @@ def _extent(piece: wall_meshes.Slab) -> tuple[float, float, float]:
 @pytest.mark.parametrize("name", houses.names()[:4])
 def test_every_room_has_lamps_of_its_own(name: str) -> None:
     house = houses.load(name)
-    places = lights.Lamps(house).places
+    places = lights.RoomLights(house).places
     for room in house.rooms:
         assert 1 <= len(places[room.id]) <= 3
         assert all(plane.inside(place, room.polygon) for place in places[room.id])
@@ -164,7 +164,7 @@ def test_a_pack_comes_first_and_brings_its_own_textures(world: World) -> None:
 
 
 def test_puppets_follow_doors(world: World) -> None:
-    puppets = Puppets(world.model, world._scene)
+    puppets = PoseSync(world.model, world._scene)
     body = puppets.hung[FRIDGE, world._doors.get(FRIDGE).joints[0].name]
     closed = puppets.at(world._env.data.qpos)[1][body].copy()
     _, (w, *_rest) = puppets.relative(body, ((0.0, 0.0, 0.0), tuple(closed)))

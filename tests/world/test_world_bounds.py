@@ -21,7 +21,7 @@ from hthor.types import Pick, Place, Pose, Wait
 from hthor.world import World, numbers
 from hthor.world.model import composer_env
 from hthor.world.model.inventory import DEFAULT_OBJECTS
-from hthor.world.state.overlap_test import Touch
+from hthor.world.state.overlap_test import OverlapTest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from benchmarks import reaching
@@ -45,7 +45,7 @@ def inside(world: World, id: str) -> str:
     """What an object is in."""
     item = world._objects.get(id)
     assert item is not None
-    return Touch(world._env, world._scene).inside(item)
+    return OverlapTest(world._env, world._scene).inside(item)
 
 
 # ------------------------------------------------------------------------------------- two things in one place
@@ -98,7 +98,7 @@ def test_two_robots_place_on_one_spot_in_one_tick(world: World) -> None:
 @given(
     st.sampled_from(TARGETS),
     st.tuples(st.floats(0.3, 9.7), st.floats(0.3, 3.7), st.floats(0.3, 2.3)),
-    st.floats(3.0, composer_env.FASTEST_M_S),
+    st.floats(3.0, composer_env.SPEED_MAX_M_S),
     st.floats(-math.pi, math.pi),
     st.floats(-1.5, 1.5),
     st.floats(-math.pi, math.pi),
@@ -126,7 +126,7 @@ def test_a_thin_thing_that_hits_an_edge_does_not_spin_up_without_end(world: Worl
     for _ in range(60):
         world.step()
         fastest = max(fastest, float(np.abs(world._env.data.qvel).max()))
-    assert fastest <= composer_env.FASTEST_RAD_S
+    assert fastest <= composer_env.SPIN_MAX_RAD_S
 
 
 def test_faster_than_anything_flies_is_refused(world: World) -> None:
@@ -274,7 +274,7 @@ def test_a_seat_that_there_is_not_is_named(world: World) -> None:
 def test_numbers_of_numpy_are_numbers() -> None:
     assert numbers.number("x", np.float32(0.5), "metres") == 0.5
     assert numbers.point3("p", np.array((1.0, 2.0, 3.0))) == (1.0, 2.0, 3.0)
-    assert numbers.whole("n", np.int64(3), 0, 5) == 3
+    assert numbers.whole_number("n", np.int64(3), 0, 5) == 3
 
 
 # ------------------------------------------------------------------------------------------------ going to objects

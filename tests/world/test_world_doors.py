@@ -228,7 +228,7 @@ def test_reset_opens_all_doorways(world: World) -> None:
 
 
 def test_a_leaf_opens_into_the_first_room_clear_of_the_wall() -> None:
-    (leaf,) = door_geometry.of_house(house())
+    (leaf,) = door_geometry.doorway_leaves(house())
     (joint,) = leaf.joints
     world = World(house())
     first, end = world._scene.span[DOOR]
@@ -239,6 +239,6 @@ def test_a_leaf_opens_into_the_first_room_clear_of_the_wall() -> None:
     wide = msgspec.structs.replace(leaf.opening, b=(5.0, 3.1))
     spec = house()
     spec = msgspec.structs.replace(spec, openings=(wide,))
-    (double,) = door_geometry.of_house(spec)
+    (double,) = door_geometry.doorway_leaves(spec)
     assert [joint.name for joint in double.joints] == ["left door", "right door"]
     assert double.joints[0].axis == tuple(-axis for axis in double.joints[1].axis)

@@ -14,7 +14,7 @@ from hthor.types import Close, Move, Open, Pick, Place, Pose, RobotSpec, Rotate
 from hthor.world import World
 from hthor.world.model import inventory
 from hthor.world.model.bodies import bodies
-from hthor.world.model.bodies.bodies import robot
+from hthor.world.model.bodies.bodies import load_robot
 
 AT_TABLE = Pose(x=2.5, y=3.4, yaw=-math.pi / 2)
 AT_FRIDGE = Pose(x=0.75, y=2.6, yaw=math.pi / 2)
@@ -47,7 +47,7 @@ def test_pick_carry_place_conserves_the_object(world: World) -> None:
     assert state(world, "apple").support == ""
     do(world, "human", Rotate(yaw=-math.pi / 2))
     pose, at = world.pose("human"), state(world, "apple").position
-    ahead, left, up = bodies.grasp(world.bodies["human"], catalog.kind("apple").size)
+    ahead, left, up = bodies.grasp_point(world.bodies["human"], catalog.kind("apple").size)
     assert math.dist((pose.x, pose.y), at[:2]) == pytest.approx(math.hypot(ahead, left))
     assert at[2] == pytest.approx(up)
     assert at[0] < pose.x - 0.3
@@ -101,7 +101,7 @@ def test_what_another_holds_is_taken(world: World) -> None:
 
 
 def test_strength() -> None:
-    data = {name: getattr(robot("tender"), name) for name in RobotSpec.__struct_fields__}
+    data = {name: getattr(load_robot("tender"), name) for name in RobotSpec.__struct_fields__}
     weak = RobotSpec(**(data | {"name": "feeble", "title": "feeble robot", "strength": 0.1}))
     world = World(tiny.house(), robots=(weak,))
     world.reset(task(on(TABLE, "book"), robots=(Pose(x=2.5, y=3.4, yaw=-math.pi / 2),)))
@@ -214,7 +214,7 @@ def test_what_could_not_lie_as_the_house_says_stays_like_furniture() -> None:
         tiny.thing("plate|1", "plate", 3.2, 0.42, 0.0, low=0.9, parent=COUNTER),
         tiny.thing("egg|1", "egg", 3.2, 0.42, 0.0, low=0.922, parent="plate|1"),
     )
-    split = inventory.split(msgspec.structs.replace(house, things=(*house.things, *odd)), ())
+    split = inventory.split_things(msgspec.structs.replace(house, things=(*house.things, *odd)), ())
     assert {movable.id for movable in split.movables} == {"book|old", "vase|1", "plate|1", "egg|1"}
     assert {thing.id for thing in odd[:3]} <= {thing.id for thing in split.statics}
     world = World(msgspec.structs.replace(house, things=(*house.things, *odd)), objects=())

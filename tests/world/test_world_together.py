@@ -69,7 +69,7 @@ def sound(world: World) -> None:
     strangers = np.array(
         [(pose.x, pose.y, world.bodies[seat].radius) for seat, pose in world.poses().items()], dtype=float
     )
-    walls, bodies = trailer_kernel.deepest(at, HALF, ROWS, strangers)
+    walls, bodies = trailer_kernel.deepest_contacts(at, HALF, ROWS, strangers)
     assert walls <= 0.003
     assert bodies <= 0.003
     for seat, pose in world.poses().items():
@@ -82,9 +82,11 @@ def sound(world: World) -> None:
 def test_a_trunk_is_too_heavy_for_anybody_alone_and_not_for_two() -> None:
     from hthor import plugins
     from hthor.world.model.bodies.avatar import HUMAN
-    from hthor.world.model.bodies.bodies import robot
+    from hthor.world.model.bodies.bodies import load_robot
 
-    strengths = [body.strength for body in (HUMAN, *(robot(name) for name in plugins.names("robot"))) if body.strength]
+    strengths = [
+        body.strength for body in (HUMAN, *(load_robot(name) for name in plugins.names("robot"))) if body.strength
+    ]
     assert max(strengths) * rules.HANDLE_STRENGTH < TRUNK.mass
     for strength in strengths:
         if strength != HUMAN.strength:
@@ -294,9 +296,9 @@ def test_teleporting_and_resetting_let_go(world: World) -> None:
 
 def test_what_one_is_strong_enough_for_goes_in_hand() -> None:
     from hthor.types import RobotSpec
-    from hthor.world.model.bodies.bodies import robot
+    from hthor.world.model.bodies.bodies import load_robot
 
-    porter = robot("porter")
+    porter = load_robot("porter")
     data = {name: getattr(porter, name) for name in RobotSpec.__struct_fields__}
     strong = RobotSpec(**(data | {"name": "giant", "title": "giant", "strength": 30.0}))
     world = World(tiny.house(), robots=(strong,), objects=[("trunk", "trunk")])

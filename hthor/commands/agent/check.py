@@ -98,7 +98,7 @@ def check(
     from hthor.types import cameras
 
     more = inputs.parse_inputs(agent_args or (), readable or ())
-    seen = cameras.tidy(camera, camera_size)
+    seen = cameras.canonical_name(camera, camera_size)
     report = checks.check(agent, robot=robot, camera=seen, isolation=isolation, given=more)
     if json:
         output.put_json(report)

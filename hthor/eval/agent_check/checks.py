@@ -49,7 +49,7 @@ def check(
 
     Args:
         robot: the body; by default the first that the agent is made for, or scout. camera: its
-            camera, as `hthor.types.cameras.tidy` spells it.
+            camera, as `hthor.types.cameras.canonical_name` spells it.
         given: arguments, and files beyond its own that it may read.
 
     Raises:

@@ -70,7 +70,7 @@ class Rehearsal:
 
     Args:
         character: the agent, from a file.
-        robot: the body it is in. camera: its camera, as `hthor.types.cameras.tidy` spells it.
+        robot: the body it is in. camera: its camera, as `hthor.types.cameras.canonical_name` spells it.
     """
 
     def __init__(self, character: AgentInfo, robot: str, camera: str = OWN) -> None:

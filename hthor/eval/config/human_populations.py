@@ -70,7 +70,7 @@ def robot_settings(body: str | RobotInfo, detector: str) -> dict[str, str | floa
 
     Args:
         body: the robot's name, or a user's own body.
-        detector: as `hthor.types.detector_specs.tidy` spells it.
+        detector: as `hthor.types.detector_specs.canonical_name` spells it.
     """
     shape = RobotInfo(name=body) if isinstance(body, str) else body
     spec: RobotSpec = plugins.load("robot", shape.path or shape.name)

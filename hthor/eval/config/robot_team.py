@@ -217,7 +217,7 @@ def load_robot_info(robot: str) -> RobotInfo:
         raise UnknownName("robot", robot, (*known, *ALIASES), hint)
     from hthor.world.model.bodies import bodies
 
-    return RobotInfo(name=bodies.robot(robot).name, sha256=plugins.sha256(robot), path=str(Path(robot).resolve()))
+    return RobotInfo(name=bodies.load_robot(robot).name, sha256=plugins.sha256(robot), path=str(Path(robot).resolve()))
 
 
 def load_agent_info(agent: str, guests: GuestConfig | None = None) -> AgentInfo:

@@ -51,7 +51,7 @@ def make_sessions(
 
     Args:
         agent: a built-in agent's name or an agent file, in the body ``robot`` with the detector ``detector`` as
-            `hthor.types.detector_specs.tidy` spells it; or a whole crew, which has all of that.
+            `hthor.types.detector_specs.canonical_name` spells it; or a whole crew, which has all of that.
         human: who the people are, as `hthor.humans.population.resolve` reads it.
         participants: how many people; by default as many as let every task be done exactly once.
         kind_sha256: hash of the file of the tasks' kind, for a kind that is not one of ours.

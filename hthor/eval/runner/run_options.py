@@ -105,8 +105,8 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
     guests = guest_config(options)
     code_identity.keep_compiled()
     whom = human_populations.find_populations(options.humans)
-    detector = detector_specs.tidy(options.detector)
-    camera = cameras.tidy(options.camera, options.camera_size)
+    detector = detector_specs.canonical_name(options.detector)
+    camera = cameras.canonical_name(options.camera, options.camera_size)
     pack = trial_runner.load_pack(options.assets)
     shown = run_config.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
     whole = task_selection.select_tasks(options.suite, options.kind)

@@ -61,7 +61,7 @@ def _seen(eyes: Any, points: Any, half: Any, pos: Any, mat: Any, radius: Any, sk
             near += 1
     for k in range(len(eyes)):
         for p in range(len(points)):
-            if not ray_casting.blocked(eyes[k], points[p], half, pos, mat, radius, ids[:near], skip0, skip1):
+            if not ray_casting.is_blocked(eyes[k], points[p], half, pos, mat, radius, ids[:near], skip0, skip1):
                 return True
     return False
 

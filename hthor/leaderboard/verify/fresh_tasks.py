@@ -108,11 +108,11 @@ def _draw(entry: Entry, board: Path, word: str, count: int, folder: Path, jobs: 
     season = files.commitments(board).get(entry.run.suite.sha256)
     if season is None:
         raise BoardError(f"{entry.id}: run.suite.sha256: no recipe of this suite is known for fresh tasks.")
-    from hthor.world.validation.house_soundness import prove
+    from hthor.world.validation.house_soundness import check_soundness
 
     homes = max(1, min(season.houses, count // _HOUSE_TASKS))
     order = secret_suites.Order(name=f"fresh-{lot[:10]}", houses=homes, tasks=count)
-    judges = secret_suites.Proof(house=prove, task=lambda task, house: not proof.examine(task, house).faults)
+    judges = secret_suites.Proof(house=check_soundness, task=lambda task, house: not proof.examine(task, house).faults)
     for path, data in secret_suites.files(order, Salt(lot), judges).items():
         jsonio.write(folder / path, data)
 

@@ -76,7 +76,7 @@ def _seen(eyes: Any, points: Any, half: Any, pos: Any, mat: Any, radius: Any, id
     out = np.zeros(len(eyes), dtype=np.bool_)
     for k in range(len(eyes)):
         for p in range(len(points)):
-            if not ray_casting.blocked(eyes[k], points[p], half, pos, mat, radius, ids, -1, -1):
+            if not ray_casting.is_blocked(eyes[k], points[p], half, pos, mat, radius, ids, -1, -1):
                 out[k] = True
                 break
     return out

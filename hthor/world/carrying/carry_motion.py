@@ -8,29 +8,31 @@ from collections.abc import Callable
 from hthor import rules
 from hthor.geometry.plane import turn, wrap
 from hthor.types import Event, Move, Outcome, Pose, Rotate, Vec2
-from hthor.world.carrying.trailer import Train
-from hthor.world.motion.locomotion import Step
-from hthor.world.state.body_state import Seat
+from hthor.world.carrying.trailer import TrailerLoad
+from hthor.world.motion.locomotion import TickResult
+from hthor.world.state.body_state import BodyState
 
 _EPS = 1e-9
-_SLIDE = 0.05
+_SLIDE_SHARE_MIN = 0.05
 """Sliding slower than this share of the pace counts as standing still."""
 
 
-class Hauling:
+class CarryMotion:
     """Moving with a load along a straight line, as far as the house, the others and the load let.
 
     Args:
         culprit: names what blocks a place, for the outcome.
     """
 
-    def __init__(self, seat: Seat, motion: Move, load: Train, culprit: Callable[[Seat, Vec2], str]) -> None:
+    def __init__(
+        self, seat: BodyState, motion: Move, load: TrailerLoad, culprit: Callable[[BodyState, Vec2], str]
+    ) -> None:
         self._seat, self._load, self._culprit = seat, load, culprit
         self._left = math.hypot(motion.forward, motion.left)
         x, y = turn((motion.forward, motion.left), seat.pose.yaw)
         self._along = (x / self._left, y / self._left) if self._left > 0.0 else (0.0, 0.0)
 
-    def advance(self, tick: int) -> Step:
+    def advance(self, tick: int) -> TickResult:
         seat, load = self._seat, self._load
         if seat.name not in load.ends:
             return Outcome(motion="move", ok=False, reason=f"{load.item.id} was put down"), ()
@@ -41,7 +43,7 @@ class Hauling:
             return self._stop(tick, (dx, dy))
         return (None if self._left > _EPS else Outcome(motion="move", ok=True)), ()
 
-    def _stop(self, tick: int, step: Vec2) -> Step:
+    def _stop(self, tick: int, step: Vec2) -> TickResult:
         other = self._load.beside(self._seat)
         by = other or self._culprit(self._seat, step)
         outcome = Outcome(motion="move", ok=False, reason=f"{other} is in the way" if other else "blocked", by=by)
@@ -50,18 +52,18 @@ class Hauling:
 
     def _go(self, dx: float, dy: float, step: float) -> bool:
         """Straight on, or else along one axis, unless hardly anything of the step is along it."""
-        ways = ((dx, dy), *(way for way in ((dx, 0.0), (0.0, dy)) if abs(way[0] + way[1]) > _SLIDE * step))
+        ways = ((dx, dy), *(way for way in ((dx, 0.0), (0.0, dy)) if abs(way[0] + way[1]) > _SLIDE_SHARE_MIN * step))
         return any(self._load.lead(self._seat, *way) for way in ways)
 
 
-class Turning:
+class CarryRotation:
     """Turning the body and tilting the camera while others may draw the body along."""
 
-    def __init__(self, seat: Seat, motion: Rotate) -> None:
+    def __init__(self, seat: BodyState, motion: Rotate) -> None:
         self._seat, self._yaw, self._pitch = seat, motion.yaw, motion.pitch
         self._rate = seat.spec.turn_rate * rules.TICK_S
 
-    def advance(self, tick: int) -> Step:  # noqa: ARG002
+    def advance(self, tick: int) -> TickResult:  # noqa: ARG002
         yaw, pitch = (max(-self._rate, min(self._rate, left)) for left in (self._yaw, self._pitch))
         self._yaw, self._pitch = self._yaw - yaw, self._pitch - pitch
         pose, limit = self._seat.pose, self._seat.spec.pitch_limit

@@ -42,58 +42,60 @@ from hthor.geometry import plane
 from hthor.houses.space import free_space
 from hthor.types import HouseSpec, Vec3
 from hthor.world.carrying.load import LIFT_M
-from hthor.world.carrying.trailer import Train
+from hthor.world.carrying.trailer import TrailerLoad
 from hthor.world.motion.reach import out_of_reach
 from hthor.world.state import doorways
-from hthor.world.state.body_state import Seat
+from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors
-from hthor.world.state.objects import Item, Objects
-from hthor.world.state.overlap_test import Touch
+from hthor.world.state.objects import MovableObject, Objects
+from hthor.world.state.overlap_test import OverlapTest
 
-_STEP_M = 0.01
+_LOWER_STEP_M = 0.01
 """In such steps a place is sought for what is put down, from the floor up."""
-_INSIDE_M = 0.05
+_STANDING_ON_M = 0.05
 """How far a body may stand in what lies on the floor and still take hold of it."""
-_TALL_M = 1.0
+_CARRY_HEIGHT_M = 1.0
 """What begins higher above the floor is in the way of nothing that is carried so."""
-News = tuple[tuple[str, dict[str, Any]], ...]
+EventList = tuple[tuple[str, dict[str, Any]], ...]
 """What happened: kinds of events with their data."""
 
 
-class Together:
+class JointCarrying:
     """What several bodies of one world hold by its handles."""
 
-    def __init__(self, house: HouseSpec, objects: Objects, doors: Doors, touch: Touch, seats: Sequence[Seat]) -> None:
+    def __init__(
+        self, house: HouseSpec, objects: Objects, doors: Doors, touch: OverlapTest, seats: Sequence[BodyState]
+    ) -> None:
         self._house, self._objects, self._doors, self._touch, self._seats = house, objects, doors, touch, tuple(seats)
-        self._loads: dict[str, Train] = {}
+        self._loads: dict[str, TrailerLoad] = {}
         self._fixed: Any = None
 
     def reset(self) -> None:
         """An episode begins: nobody holds anything."""
         self._loads.clear()
 
-    def of(self, seat: Seat) -> Train | None:
+    def of(self, seat: BodyState) -> TrailerLoad | None:
         """What ``seat`` holds by a handle, None for nothing."""
         load = self._loads.get(seat.holding)
         return load if load is not None and seat.name in load.ends else None
 
     @staticmethod
-    def takes(seat: Seat, item: Item) -> bool:
+    def takes(seat: BodyState, item: MovableObject) -> bool:
         """Whether ``seat`` can only take the object by a handle: it is too heavy, or others hold it so."""
         return catalog.kind(item.kind).handles and (item.mass > seat.spec.strength or bool(item.bearers))
 
-    def refusal(self, seat: Seat, item: Item) -> str:
+    def refusal(self, seat: BodyState, item: MovableObject) -> str:
         """Why ``seat`` cannot take hold of it, empty when it can."""
         load = self._loads.get(item.id)
         if load is not None and len(load.ends) == 2:
             return f"both handles of {item.id} are taken, by {' and '.join(load.ends)}"
         x, y, _ = item.position
         gap = plane.distance_to_rectangle((seat.pose.x, seat.pose.y), (x, y), item.size[:2], item.yaw)
-        if gap < seat.spec.radius - _INSIDE_M:
+        if gap < seat.spec.radius - _STANDING_ON_M:
             return f"{seat.name} stands on {item.id}; step back from it"
         return out_of_reach(seat, f"the handle of {item.id}", self._handle(seat, item)[1])
 
-    def stuck(self, seat: Seat) -> str:
+    def stuck(self, seat: BodyState) -> str:
         """Why ``seat`` cannot go anywhere because of what it holds, empty when it can."""
         load = self.of(seat)
         if load is None or load.up:
@@ -101,9 +103,9 @@ class Together:
         weight = f"{load.item.id} weighs {load.item.mass:.1f} kg; {load.holders} {load.lifted:.1f} kg by its handles"
         return f"{weight}: wait until somebody helps, or let go"
 
-    def hold(self, seat: Seat, item: Item) -> News:
+    def hold(self, seat: BodyState, item: MovableObject) -> EventList:
         """Take hold; the thing rises if that is enough."""
-        load = self._loads.setdefault(item.id, Train(item, self._seats, self._rows))
+        load = self._loads.setdefault(item.id, TrailerLoad(item, self._seats, self._rows))
         load.ends[seat.name] = self._handle(seat, item)[0]
         seat.holding = item.id
         self._objects.grip(item.id, tuple(load.ends))
@@ -114,7 +116,7 @@ class Together:
         self._objects.take(item.id, next(iter(load.ends)), load.pose)
         return (held, ("lifted", {"object": item.id, "bearers": list(load.ends)}))
 
-    def let_go(self, seat: Seat) -> News:
+    def let_go(self, seat: BodyState) -> EventList:
         """Let go; what the rest cannot hold is put down."""
         load = self.of(seat)
         if load is None:
@@ -127,7 +129,7 @@ class Together:
                 other.holding = ""
             load.ends.clear()
             self._lower(load)
-            news: News = (("lowered", {"object": load.item.id, "bearers": names}),)
+            news: EventList = (("lowered", {"object": load.item.id, "bearers": names}),)
         else:
             news = (("released", {"object": load.item.id}),)
         if not load.ends:
@@ -138,16 +140,16 @@ class Together:
     def _rows(self) -> Any:
         """(N, 5) what stands in the way of such a thing now, see `hthor.world.carrying.trailer_kernel`."""
         if self._fixed is None:
-            self._fixed = free_space.obstacles(self._house, _TALL_M)
-        shut = [doorways.rectangle(leaf.opening) for leaf in self._doors if leaf.opening and not leaf.open]
+            self._fixed = free_space.obstacles(self._house, _CARRY_HEIGHT_M)
+        shut = [doorways.leaf_rectangle(leaf.opening) for leaf in self._doors if leaf.opening and not leaf.open]
         return np.concatenate((self._fixed, np.array(shut))) if shut else self._fixed
 
-    def _lower(self, load: Train) -> None:
+    def _lower(self, load: TrailerLoad) -> None:
         """Put it down where it is: on the floor, or on what lies there."""
         item, top = load.item, load.z
-        low = item.size[2] / 2 + _STEP_M / 10
-        for step in range(math.ceil((top - low) / _STEP_M)):
-            load.z = low + step * _STEP_M
+        low = item.size[2] / 2 + _LOWER_STEP_M / 10
+        for step in range(math.ceil((top - low) / _LOWER_STEP_M)):
+            load.z = low + step * _LOWER_STEP_M
             self._objects.follow(item.id)
             if not self._touch.inside(item):
                 break
@@ -155,9 +157,9 @@ class Together:
             load.z = top
         self._objects.put(item.id, load.pose(), "")
 
-    def _handle(self, seat: Seat, item: Item) -> tuple[int, Vec3]:
+    def _handle(self, seat: BodyState, item: MovableObject) -> tuple[int, Vec3]:
         """The free handle that is nearest to a body: which end, and where [m]."""
-        load = self._loads.get(item.id) or Train(item, self._seats, self._rows)
+        load = self._loads.get(item.id) or TrailerLoad(item, self._seats, self._rows)
         here = (seat.pose.x, seat.pose.y)
         ends = [end for end in (1, -1) if end not in load.ends.values()]
         places = [(end, load.handle(end)) for end in ends]

@@ -13,8 +13,8 @@ from hthor.geometry.plane import turn
 from hthor.types import Vec3
 from hthor.world.model import geoms
 from hthor.world.model.composer_env import QPose
-from hthor.world.state.body_state import Seat
-from hthor.world.state.objects import Item
+from hthor.world.state.body_state import BodyState
+from hthor.world.state.objects import MovableObject
 
 LIFT_M = 0.30
 """How high above the floor the bottom of what is carried hangs."""
@@ -29,7 +29,7 @@ class Load:
         up: whether it is off the floor.
     """
 
-    def __init__(self, item: Item, seats: Sequence[Seat]) -> None:
+    def __init__(self, item: MovableObject, seats: Sequence[BodyState]) -> None:
         self.item, self.seats = item, tuple(seats)
         self._named = {seat.name: seat for seat in seats}
         self.ends: dict[str, int] = {}
@@ -39,7 +39,7 @@ class Load:
         self.half: Any = np.array(item.size[:2]) / 2
 
     @property
-    def bearers(self) -> tuple[Seat, ...]:
+    def bearers(self) -> tuple[BodyState, ...]:
         """Who holds it, in the order in which they took hold."""
         return tuple(self._named[name] for name in self.ends)
 
@@ -67,7 +67,7 @@ class Load:
         """Where it is."""
         return (float(self.state[0]), float(self.state[1]), self.z, *geoms.quaternion(float(self.state[2])))
 
-    def follows(self, seat: Seat, tick: int) -> bool:
+    def follows(self, seat: BodyState, tick: int) -> bool:
         """Whether another bearer leads in this tick; if nobody does yet, ``seat`` does from now on."""
         if self._tick != tick:
             self._tick, self._leader = tick, seat.name

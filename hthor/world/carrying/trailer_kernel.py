@@ -13,13 +13,13 @@ from typing import Any
 import numba
 import numpy as np
 
-_EDGE, _NIL = 0.005, 1e-6
-_PULLS, _PUSHES, _PASSES = 12, 6, 2
+_END_SLACK_M, _TOLERANCE_M = 0.005, 1e-6
+_PULL_ROUNDS, _PUSH_ROUNDS, _WALL_PASSES = 12, 6, 2
 """How often it is drawn, then only pushed out of what it is in; how often each time it is pushed out of the walls."""
 
 
 @numba.njit(cache=True)
-def _shove(state: Any, half: Any, px: float, py: float, dx: float, dy: float) -> None:
+def _displace(state: Any, half: Any, px: float, py: float, dx: float, dy: float) -> None:
     """Move the rectangle so that its point (px, py) goes by (dx, dy)."""
     length = math.hypot(dx, dy)
     if length < 1e-12:
@@ -42,11 +42,11 @@ def _corner(cx: float, cy: float, a: float, b: float, cos: float, sin: float, k:
 
 @numba.njit(cache=True)
 def _within(x: float, y: float, cos: float, sin: float, a: float, b: float) -> bool:
-    return abs(cos * x + sin * y) <= a + _NIL and abs(cos * y - sin * x) <= b + _NIL
+    return abs(cos * x + sin * y) <= a + _TOLERANCE_M and abs(cos * y - sin * x) <= b + _TOLERANCE_M
 
 
 @numba.njit(cache=True)
-def meets(state: Any, half: Any, row: Any) -> Any:
+def rectangle_contact(state: Any, half: Any, row: Any) -> Any:
     """Depth [m] to which the rectangle is in another, 0 for none; the way out of it, and where they touch."""
     dx, dy = row[0] - state[0], row[1] - state[1]
     if math.hypot(dx, dy) > math.hypot(half[0], half[1]) + math.hypot(row[2], row[3]):
@@ -85,7 +85,7 @@ def meets(state: Any, half: Any, row: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def touches(state: Any, half: Any, disc: Any) -> Any:
+def disc_contact(state: Any, half: Any, disc: Any) -> Any:
     """The same for a disc."""
     cos, sin = math.cos(state[2]), math.sin(state[2])
     dx, dy = disc[0] - state[0], disc[1] - state[1]
@@ -105,13 +105,13 @@ def touches(state: Any, half: Any, disc: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def deepest(state: Any, half: Any, rows: Any, discs: Any) -> Any:
+def deepest_contacts(state: Any, half: Any, rows: Any, discs: Any) -> Any:
     """How deep [m] the rectangle is in the rectangles, and in the discs, at most."""
     wall, body = 0.0, 0.0
     for k in range(len(rows)):
-        wall = max(wall, meets(state, half, rows[k])[0])
+        wall = max(wall, rectangle_contact(state, half, rows[k])[0])
     for k in range(len(discs)):
-        body = max(body, touches(state, half, discs[k])[0])
+        body = max(body, disc_contact(state, half, discs[k])[0])
     return wall, body
 
 
@@ -125,27 +125,27 @@ def relax(state: Any, half: Any, ends: Any, hands: Any, ropes: Any, pulls: Any, 
             along what it meets rather than into it.
     """
     out = state.copy()
-    for turn in range(_PULLS + _PUSHES):
+    for turn in range(_PULL_ROUNDS + _PUSH_ROUNDS):
         moved = False
-        for k in range(len(ends) if turn < _PULLS else 0):
+        for k in range(len(ends) if turn < _PULL_ROUNDS else 0):
             gx, gy = out[0] + math.cos(out[2]) * ends[k], out[1] + math.sin(out[2]) * ends[k]
             dx, dy = hands[k, 0] - gx, hands[k, 1] - gy
             far = math.hypot(dx, dy)
-            if far > ropes[k] + _NIL:
+            if far > ropes[k] + _TOLERANCE_M:
                 share = min(far - ropes[k], pulls[k]) / far
-                _shove(out, half, gx, gy, dx * share, dy * share)
+                _displace(out, half, gx, gy, dx * share, dy * share)
                 moved = True
         for k in range(len(discs)):
-            deep, nx, ny, px, py = touches(out, half, discs[k])
-            if deep > _NIL:
-                _shove(out, half, px, py, nx * deep, ny * deep)
+            deep, nx, ny, px, py = disc_contact(out, half, discs[k])
+            if deep > _TOLERANCE_M:
+                _displace(out, half, px, py, nx * deep, ny * deep)
                 moved = True
-        for _ in range(_PASSES):
+        for _ in range(_WALL_PASSES):
             stuck = False
             for k in range(len(rows)):
-                deep, nx, ny, px, py = meets(out, half, rows[k])
-                if deep > _NIL:
-                    _shove(out, half, px, py, nx * deep, ny * deep)
+                deep, nx, ny, px, py = rectangle_contact(out, half, rows[k])
+                if deep > _TOLERANCE_M:
+                    _displace(out, half, px, py, nx * deep, ny * deep)
                     moved = stuck = True
             if not stuck:
                 break
@@ -155,7 +155,7 @@ def relax(state: Any, half: Any, ends: Any, hands: Any, ropes: Any, pulls: Any, 
 
 
 @numba.njit(cache=True)
-def near(state: Any, reach: float, rows: Any) -> Any:
+def nearby_rectangles(state: Any, reach: float, rows: Any) -> Any:
     """Those of the rectangles that come nearer than ``reach`` [m] to the middle of it."""
     keep = np.zeros(len(rows), np.bool_)
     for k in range(len(rows)):
@@ -168,7 +168,7 @@ def near(state: Any, reach: float, rows: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def crosses(ax: float, ay: float, bx: float, by: float, rows: Any, margin: float) -> bool:
+def is_line_blocked(ax: float, ay: float, bx: float, by: float, rows: Any, margin: float) -> bool:
     """Whether a line between two points [m] comes nearer than ``margin`` [m] to any of the rectangles.
 
     Coming as near as one of its ends is does not count.
@@ -181,7 +181,9 @@ def crosses(ax: float, ay: float, bx: float, by: float, rows: Any, margin: float
         cos, sin = math.cos(yaw), math.sin(yaw)
         ux, uy = cos * (ax - cx) + sin * (ay - cy), cos * (ay - cy) - sin * (ax - cx)
         vx, vy = cos * (bx - cx) + sin * (by - cy), cos * (by - cy) - sin * (bx - cx)
-        near = min(margin, max(abs(ux) - hw, abs(uy) - hd) - _EDGE, max(abs(vx) - hw, abs(vy) - hd) - _EDGE)
+        near = min(
+            margin, max(abs(ux) - hw, abs(uy) - hd) - _END_SLACK_M, max(abs(vx) - hw, abs(vy) - hd) - _END_SLACK_M
+        )
         low, high = 0.0, 1.0
         for axis in range(2):
             start, way, half = (ux, vx - ux, hw + near) if axis == 0 else (uy, vy - uy, hd + near)

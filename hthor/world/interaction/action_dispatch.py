@@ -7,22 +7,22 @@ from collections.abc import Sequence
 from hthor.types import Close, Drop, HouseSpec, Motion, Move, Open, Pick, Place, Rotate, Vec2, Wait
 from hthor.world.carrying import carry_motion
 from hthor.world.interaction import manipulation
-from hthor.world.interaction.manipulation import Hands
+from hthor.world.interaction.manipulation import Manipulation
 from hthor.world.motion import locomotion
-from hthor.world.motion.blocking_object import Obstacles
-from hthor.world.state.body_state import Activity, Seat
+from hthor.world.motion.blocking_object import ObstacleFootprints
+from hthor.world.state.body_state import Activity, BodyState
 from hthor.world.state.doors import Doors
 
 
-class Starting:
+class ActionDispatch:
     """What every body of a world can begin to do."""
 
-    def __init__(self, house: HouseSpec, hands: Hands, doors: Doors, seats: Sequence[Seat]) -> None:
-        self._hands, self._doors, self._obstacles = hands, doors, Obstacles(house)
+    def __init__(self, house: HouseSpec, hands: Manipulation, doors: Doors, seats: Sequence[BodyState]) -> None:
+        self._hands, self._doors, self._obstacles = hands, doors, ObstacleFootprints(house)
         self._together = hands.together
         self._others = {seat.name: tuple(other for other in seats if other is not seat) for seat in seats}
 
-    def refusal(self, seat: Seat, action: object) -> str:
+    def refusal(self, seat: BodyState, action: object) -> str:
         """Why the motion cannot be started, empty when it can."""
         if isinstance(action, (Move, Rotate, Wait)):
             reason = locomotion.refusal(seat, action)
@@ -31,22 +31,22 @@ class Starting:
             return self._hands.refusal(seat, action)
         return f"{type(action).__name__} is not a motion; valid: Move, Rotate, Pick, Place, Drop, Open, Close, Wait"
 
-    def activity(self, seat: Seat, action: Motion) -> Activity:
+    def activity(self, seat: BodyState, action: Motion) -> Activity:
         """The motion under way."""
         load = self._together.of(seat) if seat.holding else None
         if load is not None and isinstance(action, Move):
-            return carry_motion.Hauling(seat, action, load, self._culprit)
+            return carry_motion.CarryMotion(seat, action, load, self._culprit)
         if load is not None and isinstance(action, Rotate):
-            return carry_motion.Turning(seat, action)
+            return carry_motion.CarryRotation(seat, action)
         if isinstance(action, Move):
-            return locomotion.Going(seat, action, self._others[seat.name], self._culprit)
+            return locomotion.MoveMotion(seat, action, self._others[seat.name], self._culprit)
         if isinstance(action, Rotate):
-            return locomotion.Turning(seat, action)
+            return locomotion.RotateMotion(seat, action)
         if isinstance(action, Wait):
-            return locomotion.Waiting(action)
-        return manipulation.Handing(seat, action, self._hands)
+            return locomotion.WaitMotion(action)
+        return manipulation.HandMotion(seat, action, self._hands)
 
-    def _culprit(self, seat: Seat, step: Vec2) -> str:
+    def _culprit(self, seat: BodyState, step: Vec2) -> str:
         """What the body would have run into: the nearest thing's id, or "wall"."""
         shut = [leaf.opening for leaf in self._doors if leaf.opening is not None and not leaf.open]
         return self._obstacles.nearest((seat.pose.x + step[0], seat.pose.y + step[1]), seat.spec.height, shut)

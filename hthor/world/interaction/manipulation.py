@@ -13,44 +13,44 @@ from collections.abc import Iterator
 from hthor import catalog, rules
 from hthor.types import Close, Drop, Event, HouseSpec, Open, Outcome, Pick, Place, Vec3
 from hthor.world import numbers
-from hthor.world.carrying.joint_carrying import News, Together
-from hthor.world.interaction.opening import Hinges
+from hthor.world.carrying.joint_carrying import EventList, JointCarrying
+from hthor.world.interaction.opening import DoorHandling
 from hthor.world.model import geoms
 from hthor.world.model.composer_env import QPose
-from hthor.world.model.geom_index import Scene
-from hthor.world.motion.locomotion import Step, ticks
-from hthor.world.motion.reach import in_hand, out_of_reach, too_heavy, unseen
+from hthor.world.model.geom_index import GeomIndex
+from hthor.world.motion.locomotion import TickResult, duration_ticks
+from hthor.world.motion.reach import held_pose, out_of_reach, out_of_sight, too_heavy
 from hthor.world.perception import view_frustum
 from hthor.world.state import support_surfaces
-from hthor.world.state.body_state import Seat
+from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors
-from hthor.world.state.objects import Item, Objects
-from hthor.world.state.overlap_test import FLOOR, Touch
-from hthor.world.state.support_surfaces import Places
+from hthor.world.state.objects import MovableObject, Objects
+from hthor.world.state.overlap_test import FLOOR, OverlapTest
+from hthor.world.state.support_surfaces import SupportSurfaces
 
-Handling = Pick | Place | Drop | Open | Close
+HandAction = Pick | Place | Drop | Open | Close
 
-_PAST = {"pick": "picked", "place": "placed", "drop": "dropped", "open": "opened", "close": "closed"}
-_TRIES = 60
+_EVENT_KINDS = {"pick": "picked", "place": "placed", "drop": "dropped", "open": "opened", "close": "closed"}
+_SPOT_TRIES = 60
 """Free spots of one surface that are looked at before it counts as out of sight."""
-_NOWHERE: QPose = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+_NO_POSE: QPose = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
-class Handing:
+class HandMotion:
     """A hand at work for as long as its body's ``handling`` says."""
 
-    def __init__(self, seat: Seat, motion: Handling, hands: Hands) -> None:
+    def __init__(self, seat: BodyState, motion: HandAction, hands: Manipulation) -> None:
         self._seat, self._motion, self._hands = seat, motion, hands
-        self._done, self._ticks = 0, ticks(seat.spec.handling)
+        self._done, self._ticks = 0, duration_ticks(seat.spec.handling)
         hands.begin(seat, motion)
 
-    def advance(self, tick: int) -> Step:
+    def advance(self, tick: int) -> TickResult:
         """One tick of it; at the last one it takes effect."""
         self._done += 1
         self._hands.during(self._motion, self._done / self._ticks)
         if self._done < self._ticks:
             return None, ()
-        name, verb = self._seat.name, verb_of(self._motion)
+        name, verb = self._seat.name, motion_name(self._motion)
         held = self._seat.holding
         reason = self._hands.finish(self._seat, self._motion)
         news = self._hands.news()
@@ -59,37 +59,37 @@ class Handing:
             return Outcome(motion=verb, ok=False, reason=reason), (
                 Event(tick=tick, seat=name, kind="refused", data=data),
             )
-        told = news or ((_PAST[verb], _data(self._motion, held)),)
+        told = news or ((_EVENT_KINDS[verb], _event_data(self._motion, held)),)
         return Outcome(motion=verb, ok=True), tuple(
             Event(tick=tick, seat=name, kind=kind, data=data) for kind, data in told
         )
 
 
-class Hands:
+class Manipulation:
     """What bodies can do to the things of one world."""
 
     def __init__(
         self,
         house: HouseSpec,
-        scene: Scene,
+        scene: GeomIndex,
         objects: Objects,
         doors: Doors,
-        surfaces: Places,
-        hinges: Hinges,
-        touch: Touch,
-        together: Together,
+        surfaces: SupportSurfaces,
+        hinges: DoorHandling,
+        touch: OverlapTest,
+        together: JointCarrying,
     ) -> None:
         self._things = {thing.id: thing for thing in house.things}
         self._scene, self._objects, self._doors, self._places = scene, objects, doors, surfaces
         self._hinges, self._touch, self.together = hinges, touch, together
-        self._news: News = ()
+        self._news: EventList = ()
 
-    def news(self) -> News:
+    def news(self) -> EventList:
         """What became of the last motion that ended, where that has words of its own; tells it once."""
         news, self._news = self._news, ()
         return news
 
-    def refusal(self, seat: Seat, motion: Handling) -> str:
+    def refusal(self, seat: BodyState, motion: HandAction) -> str:
         """Why ``seat`` cannot do it now, empty when it can."""
         if isinstance(motion, (Open, Close)):
             return self._hinges.refusal(seat, motion)
@@ -99,17 +99,17 @@ class Hands:
             return self._refused(seat, motion)
         return self._drop(seat) if isinstance(motion, Drop) else self._place(seat, motion)[0]
 
-    def begin(self, seat: Seat, motion: Handling) -> None:
+    def begin(self, seat: BodyState, motion: HandAction) -> None:
         """Take hold of a door."""
         if isinstance(motion, (Open, Close)):
             self._hinges.begin(seat, motion)
 
-    def during(self, motion: Handling, share: float) -> None:
+    def during(self, motion: HandAction, share: float) -> None:
         """``share`` of the motion's time has passed: doors swing along."""
         if isinstance(motion, (Open, Close)):
             self._hinges.during(motion, share)
 
-    def finish(self, seat: Seat, motion: Handling) -> str:
+    def finish(self, seat: BodyState, motion: HandAction) -> str:
         """Do it, unless a law forbids it by now; the reason then."""
         if isinstance(motion, (Open, Close)):
             return self._hinges.finish(motion)
@@ -118,13 +118,13 @@ class Hands:
         if self.together.of(seat) is not None:
             return self._refused(seat, motion) or self._let_go(seat)
         if isinstance(motion, Drop):
-            return self._drop(seat) or self._put(seat, in_hand(seat, self._held(seat).size), "")
+            return self._drop(seat) or self._put(seat, held_pose(seat, self._held(seat).size), "")
         reason, spot = self._place(seat, motion)
         return reason or self._put(seat, spot, motion.on)
 
     # ------------------------------------------------------------------------------------------------------- pick
 
-    def _pick(self, seat: Seat, motion: Pick) -> str:
+    def _pick(self, seat: BodyState, motion: Pick) -> str:
         if "pick" not in seat.spec.capabilities:
             return f"{seat.spec.title} cannot pick things up"
         if seat.holding:
@@ -134,7 +134,7 @@ class Hands:
             return f"there is no object '{motion.object!s:.40}' to pick up"
         return self._out_of_hand(seat, item)
 
-    def out_of_hand(self, seat: Seat, id: str) -> str:
+    def out_of_hand(self, seat: BodyState, id: str) -> str:
         """Why ``seat``, where it stands and with an empty hand, could not pick an object up, or get at a thing's door;
         empty when it could, and for what has neither.
         """
@@ -143,24 +143,26 @@ class Hands:
             return self._out_of_hand(seat, item) if "pick" in seat.spec.capabilities else ""
         return self._hinges.out_of_hand(seat, id) if "open" in seat.spec.capabilities else ""
 
-    def _out_of_hand(self, seat: Seat, item: Item) -> str:
+    def _out_of_hand(self, seat: BodyState, item: MovableObject) -> str:
         if item.held_by and not item.bearers:
             return f"{item.id} is held by {item.held_by}"
         if self.together.takes(seat, item):
-            return self.together.refusal(seat, item) or unseen(seat, item, self._scene)
-        return out_of_reach(seat, item.id, item.position) or unseen(seat, item, self._scene) or too_heavy(seat, item)
+            return self.together.refusal(seat, item) or out_of_sight(seat, item, self._scene)
+        return (
+            out_of_reach(seat, item.id, item.position) or out_of_sight(seat, item, self._scene) or too_heavy(seat, item)
+        )
 
-    def _take(self, seat: Seat, id: str) -> str:
+    def _take(self, seat: BodyState, id: str) -> str:
         item = self._objects.get(id)
         if item is not None and self.together.takes(seat, item):
             self._news = self.together.hold(seat, item)
             return ""
         seat.holding = id
         size = self._held(seat).size
-        self._objects.take(id, seat.name, lambda: in_hand(seat, size))
+        self._objects.take(id, seat.name, lambda: held_pose(seat, size))
         return ""
 
-    def _held(self, seat: Seat) -> Item:
+    def _held(self, seat: BodyState) -> MovableObject:
         item = self._objects.get(seat.holding)
         assert item is not None, "what is held is in the world"
         return item
@@ -168,19 +170,19 @@ class Hands:
     # --------------------------------------------------------------------------------------------- what several hold
 
     @staticmethod
-    def _refused(seat: Seat, motion: Place | Drop) -> str:
+    def _refused(seat: BodyState, motion: Place | Drop) -> str:
         """What is held by its handles goes to the floor below it and nowhere else."""
         if isinstance(motion, Drop) or motion.on == FLOOR:
             return ""
         return f"{seat.holding} is held by its handles; drop it, or place it on '{FLOOR}': it is put down where it is"
 
-    def _let_go(self, seat: Seat) -> str:
+    def _let_go(self, seat: BodyState) -> str:
         self._news = self.together.let_go(seat)
         return ""
 
     # ------------------------------------------------------------------------------------------------------- drop
 
-    def _drop(self, seat: Seat) -> str:
+    def _drop(self, seat: BodyState) -> str:
         if "pick" not in seat.spec.capabilities:
             return f"{seat.spec.title} cannot drop things"
         item = self._objects.get(seat.holding)
@@ -195,23 +197,23 @@ class Hands:
 
     # ------------------------------------------------------------------------------------------------------ place
 
-    def _place(self, seat: Seat, motion: Place) -> tuple[str, QPose]:
+    def _place(self, seat: BodyState, motion: Place) -> tuple[str, QPose]:
         if "pick" not in seat.spec.capabilities:
-            return f"{seat.spec.title} cannot place things", _NOWHERE
+            return f"{seat.spec.title} cannot place things", _NO_POSE
         item = self._objects.get(seat.holding)
         if item is None:
-            return f"{seat.name} holds nothing to place", _NOWHERE
+            return f"{seat.name} holds nothing to place", _NO_POSE
         if motion.position is not None and not _is_point(motion.position):
-            return f"position must be three finite numbers or None, got {numbers.shown(motion.position)}", _NOWHERE
+            return f"position must be three finite numbers or None, got {numbers.quoted(motion.position)}", _NO_POSE
         surfaces = self._places.of(motion.on) if isinstance(motion.on, str) else ()
         if not surfaces:
-            return f"nothing can be placed on '{motion.on!s:.40}'", _NOWHERE
+            return f"nothing can be placed on '{motion.on!s:.40}'", _NO_POSE
         surfaces = self._accessible(motion, surfaces)
-        return self._spot(seat, item, motion, surfaces) if surfaces else (f"{motion.on} is closed", _NOWHERE)
+        return self._spot(seat, item, motion, surfaces) if surfaces else (f"{motion.on} is closed", _NO_POSE)
 
     def _accessible(
-        self, motion: Place, surfaces: tuple[support_surfaces.Place, ...]
-    ) -> tuple[support_surfaces.Place, ...]:
+        self, motion: Place, surfaces: tuple[support_surfaces.SupportSurface, ...]
+    ) -> tuple[support_surfaces.SupportSurface, ...]:
         """Those that are not behind a closed door; of a thing that one puts things *on*, and no position is given for,
         those in the open before those in its drawers.
         """
@@ -223,18 +225,18 @@ class Hands:
         return bare if bare and on and motion.position is None else surfaces
 
     def _spot(
-        self, seat: Seat, item: Item, motion: Place, surfaces: tuple[support_surfaces.Place, ...]
+        self, seat: BodyState, item: MovableObject, motion: Place, surfaces: tuple[support_surfaces.SupportSurface, ...]
     ) -> tuple[str, QPose]:
         """The place nearest to the wanted position, or to the hand, on any of the surfaces; or why there is none.
 
         The object is laid along the thing, or across it where it does not fit along. A surface is in reach by its
         nearest point, so the object's centre may lie its own half width farther.
         """
-        wanted = motion.position or in_hand(seat, item.size)[:3]
+        wanted = motion.position or held_pose(seat, item.size)[:3]
         nearest = min(surfaces, key=lambda place: place.distance(seat.pose.x, seat.pose.y))
         gap = nearest.distance(seat.pose.x, seat.pose.y)
         if gap > seat.spec.reach:
-            return f"{motion.on} is {gap:.2f} m away; reach is {seat.spec.reach:.2f} m", _NOWHERE
+            return f"{motion.on} is {gap:.2f} m away; reach is {seat.spec.reach:.2f} m", _NO_POSE
         boxes = self._scene.boxes(motion.on)
         lean = max(item.size[:2]) / 2 + rules.GRID_M
         w, d, h = item.size
@@ -242,7 +244,7 @@ class Hands:
         for size, turn in (((w, d, h), 0.0), ((d, w, h), math.pi / 2)):
             found: list[tuple[float, QPose]] = []
             for place in surfaces:
-                free = support_surfaces.candidates(place, size, boxes, wanted)
+                free = support_surfaces.free_spots(place, size, boxes, wanted)
                 near = [centre for centre in free if not out_of_reach(seat, motion.on, centre, lean)]
                 visible = next(self._visible(seat, near), None)
                 if visible is not None:
@@ -254,24 +256,24 @@ class Hands:
                     reason = out_of_reach(seat, motion.on, free[0], lean)
             if found:
                 return "", min(found)[1]
-        return reason, _NOWHERE
+        return reason, _NO_POSE
 
-    def _visible(self, seat: Seat, centres: list[Vec3]) -> Iterator[Vec3]:
-        eye = view_frustum.eye(seat.pose, seat.spec)
-        return (centre for centre in centres[:_TRIES] if not self._scene.hidden(eye, centre))
+    def _visible(self, seat: BodyState, centres: list[Vec3]) -> Iterator[Vec3]:
+        eye = view_frustum.eye_position(seat.pose, seat.spec)
+        return (centre for centre in centres[:_SPOT_TRIES] if not self._scene.hidden(eye, centre))
 
-    def _put(self, seat: Seat, pose: QPose, on: str) -> str:
+    def _put(self, seat: BodyState, pose: QPose, on: str) -> str:
         id, seat.holding = seat.holding, ""
         self._objects.put(id, pose, on)
         return ""
 
 
-def verb_of(motion: object) -> str:
+def motion_name(motion: object) -> str:
     """The motion's name, such as "pick"."""
     return type(motion).__name__.lower()
 
 
-def _data(motion: Handling, held: str) -> dict[str, str]:
+def _event_data(motion: HandAction, held: str) -> dict[str, str]:
     if isinstance(motion, Place):
         return {"object": held, "on": motion.on}
     if isinstance(motion, Drop):
@@ -281,5 +283,7 @@ def _data(motion: Handling, held: str) -> dict[str, str]:
 
 def _is_point(position: object) -> bool:
     return (
-        isinstance(position, (tuple, list)) and len(position) == 3 and all(numbers.finite(value) for value in position)
+        isinstance(position, (tuple, list))
+        and len(position) == 3
+        and all(numbers.is_finite(value) for value in position)
     )

@@ -14,37 +14,37 @@ from hthor.geometry import plane
 from hthor.houses.space import solids
 from hthor.houses.space.solids import Slab
 from hthor.types import Close, Joint, Open, Opening, Part, Thing, Vec3
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.geom_index import GeomIndex
 from hthor.world.motion.reach import out_of_reach
 from hthor.world.perception import view_frustum
 from hthor.world.state import doorways
-from hthor.world.state.body_state import Seat
-from hthor.world.state.doors import Doors, Leaf
-from hthor.world.state.doorways import Passages
-from hthor.world.state.objects import Item, Objects
-from hthor.world.state.overlap_test import DEEP_M
-from hthor.world.state.support_surfaces import Places
+from hthor.world.state.body_state import BodyState
+from hthor.world.state.doors import Doors, DoorState
+from hthor.world.state.doorways import Doorways
+from hthor.world.state.objects import MovableObject, Objects
+from hthor.world.state.overlap_test import OVERLAP_M
+from hthor.world.state.support_surfaces import SupportSurfaces
 
-_KNOB_M = 1.0
+_DOOR_HANDLE_M = 1.0
 """Height at which a doorway's leaf is taken hold of."""
 
 
-class Hinges:
+class DoorHandling:
     """What bodies can open and close in one world."""
 
     def __init__(
         self,
-        scene: Scene,
+        scene: GeomIndex,
         objects: Objects,
         doors: Doors,
-        places: Places,
-        gates: Passages,
-        seats: Sequence[Seat],
+        places: SupportSurfaces,
+        gates: Doorways,
+        seats: Sequence[BodyState],
     ) -> None:
         self._scene, self._objects, self._doors, self._places = scene, objects, doors, places
         self._gates, self._seats = gates, seats
 
-    def refusal(self, seat: Seat, motion: Open | Close) -> str:
+    def refusal(self, seat: BodyState, motion: Open | Close) -> str:
         """Why ``seat`` cannot do it now, empty when it can."""
         if "open" not in seat.spec.capabilities:
             return f"{seat.spec.title} cannot open or close things"
@@ -58,12 +58,12 @@ class Hinges:
             return f"{name} is already {'open' if leaf.open else 'closed'}"
         return self._far(seat, leaf) or self._in_the_way(leaf, isinstance(motion, Open))
 
-    def out_of_hand(self, seat: Seat, id: str) -> str:
+    def out_of_hand(self, seat: BodyState, id: str) -> str:
         """Why ``seat`` could not get at a thing's door from where it stands; empty when it could, or there is none."""
         leaf = self._doors.get(id)
         return "" if leaf is None else self._far(seat, leaf)
 
-    def begin(self, seat: Seat, motion: Open | Close) -> None:
+    def begin(self, seat: BodyState, motion: Open | Close) -> None:
         """Take hold of a door."""
         self._leaf(motion).user = seat.name
 
@@ -96,18 +96,18 @@ class Hinges:
                 leaf.user = ""
                 self._rest(leaf, leaf.open)
 
-    def _rest(self, leaf: Leaf, opened: bool) -> None:
+    def _rest(self, leaf: DoorState, opened: bool) -> None:
         self._move(leaf, 1.0 if opened else 0.0)
         leaf.open = opened
         self._gates.update({one.thing.id: one.opening for one in self._doors if one.opening and not one.open})
         self._doors.changes += 1
 
-    def _leaf(self, motion: Open | Close) -> Leaf:
+    def _leaf(self, motion: Open | Close) -> DoorState:
         leaf = self._doors.get(motion.thing)
         assert leaf is not None, "checked before the motion started"
         return leaf
 
-    def _move(self, leaf: Leaf, share: float) -> None:
+    def _move(self, leaf: DoorState, share: float) -> None:
         step = share - leaf.share
         for place in self._places.of(leaf.thing.id):
             if place.slides:
@@ -116,18 +116,18 @@ class Hinges:
                 self._objects.ride(riders, (x, y, z))
         self._doors.swing(leaf, share)
 
-    def _far(self, seat: Seat, leaf: Leaf) -> str:
+    def _far(self, seat: BodyState, leaf: DoorState) -> str:
         name, thing = leaf.thing.id, leaf.thing
         local = plane.to_local((seat.pose.x, seat.pose.y, 0.0), thing.centre, thing.yaw)
         if leaf.opening is None and local[1] < 0.0:
             return f"{seat.name} stands behind {name}; its door is on the other side"
-        point = _front(thing, local) if leaf.opening is None else _knob(leaf.opening, thing, local)
+        point = _front_point(thing, local) if leaf.opening is None else _handle_point(leaf.opening, thing, local)
         reason = out_of_reach(seat, name, point)
         return reason or ("" if self._sees(seat, leaf, point) else f"{name} is out of sight")
 
-    def _sees(self, seat: Seat, leaf: Leaf, point: Vec3) -> bool:
+    def _sees(self, seat: BodyState, leaf: DoorState, point: Vec3) -> bool:
         """Whether the eye sees the place to take hold of, or that of a pulled drawer, or the upper edge there."""
-        eye, name = view_frustum.eye(seat.pose, seat.spec), leaf.thing.id
+        eye, name = view_frustum.eye_position(seat.pose, seat.spec), leaf.thing.id
         x, y, _ = point
         top = leaf.thing.centre[2] + 0.45 * leaf.thing.size[2]
         ways = [place.way for place in self._places.of(name) if place.slides]
@@ -136,7 +136,7 @@ class Hinges:
 
     # ---------------------------------------------------------------------------------------------- what is in the way
 
-    def _in_the_way(self, leaf: Leaf, opening: bool) -> str:
+    def _in_the_way(self, leaf: DoorState, opening: bool) -> str:
         if leaf.opening is not None and not opening:
             for seat in self._seats:
                 if doorways.in_doorway(seat, leaf.opening):
@@ -150,24 +150,24 @@ class Hinges:
                 tall = [item.id for item in lying if item.position[2] + item.size[2] / 2 > top]
                 if tall and not opening:
                     return f"{tall[0]} is too tall for the drawer of {leaf.thing.id}"
-        ways = tuple(_ways(leaf, opening))
+        ways = tuple(_swept_slabs(leaf, opening))
         for item in self._objects:
             carried = item.held_by and not item.bearers  # what several carry by its handles is in the way all the same
-            if item.present and not carried and item.id not in riders and _meets(item, ways):
+            if item.present and not carried and item.id not in riders and _is_hit(item, ways):
                 return f"{item.id} is in the way"
         return ""
 
 
-def _ways(leaf: Leaf, opening: bool) -> Iterator[Slab]:
+def _swept_slabs(leaf: DoorState, opening: bool) -> Iterator[Slab]:
     """Where nothing may be: a hinged leaf's place when it shuts, a drawer's whole way."""
     joints = {joint.name: joint for joint in leaf.joints}
     for part in leaf.parts:
         joint = joints[part.moves]
         if joint.kind == "slide" or not opening:
-            yield _slab(leaf.thing, part, joint)
+            yield _swept_slab(leaf.thing, part, joint)
 
 
-def _slab(thing: Thing, part: Part, joint: Joint) -> Slab:
+def _swept_slab(thing: Thing, part: Part, joint: Joint) -> Slab:
     """A part of a shut leaf, or all that a drawer's part covers on its way, as an upright box."""
     way = joint.travel if joint.kind == "slide" else 0.0
     along = (joint.axis[0] * way, joint.axis[1] * way)
@@ -177,25 +177,25 @@ def _slab(thing: Thing, part: Part, joint: Joint) -> Slab:
     return Slab((x, y), size, thing.yaw, z - part.half[2], z + part.half[2])
 
 
-def _meets(item: Item, ways: Sequence[Slab]) -> bool:
+def _is_hit(item: MovableObject, ways: Sequence[Slab]) -> bool:
     x, y, z = item.position
     w, d, h = item.size
     reach = math.hypot(w, d) / 2
-    body = Slab((x, y), (w, d), item.yaw, z - h / 2 + DEEP_M, z + h / 2)
+    body = Slab((x, y), (w, d), item.yaw, z - h / 2 + OVERLAP_M, z + h / 2)
     return any(
-        math.dist(way.centre, body.centre) < reach + math.hypot(*way.size) / 2 and solids.overlap(way, body) > DEEP_M
+        math.dist(way.centre, body.centre) < reach + math.hypot(*way.size) / 2 and solids.overlap(way, body) > OVERLAP_M
         for way in ways
     )
 
 
-def _front(thing: Thing, local: Vec3) -> Vec3:
+def _front_point(thing: Thing, local: Vec3) -> Vec3:
     """The point of the thing's front, at half its height, that is nearest to a place in its local frame."""
     x = max(-thing.size[0] / 2, min(thing.size[0] / 2, local[0]))
     return plane.to_house((x, thing.size[1] / 2, 0.0), thing.centre, thing.yaw)
 
 
-def _knob(opening: Opening, thing: Thing, local: Vec3) -> Vec3:
+def _handle_point(opening: Opening, thing: Thing, local: Vec3) -> Vec3:
     """The point of a doorway's line, at the height of a door handle, that is nearest to a place in its frame."""
     x = max(-thing.size[0] / 2, min(thing.size[0] / 2, local[0]))
     place = plane.to_house((x, 0.0, 0.0), thing.centre, thing.yaw)
-    return (place[0], place[1], opening.low + _KNOB_M)
+    return (place[0], place[1], opening.low + _DOOR_HANDLE_M)

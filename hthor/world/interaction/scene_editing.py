@@ -10,27 +10,27 @@ from hthor.geometry import plane
 from hthor.types import HouseSpec, Vec3
 from hthor.world import numbers
 from hthor.world.model import geoms
-from hthor.world.model.composer_env import FASTEST_M_S, FastEnv, QPose
+from hthor.world.model.composer_env import SPEED_MAX_M_S, LazyComposerEnv, QPose
 from hthor.world.model.composer_task import HouseTask
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.geom_index import GeomIndex
 from hthor.world.state import support_surfaces
-from hthor.world.state.objects import Item, Objects
-from hthor.world.state.overlap_test import Touch
-from hthor.world.state.support_surfaces import Places
+from hthor.world.state.objects import MovableObject, Objects
+from hthor.world.state.overlap_test import OverlapTest
+from hthor.world.state.support_surfaces import SupportSurfaces
 
 
-class Arranging:
+class SceneEditor:
     """Moves the objects of one world about."""
 
     def __init__(
         self,
         house: HouseSpec,
         task: HouseTask,
-        env: FastEnv,
-        scene: Scene,
+        env: LazyComposerEnv,
+        scene: GeomIndex,
         objects: Objects,
-        surfaces: Places,
-        touch: Touch,
+        surfaces: SupportSurfaces,
+        touch: OverlapTest,
     ) -> None:
         self._house = house
         self._env, self._scene, self._objects, self._places, self._touch = env, scene, objects, surfaces, touch
@@ -42,8 +42,8 @@ class Arranging:
         at = None if position is None else numbers.point3("position", position)
         speed = numbers.point3("velocity", velocity, "metres a second")
         yaw = plane.wrap(numbers.number("yaw", yaw, "radians"))
-        if math.hypot(*speed) > FASTEST_M_S:
-            raise HthorError(f"velocity must be at most {FASTEST_M_S:.0f} m/s, got {math.hypot(*speed):.3g} m/s")
+        if math.hypot(*speed) > SPEED_MAX_M_S:
+            raise HthorError(f"velocity must be at most {SPEED_MAX_M_S:.0f} m/s, got {math.hypot(*speed):.3g} m/s")
         if on:
             self._objects.move(id, self._on(item, on, at, yaw), speed)
         elif at is not None:
@@ -56,7 +56,7 @@ class Arranging:
         self._idle(id)
         self._objects.remove(id, self._parking[id])
 
-    def _idle(self, id: str) -> Item:
+    def _idle(self, id: str) -> MovableObject:
         item = self._objects.known(id)
         if item is None:
             raise UnknownName("object", id, [one.id for one in self._objects])
@@ -65,7 +65,7 @@ class Arranging:
             raise HthorError(f"{id} is in the hand of {who}; let it be placed or dropped first")
         return item
 
-    def _on(self, item: Item, on: str, near: Vec3 | None, yaw: float) -> QPose:
+    def _on(self, item: MovableObject, on: str, near: Vec3 | None, yaw: float) -> QPose:
         """A free place on the thing, nearest to ``near`` or to a surface's middle: inside only where it has no top."""
         surfaces = self._places.of(on)
         if not surfaces:
@@ -80,7 +80,7 @@ class Arranging:
             size = (w * item.size[0] + d * item.size[1], d * item.size[0] + w * item.size[1], item.size[2])
             for order, place in enumerate(surfaces):
                 goal = near or place.centre
-                spots = support_surfaces.candidates(place, size, boxes, goal)
+                spots = support_surfaces.free_spots(place, size, boxes, goal)
                 if spots:
                     rank = math.dist(spots[0], goal) if near else float(order)
                     found.append((round(rank, 6), (*spots[0], *geoms.quaternion(place.yaw + turn))))
@@ -89,11 +89,11 @@ class Arranging:
         w, d = item.size[:2]
         raise HthorError(f"no room on {on} for {item.id}, which needs {w:.2f} x {d:.2f} m; remove something first")
 
-    def _at(self, item: Item, pose: QPose, velocity: Vec3) -> None:
+    def _at(self, item: MovableObject, pose: QPose, velocity: Vec3) -> None:
         """There and nowhere else; back to where it was if something is there already."""
         indoors = any(plane.inside(pose[:2], room.polygon) for room in self._house.rooms)
         if not indoors or pose[2] > self._house.height:
-            at = ", ".join(numbers.short(value) for value in pose[:3])
+            at = ", ".join(numbers.format_number(value) for value in pose[:3])
             raise HthorError(f"({at}) is in no room of the house; give a position indoors")
         data = self._env.data
         rows, speeds = slice(item.qpos, item.qpos + 7), slice(item.dof, item.dof + 6)

@@ -90,7 +90,7 @@ class HouseArena(Arena):
                 geoms.add_box(world, name, (*centre, house.height + _SLAB_M / 2), half, 0.0, **ceiling, **geoms.GHOST)
 
     def _walls(self, house: HouseSpec) -> None:
-        for panel in walls.panels(house):
+        for panel in walls.wall_panels(house):
             geoms.add_box(
                 self.mjcf_model.worldbody,
                 self._name(panel.name),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hthor.types import Joint
 from hthor.world.model import geoms
-from hthor.world.model.door_geometry import Opens
+from hthor.world.model.door_geometry import Openable
 from hthor.world.model.engine import Entity, mjcf
 
 _MASS_KG = 4.0
@@ -20,7 +20,7 @@ class Door(Entity):
     nothing needs to be done for it when an episode begins.
     """
 
-    def _build(self, opens: Opens) -> None:
+    def _build(self, opens: Openable) -> None:
         self.id, self.opens, self.thing, self.joints = opens.id, opens, opens.thing, opens.joints
         self._root = mjcf.RootElement(model=f"door|{opens.id.replace('/', '|')}")
         self.leaves = tuple(self._leaf(joint) for joint in self.joints)

@@ -4,8 +4,8 @@ Bodies are puppets that meet nothing, so between the rare moments when an object
 the engine sleeps and a tick costs nothing. Stepping lazily gives bit for bit the states that stepping always gives.
 
 The long step at which resting things fall asleep is far too long for falling ones, which would be through a board
-between one step and the next. So while anything moves or turns farther than `STRIDE_M` or `SPIN_RAD` in a step, it
-is split.
+between one step and the next. So a step in which anything moves farther than `STEP_TRAVEL_MAX_M` or turns farther than
+`STEP_TURN_MAX_RAD` is split.
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ from hthor.world.model.engine import Environment, mujoco
 
 QPose = tuple[float, float, float, float, float, float, float]
 """Position [m] and unit quaternion (w, x, y, z) of a free object."""
-STRIDE_M = 0.003
+STEP_TRAVEL_MAX_M = 0.003
 """The way that nothing may go beyond in one step of the engine: a fifth of the thinnest board."""
-SPIN_RAD = 0.2
+STEP_TURN_MAX_RAD = 0.2
 """Nor may anything turn farther in one step: thin things would spin up without end."""
-WEARY_TICKS, _CALM = 20, 4
+RESTLESS_TICKS, _RESTLESS_PARTS = 20, 4
 """After so many ticks without rest every step is made in so many parts: some long things tremble at the long step."""
-LULL_TICKS, TREMBLE = 50, 0.5
+DAMP_TICKS, DAMP_TOLERANCE = 50, 0.5
 """After so many ticks without rest, what only trembles is laid to rest: the sleep tolerance is this."""
-_FINEST = 64
+_PARTS_MAX = 64
 """Parts that a step is split into at most."""
-FASTEST_M_S, FASTEST_RAD_S = 20.0, 300.0
+SPEED_MAX_M_S, SPIN_MAX_RAD_S = 20.0, 300.0
 """Nothing moves or turns faster, along or about any axis: such things would pass through boards, or spin up without
 end.
 """
 
 
-class FastEnv(Environment):
+class LazyComposerEnv(Environment):
     """The environment of a `HouseTask`.
 
     It is a composer environment like any other: `reset` and `step` do what they always do. `tick` is the short way
@@ -57,9 +57,22 @@ class FastEnv(Environment):
         self._step_s = float(self.model.opt.timestep)
         free = self.model.jnt_dofadr[self.model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)]
         self._free = (free[:, None] + np.arange(6)).ravel()
-        self._limits = np.tile((STRIDE_M, STRIDE_M, STRIDE_M, SPIN_RAD, SPIN_RAD, SPIN_RAD), len(free)) / self._step_s
+        self._limits = (
+            np.tile(
+                (
+                    STEP_TRAVEL_MAX_M,
+                    STEP_TRAVEL_MAX_M,
+                    STEP_TRAVEL_MAX_M,
+                    STEP_TURN_MAX_RAD,
+                    STEP_TURN_MAX_RAD,
+                    STEP_TURN_MAX_RAD,
+                ),
+                len(free),
+            )
+            / self._step_s
+        )
         self._sound = self.data.qpos.copy()
-        self._most = np.tile((FASTEST_M_S,) * 3 + (FASTEST_RAD_S,) * 3, len(free))
+        self._most = np.tile((SPEED_MAX_M_S,) * 3 + (SPIN_MAX_RAD_S,) * 3, len(free))
 
     def reset(self) -> Any:
         """Start an episode: nothing is carried, everything sleeps where the task puts it."""
@@ -119,12 +132,14 @@ class FastEnv(Environment):
     def _advance(self) -> None:
         """One step of the engine, in as many parts as the fastest object asks for."""
         haste = float((np.abs(self.data.qvel[self._free]) / self._limits).max(initial=0.0))
-        parts = math.ceil(haste) if haste < _FINEST else _FINEST  # what is no number too: the engine will say so
-        if parts <= 1 and self._restless < WEARY_TICKS:
+        parts = math.ceil(haste) if haste < _PARTS_MAX else _PARTS_MAX  # what is no number too: the engine will say so
+        if parts <= 1 and self._restless < RESTLESS_TICKS:
             mujoco.mj_step(self.model, self.data)
             return
-        if parts <= _CALM:
-            self._steps(_CALM, TREMBLE if self._restless >= LULL_TICKS else self.model.opt.sleep_tolerance)
+        if parts <= _RESTLESS_PARTS:
+            self._steps(
+                _RESTLESS_PARTS, DAMP_TOLERANCE if self._restless >= DAMP_TICKS else self.model.opt.sleep_tolerance
+            )
         else:
             self._steps(parts, 0.0)  # still for a millisecond is not at rest
 
@@ -132,8 +147,8 @@ class FastEnv(Environment):
         """One step of the engine in parts, what is slower than ``drowsy`` falling asleep."""
         option, tolerance = self.model.opt, self.model.opt.sleep_tolerance
         option.timestep, option.sleep_tolerance = self._step_s / parts, drowsy
-        for done in range(0, parts, _CALM):
-            mujoco.mj_step(self.model, self.data, min(_CALM, parts - done))
+        for done in range(0, parts, _RESTLESS_PARTS):
+            mujoco.mj_step(self.model, self.data, min(_RESTLESS_PARTS, parts - done))
             self._brake()
         option.timestep, option.sleep_tolerance = self._step_s, tolerance
 

@@ -20,11 +20,11 @@ from hthor.world.model.props import Prop
 
 PHYSICS_STEP_S = 0.02
 """The longest step at which everything on a table falls asleep (with a sleep tolerance of 5e-3)."""
-_CONTACT_S = 0.001
+_CONTACT_TIME_CONSTANT_S = 0.001
 """Time constant of contacts; the engine makes it two steps where that is more, so it counts for what moves fast."""
-_HARDNESS = (0.95, 0.99)
+_CONTACT_IMPEDANCE = (0.95, 0.99)
 """How little a contact gives, lightly and firmly pressed: things rest a millimetre deep at most."""
-_DRAG_NMS = 1e-5
+_ROTATION_DAMPING_NMS = 1e-5
 """What the air takes from spinning."""
 _PARK: Vec3 = (-500.0, 0.0, 1.0)
 _PARK_STEP_M = 2.0
@@ -42,7 +42,10 @@ class HouseTask(composer.Task):
     def __init__(self, house: HouseSpec, contents: Contents, seats: Mapping[str, BodySpec]) -> None:
         self._arena = HouseArena(house, contents.statics)
         self.props = tuple(Prop(item.id, item.kind, item.size, item.variant) for item in contents.movables)
-        opening = (*(door_geometry.of_thing(thing) for thing in contents.doors), *door_geometry.of_house(house))
+        opening = (
+            *(door_geometry.openable_thing(thing) for thing in contents.doors),
+            *door_geometry.doorway_leaves(house),
+        )
         self.doors = tuple(Door(one) for one in opening)
         self.bodies = tuple(Body(seat, spec) for seat, spec in seats.items())
         self.starts: dict[str, tuple[Vec3, float]] = {}
@@ -79,9 +82,9 @@ class HouseTask(composer.Task):
         allowed, start = mujoco.mjtSleepPolicy.mjSLEEP_AUTO_ALLOWED, mujoco.mjtSleepPolicy.mjSLEEP_INIT
         policy[policy == int(allowed)] = int(start)
         model = physics.model.ptr
-        model.geom_solref[:, 0], model.geom_solimp[:, :2] = _CONTACT_S, _HARDNESS
+        model.geom_solref[:, 0], model.geom_solimp[:, :2] = _CONTACT_TIME_CONSTANT_S, _CONTACT_IMPEDANCE
         free = model.jnt_dofadr[model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)]
-        model.dof_damping[free[:, None] + np.arange(3, 6)] = _DRAG_NMS
+        model.dof_damping[free[:, None] + np.arange(3, 6)] = _ROTATION_DAMPING_NMS
         bodies = [physics.bind(prop.root_body).element_id for prop in self.props]
         first = np.array([model.jnt_qposadr[model.body_jntadr[body]] for body in bodies], int)
         self._addresses = first[:, None] + np.arange(7)

@@ -24,7 +24,7 @@ _HANDLE_M = 1.02
 """Height of a handle."""
 
 
-class Opens(Struct, frozen=True, kw_only=True):
+class Openable(Struct, frozen=True, kw_only=True):
     """A thing that opens: its moving ``parts`` and their ``joints`` in the frame of ``thing``, closed.
 
     ``opening`` is the doorway that a leaf hangs in, None for a thing; leaves stand open when an episode begins.
@@ -41,7 +41,7 @@ class Opens(Struct, frozen=True, kw_only=True):
         return self.thing.id
 
 
-def of_thing(thing: Thing) -> Opens:
+def openable_thing(thing: Thing) -> Openable:
     """What moves of a piece of furniture.
 
     Raises:
@@ -52,15 +52,15 @@ def of_thing(thing: Thing) -> Opens:
     if not joints:
         raise ValueError(f"'{thing.id}' of kind '{thing.kind}' does not open")
     parts = tuple(part for part in kind.parts(thing.size, thing.variant) if part.moves)
-    return Opens(thing=thing, parts=parts, joints=joints)
+    return Openable(thing=thing, parts=parts, joints=joints)
 
 
-def of_house(house: HouseSpec) -> tuple[Opens, ...]:
+def doorway_leaves(house: HouseSpec) -> tuple[Openable, ...]:
     """The leaves of the doorways that have any, in the order of the openings."""
     return tuple(_hung(house, opening) for opening in house.openings if opening.openable and opening.passable)
 
 
-def _hung(house: HouseSpec, opening: Opening) -> Opens:
+def _hung(house: HouseSpec, opening: Opening) -> Openable:
     """One leaf hinged at the opening's end ``a``, or two; they turn into its first room.
 
     The local frame has x from ``a`` to ``b``, its origin in the middle of the hole.
@@ -83,7 +83,7 @@ def _hung(house: HouseSpec, opening: Opening) -> Opens:
         spans = (("left door", -edge, -0.002), ("right door", edge, 0.002))
     parts = tuple(part for name, hinge, rim in spans for part in _leaf(thing, name, hinge, rim))
     joints = tuple(_hinge(name, hinge, rim, side) for name, hinge, rim in spans)
-    return Opens(thing=thing, parts=parts, joints=joints, opening=opening)
+    return Openable(thing=thing, parts=parts, joints=joints, opening=opening)
 
 
 def _side(house: HouseSpec, opening: Opening, centre: Vec3, yaw: float) -> float:

@@ -7,17 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from hthor.geometry.ray_casting import blocked
+from hthor.geometry.ray_casting import is_blocked
 from hthor.types import Vec3
-from hthor.world.model.composer_env import FastEnv
+from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.composer_task import HouseTask
 from hthor.world.model.engine import mujoco
 
-_CLEAR = 0.5
+_OPAQUE_ALPHA = 0.5
 """What is less opaque than this, glass, hides nothing."""
 
 
-class Scene:
+class GeomIndex:
     """Boxes around all solids, laid out as `hthor.geometry.ray_casting` wants them, and the list of those that hide.
 
     Attributes:
@@ -29,7 +29,7 @@ class Scene:
         span: owner -> [first, last + 1) of its geoms; of a thing with a door, those that do not move.
     """
 
-    def __init__(self, env: FastEnv, task: HouseTask) -> None:
+    def __init__(self, env: LazyComposerEnv, task: HouseTask) -> None:
         model, data = env.model, env.data
         self.half = _halves(model)
         self.pos, self.mat = data.geom_xpos, data.geom_xmat.reshape(-1, 9)
@@ -40,7 +40,7 @@ class Scene:
         self._number = {owner: number for number, owner in enumerate(self.names)}
         self.numbers = np.array([self._number[owner] for owner in self.owner])
         self.solid = model.geom_contype != 0
-        self.solid &= model.geom_rgba[:, 3] >= _CLEAR
+        self.solid &= model.geom_rgba[:, 3] >= _OPAQUE_ALPHA
         self.solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)
         fixed = self.solid & (model.body_weldid[model.geom_bodyid] == 0)
         self.walls = self._sorted(fixed)
@@ -63,14 +63,14 @@ class Scene:
     def hidden(self, eye: Vec3, point: Vec3, ignore: str = "") -> bool:
         """Whether something other than ``ignore`` stands between the two points [m]."""
         ends = np.array(eye), np.array(point)
-        return bool(blocked(*ends, self.half, self.pos, self.mat, self.radius, self._without(ignore), 0, 0))
+        return bool(is_blocked(*ends, self.half, self.pos, self.mat, self.radius, self._without(ignore), 0, 0))
 
     def first(self, start: Vec3, end: Vec3, ignore: str = "") -> str:
         """Owner of a solid other than ``ignore`` that stands between two points [m], empty for none."""
         ends, ids = (np.array(start), np.array(end)), self._without(ignore)
         solids = self.half, self.pos, self.mat, self.radius
-        met = (self.owner[geom] for geom in ids if blocked(*ends, *solids, np.array([geom]), 0, 0))
-        return next(met, "") if blocked(*ends, *solids, ids, 0, 0) else ""
+        met = (self.owner[geom] for geom in ids if is_blocked(*ends, *solids, np.array([geom]), 0, 0))
+        return next(met, "") if is_blocked(*ends, *solids, ids, 0, 0) else ""
 
     def boxes_but(self, *without: str) -> tuple[Any, Any]:
         """As `boxes`, without those of several owners."""

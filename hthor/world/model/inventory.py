@@ -20,7 +20,7 @@ DEFAULT_OBJECTS = tuple((name, name) for name in catalog.TARGETS)
 """The six target objects as (id, kind) pairs; their ids are their kinds' names."""
 
 
-class Movable(Struct, frozen=True, kw_only=True):
+class MovableSpec(Struct, frozen=True, kw_only=True):
     """An object that can move: ``home`` is where the house puts it, None for one that a task must place."""
 
     id: str
@@ -42,11 +42,11 @@ class Contents(Struct, frozen=True, kw_only=True):
     """A house's things, split. ``doors`` are the statics that open."""
 
     statics: tuple[Thing, ...]
-    movables: tuple[Movable, ...]
+    movables: tuple[MovableSpec, ...]
     doors: tuple[Thing, ...]
 
 
-def split(house: HouseSpec, objects: Iterable[tuple[str, str]]) -> Contents:
+def split_things(house: HouseSpec, objects: Iterable[tuple[str, str]]) -> Contents:
     """Sort the house's things and the world's ``objects``, given as (id, kind) pairs.
 
     Raises:
@@ -64,15 +64,15 @@ def split(house: HouseSpec, objects: Iterable[tuple[str, str]]) -> Contents:
         if not kind.pickable:
             raise HthorError(f"object '{id}' is of kind '{name}', which cannot be picked up")
         taken.add(id)
-        movables.append(Movable(id=id, kind=name, size=kind.size, mass=kind.mass))
+        movables.append(MovableSpec(id=id, kind=name, size=kind.size, mass=kind.mass))
     doors = tuple(thing for thing in statics if catalog.kind(thing.kind).joints(thing.size))
     return Contents(statics=statics, movables=tuple(movables), doors=doors)
 
 
-def _free(thing: Thing) -> Movable:
+def _free(thing: Thing) -> MovableSpec:
     kind = catalog.kind(thing.kind)
     scale = (thing.size[0] * thing.size[1] * thing.size[2]) / (kind.size[0] * kind.size[1] * kind.size[2])
-    return Movable(
+    return MovableSpec(
         id=thing.id,
         kind=thing.kind,
         size=thing.size,

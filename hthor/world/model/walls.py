@@ -32,7 +32,7 @@ class Panel(NamedTuple):
     rgba: Rgba
 
 
-def panels(house: HouseSpec) -> Iterator[Panel]:
+def wall_panels(house: HouseSpec) -> Iterator[Panel]:
     """Every wall piece, sill, lintel, window pane and closed door of the house."""
     for face in house.walls:
         yield from _face(house, face)

@@ -15,7 +15,7 @@ _JAMB_M = 0.05
 """A wall beside a shut door sticks out this much farther."""
 
 
-class Obstacles:
+class ObstacleFootprints:
     """The footprints of a house's walls and furniture."""
 
     def __init__(self, house: HouseSpec) -> None:
@@ -35,7 +35,7 @@ class Obstacles:
         )
         gap, index = min(gaps, default=(0.0, -1))
         for opening in shut:
-            x, y, half, deep, yaw = doorways.rectangle(opening)
+            x, y, half, deep, yaw = doorways.leaf_rectangle(opening)
             if plane.distance_to_rectangle(place, (x, y), (2 * half, 2 * deep), yaw) <= gap + _JAMB_M:
                 return opening.id
         return self._slabs[index][0] if index >= 0 else WALL

@@ -14,27 +14,27 @@ from hthor import rules
 from hthor.geometry.plane import turn, wrap
 from hthor.types import Event, Move, Outcome, Pose, Rotate, Vec2, Wait
 from hthor.world import numbers
-from hthor.world.state.body_state import Seat
+from hthor.world.state.body_state import BodyState
 
 _EPS = 1e-9
 WAIT_MAX_S = 3600.0
 """The longest that a body waits at once."""
-_SLIDE = 0.05
+_SLIDE_SHARE_MIN = 0.05
 """Sliding slower than this share of the speed counts as standing still."""
 _FREE, _BLOCKED = "", "*"
 """What a trial step meets: nothing, the house, or else the name of the seat in the way."""
 
-_WENT, _TURNED, _WAITED = (Outcome(motion=motion, ok=True) for motion in ("move", "rotate", "wait"))
+_MOVED, _ROTATED, _WAITED = (Outcome(motion=motion, ok=True) for motion in ("move", "rotate", "wait"))
 
-Step = tuple[Outcome | None, tuple[Event, ...]]
+TickResult = tuple[Outcome | None, tuple[Event, ...]]
 
 
-def refusal(seat: Seat, motion: Move | Rotate | Wait) -> str:
+def refusal(seat: BodyState, motion: Move | Rotate | Wait) -> str:
     """Why the motion cannot be started, empty when it can."""
     if isinstance(motion, Wait):
         reason = "" if _is_plain(motion.seconds) else _finite(seconds=motion.seconds)
         if not reason and motion.seconds > WAIT_MAX_S:
-            return f"wait is {numbers.short(motion.seconds)} s long; at most {WAIT_MAX_S:.0f} s"
+            return f"wait is {numbers.format_number(motion.seconds)} s long; at most {WAIT_MAX_S:.0f} s"
         return reason
     if "navigate" not in seat.spec.capabilities:
         return f"{seat.spec.title} cannot move"
@@ -43,17 +43,17 @@ def refusal(seat: Seat, motion: Move | Rotate | Wait) -> str:
         reason = "" if plain else _finite(forward=motion.forward, left=motion.left)
         length = 0.0 if reason else math.hypot(motion.forward, motion.left)
         if length > rules.MOVE_MAX_M + _EPS:
-            return f"move is {numbers.short(length)} m long; at most {rules.MOVE_MAX_M:.2f} m"
+            return f"move is {numbers.format_number(length)} m long; at most {rules.MOVE_MAX_M:.2f} m"
         return reason
     plain = _is_plain(motion.yaw) and _is_plain(motion.pitch)
     reason = "" if plain else _finite(yaw=motion.yaw, pitch=motion.pitch)
     if reason:
         return reason
     if abs(motion.yaw) > 2 * math.pi + _EPS:
-        return f"rotation is {numbers.short(motion.yaw)} rad; at most one full turn, {2 * math.pi:.2f} rad"
+        return f"rotation is {numbers.format_number(motion.yaw)} rad; at most one full turn, {2 * math.pi:.2f} rad"
     pitch, limit = seat.pose.pitch + motion.pitch, seat.spec.pitch_limit
     if abs(pitch) > limit + _EPS:
-        return f"camera pitch would be {numbers.short(pitch)} rad; at most {limit:.2f} rad up or down"
+        return f"camera pitch would be {numbers.format_number(pitch)} rad; at most {limit:.2f} rad up or down"
     return ""
 
 
@@ -63,65 +63,67 @@ def _is_plain(value: object) -> bool:
 
 def _finite(**given: object) -> str:
     for name, value in given.items():
-        if not numbers.finite(value):
-            return f"{name} must be a finite number, got {numbers.shown(value)}"
+        if not numbers.is_finite(value):
+            return f"{name} must be a finite number, got {numbers.quoted(value)}"
     return ""
 
 
-class Waiting:
+class WaitMotion:
     """Standing still."""
 
     def __init__(self, motion: Wait) -> None:
-        self._left = ticks(motion.seconds)
+        self._left = duration_ticks(motion.seconds)
 
-    def advance(self, tick: int) -> Step:  # noqa: ARG002
+    def advance(self, tick: int) -> TickResult:  # noqa: ARG002
         self._left -= 1
         return (None if self._left else _WAITED), ()
 
 
-class Turning:
+class RotateMotion:
     """Turning the body and tilting the camera, both at the body's turn rate."""
 
-    def __init__(self, seat: Seat, motion: Rotate) -> None:
+    def __init__(self, seat: BodyState, motion: Rotate) -> None:
         self._seat, self._motion, self._from = seat, motion, seat.pose
         self._done, self._rate = 0, seat.spec.turn_rate * rules.TICK_S
         self._ticks = max(1, math.ceil(max(abs(motion.yaw), abs(motion.pitch)) / self._rate - _EPS))
 
-    def advance(self, tick: int) -> Step:  # noqa: ARG002
+    def advance(self, tick: int) -> TickResult:  # noqa: ARG002
         self._done += 1
         start, most = self._from, self._done * self._rate
         limit = self._seat.spec.pitch_limit
         pitch = start.pitch + _clip(self._motion.pitch, most)
         yaw = wrap(start.yaw + _clip(self._motion.yaw, most))
         self._seat.pose = Pose(x=start.x, y=start.y, yaw=yaw, pitch=_clip(pitch, limit))
-        return (None if self._done < self._ticks else _TURNED), ()
+        return (None if self._done < self._ticks else _ROTATED), ()
 
 
-class Going:
+class MoveMotion:
     """Moving along a straight line, as far as the house and the others let.
 
     Args:
         others: all other seats. culprit: names what blocks a place, for the outcome.
     """
 
-    def __init__(self, seat: Seat, motion: Move, others: Sequence[Seat], culprit: Callable[[Seat, Vec2], str]) -> None:
+    def __init__(
+        self, seat: BodyState, motion: Move, others: Sequence[BodyState], culprit: Callable[[BodyState, Vec2], str]
+    ) -> None:
         self._seat, self._others, self._culprit = seat, others, culprit
         self._left = math.hypot(motion.forward, motion.left)
         x, y = turn((motion.forward, motion.left), seat.pose.yaw)
         self._along = (x / self._left, y / self._left) if self._left > 0.0 else (0.0, 0.0)
         self._hindered = False
 
-    def advance(self, tick: int) -> Step:
+    def advance(self, tick: int) -> TickResult:
         step = min(self._seat.spec.speed * rules.TICK_S, self._left)
         self._left -= step
         dx, dy = self._along[0] * step, self._along[1] * step
         met = self._try(dx, dy)
         if not met:
-            return (None if self._left > _EPS else _WENT), ()
+            return (None if self._left > _EPS else _MOVED), ()
         events = self._in_way(tick, met)
         if self._slide(dx, 0.0, step) and self._slide(0.0, dy, step):
             return self._stop(tick, met, (dx, dy), events)
-        return (None if self._left > _EPS else _WENT), events
+        return (None if self._left > _EPS else _MOVED), events
 
     def _try(self, dx: float, dy: float) -> str:
         """Go there if it is free; what was met otherwise."""
@@ -137,7 +139,7 @@ class Going:
 
     def _slide(self, dx: float, dy: float, step: float) -> str:
         """Try one axis of a step, unless hardly anything of the step is along it."""
-        return self._try(dx, dy) if abs(dx + dy) > _SLIDE * step else _BLOCKED
+        return self._try(dx, dy) if abs(dx + dy) > _SLIDE_SHARE_MIN * step else _BLOCKED
 
     def _in_way(self, tick: int, met: str) -> tuple[Event, ...]:
         """A hindered body says so once a move.
@@ -149,7 +151,7 @@ class Going:
         self._hindered = True
         return (Event(tick=tick - 1, seat=self._seat.name, kind="in_way", data={"by": met}),)
 
-    def _stop(self, tick: int, met: str, step: Vec2, events: tuple[Event, ...]) -> Step:
+    def _stop(self, tick: int, met: str, step: Vec2, events: tuple[Event, ...]) -> TickResult:
         name = self._seat.name
         if met != _BLOCKED:
             return Outcome(motion="move", ok=False, reason=f"{met} is in the way", by=met), events
@@ -158,7 +160,7 @@ class Going:
         return outcome, (*events, Event(tick=tick, seat=name, kind="blocked", data={"by": by}))
 
 
-def ticks(seconds: float) -> int:
+def duration_ticks(seconds: float) -> int:
     """Whole ticks that ``seconds`` take, at least one."""
     return max(1, math.ceil(max(0.0, seconds) / rules.TICK_S - 1e-6))
 
@@ -167,7 +169,7 @@ def _clip(value: float, most: float) -> float:
     return max(-most, min(most, value))
 
 
-def _too_close(seat: Seat, other: Seat, x: float, y: float) -> bool:
+def _too_close(seat: BodyState, other: BodyState, x: float, y: float) -> bool:
     there, least = other.pose, seat.spec.radius + other.spec.radius - _EPS
     dx, dy = x - there.x, y - there.y
     if abs(dx) >= least or abs(dy) >= least or math.hypot(dx, dy) >= least:

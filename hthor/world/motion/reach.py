@@ -9,13 +9,13 @@ from hthor.types import Vec3
 from hthor.world.model import geoms
 from hthor.world.model.bodies import bodies
 from hthor.world.model.composer_env import QPose
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.geom_index import GeomIndex
 from hthor.world.perception import view_frustum
-from hthor.world.state.body_state import Seat
-from hthor.world.state.objects import Item
+from hthor.world.state.body_state import BodyState
+from hthor.world.state.objects import MovableObject
 
 
-def out_of_reach(seat: Seat, name: str, point: Vec3, lean: float = 1e-6) -> str:
+def out_of_reach(seat: BodyState, name: str, point: Vec3, lean: float = 1e-6) -> str:
     """Why a hand cannot get to ``point`` [m], the reach of the arm stretched by ``lean`` [m]; empty when it can."""
     pose, spec = seat.pose, seat.spec
     dx, dy = point[0] - pose.x, point[1] - pose.y
@@ -28,15 +28,15 @@ def out_of_reach(seat: Seat, name: str, point: Vec3, lean: float = 1e-6) -> str:
     return ""
 
 
-def unseen(seat: Seat, item: Item, scene: Scene) -> str:
+def out_of_sight(seat: BodyState, item: MovableObject, scene: GeomIndex) -> str:
     """Why the eye cannot see an object, wherever it looks; empty when it can."""
-    eye = view_frustum.eye(seat.pose, seat.spec)
-    if all(scene.hidden(eye, point, item.id) for point in view_frustum.points(item.position, item.size)):
+    eye = view_frustum.eye_position(seat.pose, seat.spec)
+    if all(scene.hidden(eye, point, item.id) for point in view_frustum.look_points(item.position, item.size)):
         return f"{item.id} is out of sight"
     return ""
 
 
-def too_heavy(seat: Seat, item: Item) -> str:
+def too_heavy(seat: BodyState, item: MovableObject) -> str:
     """Why an arm cannot lift an object, empty when it can."""
     if item.mass > seat.spec.strength:
         title = catalog.kind(item.kind).title
@@ -44,9 +44,9 @@ def too_heavy(seat: Seat, item: Item) -> str:
     return ""
 
 
-def in_hand(seat: Seat, size: Vec3) -> QPose:
+def held_pose(seat: BodyState, size: Vec3) -> QPose:
     """Pose of what ``seat`` carries, an object of ``size`` [m]: it lies on the hand, turned with the body."""
-    ahead, left, up = bodies.grasp(seat.spec, size)
+    ahead, left, up = bodies.grasp_point(seat.spec, size)
     cos, sin = math.cos(seat.pose.yaw), math.sin(seat.pose.yaw)
     x, y = seat.pose.x + cos * ahead - sin * left, seat.pose.y + sin * ahead + cos * left
     return (x, y, up, *geoms.quaternion(seat.pose.yaw))

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from hthor.geometry.plane import wrap
 from hthor.types import Pose, Vec2
-from hthor.world.state.body_state import Seat
+from hthor.world.state.body_state import BodyState
 
 
-def stand(seats: Sequence[Seat], human: Pose, robots: Sequence[Pose]) -> None:
+def place_bodies(seats: Sequence[BodyState], human: Pose, robots: Sequence[Pose]) -> None:
     """Put every seat at its start, or at the free place nearest to it.
 
     A robot without a start of its own stands nearest to the first robot's, clear of the bodies before it.
@@ -30,17 +30,17 @@ def stand(seats: Sequence[Seat], human: Pose, robots: Sequence[Pose]) -> None:
         seat.clear(Pose(x=float(x), y=float(y), yaw=wrap(pose.yaw), pitch=float(pitch)))
 
 
-def _clear_place(seat: Seat, pose: Pose, others: Sequence[Seat]) -> Vec2:
+def _clear_place(seat: BodyState, pose: Pose, others: Sequence[BodyState]) -> Vec2:
     space, free = seat.space, seat.space.free.copy()
-    for row, column in zip(*(free & _about(seat, others)).nonzero(), strict=True):
-        if not _apart(space.centre_of(int(row), int(column)), seat, others):
+    for row, column in zip(*(free & _cells_near(seat, others)).nonzero(), strict=True):
+        if not _is_clear(space.centre_of(int(row), int(column)), seat, others):
             free[row, column] = False
-    if _apart((pose.x, pose.y), seat, others):
+    if _is_clear((pose.x, pose.y), seat, others):
         return space.nearest_free(pose.x, pose.y)
     return space.nearest_free(pose.x, pose.y, free)
 
 
-def _about(seat: Seat, others: Sequence[Seat]) -> NDArray[np.bool_]:
+def _cells_near(seat: BodyState, others: Sequence[BodyState]) -> NDArray[np.bool_]:
     """(ny, nx) cells around the others, a little more than those from which the body would touch them."""
     space, cells = seat.space, np.zeros_like(seat.space.free)
     for other in others:
@@ -50,5 +50,5 @@ def _about(seat: Seat, others: Sequence[Seat]) -> NDArray[np.bool_]:
     return cells
 
 
-def _apart(place: Vec2, seat: Seat, others: Sequence[Seat]) -> bool:
+def _is_clear(place: Vec2, seat: BodyState, others: Sequence[BodyState]) -> bool:
     return all(math.dist(place, (o.pose.x, o.pose.y)) >= seat.spec.radius + o.spec.radius for o in others)

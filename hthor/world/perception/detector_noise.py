@@ -23,26 +23,26 @@ from hthor import catalog, rules, seeds
 from hthor.errors import HthorError
 from hthor.geometry.plane import to_house
 from hthor.types import BodySpec, Detection, DetectorSpec, Vec3, detector_specs
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.geom_index import GeomIndex
 from hthor.world.perception import view_frustum
-from hthor.world.state.body_state import Seat
-from hthor.world.state.objects import Item
-from hthor.world.state.support_surfaces import Place, Places
+from hthor.world.state.body_state import BodyState
+from hthor.world.state.objects import MovableObject
+from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces
 
 GLIMPSE_TICKS = round(1.0 / rules.TICK_S)
 """How long one draw holds: a detector that errs on a frame errs on the next one too."""
-_TRIES = 4
-_INSET = 0.8
+_POSITION_TRIES = 4
+_SURFACE_SHARE = 0.8
 
 
-def assign(
+def assign_detectors(
     robots: Sequence[str], bodies: Mapping[str, BodySpec], given: Iterable[DetectorSpec | str]
 ) -> dict[str, DetectorSpec]:
     """Each robot's detector.
 
     Args:
         robots: their seats. bodies: what each seat's body can do, and declares.
-        given: what a trial says, in the order of the robots: records, or what `hthor.types.detector_specs.read` reads.
+        given: what a trial says, in the order of the robots: records, or what `hthor.types.detector_specs.parse` reads.
 
     Raises:
         HthorError: when there are more than robots, or one cannot be read.
@@ -55,16 +55,18 @@ def assign(
         seat: bodies[seat].detector if one == detector_specs.OWN else one
         for seat, one in zip(robots, wanted, strict=True)
     }
-    return {seat: one if isinstance(one, DetectorSpec) else detector_specs.read(one) for seat, one in own.items()}
+    return {seat: one if isinstance(one, DetectorSpec) else detector_specs.parse(one) for seat, one in own.items()}
 
 
-class Detector:
+class NoisyDetector:
     """The errors of one seat's detector."""
 
-    def __init__(self, spec: DetectorSpec, seat: Seat, scene: Scene, places: Places) -> None:
+    def __init__(self, spec: DetectorSpec, seat: BodyState, scene: GeomIndex, places: SupportSurfaces) -> None:
         self._spec, self._seat, self._scene, self._places = spec, seat, scene, places
 
-    def report(self, found: Sequence[Detection], items: Iterable[Item], seed: int, tick: int) -> tuple[Detection, ...]:
+    def report(
+        self, found: Sequence[Detection], items: Iterable[MovableObject], seed: int, tick: int
+    ) -> tuple[Detection, ...]:
         """What it reports instead of what there is to see, by id.
 
         Args:
@@ -90,10 +92,10 @@ class Detector:
         )
         return msgspec.structs.replace(detection, position=(x, y, z), distance=self._distance((x, y, z)))
 
-    def _phantom(self, found: Sequence[Detection], items: Iterable[Item], root: int) -> list[Detection]:
+    def _phantom(self, found: Sequence[Detection], items: Iterable[MovableObject], root: int) -> list[Detection]:
         """At most one object where it is not."""
         seen = {detection.id for detection in found}
-        absent = [item for item in items if _wanted(item) and item.id not in seen and item.id != self._seat.holding]
+        absent = [item for item in items if _is_target(item) and item.id not in seen and item.id != self._seat.holding]
         if not absent:
             return []
         item = min(absent, key=lambda item: seeds.draw(root, "which", item.id))
@@ -114,7 +116,7 @@ class Detector:
                 ]
         return []
 
-    def _spots(self, furniture: Iterable[str], item: Item, root: int) -> Iterator[tuple[Place, Vec3]]:
+    def _spots(self, furniture: Iterable[str], item: MovableObject, root: int) -> Iterator[tuple[SupportSurface, Vec3]]:
         """Where the object might lie on what is in view, in an order that the glimpse decides."""
         places = [
             (seeds.draw(root, "where", thing, number), place)
@@ -123,9 +125,9 @@ class Detector:
             if not place.inside
         ]
         for mark, place in sorted(places, key=lambda pair: pair[0]):
-            for attempt in range(_TRIES):
+            for attempt in range(_POSITION_TRIES):
                 u, v = (
-                    _INSET * half * (2.0 * seeds.draw(root, "spot", repr(mark), attempt, axis) - 1.0)
+                    _SURFACE_SHARE * half * (2.0 * seeds.draw(root, "spot", repr(mark), attempt, axis) - 1.0)
                     for axis, half in enumerate(place.half)
                 )
                 yield place, to_house((u, v, item.size[2] / 2), place.centre, place.yaw)
@@ -133,18 +135,18 @@ class Detector:
     def _plain(self, point: Vec3) -> bool:
         """Whether a point is within range, in the field of view and unhidden."""
         pose, body = self._seat.pose, self._seat.spec
-        view = view_frustum.camera(pose, body)
+        view = view_frustum.view_vector(pose, body)
         offset = tuple(point[axis] - float(view[axis]) for axis in range(3))
         ahead, left, up = (sum(offset[axis] * float(view[row + axis]) for axis in range(3)) for row in (3, 6, 9))
         if self._distance(point) > body.sight_range or ahead <= 0.0:
             return False
         if abs(left) > ahead * float(view[12]) or abs(up) > ahead * float(view[13]):
             return False
-        return not self._scene.hidden(view_frustum.eye(pose, body), point)
+        return not self._scene.hidden(view_frustum.eye_position(pose, body), point)
 
     def _distance(self, point: Vec3) -> float:
-        return math.dist(view_frustum.eye(self._seat.pose, self._seat.spec), point)
+        return math.dist(view_frustum.eye_position(self._seat.pose, self._seat.spec), point)
 
 
-def _wanted(item: Item) -> bool:
+def _is_target(item: MovableObject) -> bool:
     return item.present and item.kind in catalog.TARGETS

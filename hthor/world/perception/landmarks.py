@@ -16,7 +16,7 @@ from hthor.types import Opening, Thing, Vec3
 
 _DOORWAY_HEIGHT_M = 1.0
 _ROUNDING_M = 1e-6
-_INSET, _PROUD_M = 0.85, 0.02
+_CORNER_SHARE, _ABOVE_SURFACE_M = 0.85, 0.02
 """A piece of furniture is looked for at its upper corners, pulled in to this share, and just off its surfaces."""
 
 
@@ -37,7 +37,7 @@ class Landmark(Struct, frozen=True):
 
 def landmarks(statics: Iterable[Thing], openings: Iterable[Opening]) -> tuple[Landmark, ...]:
     """Furniture by id, then doorways by id."""
-    furniture = [_furniture(thing) for thing in statics if _counts(thing)]
+    furniture = [_furniture(thing) for thing in statics if _is_furniture(thing)]
     doorways = [_doorway(opening) for opening in openings if opening.passable]
     return (
         *sorted(furniture, key=lambda landmark: landmark.id),
@@ -45,11 +45,11 @@ def landmarks(statics: Iterable[Thing], openings: Iterable[Opening]) -> tuple[La
     )
 
 
-def targets(found: Sequence[Landmark], span: Mapping[str, tuple[int, int]]) -> tuple[Any, Any]:
+def pack_targets(found: Sequence[Landmark], span: Mapping[str, tuple[int, int]]) -> tuple[Any, Any]:
     """Landmarks as `glance.see` takes them, ``balls`` and ``spots``; ``span`` tells the geoms of each."""
     balls, begin = np.zeros((7, len(found) + 1)), 0
     for number, landmark in enumerate(found):
-        balls[:, number] = (*_ball(landmark.points), *span.get(landmark.id, (0, 0)), begin)
+        balls[:, number] = (*_bounding_sphere(landmark.points), *span.get(landmark.id, (0, 0)), begin)
         begin += len(landmark.points)
     balls[6, -1] = begin
     spots = np.zeros((6, begin))
@@ -57,13 +57,13 @@ def targets(found: Sequence[Landmark], span: Mapping[str, tuple[int, int]]) -> t
     return balls, spots
 
 
-def _ball(points: Sequence[Vec3]) -> tuple[float, float, float, float]:
+def _bounding_sphere(points: Sequence[Vec3]) -> tuple[float, float, float, float]:
     """Middle and radius [m] of a ball around the points, a little larger than it need be."""
     x, y, z = (0.5 * (min(axis) + max(axis)) for axis in zip(*points, strict=True))
     return x, y, z, max(math.dist((x, y, z), point) for point in points) + _ROUNDING_M
 
 
-def _counts(thing: Thing) -> bool:
+def _is_furniture(thing: Thing) -> bool:
     """Small things that lie about are scenery, not furniture."""
     return not thing.parent or catalog.kind(thing.kind).receptacle
 
@@ -71,13 +71,13 @@ def _counts(thing: Thing) -> bool:
 def _furniture(thing: Thing) -> Landmark:
     kind = catalog.kind(thing.kind)
     w, d, h = (extent / 2 for extent in thing.size)
-    local: list[Vec3] = [(0.0, 0.0, 0.0), (0.0, 0.0, h + _PROUD_M)]
+    local: list[Vec3] = [(0.0, 0.0, 0.0), (0.0, 0.0, h + _ABOVE_SURFACE_M)]
     for surface in kind.surfaces(thing.size):
         if not surface.inside:
-            local.append((surface.centre[0], surface.centre[1], surface.centre[2] + _PROUD_M))
-    local += [(sx * _INSET * w, sy * _INSET * d, _INSET * h) for sx in (-1, 1) for sy in (-1, 1)]
+            local.append((surface.centre[0], surface.centre[1], surface.centre[2] + _ABOVE_SURFACE_M))
+    local += [(sx * _CORNER_SHARE * w, sy * _CORNER_SHARE * d, _CORNER_SHARE * h) for sx in (-1, 1) for sy in (-1, 1)]
     if kind.openable:
-        local.append((0.0, d + _PROUD_M, 0.0))
+        local.append((0.0, d + _ABOVE_SURFACE_M, 0.0))
     points = tuple(to_house(point, thing.centre, thing.yaw) for point in local)
     return Landmark(thing.id, thing.kind, "furniture", thing.centre, thing.size, thing.yaw, points)
 

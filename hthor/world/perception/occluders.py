@@ -8,15 +8,15 @@ from typing import Any
 import numba
 import numpy as np
 
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.geom_index import GeomIndex
 
-_MANY = 8
+_GROUP_MAX = 8
 """A group is split as long as it has more members than this."""
-_LARGE_M = 0.8
+_GROUPED_RADIUS_MAX_M = 0.8
 """Larger solids are groups of their own: they would make any other group large."""
 
 
-class Hiders:
+class Occluders:
     """The solids of one world.
 
     Attributes:
@@ -27,7 +27,7 @@ class Hiders:
         version: of the world, when those that move were looked up last.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: GeomIndex) -> None:
         self._scene = scene
         spheres, boxes = _spheres(scene, scene.walls), _boxes(scene, scene.walls)
         groups = list(_groups(spheres, np.arange(len(scene.walls))))
@@ -38,7 +38,7 @@ class Hiders:
         self.spheres[:, : self.firm], self.boxes[: self.firm] = spheres[:, order], boxes[order]
         self.groups = np.zeros((5, len(groups) + 1))
         for number, group in enumerate(groups):
-            self.groups[:4, number] = _around(spheres[:, group])
+            self.groups[:4, number] = _bounding_sphere(spheres[:, group])
         self.groups[4] = np.concatenate(([0], np.cumsum([len(group) for group in groups])))
         self.version = -1
 
@@ -52,36 +52,36 @@ class Hiders:
 
 def _groups(spheres: Any, members: Any) -> Iterator[Any]:
     """Indices of spheres that lie close together."""
-    large = spheres[3, members] > _LARGE_M
+    large = spheres[3, members] > _GROUPED_RADIUS_MAX_M
     for one in members[large]:
         yield np.array([one])
-    yield from _halves(spheres, members[~large])
+    yield from _bisect(spheres, members[~large])
 
 
-def _halves(spheres: Any, members: Any) -> Iterator[Any]:
-    if len(members) <= _MANY:
+def _bisect(spheres: Any, members: Any) -> Iterator[Any]:
+    if len(members) <= _GROUP_MAX:
         if len(members):
             yield members
         return
     extents = np.ptp(spheres[:3, members], axis=1)
     order = members[np.argsort(spheres[int(np.argmax(extents)), members], kind="stable")]
     middle = len(order) // 2
-    yield from _halves(spheres, order[:middle])
-    yield from _halves(spheres, order[middle:])
+    yield from _bisect(spheres, order[:middle])
+    yield from _bisect(spheres, order[middle:])
 
 
-def _around(spheres: Any) -> tuple[float, float, float, float]:
+def _bounding_sphere(spheres: Any) -> tuple[float, float, float, float]:
     """Middle and radius [m] of a sphere around spheres, a little larger than it need be."""
     middle = 0.5 * (spheres[:3].min(axis=1) + spheres[:3].max(axis=1))
     away = np.sqrt(((spheres[:3].T - middle) ** 2).sum(axis=1)) + spheres[3]
     return (*middle, float(away.max()) + 1e-6)
 
 
-def _spheres(scene: Scene, geoms: Any) -> Any:
+def _spheres(scene: GeomIndex, geoms: Any) -> Any:
     return np.vstack([scene.pos[geoms].T, scene.radius[geoms]])
 
 
-def _boxes(scene: Scene, geoms: Any) -> Any:
+def _boxes(scene: GeomIndex, geoms: Any) -> Any:
     return np.column_stack([scene.half[geoms], scene.mat[geoms], geoms])
 
 

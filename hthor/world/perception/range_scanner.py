@@ -13,7 +13,7 @@ from hthor.houses.space.free_space import FreeSpace
 from hthor.types import BodySpec, HouseSpec, Pose, RobotSpec, Scan
 
 
-class Scanner:
+class RangeScanner:
     """The range sensor of one body: beams evenly spread over its horizontal field of view, both edges included."""
 
     def __init__(self, spec: BodySpec, space: FreeSpace, house: HouseSpec) -> None:

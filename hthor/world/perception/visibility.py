@@ -11,13 +11,13 @@ from msgspec.structs import force_setattr
 
 from hthor import rules
 from hthor.types import HUMAN, Detection, Opening, Pose, Sighting, Thing, Vec2, Vec3
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.geom_index import GeomIndex
 from hthor.world.perception import view_frustum, visibility_kernel, visible_fraction
-from hthor.world.perception.landmarks import Landmark, landmarks, targets
-from hthor.world.perception.occluders import Hiders
-from hthor.world.state.body_state import Seat
+from hthor.world.perception.landmarks import Landmark, landmarks, pack_targets
+from hthor.world.perception.occluders import Occluders
+from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors
-from hthor.world.state.objects import Item, Objects
+from hthor.world.state.objects import MovableObject, Objects
 
 _copy: Any = Detection.__copy__  # type: ignore[attr-defined]
 BODY_RANGE_M = 3.0
@@ -27,17 +27,17 @@ CLUTTER_RANGE_M = 2.0
 SMALL_M = 0.5
 """What is no longer than this is a small thing, one of many that one may overlook among the others."""
 _ROUNDING_M = 1e-6
-_NOTHING = Sighting()
+_NOT_SEEN = Sighting()
 
 
-class _Eye:
+class _SeatView:
     """A seat's eye, and what it saw last: ``records`` are of what does not move, from ``place``."""
 
     __slots__ = ("found", "lens", "place", "records", "roster", "seat", "seen", "spare", "spots", "version", "wanted")
 
-    def __init__(self, seat: Seat, wanted: Any, spots: Any) -> None:
+    def __init__(self, seat: BodyState, wanted: Any, spots: Any) -> None:
         self.seat, self.wanted, self.spots = seat, wanted, spots
-        self.lens = view_frustum.lens(seat.spec)
+        self.lens = view_frustum.half_fov_tangents(seat.spec)
         self.version, self.place, self.roster = (-1, -1), (math.nan, math.nan), -1
         self.records: dict[int, Detection] = {}
         self.seen: list[int] = []
@@ -45,7 +45,7 @@ class _Eye:
         self.spare: tuple[int, Vec2, float] = (-1, (0.0, 0.0), 0.0)
 
 
-class Gaze:
+class Visibility:
     """Looks for objects, furniture, doorways and bodies, in one compiled call.
 
     Targets are numbered: the objects, then the bodies, then what never moves, furniture before doorways.
@@ -53,15 +53,15 @@ class Gaze:
 
     def __init__(
         self,
-        scene: Scene,
+        scene: GeomIndex,
         objects: Objects,
         doors: Doors,
         statics: Iterable[Thing],
         openings: Iterable[Opening],
-        seats: Sequence[Seat],
+        seats: Sequence[BodyState],
     ) -> None:
         self._objects, self._doors, self._seats = objects, doors, seats
-        self._items: tuple[Item, ...] = tuple(objects)
+        self._items: tuple[MovableObject, ...] = tuple(objects)
         self._fixed = landmarks(statics, openings)
         moving = [item.id for item in self._items] + [seat.name for seat in seats]
         names = [*moving, *(landmark.id for landmark in self._fixed)]
@@ -75,17 +75,19 @@ class Gaze:
         for number, seat in enumerate(seats, len(self._items)):
             self._points[number, :, 2] = 0.5 * seat.spec.height, 0.9 * seat.spec.height
         own = [scene.span.get(name, (0, 0)) for name in moving]
-        self._balls, spots = targets(self._fixed, scene.span)
-        self._eyes = {seat.name: _Eye(seat, np.column_stack([self._ranges(seat), own]), spots.copy()) for seat in seats}
+        self._balls, spots = pack_targets(self._fixed, scene.span)
+        self._eyes = {
+            seat.name: _SeatView(seat, np.column_stack([self._ranges(seat), own]), spots.copy()) for seat in seats
+        }
         self._near = np.array([(0.0, *span) for span in own[: len(self._items)]]).reshape(-1, 3)
         self._nothing = np.zeros((7, 1)), np.zeros((6, 0)), np.arange(len(self._items))
-        self._hiders = Hiders(scene)
+        self._hiders = Occluders(scene)
         self._objects_then = self._doors_then = -1
         self._stood: list[Pose | None] = [None] * len(seats)
         self._records: list[Detection] = []
         self._world = self._moves = 0
 
-    def detections(self, seat: Seat) -> tuple[Detection, ...]:
+    def detections(self, seat: BodyState) -> tuple[Detection, ...]:
         """What the seat's detector reports now, by id; the same records as long as neither eye nor world changes."""
         self._refresh()
         eye, version = self._eyes[seat.name], (self._world, self._moves)
@@ -98,18 +100,18 @@ class Gaze:
             self._look(eye, pose)
         return eye.found
 
-    def sighting(self, seat: Seat, id: str) -> Sighting:
+    def sighting(self, seat: BodyState, id: str) -> Sighting:
         """How well the seat sees an object now; nothing of it for what it does not see, or what is no object."""
         self.detections(seat)
         item, eye = self._objects.get(id), self._eyes[seat.name]
         if item is None or item.number not in eye.seen:
-            return _NOTHING
-        points = visible_fraction.samples(
-            item.position, item.size, item.yaw, view_frustum.points(item.position, item.size)
+            return _NOT_SEEN
+        points = visible_fraction.sample_points(
+            item.position, item.size, item.yaw, view_frustum.look_points(item.position, item.size)
         )
         self._near[:, 0] = self._objects.present & self._small
         hiders, pose = self._hiders, seat.pose
-        share, beside = visible_fraction.look(
+        share, beside = visible_fraction.measure(
             pose.x,
             pose.y,
             seat.spec.eye,
@@ -128,7 +130,7 @@ class Gaze:
         )
         return Sighting(share=share, beside=beside)
 
-    def in_view(self, seat: Seat) -> tuple[str, ...]:
+    def in_view(self, seat: BodyState) -> tuple[str, ...]:
         """Ids of the objects that the seat has in view within `rules.FIND_RANGE_M` of its eye, or in its hand."""
         self._refresh()
         eye = self._eyes[seat.name]
@@ -160,7 +162,7 @@ class Gaze:
                 flat[at + 1] = flat[at + 4] = pose.y
                 self._moves += 1
 
-    def _look(self, eye: _Eye, pose: Pose) -> None:
+    def _look(self, eye: _SeatView, pose: Pose) -> None:
         """Bring what an eye sees up to date."""
         spec = eye.seat.spec
         if eye.roster != self._objects.roster:
@@ -182,24 +184,24 @@ class Gaze:
                     force_setattr(record, "distance", dist(eye, record.position))  # nobody else has seen it yet
                     known[index] = record
                 elif index < count:
-                    known[index] = record = _of_item(self._items[index], eye)
+                    known[index] = record = _object_detection(self._items[index], eye)
                 else:
-                    record = _of_body(self._seats[index - count], eye)
+                    record = _body_detection(self._seats[index - count], eye)
             found.append(record)
         return tuple(found)
 
-    def _any_near(self, eye: _Eye) -> bool:
+    def _any_near(self, eye: _SeatView) -> bool:
         """Whether any object's centre is that near to the eye; worked out anew after a long enough way."""
         here = (eye.seat.pose.x, eye.seat.pose.y)
         version, there, spare = eye.spare
         if version != self._objects_then or math.dist(there, here) >= spare:
-            apart = view_frustum.nearest(*here, eye.seat.spec.eye, self._objects.positions)
+            apart = view_frustum.nearest_distance(*here, eye.seat.spec.eye, self._objects.positions)
             spare = apart - rules.FIND_RANGE_M - _ROUNDING_M
             eye.spare = self._objects_then, here, spare
             return bool(spare <= 0.0)
         return False
 
-    def _seen_near(self, eye: _Eye) -> set[int]:
+    def _seen_near(self, eye: _SeatView) -> set[int]:
         """Numbers of the objects in view that near: a look of its own, unless the eye has just looked at everything."""
         spec, pose = eye.seat.spec, eye.seat.pose
         if eye.version == (self._world, self._moves) and min(CLUTTER_RANGE_M, spec.sight_range) >= rules.FIND_RANGE_M:
@@ -207,13 +209,15 @@ class Gaze:
         np.multiply(self._objects.present, rules.FIND_RANGE_M, out=self._near[:, 0])
         return set(self._see(eye, self._points[: self._count], self._near, 0.0, *self._nothing))
 
-    def _see(self, eye: _Eye, points: Any, wanted: Any, reach: float, balls: Any, spots: Any, order: Any) -> list[int]:
+    def _see(
+        self, eye: _SeatView, points: Any, wanted: Any, reach: float, balls: Any, spots: Any, order: Any
+    ) -> list[int]:
         """Which of these targets an eye sees, as `glance.see` has it."""
         hiders, pose = self._hiders, eye.seat.pose
         if hiders.version != self._world:
             hiders.follow(self._world)
         wide, high = eye.lens
-        seen: list[int] = visibility_kernel.see(
+        seen: list[int] = visibility_kernel.visible_targets(
             pose.x,
             pose.y,
             eye.seat.spec.eye,
@@ -242,7 +246,7 @@ class Gaze:
         dx, dy, dz = x - pose.x, y - pose.y, z - height
         return dx * dx + dy * dy + dz * dz <= rules.FIND_RANGE_M * rules.FIND_RANGE_M
 
-    def _ranges(self, seat: Seat) -> Any:
+    def _ranges(self, seat: BodyState) -> Any:
         reach = np.full(self._moving, seat.spec.sight_range)
         for number, other in enumerate(self._seats, len(self._items)):
             reach[number] = 0.0 if other is seat else max(BODY_RANGE_M, seat.spec.sight_range)
@@ -262,7 +266,7 @@ class Gaze:
         )
 
 
-def _of_item(item: Item, eye: Vec3) -> Detection:
+def _object_detection(item: MovableObject, eye: Vec3) -> Detection:
     return Detection(
         id=item.id,
         kind=item.kind,
@@ -277,7 +281,7 @@ def _of_item(item: Item, eye: Vec3) -> Detection:
     )
 
 
-def _of_body(other: Seat, eye: Vec3) -> Detection:
+def _body_detection(other: BodyState, eye: Vec3) -> Detection:
     pose: Pose = other.pose
     position = (pose.x, pose.y, other.spec.height / 2)
     human = other.name == HUMAN

@@ -14,14 +14,14 @@ import numpy as np
 
 
 @numba.njit(cache=True, error_model="numpy")
-def facing(x: float, y: float, z: float, yaw: float, pitch: float, wide: float, high: float) -> Any:
+def view_axes(x: float, y: float, z: float, yaw: float, pitch: float, wide: float, high: float) -> Any:
     """An eye [m], its forward, left and up axes, and the tangents of half its fields of view: 14 numbers."""
     cy, sy, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
     return x, y, z, cp * cy, cp * sy, sp, -sy, cy, 0.0, -sp * cy, -sp * sy, cp, wide, high
 
 
 @numba.njit(cache=True, error_model="numpy")
-def framed(view: Any, dx: float, dy: float, dz: float) -> bool:
+def in_frame(view: Any, dx: float, dy: float, dz: float) -> bool:
     """Whether a point at (dx, dy, dz) [m] from the eye is in the field of view."""
     ahead = dx * view[3] + dy * view[4] + dz * view[5]
     left = dx * view[6] + dy * view[7] + dz * view[8]
@@ -30,7 +30,7 @@ def framed(view: Any, dx: float, dy: float, dz: float) -> bool:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _touches(view: Any, reach: float, balls: Any, i: int) -> bool:
+def _sphere_in_view(view: Any, reach: float, balls: Any, i: int) -> bool:
     """Whether ball ``i`` of (4, N), middles and radii [m], is, in part, within reach and in the field of view."""
     ex, ey, ez, fx, fy, fz = view[0], view[1], view[2], view[3], view[4], view[5]
     lx, ly, lz, ux, uy, uz, w, h = view[6], view[7], view[8], view[9], view[10], view[11], view[12], view[13]
@@ -45,14 +45,14 @@ def _touches(view: Any, reach: float, balls: Any, i: int) -> bool:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _touched(view: Any, reach: float, balls: Any, out: Any) -> None:
+def _mark_spheres_in_view(view: Any, reach: float, balls: Any, out: Any) -> None:
     """Mark the balls of which this is so."""
     for i in range(len(out)):
-        out[i] = _touches(view, reach, balls, i)
+        out[i] = _sphere_in_view(view, reach, balls, i)
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _aim_still(view: Any, reach: float, balls: Any, points: Any, out: Any, marked: Any) -> float:
+def _mark_fixed_targets(view: Any, reach: float, balls: Any, points: Any, out: Any, marked: Any) -> float:
     """Of targets that never move, mark those in reach that have points to look at, and these; the farthest, squared.
 
     A point is looked at when it is in the field of view and not sure to be hidden still.
@@ -60,7 +60,7 @@ def _aim_still(view: Any, reach: float, balls: Any, points: Any, out: Any, marke
     ex, ey, ez, fx, fy, fz = view[0], view[1], view[2], view[3], view[4], view[5]
     lx, ly, lz, ux, uy, uz, w, h = view[6], view[7], view[8], view[9], view[10], view[11], view[12], view[13]
     likely = np.empty(len(out), dtype=np.bool_)
-    _touched(view, reach, balls, likely)
+    _mark_spheres_in_view(view, reach, balls, likely)
     farthest = 0.0
     for k in range(len(out)):
         if not likely[k]:
@@ -83,7 +83,7 @@ def _aim_still(view: Any, reach: float, balls: Any, points: Any, out: Any, marke
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _aim(view: Any, reach: float, small: bool, points: Any, k: int, marked: Any) -> float:
+def _mark_moving_target(view: Any, reach: float, small: bool, points: Any, k: int, marked: Any) -> float:
     """Mark the points of a target in reach that are in the field of view; the squared distance of the farther, or 0.
 
     A target is in reach by either of its points, a small one only by its first.
@@ -96,14 +96,14 @@ def _aim(view: Any, reach: float, small: bool, points: Any, k: int, marked: Any)
             near |= d2 <= reach * reach
         if small and not near:
             return 0.0
-        if framed(view, dx, dy, dz):
+        if in_frame(view, dx, dy, dz):
             marked[k, p] = True
             most = max(most, d2)
     return most if near else 0.0
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _blocks(box: Any, px: float, py: float, pz: float, ux: float, uy: float, uz: float) -> bool:
+def _box_blocks(box: Any, px: float, py: float, pz: float, ux: float, uy: float, uz: float) -> bool:
     """Whether a solid whose middle is at (px, py, pz) from the eye meets the line of sight; as
     `hthor.geometry.ray_casting` has it.
     """
@@ -156,7 +156,7 @@ def _leeway(box: Any, px: float, py: float, pz: float, ux: float, uy: float, uz:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def close(view: Any, farthest: float, groups: Any, spheres: Any, firm: int, count: int) -> tuple[Any, Any]:
+def nearby_occluders(view: Any, farthest: float, groups: Any, spheres: Any, firm: int, count: int) -> tuple[Any, Any]:
     """The solids that reach into the field of view, no farther away than ``farthest``.
 
     Returns:
@@ -164,14 +164,14 @@ def close(view: Any, farthest: float, groups: Any, spheres: Any, firm: int, coun
         and of the radii.
     """
     some, loose = np.empty(groups.shape[1] - 1, dtype=np.bool_), np.empty(count - firm, dtype=np.bool_)
-    _touched(view, farthest, groups, some)
-    _touched(view, farthest, spheres[:, firm:count], loose)
+    _mark_spheres_in_view(view, farthest, groups, some)
+    _mark_spheres_in_view(view, farthest, spheres[:, firm:count], loose)
     ids, n = np.empty(count + 1, dtype=np.int64), 0
     for c in range(len(some)):
         if some[c]:
             for g in range(int(groups[4, c]), int(groups[4, c + 1])):
                 ids[n] = g
-                n += _touches(view, farthest, spheres, g)
+                n += _sphere_in_view(view, farthest, spheres, g)
     for c in range(len(loose)):
         ids[n] = firm + c
         n += loose[c]
@@ -185,7 +185,9 @@ def close(view: Any, farthest: float, groups: Any, spheres: Any, firm: int, coun
 
 
 @numba.njit(cache=True, error_model="numpy")
-def hider(ux: float, uy: float, uz: float, first: float, end: float, last: int, ids: Any, rel: Any, boxes: Any) -> int:
+def first_occluder(
+    ux: float, uy: float, uz: float, first: float, end: float, last: int, ids: Any, rel: Any, boxes: Any
+) -> int:
     """What hides the point at (ux, uy, uz) from the eye, -1 for nothing; the test is that of
     `hthor.geometry.ray_casting`.
 
@@ -194,7 +196,7 @@ def hider(ux: float, uy: float, uz: float, first: float, end: float, last: int, 
     """
     if last >= 0:
         box = boxes[ids[last]]
-        if not first <= box[12] < end and _blocks(box, rel[last, 0], rel[last, 1], rel[last, 2], ux, uy, uz):
+        if not first <= box[12] < end and _box_blocks(box, rel[last, 0], rel[last, 1], rel[last, 2], ux, uy, uz):
             return last
     length2 = ux * ux + uy * uy + uz * uz
     for c in range(len(ids)):
@@ -205,13 +207,13 @@ def hider(ux: float, uy: float, uz: float, first: float, end: float, last: int, 
         if along > length2 and rel[c, 3] - 2.0 * along + length2 > rel[c, 4]:
             continue  # beyond the point
         box = boxes[ids[c]]
-        if not first <= box[12] < end and _blocks(box, px, py, pz, ux, uy, uz):
+        if not first <= box[12] < end and _box_blocks(box, px, py, pz, ux, uy, uz):
             return c
     return -1
 
 
 @numba.njit(cache=True, error_model="numpy")
-def see(
+def visible_targets(
     x: float,
     y: float,
     z: float,
@@ -246,27 +248,27 @@ def see(
         spots: (6, Q) their points [m]; and, in and out, zeros at first, where this eye was, x and y [m], when a point
             turned out to be hidden, and how far [m] from there it is sure to be hidden still: the eye always has the
             same height.
-        groups, spheres, boxes, firm, count: see `hthor.world.perception.occluders.Hiders`.
+        groups, spheres, boxes, firm, count: see `hthor.world.perception.occluders.Occluders`.
         order: (M + S,) in which order to name the targets, those that may move counted first.
 
     Returns:
         (N,) the targets in view.
     """
-    view = facing(x, y, z, yaw, pitch, wide, high)
+    view = view_axes(x, y, z, yaw, pitch, wide, high)
     moving, still = len(points), balls.shape[1] - 1
     out = np.zeros(moving + still, dtype=np.bool_)
     aimed, marked = np.zeros((moving, 2), dtype=np.bool_), np.empty(spots.shape[1], dtype=np.bool_)
     seen, named, farthest = np.empty(len(out) + 1, dtype=np.int64), 0, 0.0
     if still and reach > 0.0:
-        farthest = _aim_still(view, reach, balls, spots, out[moving:], marked)
+        farthest = _mark_fixed_targets(view, reach, balls, spots, out[moving:], marked)
     for k in range(moving):
         if wanted[k, 0] > 0.0:
-            most = _aim(view, wanted[k, 0], k < small, points, k, aimed)
+            most = _mark_moving_target(view, wanted[k, 0], k < small, points, k, aimed)
             out[k] = most > 0.0
             farthest = max(farthest, most)
     if farthest == 0.0:
         return seen[:0]
-    ids, rel = close(view, math.sqrt(farthest), groups, spheres, firm, count)
+    ids, rel = nearby_occluders(view, math.sqrt(farthest), groups, spheres, firm, count)
     last = -1  # what hid one point probably hides the next
     for k in range(moving):
         if not out[k]:
@@ -275,7 +277,7 @@ def see(
         for p in range(2):
             if aimed[k, p]:
                 ux, uy, uz = points[k, p, 0] - x, points[k, p, 1] - y, points[k, p, 2] - z
-                by = hider(ux, uy, uz, wanted[k, 1], wanted[k, 2], last, ids, rel, boxes)
+                by = first_occluder(ux, uy, uz, wanted[k, 1], wanted[k, 2], last, ids, rel, boxes)
                 if by < 0:
                     out[k] = True
                     break
@@ -287,7 +289,7 @@ def see(
         for p in range(int(balls[6, k]), int(balls[6, k + 1])):
             if marked[p]:
                 ux, uy, uz = spots[0, p] - x, spots[1, p] - y, spots[2, p] - z
-                by = hider(ux, uy, uz, balls[4, k], balls[5, k], last, ids, rel, boxes)
+                by = first_occluder(ux, uy, uz, balls[4, k], balls[5, k], last, ids, rel, boxes)
                 if by < 0:
                     out[moving + k] = True
                     break

@@ -18,7 +18,7 @@ _CORNERS = tuple((x, y, z) for x in (-0.8, 0.8) for y in (-0.8, 0.8) for z in (-
 _MARGIN = 1.05
 
 
-def samples(position: Vec3, size: Vec3, yaw: float, looked_for: tuple[Vec3, ...]) -> Any:
+def sample_points(position: Vec3, size: Vec3, yaw: float, looked_for: tuple[Vec3, ...]) -> Any:
     """(N, 3) points [m] all over an upright box; those that it is ``looked_for`` at are among them."""
     (x, y, z), (w, d, h), cos, sin = position, (extent / 2.0 for extent in size), math.cos(yaw), math.sin(yaw)
     corners = [(x + w * a * cos - d * b * sin, y + w * a * sin + d * b * cos, z + h * c) for a, b, c in _CORNERS]
@@ -26,7 +26,7 @@ def samples(position: Vec3, size: Vec3, yaw: float, looked_for: tuple[Vec3, ...]
 
 
 @numba.njit(cache=True, error_model="numpy")
-def look(
+def measure(
     x: float,
     y: float,
     z: float,
@@ -51,12 +51,12 @@ def look(
         points: (N, 3) [m], all over the target; the first is its middle. index: its row in ``wanted``.
         others: (M, 3) middles [m] of what may be beside it. wanted: (M, 3) 0 or less for what does not count, and the
             range of each one's own geoms, which do not hide it.
-        groups, spheres, boxes, firm, count: see `hthor.world.perception.occluders.Hiders`.
+        groups, spheres, boxes, firm, count: see `hthor.world.perception.occluders.Occluders`.
 
     Returns:
         (2,) the share, 0 to 1, and the number.
     """
-    view = visibility_kernel.facing(x, y, z, yaw, pitch, wide, high)
+    view = visibility_kernel.view_axes(x, y, z, yaw, pitch, wide, high)
     tx, ty, tz = points[0, 0] - x, points[0, 1] - y, points[0, 2] - z
     apart = math.sqrt(tx * tx + ty * ty + tz * tz)
     size, farthest = 0.0, apart
@@ -70,25 +70,25 @@ def look(
         if k == index or wanted[k, 0] <= 0.0 or along <= 0.0:
             continue
         far = math.sqrt(ox * ox + oy * oy + oz * oz)
-        if along >= math.cos(BESIDE_RAD) * far * apart and visibility_kernel.framed(view, ox, oy, oz):
+        if along >= math.cos(BESIDE_RAD) * far * apart and visibility_kernel.in_frame(view, ox, oy, oz):
             chosen[chosen_count] = k
             chosen_count += 1
             farthest = max(farthest, far)
     # only what stands in a narrow cone around the target can hide any of this
     half = math.tan(min(1.5, max(BESIDE_RAD, math.asin(min(1.0, size / max(apart, 1e-9)))) * _MARGIN))
-    cone = visibility_kernel.facing(
+    cone = visibility_kernel.view_axes(
         x, y, z, math.atan2(ty, tx), math.asin(max(-1.0, min(1.0, tz / max(apart, 1e-9)))), half, half
     )
-    ids, rel = visibility_kernel.close(cone, farthest + size, groups, spheres, firm, count)
+    ids, rel = visibility_kernel.nearby_occluders(cone, farthest + size, groups, spheres, firm, count)
     seen, beside, last = 0, 0, -1
     for p in range(len(points)):
         ux, uy, uz = points[p, 0] - x, points[p, 1] - y, points[p, 2] - z
-        if visibility_kernel.framed(view, ux, uy, uz):
-            by = visibility_kernel.hider(ux, uy, uz, wanted[index, 1], wanted[index, 2], last, ids, rel, boxes)
+        if visibility_kernel.in_frame(view, ux, uy, uz):
+            by = visibility_kernel.first_occluder(ux, uy, uz, wanted[index, 1], wanted[index, 2], last, ids, rel, boxes)
             seen += by < 0
             last = by if by >= 0 else last
     for c in range(chosen_count):
         k = chosen[c]
         ux, uy, uz = others[k, 0] - x, others[k, 1] - y, others[k, 2] - z
-        beside += visibility_kernel.hider(ux, uy, uz, wanted[k, 1], wanted[k, 2], -1, ids, rel, boxes) < 0
+        beside += visibility_kernel.first_occluder(ux, uy, uz, wanted[k, 1], wanted[k, 2], -1, ids, rel, boxes) < 0
     return seen / len(points), beside

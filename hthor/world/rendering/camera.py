@@ -19,7 +19,7 @@ _UP_M = 1.0e5
 """A camera so far up that its rays are parallel: over a house they part by less than a hundredth of a millimetre."""
 
 
-def size(spec: BodySpec, chosen: CameraSpec = OWN) -> tuple[int, int]:
+def image_size(spec: BodySpec, chosen: CameraSpec = OWN) -> tuple[int, int]:
     """Width and height [pixels] of the pictures that a camera takes unless a call says otherwise.
 
     A body's own pictures have the shape of its field of view, about as many pixels as a square of `SIDE`, and sides
@@ -27,28 +27,28 @@ def size(spec: BodySpec, chosen: CameraSpec = OWN) -> tuple[int, int]:
     """
     if chosen.size is not None:
         return chosen.size
-    wide, high = view_frustum.lens(spec)
+    wide, high = view_frustum.half_fov_tangents(spec)
     width, height = (_ROUND * max(1, round(SIDE * stretch / _ROUND)) for stretch in _stretch(wide / high))
     return width, height
 
 
-def lens(spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = OWN) -> Vec2:
+def image_tangents(spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = OWN) -> Vec2:
     """Tangents of half the fields of view, horizontal and vertical, of pictures of ``size`` (width, height) [pixels].
 
     Pixels are square, whatever the size. A picture by the body's own field of view shows no more than that; one of
     another shape shows the middle of it. A picture by another camera's shows that field of view from side to side.
     """
-    wide, high = view_frustum.lens(spec)
+    wide, high = view_frustum.half_fov_tangents(spec)
     width, height = size
     pixel = 2.0 * math.tan(chosen.fov / 2) / width if chosen.fov else 2.0 * min(wide / width, high / height)
     return pixel * width / 2, pixel * height / 2
 
 
-def of(pose: Pose, spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = OWN) -> Camera:
+def camera_record(pose: Pose, spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = OWN) -> Camera:
     """The camera of a body at a pose, for pictures of ``size`` (width, height) [pixels]."""
-    view = view_frustum.camera(pose, spec)
+    view = view_frustum.view_vector(pose, spec)
     width, height = size
-    wide, high = lens(spec, size, chosen)
+    wide, high = image_tangents(spec, size, chosen)
     matrix = np.array(
         (
             (width / (2.0 * wide), 0.0, (width - 1) / 2.0),
@@ -61,12 +61,14 @@ def of(pose: Pose, spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = O
     return Camera(size=size, matrix=matrix, pose=place, near=NEAR_M, far=FAR_M)
 
 
-def view(pose: Pose, spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = OWN) -> Any:
+def projection_vector(pose: Pose, spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = OWN) -> Any:
     """(16,) float64 for `hthor.world.rendering.rasterizer.fill`: a body's camera, for pictures of ``size``."""
-    return np.concatenate((view_frustum.camera(pose, spec)[:12], lens(spec, size, chosen), (NEAR_M, FAR_M)))
+    return np.concatenate(
+        (view_frustum.view_vector(pose, spec)[:12], image_tangents(spec, size, chosen), (NEAR_M, FAR_M))
+    )
 
 
-def above(bounds: tuple[float, float, float, float]) -> Any:
+def top_view_vector(bounds: tuple[float, float, float, float]) -> Any:
     """(16,) float64 for `hthor.world.rendering.rasterizer.fill`: straight down on x0, y0, x1, y1 [m], with north up."""
     x0, y0, x1, y1 = bounds
     eye = ((x0 + x1) / 2, (y0 + y1) / 2, _UP_M)
@@ -74,7 +76,7 @@ def above(bounds: tuple[float, float, float, float]) -> Any:
     return np.array((*eye, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0, 0.0, 1.0, 0.0, *tangents, NEAR_M, 2.0 * _UP_M))
 
 
-def check(size: tuple[int, int]) -> None:
+def check_size(size: tuple[int, int]) -> None:
     """Raise ValueError unless ``size`` is a width and a height of 1 to 4096 pixels."""
     try:
         width, height = size
@@ -84,7 +86,7 @@ def check(size: tuple[int, int]) -> None:
     except (TypeError, ValueError):
         fits = False
     if not fits:
-        given = numbers.shown(size)
+        given = numbers.quoted(size)
         raise ValueError(
             f"size must be (width, height) in whole pixels, 1 to 4096 each, such as (128, 128); got {given}"
         )

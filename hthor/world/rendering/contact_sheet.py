@@ -27,11 +27,11 @@ from hthor.looks.pack import Pack
 from hthor.types import HUMAN, HouseSpec, Pose, Room
 from hthor.world.model import inventory
 from hthor.world.model.bodies import avatar
-from hthor.world.model.composer_env import FastEnv
+from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.composer_task import HouseTask
-from hthor.world.model.geom_index import Scene
-from hthor.world.rendering.opengl_renderer import Studio
-from hthor.world.state.pose_snapshot import Moment
+from hthor.world.model.geom_index import GeomIndex
+from hthor.world.rendering.opengl_renderer import OpenGLRenderer
+from hthor.world.state.pose_snapshot import PoseSnapshot
 
 VIEW = (480, 360)
 """Width and height of a view [pixels]."""
@@ -66,25 +66,27 @@ class Photographer:
     def __init__(self, house: HouseSpec, pack: Pack | None = None) -> None:
         self.house = house
         seats = {HUMAN: _LENS}
-        split = inventory.split(house, ())
+        split = inventory.split_things(house, ())
         task = HouseTask(house, split, seats)
-        env = FastEnv(task)
+        env = LazyComposerEnv(task)
         env.reset()
-        scene = Scene(env, task)
+        scene = GeomIndex(env, task)
         self._names, self._qpos = scene.names, env.data.qpos.copy()
-        self._studio = Studio(house, split, seats, env.model, scene, pack)
+        self._studio = OpenGLRenderer(house, split, seats, env.model, scene, pack)
         self._rooms = {thing.id: thing.room for thing in house.things}
 
     def view(self, pose: Pose, size: tuple[int, int] = VIEW, mode: str = "rgb") -> Any:
         """What a person at ``pose`` sees through a lens as wide as the picture, see `Studio.view`."""
-        return self._studio.view(Moment(self._qpos, {HUMAN: (pose, _LENS)}), HUMAN, mode, size)
+        return self._studio.view(PoseSnapshot(self._qpos, {HUMAN: (pose, _LENS)}), HUMAN, mode, size)
 
     def plan(self, pixels_per_metre: float) -> Any:
         """The house from above, (H, W, 3) uint8."""
         corners = np.array([corner for room in self.house.rooms for corner in room.polygon])
         (x0, y0), (x1, y1) = (corners.min(0) - 0.3).tolist(), (corners.max(0) + 0.3).tolist()
         away = Pose(x=x0 - 50.0, y=y0 - 50.0)
-        return self._studio.top_view(Moment(self._qpos, {HUMAN: (away, _LENS)}), (x0, y0, x1, y1), pixels_per_metre)
+        return self._studio.top_view(
+            PoseSnapshot(self._qpos, {HUMAN: (away, _LENS)}), (x0, y0, x1, y1), pixels_per_metre
+        )
 
     def shots(self, room: Room) -> list[Shot]:
         """Views of a room, the best first; of equal ones, the first found."""

@@ -16,7 +16,7 @@ from hthor import seeds
 CODE_PART = "pictures"
 
 
-class Labels:
+class SegmentationLabels:
     """The numbers of the owners of what is drawn.
 
     Args:

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 from hthor.types import Camera, CameraSpec, HouseSpec, Vec2, View
 from hthor.world import numbers
-from hthor.world.model.composer_env import FastEnv
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.composer_env import LazyComposerEnv
+from hthor.world.model.geom_index import GeomIndex
 from hthor.world.rendering import camera
-from hthor.world.rendering.labels import Labels
-from hthor.world.state.body_state import Seat
-from hthor.world.state.pose_snapshot import Moment
+from hthor.world.rendering.labels import SegmentationLabels
+from hthor.world.state.body_state import BodyState
+from hthor.world.state.pose_snapshot import PoseSnapshot
 
 if TYPE_CHECKING:
-    from hthor.world.rendering.opengl_renderer import Studio
-    from hthor.world.rendering.ray_renderer import Tracer
+    from hthor.world.rendering.opengl_renderer import OpenGLRenderer
+    from hthor.world.rendering.ray_renderer import RayRenderer
 
 PROFILES = ("fast", "nice")
 MODES = ("rgb", "depth", "segmentation")
@@ -29,7 +29,7 @@ Size = tuple[int, int] | None
 _MARGIN_M = 0.3
 
 
-class Pictures:
+class LazyImages:
     """Copies moments now and draws them when asked.
 
     Args:
@@ -41,10 +41,10 @@ class Pictures:
     def __init__(
         self,
         house: HouseSpec,
-        env: FastEnv,
-        scene: Scene,
-        seats: Mapping[str, Seat],
-        studio: Callable[[], Studio],
+        env: LazyComposerEnv,
+        scene: GeomIndex,
+        seats: Mapping[str, BodyState],
+        studio: Callable[[], OpenGLRenderer],
         profile: str = "fast",
         cameras: Mapping[str, CameraSpec] | None = None,
     ) -> None:
@@ -53,9 +53,9 @@ class Pictures:
         self._house, self._env, self._scene, self._seats = house, env, scene, seats
         self._cameras = dict(cameras or {})
         self._make = studio
-        self._studio: Studio | None = None
-        self._tracer: Tracer | None = None
-        self._labels = Labels(scene.names)
+        self._studio: OpenGLRenderer | None = None
+        self._tracer: RayRenderer | None = None
+        self._labels = SegmentationLabels(scene.names)
 
     def names(self, seed: int) -> tuple[str, ...]:
         """Whom each number of a segmentation stands for in the episode of that seed."""
@@ -83,7 +83,7 @@ class Pictures:
     def camera(self, seat: str, size: Size) -> Camera:
         """The seat's camera now, as it takes pictures of this size."""
         body = self._seats[seat]
-        return camera.of(body.pose, body.spec, self._size(seat, size), self._by(seat))
+        return camera.camera_record(body.pose, body.spec, self._size(seat, size), self._by(seat))
 
     def frame(self, seat: str, size: Size, profile: str | None) -> Callable[[], Any]:
         """The seat's own view of this moment in colour, drawn when called."""
@@ -93,9 +93,9 @@ class Pictures:
 
     def top_view(self, pixels_per_metre: float, profile: str | None) -> Any:
         """The house from above now, (H, W, 3) uint8."""
-        if not numbers.finite(pixels_per_metre) or not 0.0 < pixels_per_metre <= 500.0:
+        if not numbers.is_finite(pixels_per_metre) or not 0.0 < pixels_per_metre <= 500.0:
             raise ValueError(
-                f"pixels_per_metre must be more than 0 and at most 500, got {numbers.shown(pixels_per_metre)}"
+                f"pixels_per_metre must be more than 0 and at most 500, got {numbers.quoted(pixels_per_metre)}"
             )
         return self._draw(profile).top_view(self._moment(), self.bounds, pixels_per_metre)
 
@@ -112,32 +112,32 @@ class Pictures:
     def _size(self, seat: str, size: Size) -> tuple[int, int]:
         """The size that is meant: the camera's own when None."""
         if size is None:
-            return camera.size(self._seats[seat].spec, self._by(seat))
-        camera.check(size)
+            return camera.image_size(self._seats[seat].spec, self._by(seat))
+        camera.check_size(size)
         return size
 
     def _labelled(self, numbers: Any, seed: int) -> Any:
         self._labels.draw(seed)
         return self._labels.of(numbers)
 
-    def _moment(self) -> Moment:
+    def _moment(self) -> PoseSnapshot:
         self._env.pin()
         poses = {name: (seat.pose, seat.spec) for name, seat in self._seats.items()}
-        return Moment(self._env.data.qpos.copy(), poses)
+        return PoseSnapshot(self._env.data.qpos.copy(), poses)
 
     def _draw(self, profile: str | None) -> Any:
         wanted = profile or self.profile
         _check(PROFILES, profile=wanted)
         return self._fast() if wanted == "fast" else self._nice()
 
-    def _fast(self) -> Tracer:
+    def _fast(self) -> RayRenderer:
         if self._tracer is None:
-            from hthor.world.rendering.ray_renderer import Tracer
+            from hthor.world.rendering.ray_renderer import RayRenderer
 
-            self._tracer = Tracer(self._env.model, self._scene, self._house)
+            self._tracer = RayRenderer(self._env.model, self._scene, self._house)
         return self._tracer
 
-    def _nice(self) -> Studio:
+    def _nice(self) -> OpenGLRenderer:
         if self._studio is None:
             self._studio = self._make()
         return self._studio

@@ -18,21 +18,21 @@ from hthor.types import BodySpec, CameraSpec, HouseSpec, Pose
 from hthor.world.model import geoms
 from hthor.world.model.bodies import bodies
 from hthor.world.model.engine import mujoco
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.geom_index import GeomIndex
 from hthor.world.model.inventory import Contents
 from hthor.world.rendering import camera as projection
 from hthor.world.rendering import opengl_context
 from hthor.world.rendering.scene import scene_camera
-from hthor.world.rendering.scene.asset_source import Fabric, Pack
-from hthor.world.rendering.scene.compile_scene import Dressing
+from hthor.world.rendering.scene.asset_source import AssetSource, Pack
+from hthor.world.rendering.scene.compile_scene import SceneBuilder
 from hthor.world.rendering.scene.items import ABOVE, ALWAYS, INSIDE
-from hthor.world.rendering.scene.lights import Lamps
-from hthor.world.rendering.scene.pose_sync import Puppets
-from hthor.world.state.pose_snapshot import Moment
+from hthor.world.rendering.scene.lights import RoomLights
+from hthor.world.rendering.scene.pose_sync import PoseSync
+from hthor.world.state.pose_snapshot import PoseSnapshot
 
 CODE_PART = "pictures"
 
-_FINER = 2
+_SUPERSAMPLING = 2
 """Colour is drawn finer and averaged: the engine's own smoothing leaves dotted edges where shadows are."""
 _FAR_AWAY = (0.0, 0.0, -200.0)
 _MODES = ("rgb", "depth", "segmentation")
@@ -46,7 +46,7 @@ class Glance(NamedTuple):
     segmentation: NDArray[np.int32]
 
 
-class Studio:
+class OpenGLRenderer:
     """Draws moments of one world.
 
     Args:
@@ -63,11 +63,11 @@ class Studio:
         contents: Contents,
         seats: Mapping[str, BodySpec],
         model: Any,
-        scene: Scene,
+        scene: GeomIndex,
         pack: Pack | None = None,
     ) -> None:
-        self._puppets, self._lamps = Puppets(model, scene), Lamps(house)
-        dressed = Dressing(house, contents, self._puppets, Fabric(pack)).build(seats, self._lamps)
+        self._puppets, self._lamps = PoseSync(model, scene), RoomLights(house)
+        dressed = SceneBuilder(house, contents, self._puppets, AssetSource(pack)).build(seats, self._lamps)
         self._model, self._followers, self._seats = dressed.model, dressed.followers, dressed.seats
         number = {name: index for index, name in enumerate(scene.names)}
         self._numbers = np.array([number.get(owner, -1) for owner in dressed.owner], np.int32)
@@ -84,11 +84,13 @@ class Studio:
         self.close.atexit = False
         atexit.register(self.close)  # registered after the back end's own farewell, so it runs before it
 
-    def look(self, moment: Moment, seat: str, size: tuple[int, int], by: CameraSpec = projection.OWN) -> Glance:
+    def look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = projection.OWN) -> Glance:
         """What ``seat`` sees in every way."""
         return Glance(*(self.view(moment, seat, mode, size, by) for mode in _MODES))
 
-    def view(self, moment: Moment, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = projection.OWN) -> Any:
+    def view(
+        self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = projection.OWN
+    ) -> Any:
         """What ``seat`` sees: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
         if mode not in _MODES:
             raise ValueError(f"mode must be one of {', '.join(_MODES)}, got '{mode}'")
@@ -96,21 +98,21 @@ class Studio:
         self._pose(moment, without=seat)
         self._compose(INSIDE)
         for eye in self._scene.camera:
-            scene_camera.look(eye, pose, spec, projection.lens(spec, size, by))
+            scene_camera.place_at_eye(eye, pose, spec, projection.image_tangents(spec, size, by))
         self._lamps.light(self._scene, pose)
         return self._shoot(mode, size)
 
-    def top_view(self, moment: Moment, bounds: tuple[float, float, float, float], pixels_per_metre: float) -> Any:
+    def top_view(self, moment: PoseSnapshot, bounds: tuple[float, float, float, float], pixels_per_metre: float) -> Any:
         """The area x0, y0, x1, y1 [m] from straight above without ceilings, (H, W, 3) uint8."""
         x0, y0, x1, y1 = bounds
         self._pose(moment)
         self._compose(ABOVE)
         for eye in self._scene.camera:
-            scene_camera.hover(eye, bounds)
+            scene_camera.place_above(eye, bounds)
         self._lamps.daylight(self._scene, ((x0 + x1) / 2, (y0 + y1) / 2), scene_camera.ABOVE_M)
         return self._shoot("rgb", (round((x1 - x0) * pixels_per_metre), round((y1 - y0) * pixels_per_metre)))
 
-    def _pose(self, moment: Moment, without: str = "") -> None:
+    def _pose(self, moment: PoseSnapshot, without: str = "") -> None:
         """Everything where it was; the viewer's own body is out of the picture."""
         position, turn = self._puppets.at(moment.qpos)
         count = len(self._followers)
@@ -123,7 +125,7 @@ class Studio:
         mujoco.mj_kinematics(self._model, self._data)
 
     def _stand(self, body: int, head: int, pose: Pose, spec: BodySpec) -> None:
-        turn, shift = bodies.head(spec, pose.pitch)
+        turn, shift = bodies.head_transform(spec, pose.pitch)
         about, cos, sin = geoms.quaternion(pose.yaw), math.cos(pose.yaw), math.sin(pose.yaw)
         self._data.mocap_pos[body], self._data.mocap_quat[body] = (pose.x, pose.y, 0.0), about
         x, y, z = shift
@@ -139,7 +141,7 @@ class Studio:
         mujoco.mjv_updateScene(self._model, self._data, self._option, None, blank, everything, self._scene)
 
     def _shoot(self, mode: str, size: tuple[int, int]) -> Any:
-        fine = _FINER if mode == "rgb" else 1
+        fine = _SUPERSAMPLING if mode == "rgb" else 1
         width, height = size[0] * fine, size[1] * fine
         self._gl.make_current()
         if (self._context.offWidth, self._context.offHeight) != (width, height):
@@ -153,7 +155,7 @@ class Studio:
             return self._depth(area)
         pixels = np.empty((height, width, 3), np.uint8)
         mujoco.mjr_readPixels(pixels, None, area, self._context)
-        return self._owners(pixels[::-1]) if mode == "segmentation" else _coarser(pixels[::-1], fine)
+        return self._owners(pixels[::-1]) if mode == "segmentation" else _downsampled(pixels[::-1], fine)
 
     def _depth(self, area: Any) -> NDArray[np.float32]:
         buffer = np.empty((area.height, area.width), np.float32)
@@ -173,7 +175,7 @@ class Studio:
         return numbers
 
 
-def _coarser(pixels: NDArray[np.uint8], times: int) -> NDArray[np.uint8]:
+def _downsampled(pixels: NDArray[np.uint8], times: int) -> NDArray[np.uint8]:
     """Each block of pixels as one of their mean colour."""
     height, width, channels = pixels.shape
     blocks = pixels.reshape(height // times, times, width // times, times, channels).sum(axis=(1, 3), dtype=np.uint16)

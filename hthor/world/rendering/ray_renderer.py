@@ -16,9 +16,9 @@ from hthor.world.model import geoms
 from hthor.world.model.bodies import bodies
 from hthor.world.model.bodies.primitives import HEAD
 from hthor.world.model.engine import mujoco
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.geom_index import GeomIndex
 from hthor.world.rendering import camera, rasterizer, shading, surface_patterns
-from hthor.world.state.pose_snapshot import Moment
+from hthor.world.state.pose_snapshot import PoseSnapshot
 
 CODE_PART = "pictures"
 
@@ -37,10 +37,10 @@ class Trace(NamedTuple):
     segmentation: NDArray[np.int32]
 
 
-class Tracer:
+class RayRenderer:
     """Draws moments of one world."""
 
-    def __init__(self, model: Any, scene: Scene, house: HouseSpec) -> None:
+    def __init__(self, model: Any, scene: GeomIndex, house: HouseSpec) -> None:
         self._model = copy.copy(model)
         self._model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
         self._data = mujoco.MjData(self._model)
@@ -51,7 +51,7 @@ class Tracer:
         self._half = _halves(model)
         self._radius = np.linalg.norm(self._half, axis=1)
         self._rgba = _colours(model)
-        self._skin = surface_patterns.of(model, scene.owner, house, self._rgba)
+        self._skin = surface_patterns.geom_patterns(model, scene.owner, house, self._rgba)
         self._grain = np.argmax(self._half, axis=1).astype(np.int32)
         self._noise = shading.mottle()
         self._heads: dict[str, Any] = {}
@@ -61,36 +61,38 @@ class Tracer:
         self._solid, self._glass = order[(shown & ~clear)[order]], order[(shown & clear)[order]]
         self._roofless = self._solid[model.geom_group[self._solid] != geoms.CEILINGS]
 
-    def look(self, moment: Moment, seat: str, size: tuple[int, int], by: CameraSpec = camera.OWN) -> Trace:
+    def look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = camera.OWN) -> Trace:
         """What ``seat`` sees in every way at once; its own body is not in it."""
         view, w, hit = self._fill(moment, seat, size, by)
         return Trace(self._shade(view, w, hit), _depth(w), self._numbers(hit))
 
-    def view(self, moment: Moment, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = camera.OWN) -> Any:
+    def view(
+        self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = camera.OWN
+    ) -> Any:
         """What ``seat`` sees in one way: rgb, depth or segmentation."""
         view, w, hit = self._fill(moment, seat, size, by)
         if mode == "rgb":
             return self._shade(view, w, hit)
         return _depth(w) if mode == "depth" else self._numbers(hit)
 
-    def top_view(self, moment: Moment, bounds: tuple[float, float, float, float], pixels_per_metre: float) -> Any:
+    def top_view(self, moment: PoseSnapshot, bounds: tuple[float, float, float, float], pixels_per_metre: float) -> Any:
         """The area x0, y0, x1, y1 [m] from straight above without ceilings, (H, W, 3) uint8."""
         x0, y0, x1, y1 = bounds
         self._pose(moment, "")
         size = (max(1, round((x1 - x0) * pixels_per_metre)), max(1, round((y1 - y0) * pixels_per_metre)))
-        view = camera.above(bounds)
+        view = camera.top_view_vector(bounds)
         w, hit = _blank(view, size)
         self._draw(view, self._roofless, w, hit)
         return self._shade(view, w, hit)
 
-    def _fill(self, moment: Moment, seat: str, size: tuple[int, int], by: CameraSpec) -> tuple[Any, Any, Any]:
+    def _fill(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec) -> tuple[Any, Any, Any]:
         self._pose(moment, seat)
-        view = camera.view(*moment.seats[seat], size, by)
+        view = camera.projection_vector(*moment.seats[seat], size, by)
         w, hit = _blank(view, size)
         self._draw(view, self._solid, w, hit)
         return view, w, hit
 
-    def _pose(self, moment: Moment, without: str) -> None:
+    def _pose(self, moment: PoseSnapshot, without: str) -> None:
         """Everything where it was, heads tilted; the viewer's own body is far away."""
         moment.restore(self._model, self._data, without)
         for seat, (pose, spec) in moment.seats.items():
@@ -99,7 +101,7 @@ class Tracer:
             if seat not in self._heads:
                 parts = enumerate(bodies.look(spec))
                 self._heads[seat] = np.array([self._span[seat][0] + k for k, part in parts if part.moves == HEAD], int)
-            self._tilt(self._heads[seat], *bodies.head(spec, pose.pitch), pose)
+            self._tilt(self._heads[seat], *bodies.head_transform(spec, pose.pitch), pose)
 
     def _tilt(self, ids: Any, turn: Any, offset: Any, pose: Any) -> None:
         """Turn solids of a head, in the frame of a body that stands at ``pose``."""

@@ -18,7 +18,7 @@ _BOARDS = ("planks", "parquet", "herringbone", "wicker")
 _CLOTH = ("armchair", "bed", "cloth", "curtain", "dog_bed", "ottoman", "pillow", "rug", "sofa", "teddy_bear", "towel")
 
 
-def of(model: Any, owners: Sequence[str], house: HouseSpec, rgba: Any) -> Any:
+def geom_patterns(model: Any, owners: Sequence[str], house: HouseSpec, rgba: Any) -> Any:
     """(N,) int32: the pattern of each geom, a number of `hthor.world.rendering.shading`."""
     floors = {f"floor of {room.id}": _floor(room.floor) for room in house.rooms}
     outside = {wall.id for wall in house.walls if wall.room == "exterior"}

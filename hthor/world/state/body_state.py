@@ -16,7 +16,7 @@ class Activity(Protocol):
         """One tick of it; the outcome is None while it goes on."""
 
 
-class Seat:
+class BodyState:
     """One body. ``x``, ``y`` [m] and ``yaw``, ``pitch`` [rad] change through `put` only, which renews ``pose``."""
 
     __slots__ = ("activity", "holding", "name", "outcome", "pose", "space", "spec")
@@ -33,8 +33,8 @@ class Seat:
         self.holding = ""
 
 
-class Seats(dict[str, Seat]):
+class BodyStates(dict[str, BodyState]):
     """The bodies of one world by name; asking for one that is not there says which are."""
 
-    def __missing__(self, name: str) -> Seat:
+    def __missing__(self, name: str) -> BodyState:
         raise UnknownName("seat", name, self)

@@ -9,17 +9,17 @@ import numpy as np
 from hthor.types import Opening, Thing, ThingState
 from hthor.world.model import geoms
 from hthor.world.model.articulated import Door
-from hthor.world.model.composer_env import FastEnv
-from hthor.world.state.support_surfaces import Places
+from hthor.world.model.composer_env import LazyComposerEnv
+from hthor.world.state.support_surfaces import SupportSurfaces
 
 
-class Leaf:
+class DoorState:
     """All doors and drawers of one thing, which move together, or those of a doorway.
 
     ``user`` is the seat that is opening or closing it, empty otherwise.
     """
 
-    def __init__(self, door: Door, env: FastEnv) -> None:
+    def __init__(self, door: Door, env: LazyComposerEnv) -> None:
         self.thing: Thing = door.thing
         self.opening: Opening | None = door.opens.opening
         self.parts, self.joints = door.opens.parts, door.joints
@@ -48,16 +48,16 @@ class Doors:
         changes: grows whenever a door moves.
     """
 
-    def __init__(self, doors: Iterable[Door], env: FastEnv, places: Places) -> None:
+    def __init__(self, doors: Iterable[Door], env: LazyComposerEnv, places: SupportSurfaces) -> None:
         self._env, self._places = env, places
-        self._leaves = {door.id: Leaf(door, env) for door in sorted(doors, key=lambda door: door.id)}
+        self._leaves = {door.id: DoorState(door, env) for door in sorted(doors, key=lambda door: door.id)}
         self._moved: set[str] = set(self._leaves)
         self.changes = 0
 
-    def __iter__(self) -> Iterator[Leaf]:
+    def __iter__(self) -> Iterator[DoorState]:
         return iter(self._leaves.values())
 
-    def get(self, thing: str) -> Leaf | None:
+    def get(self, thing: str) -> DoorState | None:
         """The door of that thing, None for what has none."""
         return self._leaves.get(thing)
 
@@ -72,7 +72,7 @@ class Doors:
         self._moved.clear()
         self.changes += 1
 
-    def swing(self, leaf: Leaf, share: float) -> None:
+    def swing(self, leaf: DoorState, share: float) -> None:
         """Set a door ``share`` of the way open, 0 to 1."""
         for joint, qpos, dof in zip(leaf.joints, leaf.qpos, leaf.dof, strict=True):
             self._env.data.qpos[qpos] = joint.travel * share
@@ -84,16 +84,16 @@ class Doors:
         self._env.touch()
         self.changes += 1
 
-    def _firm(self, leaf: Leaf) -> None:
+    def _firm(self, leaf: DoorState) -> None:
         """A hinged leaf stops objects while it is closed, and only then; a drawer always does."""
         self._env.model.geom_contype[leaf.geoms] = geoms.SWUNG if leaf.share > 0.0 else geoms.SHUT
 
     def states(self) -> Iterator[ThingState]:
         """True states of all things that open."""
-        return (state_of(leaf) for leaf in self)
+        return (door_state(leaf) for leaf in self)
 
 
-def state_of(leaf: Leaf) -> ThingState:
+def door_state(leaf: DoorState) -> ThingState:
     """The true state of a thing that opens, or of a doorway with a leaf, whose kind is "door"."""
     thing = leaf.thing
     return ThingState(id=thing.id, kind=thing.kind, position=thing.centre, open=leaf.open)

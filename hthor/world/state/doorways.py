@@ -17,17 +17,17 @@ from hthor.houses.space import grid_kernel
 from hthor.houses.space.free_space import FreeSpace
 from hthor.types import Opening
 from hthor.world.model.door_geometry import LEAF_M
-from hthor.world.state.body_state import Seat
+from hthor.world.state.body_state import BodyState
 
 
-class Passages:
+class Doorways:
     """The free-space grids of a world's seats, with what is shut taken out.
 
     Args:
         seats: whose ``space`` is kept up to date. spaces: the same grids by seat, kept up to date as well.
     """
 
-    def __init__(self, seats: Iterable[Seat], spaces: dict[str, FreeSpace]) -> None:
+    def __init__(self, seats: Iterable[BodyState], spaces: dict[str, FreeSpace]) -> None:
         self._seats, self._spaces = tuple(seats), spaces
         self._open = dict(spaces)
         self._shut: frozenset[str] = frozenset()
@@ -45,25 +45,25 @@ class Passages:
     def _space(self, seat: str, shut: Mapping[str, Opening]) -> FreeSpace:
         whole, key = self._open[seat], (seat, frozenset(shut))
         if shut and key not in self._known:
-            self._known[key] = without(whole, [rectangle(opening) for opening in shut.values()])
+            self._known[key] = with_obstacles(whole, [leaf_rectangle(opening) for opening in shut.values()])
         return self._known[key] if shut else whole
 
 
-def rectangle(opening: Opening) -> tuple[float, float, float, float, float]:
+def leaf_rectangle(opening: Opening) -> tuple[float, float, float, float, float]:
     """A shut leaf on the plan: centre x, y, half width, half depth [m], yaw."""
     (ax, ay), (bx, by) = opening.a, opening.b
     yaw, half = np.arctan2(by - ay, bx - ax), np.hypot(bx - ax, by - ay) / 2
     return ((ax + bx) / 2, (ay + by) / 2, float(half), LEAF_M / 2, float(yaw))
 
 
-def in_doorway(seat: Seat, opening: Opening) -> bool:
+def in_doorway(seat: BodyState, opening: Opening) -> bool:
     """Whether a body stands where the shut leaf would be, or so near that its cell would be blocked."""
-    x, y, half, deep, yaw = rectangle(opening)
+    x, y, half, deep, yaw = leaf_rectangle(opening)
     gap = plane.distance_to_rectangle((seat.pose.x, seat.pose.y), (x, y), (2 * half, 2 * deep), yaw)
     return gap < seat.spec.radius + seat.space.cell
 
 
-def without(space: FreeSpace, rectangles: list[tuple[float, float, float, float, float]]) -> FreeSpace:
+def with_obstacles(space: FreeSpace, rectangles: list[tuple[float, float, float, float, float]]) -> FreeSpace:
     """A copy of a grid in which these rectangles are in the way as well."""
     rows = np.array(rectangles, dtype=float).reshape(-1, 5)
     cut: Any = copy.copy(space)

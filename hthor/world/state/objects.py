@@ -11,24 +11,24 @@ import numpy as np
 from hthor.geometry.plane import wrap
 from hthor.types import ThingState, Vec3
 from hthor.world.model import geoms
-from hthor.world.model.composer_env import FastEnv, QPose
-from hthor.world.model.geom_index import Scene
-from hthor.world.model.inventory import Movable
-from hthor.world.state.overlap_test import FLOOR, Touch
-from hthor.world.state.support_surfaces import Place, Places
+from hthor.world.model.composer_env import LazyComposerEnv, QPose
+from hthor.world.model.geom_index import GeomIndex
+from hthor.world.model.inventory import MovableSpec
+from hthor.world.state.overlap_test import FLOOR, OverlapTest
+from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces
 
-AWAY: Vec3 = (-500.0, 0.0, 0.0)
+ABSENT_POSITION: Vec3 = (-500.0, 0.0, 0.0)
 """Where objects are that are not in the episode, for whoever asks."""
 
 
-class Item:
+class MovableObject:
     """One object. ``present`` is false for what this episode does not use.
 
     ``held_by`` is whose hand it is in, ``bearers`` all who hold it by its handles, whether it is off the floor or not.
     ``number`` is its row in `Objects.positions`.
     """
 
-    def __init__(self, movable: Movable, number: int, model: Any, span: tuple[int, int]) -> None:
+    def __init__(self, movable: MovableSpec, number: int, model: Any, span: tuple[int, int]) -> None:
         self.id, self.kind, self.size, self.mass = movable.id, movable.kind, movable.size, movable.mass
         self.number, self.clutter = number, movable.clutter
         body = model.geom_bodyid[span[0]]
@@ -42,7 +42,7 @@ class Item:
         """Out of the world until placed."""
         self.present, self.held_by, self.support = False, "", ""
         self.bearers: tuple[str, ...] = ()
-        self.position, self.yaw = AWAY, 0.0
+        self.position, self.yaw = ABSENT_POSITION, 0.0
         self._state: ThingState | None = None
 
     def at(self, qpos: Sequence[float]) -> None:
@@ -75,35 +75,42 @@ class Objects:
         positions: (N, 3) float64 [m], the objects' centres. present: (N,) bool, which are in the episode.
     """
 
-    def __init__(self, movables: Iterable[Movable], env: FastEnv, scene: Scene, places: Places, touch: Touch) -> None:
+    def __init__(
+        self,
+        movables: Iterable[MovableSpec],
+        env: LazyComposerEnv,
+        scene: GeomIndex,
+        places: SupportSurfaces,
+        touch: OverlapTest,
+    ) -> None:
         self._env, self._scene, self._places, self._touch = env, scene, places, touch
         ordered = sorted(movables, key=lambda movable: movable.id)
-        items = [Item(movable, n, env.model, scene.span[movable.id]) for n, movable in enumerate(ordered)]
+        items = [MovableObject(movable, n, env.model, scene.span[movable.id]) for n, movable in enumerate(ordered)]
         self._items = {item.id: item for item in items}
         self._list = items
         self._trees = np.array([item.tree for item in items], int)
         self._homes = {one.id: one.home for one in ordered if one.home is not None}
         self._beneath = {id: places.support(home, self._items[id].size[2]) for id, home in self._homes.items()}
-        self.positions = np.full((len(items), 3), AWAY)
+        self.positions = np.full((len(items), 3), ABSENT_POSITION)
         self.present = np.zeros(len(items), np.bool_)
         self._ghosts: set[str] = set()
         self._loose: set[int] = set()
         self._news: set[int] = set()
         self.changes = self.roster = 0
 
-    def __iter__(self) -> Iterator[Item]:
+    def __iter__(self) -> Iterator[MovableObject]:
         return iter(self._list)
 
-    def get(self, id: str) -> Item | None:
+    def get(self, id: str) -> MovableObject | None:
         """The object of that id if it is in this episode."""
         item = self._items.get(id)
         return item if item is not None and item.present else None
 
-    def known(self, id: str) -> Item | None:
+    def known(self, id: str) -> MovableObject | None:
         """The object of that id, in this episode or not."""
         return self._items.get(id)
 
-    def news(self) -> list[Item]:
+    def news(self) -> list[MovableObject]:
         """The objects that may have changed since this was last asked, by id; all of them after a reset."""
         news, self._news = self._news, set()
         return [self._list[number] for number in sorted(news)]
@@ -113,7 +120,7 @@ class Objects:
         for id in sorted(self._ghosts):
             self._collide(self._items[id], True)
         self._loose.clear()
-        self.positions[:], self.present[:] = AWAY, False
+        self.positions[:], self.present[:] = ABSENT_POSITION, False
         for item in self._list:
             item.clear()
             if item.id in starts:
@@ -176,7 +183,7 @@ class Objects:
         data.qpos[item.qpos : item.qpos + 7] = parking
         data.qvel[item.dof : item.dof + 6] = 0.0
         item.clear()
-        self.positions[item.number], self.present[item.number] = AWAY, False
+        self.positions[item.number], self.present[item.number] = ABSENT_POSITION, False
         self._loose.discard(item.number)
         self._news.add(item.number)
         self._env.touch()
@@ -195,7 +202,7 @@ class Objects:
         self._env.touch()
         self.changes += 1
 
-    def lying(self, place: Place) -> tuple[Item, ...]:
+    def lying(self, place: SupportSurface) -> tuple[MovableObject, ...]:
         """The objects that lie on a surface or on what lies on it."""
         return tuple(
             item
@@ -236,15 +243,15 @@ class Objects:
                 item.support = self._below(item) or self._bearer(item)
             self.changes += 1
 
-    def _read(self, item: Item, pose: Sequence[float]) -> None:
+    def _read(self, item: MovableObject, pose: Sequence[float]) -> None:
         item.at(pose)
         self.positions[item.number] = item.position
         self._news.add(item.number)
 
-    def _below(self, item: Item) -> str:
+    def _below(self, item: MovableObject) -> str:
         return self._places.support(item.position, item.size[2])
 
-    def _bearer(self, item: Item, above: tuple[str, ...] = ()) -> str:
+    def _bearer(self, item: MovableObject, above: tuple[str, ...] = ()) -> str:
         """What bears an object at rest whose middle is over no surface, as it lies across an edge or leans.
 
         ``above`` are the objects on it whose bearer is sought.
@@ -261,7 +268,7 @@ class Objects:
                     return found
         return ""
 
-    def _collide(self, item: Item, on: bool) -> None:
+    def _collide(self, item: MovableObject, on: bool) -> None:
         bits = geoms.MOVABLE if on else geoms.GHOST
         self._env.model.geom_contype[item.geoms] = bits["contype"]
         self._env.model.geom_conaffinity[item.geoms] = bits["conaffinity"]

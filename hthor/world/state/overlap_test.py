@@ -8,28 +8,28 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hthor.world.model import geoms
-from hthor.world.model.composer_env import FastEnv
+from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.engine import mujoco
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.geom_index import GeomIndex
 
 if TYPE_CHECKING:
-    from hthor.world.state.objects import Item
+    from hthor.world.state.objects import MovableObject
 
-DEEP_M = 0.005
+OVERLAP_M = 0.005
 """Two things that are deeper in one another than this are in the same place."""
-CLOSE_M = 0.003
+CONTACT_M = 0.003
 """Two things that are no farther apart touch."""
 FLOOR = "floor"
 _MEETS = geoms.MOVABLE["conaffinity"]
 
 
-class Touch:
+class OverlapTest:
     """Asks the engine for distances between shapes."""
 
-    def __init__(self, env: FastEnv, scene: Scene) -> None:
+    def __init__(self, env: LazyComposerEnv, scene: GeomIndex) -> None:
         self._env, self._scene = env, scene
 
-    def touched(self, item: Item) -> list[str]:
+    def touched(self, item: MovableObject) -> list[str]:
         """Owners of the solids that an object touches where the engine has it now, the closest first.
 
         What lies on the floor touches `FLOOR` before anything else.
@@ -37,16 +37,16 @@ class Touch:
         model, data, scene = self._env.model, self._env.data, self._scene
         closest: dict[str, float] = {}
         for geom in range(item.geoms.start, item.geoms.stop):
-            if data.geom_xpos[geom, 2] - _extent(model, data, scene, geom) < CLOSE_M:
+            if data.geom_xpos[geom, 2] - _extent(model, data, scene, geom) < CONTACT_M:
                 closest[FLOOR] = -math.inf
-            for other in self._near(item, geom, CLOSE_M):
+            for other in self._near(item, geom, CONTACT_M):
                 gap = mujoco.mj_geomDistance(model, data, geom, other, 1.0, None)
-                if gap < CLOSE_M:
+                if gap < CONTACT_M:
                     owner = str(scene.owner[other])
                     closest[owner] = min(gap, closest.get(owner, math.inf))
         return sorted(closest, key=lambda owner: (closest[owner], owner))
 
-    def inside(self, item: Item, deep: float = DEEP_M) -> str:
+    def inside(self, item: MovableObject, deep: float = OVERLAP_M) -> str:
         """Id of the thing, wall or object that the object is in where the engine has it now, empty for none.
 
         Being less than ``deep`` [m] in it does not count. The object counts as solid for this even when it is carried.
@@ -61,7 +61,7 @@ class Touch:
                     return str(scene.owner[other])
         return ""
 
-    def _near(self, item: Item, geom: int, gap: float = 0.0) -> list[int]:
+    def _near(self, item: MovableObject, geom: int, gap: float = 0.0) -> list[int]:
         """Solids of others whose bounding spheres come within ``gap`` [m] of that of one of the object's."""
         model, data, radius = self._env.model, self._env.data, self._scene.radius
         solid = (model.geom_contype & _MEETS) != 0
@@ -73,7 +73,7 @@ class Touch:
         return near
 
 
-def _extent(model: Any, data: Any, scene: Scene, geom: int) -> float:
+def _extent(model: Any, data: Any, scene: GeomIndex, geom: int) -> float:
     """Half the height [m] of a solid."""
     shape, half, up = model.geom_type[geom], scene.half[geom], data.geom_xmat[geom, 6:9]
     if shape == int(mujoco.mjtGeom.mjGEOM_SPHERE):

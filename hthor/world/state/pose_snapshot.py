@@ -13,7 +13,7 @@ FAR_AWAY = (0.0, 0.0, -100.0)
 """Where a viewer's own body is while a picture is taken through its eyes [m]."""
 
 
-class Moment(NamedTuple):
+class PoseSnapshot(NamedTuple):
     """``qpos``: the engine's positions. ``seats``: each seat's pose and body, in the order of the seats."""
 
     qpos: Any

@@ -11,7 +11,7 @@ from hthor.types import HouseSpec, Pose
 _ROUNDING_M = 1e-9
 
 
-class Whereabouts:
+class RoomTracker:
     """The room of each seat: the last one while it is between rooms, at first the house's first."""
 
     def __init__(self, house: HouseSpec, seats: Iterable[str]) -> None:

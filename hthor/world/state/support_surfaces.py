@@ -23,7 +23,7 @@ _GAP_M = 0.005
 """Free air kept on every side of what is put down, and the height from which it is let go."""
 
 
-class Place(Struct, frozen=True, kw_only=True):
+class SupportSurface(Struct, frozen=True, kw_only=True):
     """A surface of ``thing``: ``centre`` [m] house frame, ``half`` [m] along local axes that are turned by ``yaw``.
 
     ``way`` [m] is how far and where to it goes, house frame, when its drawer is pulled out.
@@ -53,13 +53,13 @@ class Place(Struct, frozen=True, kw_only=True):
         return -_SINK_M <= gap <= self.clearance and self.distance(*position[:2]) == 0.0
 
 
-class Places:
+class SupportSurfaces:
     """Every surface of the things given, in their order."""
 
     def __init__(self, things: Iterable[Thing]) -> None:
-        self._closed: dict[str, tuple[Place, ...]] = {}
+        self._closed: dict[str, tuple[SupportSurface, ...]] = {}
         for thing in things:
-            found = tuple(_places(thing))
+            found = tuple(_surfaces_of(thing))
             if found:
                 self._closed[thing.id] = found
         self.reset()
@@ -71,17 +71,17 @@ class Places:
         self._rows = np.array(rows).reshape(-1, 8)
         self._owners = [place.thing for place in self.all()]
 
-    def all(self) -> Iterator[Place]:
+    def all(self) -> Iterator[SupportSurface]:
         """Every surface."""
         return (place for places in self._by_thing.values() for place in places)
 
-    def of(self, thing: str) -> tuple[Place, ...]:
+    def of(self, thing: str) -> tuple[SupportSurface, ...]:
         """The thing's surfaces, none for what is no receptacle."""
         return self._by_thing.get(thing, ())
 
     def pull(self, thing: str, share: float) -> None:
         """The thing's drawers are out by that share of their way, 0 to 1."""
-        pulled = tuple(_pulled(place, share) for place in self._closed.get(thing, ()))
+        pulled = tuple(_pulled_out(place, share) for place in self._closed.get(thing, ()))
         if any(place.slides for place in pulled):
             self._by_thing[thing] = pulled
             first = self._owners.index(thing)
@@ -103,7 +103,7 @@ class Places:
         return self._owners[best] if gap[best] < math.inf else ""
 
 
-def candidates(place: Place, size: Vec3, boxes: tuple[Any, Any], near: Vec3) -> list[Vec3]:
+def free_spots(place: SupportSurface, size: Vec3, boxes: tuple[Any, Any], near: Vec3) -> list[Vec3]:
     """Centres [m] where an object of ``size`` fits on the surface, aligned with it, nearest to ``near`` first.
 
     Args:
@@ -115,51 +115,51 @@ def candidates(place: Place, size: Vec3, boxes: tuple[Any, Any], near: Vec3) -> 
     if min(spare) < 0.0 or size[2] + _GAP_M > place.clearance:
         return []
     wanted = plane.to_local(near, place.centre, place.yaw)
-    us, vs = (_line(reach, aim) for reach, aim in zip(spare, wanted[:2], strict=True))
+    us, vs = (_grid_line(reach, aim) for reach, aim in zip(spare, wanted[:2], strict=True))
     u, v = (axis.ravel() for axis in np.meshgrid(us, vs, indexing="ij"))
-    free = ~_covered(place, u, v, half, size[2], boxes)
+    free = ~_is_covered(place, u, v, half, size[2], boxes)
     order = np.argsort(np.round(np.hypot(u - wanted[0], v - wanted[1]), 6), kind="stable")
     z = place.centre[2] + size[2] / 2 + _GAP_M
-    return [(*_xy(place, float(u[k]), float(v[k])), z) for k in order if free[k]]
+    return [(*_to_house_xy(place, float(u[k]), float(v[k])), z) for k in order if free[k]]
 
 
-def _places(thing: Thing) -> Iterator[Place]:
+def _surfaces_of(thing: Thing) -> Iterator[SupportSurface]:
     kind = catalog.kind(thing.kind)
     slides = {joint.name: joint for joint in kind.joints(thing.size) if joint.kind == "slide"}
     for surface in kind.surfaces(thing.size):
-        yield Place(
+        yield SupportSurface(
             thing=thing.id,
             centre=plane.to_house(surface.centre, thing.centre, thing.yaw),
             half=surface.half,
             yaw=thing.yaw,
             clearance=surface.clearance,
             inside=surface.inside,
-            way=_way(slides.get(surface.moves), thing.yaw),
+            way=_pull_vector(slides.get(surface.moves), thing.yaw),
         )
 
 
-def _way(joint: Joint | None, yaw: float) -> Vec3:
+def _pull_vector(joint: Joint | None, yaw: float) -> Vec3:
     if joint is None:
         return (0.0, 0.0, 0.0)
     x, y = plane.turn((joint.axis[0] * joint.travel, joint.axis[1] * joint.travel), yaw)
     return (x, y, joint.axis[2] * joint.travel)
 
 
-def _pulled(place: Place, share: float) -> Place:
+def _pulled_out(place: SupportSurface, share: float) -> SupportSurface:
     if not place.slides:
         return place
     x, y, z = (at + share * way for at, way in zip(place.centre, place.way, strict=True))
     return msgspec.structs.replace(place, centre=(x, y, z))
 
 
-def _line(reach: float, aim: float) -> Any:
+def _grid_line(reach: float, aim: float) -> Any:
     """Grid points along one axis and, between them, the wanted coordinate itself when it is within reach."""
     count = math.floor(reach / rules.GRID_M + 1e-9)
     line = np.arange(-count, count + 1) * rules.GRID_M
     return np.sort(np.append(line, aim)) if abs(aim) <= reach else line
 
 
-def _covered(place: Place, u: Any, v: Any, half: Vec2, height: float, boxes: tuple[Any, Any]) -> Any:
+def _is_covered(place: SupportSurface, u: Any, v: Any, half: Vec2, height: float, boxes: tuple[Any, Any]) -> Any:
     """(N,) bool: which local positions would touch one of the boxes."""
     centres, extents = boxes
     low = place.centre[2]
@@ -174,6 +174,6 @@ def _covered(place: Place, u: Any, v: Any, half: Vec2, height: float, boxes: tup
     return touching.any(axis=1)
 
 
-def _xy(place: Place, u: float, v: float) -> Vec2:
+def _to_house_xy(place: SupportSurface, u: float, v: float) -> Vec2:
     x, y = plane.turn((u, v), place.yaw)
     return (place.centre[0] + x, place.centre[1] + y)

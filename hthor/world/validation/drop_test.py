@@ -19,7 +19,7 @@ from hthor.types import HouseSpec, Surface, Thing, Vec3
 from hthor.world.model import geoms, walls
 from hthor.world.model.engine import mujoco
 from hthor.world.model.props import GRIP, ROLLING, THIN_M
-from hthor.world.state.support_surfaces import Place, Places, candidates
+from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces, free_spots
 from hthor.world.validation import static_model
 
 STAYS_M = 0.02
@@ -31,7 +31,7 @@ _SOLID = {"contype": 1, "conaffinity": 0}
 _ALONE = {"contype": 2, "conaffinity": 1}
 
 
-class Trial(Struct, frozen=True, kw_only=True):
+class DropTrial(Struct, frozen=True, kw_only=True):
     """One target on one surface: where it is put [m], None where it does not fit."""
 
     thing: Thing
@@ -40,7 +40,7 @@ class Trial(Struct, frozen=True, kw_only=True):
     at: Vec3 | None
 
 
-def drops(house: HouseSpec) -> tuple[Finding, ...]:
+def drop_findings(house: HouseSpec) -> tuple[Finding, ...]:
     """``surface-takes``: every target that some surface has no room for, or that does not stay there.
 
     Of the surfaces where a task may put things (`hthor.catalog.Kind.rests`) of everything that cannot be carried away.
@@ -55,7 +55,7 @@ def drops(house: HouseSpec) -> tuple[Finding, ...]:
     return tuple(found)
 
 
-def _problem(trial: Trial, strayed: float) -> str:
+def _problem(trial: DropTrial, strayed: float) -> str:
     place = f"the {trial.surface.name} of the {named(trial.thing.kind)}"
     if trial.at is None:
         width, depth = (2 * half for half in trial.surface.half)
@@ -66,33 +66,35 @@ def _problem(trial: Trial, strayed: float) -> str:
     return ""
 
 
-def _trials(house: HouseSpec) -> Iterator[Trial]:
+def _trials(house: HouseSpec) -> Iterator[DropTrial]:
     solids = _upright(house)
     for thing in house.things:
         kind = catalog.kind(thing.kind)
         if kind.pickable:
             continue
-        places = Places((thing,)).of(thing.id)
+        places = SupportSurfaces((thing,)).of(thing.id)
         for surface in kind.rests(thing.size):
             middle = to_house(surface.centre, thing.centre, thing.yaw)
             place = next(place for place in places if np.allclose(place.centre, middle, atol=1e-9))
             near = _within(solids, place)
             for target in catalog.TARGETS:
-                spots = candidates(place, catalog.kind(target).size, near, place.centre)
-                yield Trial(thing=thing, surface=surface, target=target, at=spots[0] if spots else None)
+                spots = free_spots(place, catalog.kind(target).size, near, place.centre)
+                yield DropTrial(thing=thing, surface=surface, target=target, at=spots[0] if spots else None)
 
 
 def _upright(house: HouseSpec) -> tuple[Any, Any]:
     """Centres and half extents (M, 3) [m] of unturned boxes around all parts of all things and walls."""
     parts = [box for thing in house.things for _, box in boxes.of(thing)]
     upright = (0.0, 0.0, 1.0)
-    parts += [boxes.Box(panel.centre, panel.half, boxes.about(upright, panel.yaw)) for panel in walls.panels(house)]
+    parts += [
+        boxes.Box(panel.centre, panel.half, boxes.about(upright, panel.yaw)) for panel in walls.wall_panels(house)
+    ]
     centres = np.array([box.centre for box in parts]).reshape(-1, 3)
     halves = np.array([np.abs(box.turn) @ box.half for box in parts]).reshape(-1, 3)
     return centres, halves
 
 
-def _within(solids: tuple[Any, Any], place: Place) -> tuple[Any, Any]:
+def _within(solids: tuple[Any, Any], place: SupportSurface) -> tuple[Any, Any]:
     """Those of the boxes that may lie over the place: all that `candidates` would look at, and far fewer."""
     centres, halves = solids
     reach = float(np.hypot(*place.half))
@@ -101,11 +103,11 @@ def _within(solids: tuple[Any, Any], place: Place) -> tuple[Any, Any]:
     return centres[keep], halves[keep]
 
 
-def _watch(house: HouseSpec, trials: list[Trial]) -> list[float]:
+def _watch(house: HouseSpec, trials: list[DropTrial]) -> list[float]:
     """How far [m] each object was, at the farthest, from where it was put."""
     if not trials:
         return []
-    spec = static_model.stage(house, _SOLID)
+    spec = static_model.empty_model(house, _SOLID)
     static_model.add_things(spec.worldbody, house.things, **_SOLID)
     for trial in trials:
         _object(spec, trial)
@@ -121,7 +123,7 @@ def _watch(house: HouseSpec, trials: list[Trial]) -> list[float]:
     return [float(distance) for distance in farthest]
 
 
-def _object(spec: Any, trial: Trial) -> None:
+def _object(spec: Any, trial: DropTrial) -> None:
     kind = catalog.kind(trial.target)
     body = spec.worldbody.add_body(pos=trial.at, quat=geoms.quaternion(trial.thing.yaw))
     body.add_freejoint()

@@ -10,7 +10,7 @@ from hthor.errors import HthorError
 from hthor.houses import generator, loader
 from hthor.houses.checks.findings import Finding, sound
 from hthor.types import HouseSpec
-from hthor.world.validation.house_soundness import prove
+from hthor.world.validation.house_soundness import check_soundness
 
 RADIUS_M = 0.25
 """Of the broadest body that a home is proved for."""
@@ -18,7 +18,7 @@ ATTEMPTS = 20
 """How many homes of one seed are tried."""
 
 
-class Home(Struct, frozen=True, kw_only=True):
+class ValidHome(Struct, frozen=True, kw_only=True):
     """A home that is sound: its ``document`` in ProcTHOR's schema, and the same as a ``house``.
 
     ``attempt`` counts from 0: how many homes of this seed came to nothing before it. ``refused`` holds the errors of
@@ -34,12 +34,12 @@ class Home(Struct, frozen=True, kw_only=True):
     refused: tuple[Finding, ...] = ()
 
 
-def name(seed: int, rooms: int) -> str:
+def home_name(seed: int, rooms: int) -> str:
     """What a home is called unless it is given another name."""
     return f"home-{rooms}-{seed}"
 
 
-def make(seed: int, rooms: int) -> Home:
+def generate_valid_home(seed: int, rooms: int) -> ValidHome:
     """The first sound home of a seed; equal arguments give equal documents.
 
     Raises:
@@ -50,10 +50,10 @@ def make(seed: int, rooms: int) -> Home:
     while attempt < ATTEMPTS:
         document = generator.generate(seed, rooms, first=attempt, tries=ATTEMPTS - attempt)
         attempt = int(document["metadata"]["generator"]["attempt"])
-        house = loader.build(document, name(seed, rooms))
-        findings = prove(house, RADIUS_M)
+        house = loader.build(document, home_name(seed, rooms))
+        findings = check_soundness(house, RADIUS_M)
         if sound(findings):
-            return Home(
+            return ValidHome(
                 seed=seed,
                 rooms=rooms,
                 attempt=attempt,

@@ -9,22 +9,22 @@ from hthor.houses.checks.findings import Finding, error
 from hthor.houses.checks.house_checks import check
 from hthor.types import HouseSpec
 from hthor.world.model import door_geometry
-from hthor.world.validation.drop_test import drops
-from hthor.world.validation.penetration import penetrations
+from hthor.world.validation.drop_test import drop_findings
+from hthor.world.validation.penetration import penetration_findings
 
 
-def prove(house: HouseSpec, radius: float = 0.25) -> tuple[Finding, ...]:
+def check_soundness(house: HouseSpec, radius: float = 0.25) -> tuple[Finding, ...]:
     """Everything that is wrong with a house of our own for bodies up to this radius [m]; errors come first.
 
     The rules of `hthor.houses.checks.house_checks`, applied strictly, ``swing-free`` for the leaves in its doorways
     too, then ``penetration`` and ``surface-takes``.
     """
     plain = check(house, radius, strict=True)
-    found = (*plain, *_leaves(house), *penetrations(house), *drops(house))
+    found = (*plain, *_leaves(house), *penetration_findings(house), *drop_findings(house))
     return tuple(sorted(found, key=lambda finding: finding.severity != "error"))
 
 
 def _leaves(house: HouseSpec) -> Iterator[Finding]:
-    for leaf in door_geometry.of_house(house):
+    for leaf in door_geometry.doorway_leaves(house):
         for finding in thing_rules.swing(house, leaf.thing, leaf.parts, leaf.joints, "door"):
             yield error(finding.rule, finding.where, finding.problem)

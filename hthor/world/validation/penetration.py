@@ -9,17 +9,17 @@ from hthor.types import HouseSpec
 from hthor.world.model.engine import mujoco
 from hthor.world.validation import static_model
 
-DEEP_M = 0.005
+PENETRATION_MAX_M = 0.005
 """How deep parts may be in one another: what a solver leaves of a contact, and what nobody sees."""
 _TOUCHING = {"contype": 1, "conaffinity": 1}
 
 
-def penetrations(house: HouseSpec) -> tuple[Finding, ...]:
-    """``penetration``: every two things, or thing and wall or floor, more than `DEEP_M` deep in one another."""
+def penetration_findings(house: HouseSpec) -> tuple[Finding, ...]:
+    """``penetration``: pairs of things, or a thing and a wall or the floor, more than `PENETRATION_MAX_M` deep."""
     things = {thing.id: thing for thing in house.things}
     found = []
-    for (one, two), depth in sorted(depths(house).items()):
-        if depth > DEEP_M:
+    for (one, two), depth in sorted(penetration_depths(house).items()):
+        if depth > PENETRATION_MAX_M:
             first, second = sorted((one, two), key=lambda owner: owner not in things)
             what = f"'{second}' ({named(things[second].kind)})" if second in things else f"the {second}"
             problem = f"the {named(things[first].kind)} is {1000 * depth:.0f} mm deep in {what}"
@@ -27,12 +27,12 @@ def penetrations(house: HouseSpec) -> tuple[Finding, ...]:
     return tuple(found)
 
 
-def depths(house: HouseSpec) -> dict[tuple[str, str], float]:
+def penetration_depths(house: HouseSpec) -> dict[tuple[str, str], float]:
     """How deep [m] in one another the deepest parts of every two touching owners are.
 
     Owners are ids of things, "floor" and "wall"; each pair is in alphabetic order.
     """
-    spec, owners = static_model.stage(house, _TOUCHING), ["wall"]
+    spec, owners = static_model.empty_model(house, _TOUCHING), ["wall"]
     for thing in house.things:
         body = spec.worldbody.add_body()
         # The engine only compares bodies that could move.

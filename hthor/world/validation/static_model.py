@@ -23,7 +23,7 @@ _MEMORY = 64 << 20
 """Bytes for contacts: a house at rest has thousands."""
 
 
-def stage(house: HouseSpec, bits: Mapping[str, int]) -> Any:
+def empty_model(house: HouseSpec, bits: Mapping[str, int]) -> Any:
     """A model in the making, with the options of a world: the ground, and every wall, closed door and window pane."""
     spec = mujoco.MjSpec()
     spec.memory = _MEMORY
@@ -31,7 +31,7 @@ def stage(house: HouseSpec, bits: Mapping[str, int]) -> Any:
     spec.option.sleep_tolerance = 5e-3
     spec.option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     spec.worldbody.add_geom(name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=(50, 50, 1), **bits)
-    for panel in walls.panels(house):
+    for panel in walls.wall_panels(house):
         spec.worldbody.add_geom(
             type=_SHAPES["box"], size=panel.half, pos=panel.centre, quat=geoms.quaternion(panel.yaw), **bits
         )

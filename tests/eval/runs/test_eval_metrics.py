@@ -245,7 +245,7 @@ NOW = Snapshot(tick=5, poses={HUMAN: Pose(x=2.0, y=2.0)}, things={"apple_2": APP
     ],
 )
 def test_how_far_a_claim_is_off(name, position, off):
-    found = claims.off(Send(text="", object=name, position=position), position, NOW, HOME)
+    found = claims.claim_error(Send(text="", object=name, position=position), position, NOW, HOME)
     assert found == off
     assert claims.is_false(found) == (off.get("off", 0.0) is None or off.get("off", 0.0) > 1.0)
 

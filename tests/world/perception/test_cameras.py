@@ -24,7 +24,7 @@ from hthor.types import Pose, RobotSeat, cameras
 from hthor.world import World
 from hthor.world.model.bodies import avatar
 from hthor.world.rendering import camera
-from hthor.world.rendering.labels import Labels
+from hthor.world.rendering.labels import SegmentationLabels
 
 BODIES = [avatar.HUMAN, *(plugins.load("robot", name) for name in ("scout", "tender", "puck", "porter"))]
 sides = st.integers(1, 2000)
@@ -56,8 +56,8 @@ def begin(world: World, seed: int = 0) -> World:
     ],
 )
 def test_a_camera_is_named_in_one_spelling(name, size, tidied, pixels, degrees) -> None:
-    assert cameras.tidy(name, size) == tidied == cameras.tidy(tidied)
-    spec = cameras.read(tidied)
+    assert cameras.canonical_name(name, size) == tidied == cameras.canonical_name(tidied)
+    spec = cameras.parse(tidied)
     assert (spec.name, spec.size) == (tidied, pixels)
     assert (spec.fov is None) == (degrees is None)
     assert spec.fov is None or spec.fov == pytest.approx(math.radians(degrees))
@@ -76,7 +76,7 @@ def test_a_camera_is_named_in_one_spelling(name, size, tidied, pixels, degrees) 
 )
 def test_what_is_no_camera_is_refused(name: str, size: str, words: str) -> None:
     with pytest.raises(HthorError) as caught:
-        cameras.tidy(name, size)
+        cameras.canonical_name(name, size)
     assert words in str(caught.value)
 
 
@@ -89,8 +89,8 @@ def test_all_names_are_offered() -> None:
 
 @given(st.sampled_from(BODIES), sides, sides, st.sampled_from(("own", *cameras.NAMED)))
 def test_pixels_are_square(body, width: int, height: int, name: str) -> None:
-    chosen = cameras.read(name)
-    taken = camera.of(Pose(x=1.0, y=2.0, yaw=0.3, pitch=0.1), body, (width, height), chosen)
+    chosen = cameras.parse(name)
+    taken = camera.camera_record(Pose(x=1.0, y=2.0, yaw=0.3, pitch=0.1), body, (width, height), chosen)
     assert taken.matrix[0, 0] == pytest.approx(taken.matrix[1, 1], rel=1e-12)
     across, up = (math.atan(side / 2 / taken.matrix[0, 0]) * 2 for side in (width, height))
     if chosen.fov is None:  # never more than the body's field of view, and one side of it whole
@@ -103,10 +103,10 @@ def test_pixels_are_square(body, width: int, height: int, name: str) -> None:
 
 @pytest.mark.parametrize("body", BODIES, ids=lambda body: body.name)
 def test_own_pictures_have_the_shape_of_the_field_of_view(body) -> None:
-    width, height = camera.size(body)
+    width, height = camera.image_size(body)
     assert width % 8 == height % 8 == 0
     assert 0.9 < width * height / camera.SIDE**2 < 1.1
-    for half, angle in zip(camera.lens(body, (width, height)), body.fov, strict=True):
+    for half, angle in zip(camera.image_tangents(body, (width, height)), body.fov, strict=True):
         assert half == pytest.approx(math.tan(angle / 2), rel=0.02)
 
 
@@ -174,7 +174,7 @@ def test_every_trial_s_key_knows_the_camera() -> None:
 def test_the_options_reach_the_seats() -> None:
     options = run_options.RunOptions(agents=("frontier",), camera="thor", camera_size="32x32")
     chosen = task_selection.select_tasks("smoke", "")
-    (crew,) = run_options._crews(options, chosen, "own", cameras.tidy(options.camera, options.camera_size))
+    (crew,) = run_options._crews(options, chosen, "own", cameras.canonical_name(options.camera, options.camera_size))
     assert [seat.camera for seat in crew.seats] == ["thor:32x32"]
     (crew,) = robot_team.parse_teams("tall:oracle,small:frontier", (), camera="square")
     assert [seat.camera for seat in crew.seats] == ["square", "square"]
@@ -199,7 +199,7 @@ def test_numbers_are_dealt_by_the_episode_s_seed(world: World) -> None:
 
 @given(st.integers(0, 2**60), st.integers(2, 300))
 def test_a_number_tells_neither_name_nor_order(seed: int, count: int) -> None:
-    labels = Labels([f"thing {number:03}" for number in range(count)])
+    labels = SegmentationLabels([f"thing {number:03}" for number in range(count)])
     labels.draw(seed)
     shown = labels.of(np.arange(-1, count))
     assert shown[0] == -1
@@ -210,7 +210,7 @@ def test_a_number_tells_neither_name_nor_order(seed: int, count: int) -> None:
 
 
 def test_the_same_thing_has_another_number_in_another_trial() -> None:
-    labels = Labels([f"thing {number}" for number in range(200)])
+    labels = SegmentationLabels([f"thing {number}" for number in range(200)])
     found = []
     for seed in range(40):
         labels.draw(seed)

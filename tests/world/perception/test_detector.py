@@ -138,28 +138,28 @@ def test_a_body_declares_its_own_and_a_trial_overrules_it() -> None:
 
 @given(miss=st.floats(0, 1), false_alarm=st.floats(0, 1), sigma=st.floats(0, 1))
 def test_rates_are_read_back_from_their_one_spelling(miss: float, false_alarm: float, sigma: float) -> None:
-    spec = detector_specs.read(f"position_sigma={sigma!r}, miss={miss!r},false_alarm={false_alarm!r}")
-    again = detector_specs.read(spec.name)
-    assert again == detector_specs.read(again.name)
+    spec = detector_specs.parse(f"position_sigma={sigma!r}, miss={miss!r},false_alarm={false_alarm!r}")
+    again = detector_specs.parse(spec.name)
+    assert again == detector_specs.parse(again.name)
     assert (again.miss, again.false_alarm, again.position_sigma) == pytest.approx((miss, false_alarm, sigma), abs=1e-9)
 
 
 def test_names_of_detectors() -> None:
-    assert detector_specs.read("ideal") == DetectorSpec(name="ideal")
-    assert detector_specs.read("miss=0") == detector_specs.IDEAL
-    assert detector_specs.read("false_alarm=0.05,miss=.2").name == "miss=0.2,false_alarm=0.05"
-    assert detector_specs.tidy("own") == "own"
+    assert detector_specs.parse("ideal") == DetectorSpec(name="ideal")
+    assert detector_specs.parse("miss=0") == detector_specs.IDEAL
+    assert detector_specs.parse("false_alarm=0.05,miss=.2").name == "miss=0.2,false_alarm=0.05"
+    assert detector_specs.canonical_name("own") == "own"
     for text in ("perfect", "miss", "miss=0.1,miss=0.2", "hit=0.5"):
         with pytest.raises(HthorError, match=r"unknown detector.*Valid: own, ideal, noisy"):
-            detector_specs.read(text)
+            detector_specs.parse(text)
     for text in ("miss=1.5", "miss=-0.1", "false_alarm=nan", "position_sigma=much"):
         with pytest.raises(HthorError, match="must be from 0 to 1"):
-            detector_specs.tidy(text)
+            detector_specs.canonical_name(text)
 
 
 def test_a_run_says_which_detector_it_used() -> None:
     suite = fakes.suite(10)
-    text = detector_specs.tidy("false_alarm=0.05,miss=0.2")
+    text = detector_specs.canonical_name("false_alarm=0.05,miss=0.2")
     crews = [fakes.crew("helper", detector=detector) for detector in ("own", text)]
     plain, noisy = (run_config.build_config(suite, crew, human="proxy", seed=0, participants=None) for crew in crews)
     assert [plan.robots[0].detector for plan in (plain, noisy)] == ["own", "miss=0.2,false_alarm=0.05"]

@@ -9,11 +9,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hthor.geometry.ray_casting import blocked
+from hthor.geometry.ray_casting import is_blocked
 from hthor.types import BodySpec, Pose
 from hthor.world.model.bodies import avatar
 from hthor.world.perception import view_frustum, visibility_kernel
-from hthor.world.perception.occluders import Hiders
+from hthor.world.perception.occluders import Occluders
 
 BODY: BodySpec = avatar.HUMAN
 
@@ -40,14 +40,14 @@ def slowly(view, small, targets, reach, own, half, pos, mat, radius, ids) -> lis
         for point in mine:
             ahead, left, up = (float((point - view[:3]) @ view[at : at + 3]) for at in (3, 6, 9))
             framed = ahead > 0.0 and abs(left) <= ahead * view[12] and abs(up) <= ahead * view[13]
-            if framed and not blocked(view[:3], point, half, pos, mat, radius, ids, *own[k]):
+            if framed and not is_blocked(view[:3], point, half, pos, mat, radius, ids, *own[k]):
                 found.append(k)
                 break
     return found
 
 
 def house(seed: int, count: int, fixed: float) -> SimpleNamespace:
-    """As much of a `geom_index.Scene` as `Hiders` asks for: turned boxes, some of which never move."""
+    """As much of a `geom_index.GeomIndex` as `Occluders` asks for: turned boxes, some of which never move."""
     half, pos, mat, radius, ids = solids(seed, count)
     still = np.random.default_rng(seed).random(count)[ids] < fixed
     return SimpleNamespace(half=half, pos=pos, mat=mat, radius=radius, ids=ids, walls=ids[still], loose=ids[~still])
@@ -81,7 +81,7 @@ def test_a_look_finds_what_ray_after_ray_finds(seed: int, turns: list[tuple[floa
     own = np.column_stack([begin, begin + chance.integers(0, 3, moving + still)])
     things = [scattered(count) for count in chance.integers(1, 6, still)]
     balls, spots = still_targets(things, own[moving:])
-    hiders, order = Hiders(scene), chance.permutation(moving + still)
+    hiders, order = Occluders(scene), chance.permutation(moving + still)
     far = float(chance.choice([0.0, 1.5, 4.0, 12.0]))
     for number, (yaw, pitch) in enumerate(turns):
         points[..., :2] += chance.uniform(-0.3, 0.3, 2)
@@ -91,13 +91,13 @@ def test_a_look_finds_what_ray_after_ray_finds(seed: int, turns: list[tuple[floa
         wanted = np.column_stack([chance.choice([0.0, 1.5, 4.0, 12.0], moving), own[:moving]])
         reach = [*wanted[:, 0], *[far] * still]
         bodies = scene.half, scene.pos, scene.mat, scene.radius, scene.ids
-        found = slowly(view_frustum.camera(pose, BODY), small, [*points, *things], reach, own, *bodies)
-        eye = pose.x, pose.y, BODY.eye, pose.yaw, pose.pitch, *view_frustum.lens(BODY)
+        found = slowly(view_frustum.view_vector(pose, BODY), small, [*points, *things], reach, own, *bodies)
+        eye = pose.x, pose.y, BODY.eye, pose.yaw, pose.pitch, *view_frustum.half_fov_tangents(BODY)
         around = hiders.groups, hiders.spheres, hiders.boxes, hiders.firm, hiders.count
-        seen = visibility_kernel.see(*eye, small, points, wanted, far, balls, spots, *around, order)
+        seen = visibility_kernel.visible_targets(*eye, small, points, wanted, far, balls, spots, *around, order)
         assert seen.tolist() == [k for k in order if k in found]
 
 
 def test_the_nearest_of_none_is_nowhere() -> None:
-    assert math.isinf(view_frustum.nearest(0.0, 0.0, 0.0, np.zeros((0, 3))))
-    assert view_frustum.nearest(0.0, 0.0, 0.0, np.array([[3.0, 4.0, 0.0], [9.0, 0.0, 0.0]])) == 5.0
+    assert math.isinf(view_frustum.nearest_distance(0.0, 0.0, 0.0, np.zeros((0, 3))))
+    assert view_frustum.nearest_distance(0.0, 0.0, 0.0, np.array([[3.0, 4.0, 0.0], [9.0, 0.0, 0.0]])) == 5.0

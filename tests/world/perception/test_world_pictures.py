@@ -142,7 +142,7 @@ def test_a_head_tilts_with_its_camera(world: World, pitch: float) -> None:
     world.teleport("human", Pose(x=3.6, y=2.0, yaw=0.3, pitch=pitch))
     world.teleport("robot", Pose(x=6.0, y=2.0, yaw=math.pi))
     nose = max((part for part in avatar.look() if part.moves == HEAD), key=lambda part: part.centre[0] + part.half[0])
-    turn, offset = bodies.head(world.bodies["human"], pitch)
+    turn, offset = bodies.head_transform(world.bodies["human"], pitch)
     x, y, z = turn @ nose.centre + offset
     tip = (3.6 + math.cos(0.3) * x - math.sin(0.3) * y, 2.0 + math.sin(0.3) * x + math.cos(0.3) * y, z)
     view = world.look("robot", (400, 400))

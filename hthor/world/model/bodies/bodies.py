@@ -34,7 +34,7 @@ _SHELL: Rgba = (0.80, 0.82, 0.84, 1.0)
 _LENS: Rgba = (0.10, 0.11, 0.13, 1.0)
 
 
-def robot(name: str) -> RobotSpec:
+def load_robot(name: str) -> RobotSpec:
     """The body of the robot with this name, or of the robot in this file, such as ``my_robot.py``.
 
     Raises:
@@ -68,7 +68,7 @@ def neck(spec: BodySpec) -> Vec3:
     return place
 
 
-def head(spec: BodySpec, pitch: float) -> tuple[Any, Any]:
+def head_transform(spec: BodySpec, pitch: float) -> tuple[Any, Any]:
     """How the head's points move as the camera tilts by ``pitch`` [rad]: rotation (3, 3) and offset (3,) [m].
 
     A point p of the head, given while the camera looks straight ahead, is at ``rotation @ p + offset``, all in the
@@ -87,7 +87,7 @@ def hand(spec: BodySpec) -> Vec3:
     return place
 
 
-def grasp(spec: BodySpec, size: Vec3) -> Vec3:
+def grasp_point(spec: BodySpec, size: Vec3) -> Vec3:
     """Where the centre of a held object of ``size`` [m] is, in the body's own frame: it lies on the hand."""
     x, y, z = hand(spec)
     return (x, y, z + size[2] / 2)

@@ -18,8 +18,8 @@ from hthor.types import HouseSpec, Joint, Opening, Rgba, Vec2, Vec3
 from hthor.world.model import door_geometry
 from hthor.world.rendering.scene import materials
 from hthor.world.rendering.scene.grids import slab
-from hthor.world.rendering.scene.items import INSIDE, Item
-from hthor.world.rendering.scene.wall_meshes import around
+from hthor.world.rendering.scene.items import INSIDE, SceneMesh
+from hthor.world.rendering.scene.wall_meshes import wall_of
 
 _CASING_M, _LINING_M, _PROUD_M = 0.06, 0.02, 0.018
 _GAP_M, _STRIP_M = 0.003, 0.006
@@ -31,7 +31,7 @@ _SASH_DEEP, _BAR_DEEP, _CROSS_DEEP = (-0.022, 0.022), (-0.016, 0.016), (-0.014, 
 ENTRANCE: Rgba = (0.42, 0.28, 0.19, 1.0)
 
 
-class Hole:
+class OpeningFrame:
     """An opening's own frame: ``s`` along it from its middle, ``t`` across it, ``z`` up [m]."""
 
     def __init__(self, opening: Opening) -> None:
@@ -52,32 +52,32 @@ class Hole:
         return slab((x, y, (z[0] + z[1]) / 2), half, self.yaw)
 
 
-def apertures(house: HouseSpec) -> Iterator[Item]:
+def apertures(house: HouseSpec) -> Iterator[SceneMesh]:
     """Frames of all openings, windows whole, and the leaves of doors that nobody opens."""
     for opening in house.openings:
-        hole = Hole(opening)
+        hole = OpeningFrame(opening)
         if opening.kind == "window":
             yield from _window(opening.id, hole)
             continue
         # The frame of a doorway in which nothing hangs is a part of the wall: the doorway itself is thin air.
         hung = opening.openable or not opening.passable
-        yield from _frame(opening.id if hung else around(house, opening) or opening.id, hole)
+        yield from _frame(opening.id if hung else wall_of(house, opening) or opening.id, hole)
         if not opening.passable:
             yield from _shut(opening, hole)
 
 
-def _frame(owner: str, hole: Hole) -> Iterator[Item]:
+def _frame(owner: str, hole: OpeningFrame) -> Iterator[SceneMesh]:
     across = (-WALL_M / 2 - _PROUD_M, WALL_M / 2 + _PROUD_M)
     inner, outer = hole.half - _LINING_M, hole.half + _CASING_M
     top = hole.high + _CASING_M
-    yield Item(owner, hole.box((-outer, -inner), across, (0.0, top)), materials.TRIM)
-    yield Item(owner, hole.box((inner, outer), across, (0.0, top)), materials.TRIM)
-    yield Item(owner, hole.box((-inner, inner), across, (hole.high - _LINING_M, top)), materials.TRIM, INSIDE)
+    yield SceneMesh(owner, hole.box((-outer, -inner), across, (0.0, top)), materials.TRIM)
+    yield SceneMesh(owner, hole.box((inner, outer), across, (0.0, top)), materials.TRIM)
+    yield SceneMesh(owner, hole.box((-inner, inner), across, (hole.high - _LINING_M, top)), materials.TRIM, INSIDE)
     sill = WALL_M / 2 + _STEP_M
-    yield Item(owner, hole.box((-inner, inner), (-sill, sill), (0.0, _STRIP_M)), materials.THRESHOLD)
+    yield SceneMesh(owner, hole.box((-inner, inner), (-sill, sill), (0.0, _STRIP_M)), materials.THRESHOLD)
 
 
-def _window(owner: str, hole: Hole) -> Iterator[Item]:
+def _window(owner: str, hole: OpeningFrame) -> Iterator[SceneMesh]:
     """A frame around the hole that shows on both sides of the wall, a sill, a sash with its bars, and glass."""
     across = (-WALL_M / 2 - _PROUD_M, WALL_M / 2 + _PROUD_M)
     inner, outer = hole.half - _LINING_M, hole.half + _CASING_M
@@ -91,53 +91,55 @@ def _window(owner: str, hole: Hole) -> Iterator[Item]:
         ((-inner, inner), across, (high, top)),
         ((-inner, inner), (-jut, jut), (low - 0.03, low + 0.004)),  # no wider: curtains hang beside it
     ):
-        yield Item(owner, hole.box(s, t, z), materials.TRIM)
+        yield SceneMesh(owner, hole.box(s, t, z), materials.TRIM)
     yield from _sash(owner, hole, inner, low, high)
 
 
-def _sash(owner: str, hole: Hole, inner: float, low: float, high: float) -> Iterator[Item]:
+def _sash(owner: str, hole: OpeningFrame, inner: float, low: float, high: float) -> Iterator[SceneMesh]:
     rim, bar = _SASH_M, _BAR_M / 2
     glass, floor, head = inner - rim, low + rim, high - rim
-    yield Item(owner, hole.box((-inner, -glass), _SASH_DEEP, (low, high)), materials.TRIM)
-    yield Item(owner, hole.box((glass, inner), _SASH_DEEP, (low, high)), materials.TRIM)
-    yield Item(owner, hole.box((-glass, glass), _SASH_DEEP, (low, floor)), materials.TRIM)
-    yield Item(owner, hole.box((-glass, glass), _SASH_DEEP, (head, high)), materials.TRIM)
+    yield SceneMesh(owner, hole.box((-inner, -glass), _SASH_DEEP, (low, high)), materials.TRIM)
+    yield SceneMesh(owner, hole.box((glass, inner), _SASH_DEEP, (low, high)), materials.TRIM)
+    yield SceneMesh(owner, hole.box((-glass, glass), _SASH_DEEP, (low, floor)), materials.TRIM)
+    yield SceneMesh(owner, hole.box((-glass, glass), _SASH_DEEP, (head, high)), materials.TRIM)
     columns, rows = max(1, round(2 * glass / 0.75)), 2 if high - low > 1.0 else 1
     for k in range(1, columns):
         s = -glass + 2 * glass * k / columns
-        yield Item(owner, hole.box((s - bar, s + bar), _BAR_DEEP, (floor, head)), materials.TRIM)
+        yield SceneMesh(owner, hole.box((s - bar, s + bar), _BAR_DEEP, (floor, head)), materials.TRIM)
     for k in range(1, rows):
         z = floor + (head - floor) * k / rows
-        yield Item(owner, hole.box((-glass, glass), _CROSS_DEEP, (z - bar, z + bar)), materials.TRIM)
-    yield Item(owner, hole.box((-glass, glass), (-0.003, 0.003), (floor, head)), materials.GLASS)
+        yield SceneMesh(owner, hole.box((-glass, glass), _CROSS_DEEP, (z - bar, z + bar)), materials.TRIM)
+    yield SceneMesh(owner, hole.box((-glass, glass), (-0.003, 0.003), (floor, head)), materials.GLASS)
 
 
-def _shut(opening: Opening, hole: Hole) -> Iterator[Item]:
+def _shut(opening: Opening, hole: OpeningFrame) -> Iterator[SceneMesh]:
     """A door that nobody opens, in two leaves where it is wide."""
     inner, height = hole.half - _LINING_M - _GAP_M, opening.high - _LINING_M - 2 * _GAP_M - _STRIP_M
     z = _STRIP_M + _GAP_M
     if hole.half < door_geometry.DOUBLE_M / 2:
-        yield from placed(opening.id, building.door_leaf(2 * inner, height, ENTRANCE), (hole.x, hole.y, z), hole.yaw)
+        yield from placed_meshes(
+            opening.id, building.door_leaf(2 * inner, height, ENTRANCE), (hole.x, hole.y, z), hole.yaw
+        )
         return
     for side in (-1, 1):
         at = (*hole.at(side * (inner + _GAP_M / 2) / 2, 0.0), z)
         pieces = building.door_leaf(inner - _GAP_M / 2, height, ENTRANCE)
-        yield from placed(opening.id, pieces, at, hole.yaw if side < 0 else hole.yaw + math.pi)
+        yield from placed_meshes(opening.id, pieces, at, hole.yaw if side < 0 else hole.yaw + math.pi)
 
 
-def hung(opens: door_geometry.Opens, joint: Joint) -> Iterator[Item]:
+def leaf_meshes(opens: door_geometry.Openable, joint: Joint) -> Iterator[SceneMesh]:
     """The leaf of a doorway that turns on ``joint``, closed, in the house."""
     part = next(part for part in opens.parts if part.moves == joint.name)
     (x, y, z), (half, _, tall) = part.centre, part.half
     pieces = building.door_leaf(2 * (half - _GAP_M), 2 * tall - _GAP_M, building.TRIM)
     at = plane.to_house((x, y, z - tall), opens.thing.centre, opens.thing.yaw)
-    yield from placed(opens.id, pieces, at, opens.thing.yaw + (0.0 if joint.anchor[0] < x else math.pi))
+    yield from placed_meshes(opens.id, pieces, at, opens.thing.yaw + (0.0 if joint.anchor[0] < x else math.pi))
 
 
-def placed(owner: str, pieces: Iterable[Piece], at: Vec3, yaw: float) -> Iterator[Item]:
+def placed_meshes(owner: str, pieces: Iterable[Piece], at: Vec3, yaw: float) -> Iterator[SceneMesh]:
     """Pieces turned by ``yaw`` [rad] and moved to ``at`` [m] in the house."""
     cos, sin = math.cos(yaw), math.sin(yaw)
     turn = np.array(((cos, sin, 0.0), (-sin, cos, 0.0), (0.0, 0.0, 1.0)))
     for mesh, material, _ in pieces:
         vertices = (mesh.vertices @ turn + np.array(at)).astype("f4")
-        yield Item(owner, mesh._replace(vertices=vertices, normals=(mesh.normals @ turn).astype("f4")), material)
+        yield SceneMesh(owner, mesh._replace(vertices=vertices, normals=(mesh.normals @ turn).astype("f4")), material)

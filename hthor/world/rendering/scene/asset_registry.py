@@ -11,19 +11,19 @@ from hthor.looks import Material, Mesh
 from hthor.types import Vec3
 from hthor.world.model.engine import mujoco
 from hthor.world.model.geoms import Quaternion
-from hthor.world.rendering.scene.asset_source import Fabric
+from hthor.world.rendering.scene.asset_source import AssetSource
 
 _THIN = 1e-12
 
 
-class Wardrobe:
+class AssetRegistry:
     """Adds geoms to a `mujoco.MjSpec`.
 
     Args:
         spec: the model in the making. fabric: where textures come from.
     """
 
-    def __init__(self, spec: Any, fabric: Fabric) -> None:
+    def __init__(self, spec: Any, fabric: AssetSource) -> None:
         self._spec, self._fabric = spec, fabric
         self._meshes: dict[Hashable, str] = {}
         self._materials: dict[Material, str] = {}

@@ -27,7 +27,7 @@ class Pack(Protocol):
         ...
 
 
-class Fabric:
+class AssetSource:
     """Looks of things, with the pack's before ours.
 
     A texture of the pack is called ``pack:NAME`` from here on, so that the two can share names.

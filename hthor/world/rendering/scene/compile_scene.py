@@ -12,15 +12,15 @@ from hthor.types import BodySpec, HouseSpec, Thing
 from hthor.world.model import door_geometry, geoms
 from hthor.world.model.bodies import bodies
 from hthor.world.model.engine import mujoco
-from hthor.world.model.inventory import Contents, Movable
+from hthor.world.model.inventory import Contents, MovableSpec
 from hthor.world.rendering.scene import materials, outdoors
-from hthor.world.rendering.scene.apertures import apertures, hung
-from hthor.world.rendering.scene.asset_registry import Wardrobe
-from hthor.world.rendering.scene.asset_source import Fabric
+from hthor.world.rendering.scene.apertures import apertures, leaf_meshes
+from hthor.world.rendering.scene.asset_registry import AssetRegistry
+from hthor.world.rendering.scene.asset_source import AssetSource
 from hthor.world.rendering.scene.grids import join
-from hthor.world.rendering.scene.items import ABOVE, INSIDE, Item
-from hthor.world.rendering.scene.lights import Lamps
-from hthor.world.rendering.scene.pose_sync import Puppets
+from hthor.world.rendering.scene.items import ABOVE, INSIDE, SceneMesh
+from hthor.world.rendering.scene.lights import RoomLights
+from hthor.world.rendering.scene.pose_sync import PoseSync
 from hthor.world.rendering.scene.shell import shell
 
 _SHADOW_TEXELS, _SAMPLES = 2048, 0
@@ -29,7 +29,7 @@ _EXTENT_M = 30.0
 _STILL = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 
-class Dressed(NamedTuple):
+class CompiledScene(NamedTuple):
     """The compiled visual model.
 
     ``owner``: who owns each geom. ``followers``: for each of the first puppets (mocap bodies), the body of the physics
@@ -42,16 +42,16 @@ class Dressed(NamedTuple):
     seats: Mapping[str, tuple[int, int]]
 
 
-class Dressing:
+class SceneBuilder:
     """Dresses one house."""
 
-    def __init__(self, house: HouseSpec, contents: Contents, puppets: Puppets, fabric: Fabric) -> None:
+    def __init__(self, house: HouseSpec, contents: Contents, puppets: PoseSync, fabric: AssetSource) -> None:
         self._house, self._contents, self._puppets, self._fabric = house, contents, puppets, fabric
         self._spec = mujoco.MjSpec()
-        self._wardrobe = Wardrobe(self._spec, fabric)
+        self._wardrobe = AssetRegistry(self._spec, fabric)
         self._followers: list[int] = []
 
-    def build(self, seats: Mapping[str, BodySpec], lamps: Lamps) -> Dressed:
+    def build(self, seats: Mapping[str, BodySpec], lamps: RoomLights) -> CompiledScene:
         """Everything, compiled."""
         self._settings()
         self._merged((*shell(self._house), *apertures(self._house), *lamps.items()))
@@ -65,7 +65,7 @@ class Dressing:
             self._body(seat, spec)
         places = {seat: (first + 2 * number, first + 2 * number + 1) for number, seat in enumerate(seats)}
         model = self._spec.compile()
-        return Dressed(model, self._wardrobe.owners(model), np.array(self._followers, int), places)
+        return CompiledScene(model, self._wardrobe.owners(model), np.array(self._followers, int), places)
 
     def _settings(self) -> None:
         spec = self._spec
@@ -85,7 +85,7 @@ class Dressing:
         lawn.pos, lawn.contype, lawn.conaffinity, lawn.group = (0.0, 0.0, -0.05), 0, 0, group
         lawn.material, lawn.rgba = self._wardrobe.material(material), material.rgba
 
-    def _merged(self, items: Iterable[Item]) -> None:
+    def _merged(self, items: Iterable[SceneMesh]) -> None:
         """What stays where it is, one geom for each owner, material and group."""
         heaps: dict[tuple[Any, ...], list[Mesh]] = {}
         for item in items:
@@ -103,7 +103,7 @@ class Dressing:
                 body, at = self._follower(self._puppets.hung[thing.id, joint], frame)
             self._pieces(body, thing.id, pieces, (key, joint), at)
 
-    def _movable(self, item: Movable) -> None:
+    def _movable(self, item: MovableSpec) -> None:
         body = self._puppet(self._puppets.free[item.id])
         key = (item.kind, item.size, item.variant)
         for joint, pieces in _by_joint(self._fabric.look(*key)).items():
@@ -111,10 +111,10 @@ class Dressing:
 
     def _doors(self) -> None:
         """The leaves that hang in doorways."""
-        for opens in door_geometry.of_house(self._house):
+        for opens in door_geometry.doorway_leaves(self._house):
             for joint in opens.joints:
                 body, frame = self._follower(self._puppets.hung[opens.id, joint.name], _STILL)
-                for item in hung(opens, joint):
+                for item in leaf_meshes(opens, joint):
                     self._wardrobe.geom(body, item.owner, item.mesh, item.material, item.group, None, *frame)
 
     def _body(self, seat: str, spec: BodySpec) -> None:

@@ -10,7 +10,7 @@ ALWAYS, INSIDE, ABOVE = 0, 4, 5
 """Draw groups: always drawn; left out of the view from above, like ceilings; drawn only there, like cut walls."""
 
 
-class Item(NamedTuple):
+class SceneMesh(NamedTuple):
     """A mesh in the house frame. ``owner`` is whose number it bears in a segmentation."""
 
     owner: str

@@ -14,8 +14,8 @@ from hthor.geometry import plane
 from hthor.looks.furniture import building
 from hthor.types import HouseSpec, Pose, Room, Vec2, Vec3
 from hthor.world.model.engine import mujoco
-from hthor.world.rendering.scene.apertures import placed
-from hthor.world.rendering.scene.items import INSIDE, Item
+from hthor.world.rendering.scene.apertures import placed_meshes
+from hthor.world.rendering.scene.items import INSIDE, SceneMesh
 
 _LAMPS = 3
 """OpenGL knows eight lights: headlight, fill, two for each of these lamps. Each that throws shadows costs a pass."""
@@ -41,7 +41,7 @@ _KINDS = {
 }
 
 
-class Lamps:
+class RoomLights:
     """A ceiling lamp for every room."""
 
     def __init__(self, house: HouseSpec) -> None:
@@ -49,12 +49,12 @@ class Lamps:
         self.places = {room.id: _spread(room) for room in house.rooms}
         self._next = {room.id: frozenset(_neighbours(house, room)) for room in house.rooms}
 
-    def items(self) -> Iterator[Item]:
+    def items(self) -> Iterator[SceneMesh]:
         """The lamps themselves."""
         for room, places in self.places.items():
             for x, y in places:
                 at = (x, y, self._house.height - 0.001)
-                for item in placed(f"ceiling of {room}", building.ceiling_lamp(), at, 0.0):
+                for item in placed_meshes(f"ceiling of {room}", building.ceiling_lamp(), at, 0.0):
                     yield item._replace(group=INSIDE)
 
     def light(self, scene: Any, pose: Pose) -> None:

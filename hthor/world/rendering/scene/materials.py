@@ -6,7 +6,7 @@ from msgspec import structs
 
 from hthor.looks import Material, materials, textures
 from hthor.types import Wall
-from hthor.world.rendering.scene.wall_meshes import outside
+from hthor.world.rendering.scene.wall_meshes import is_exterior
 
 CEILING = Material(rgba=(0.95, 0.95, 0.94, 1.0), emission=0.38, specular=0.0)
 TRIM = Material(rgba=(0.93, 0.92, 0.90, 1.0), emission=0.12, specular=0.15, shininess=0.3)
@@ -26,7 +26,7 @@ def floor(name: str) -> Material:
 
 def wall(face: Wall) -> Material:
     """A wall face's material: its own colour when the house gives one, brick outdoors when it names nothing."""
-    name = face.material or ("brick" if outside(face) else "")
+    name = face.material or ("brick" if is_exterior(face) else "")
     return structs.replace(materials.wall(name, face.rgb), emission=_WALL_GLOW)
 
 

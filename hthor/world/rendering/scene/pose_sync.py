@@ -12,11 +12,11 @@ import numpy as np
 
 from hthor.types import Vec3
 from hthor.world.model.engine import mujoco
-from hthor.world.model.geom_index import Scene
+from hthor.world.model.geom_index import GeomIndex
 from hthor.world.model.geoms import Quaternion
 
 
-class Puppets:
+class PoseSync:
     """The physics model's moving bodies by owner.
 
     Attributes:
@@ -24,7 +24,7 @@ class Puppets:
         hung: (id of a thing or opening, joint's name) -> the body that the joint moves.
     """
 
-    def __init__(self, model: Any, scene: Scene) -> None:
+    def __init__(self, model: Any, scene: GeomIndex) -> None:
         self._model = copy.copy(model)
         self._model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
         self._data = mujoco.MjData(self._model)

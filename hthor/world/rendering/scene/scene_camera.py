@@ -11,9 +11,9 @@ NEAR_M, FAR_M = 0.02, 120.0
 ABOVE_M = 20.0
 
 
-def look(camera: Any, pose: Pose, spec: BodySpec, lens: Vec2) -> None:
+def place_at_eye(camera: Any, pose: Pose, spec: BodySpec, lens: Vec2) -> None:
     """Put the camera where the body's eye is; ``lens`` are the tangents of half its fields of view."""
-    view = view_frustum.camera(pose, spec)
+    view = view_frustum.view_vector(pose, spec)
     camera.pos, camera.forward, camera.up = view[:3], view[3:6], view[9:12]
     camera.orthographic, camera.frustum_center = 0, 0.0
     camera.frustum_near, camera.frustum_far = NEAR_M, FAR_M
@@ -22,7 +22,7 @@ def look(camera: Any, pose: Pose, spec: BodySpec, lens: Vec2) -> None:
     camera.frustum_width = NEAR_M * lens[0]
 
 
-def hover(camera: Any, bounds: tuple[float, float, float, float]) -> None:
+def place_above(camera: Any, bounds: tuple[float, float, float, float]) -> None:
     """Look straight down on the area x0, y0, x1, y1 [m], north up."""
     x0, y0, x1, y1 = bounds
     camera.pos, camera.forward, camera.up = ((x0 + x1) / 2, (y0 + y1) / 2, ABOVE_M), (0, 0, -1), (0, 1, 0)

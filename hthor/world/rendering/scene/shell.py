@@ -13,8 +13,8 @@ from hthor.looks import Material, Mesh
 from hthor.types import HouseSpec, Room
 from hthor.world.rendering.scene import materials, wall_meshes
 from hthor.world.rendering.scene.grids import facet, join, slab
-from hthor.world.rendering.scene.items import ABOVE, ALWAYS, INSIDE, Item
-from hthor.world.rendering.scene.wall_meshes import Slab
+from hthor.world.rendering.scene.items import ABOVE, ALWAYS, INSIDE, SceneMesh
+from hthor.world.rendering.scene.wall_meshes import WallSlab
 
 _BOARD_M, _BOARD_OUT_M = 0.09, 0.012
 """Height of a baseboard and how far it stands off the wall."""
@@ -23,11 +23,11 @@ _CAP_M = 0.006
 CUT = Material(rgba=(0.30, 0.31, 0.33, 1.0), emission=0.4, specular=0.0)
 
 
-def shell(house: HouseSpec) -> Iterator[Item]:
+def shell(house: HouseSpec) -> Iterator[SceneMesh]:
     """Everything of the building itself."""
     for room in house.rooms:
-        yield Item(f"floor of {room.id}", _floor(room), materials.floor(room.floor))
-        yield Item(f"ceiling of {room.id}", _ceiling(room, house.height), materials.CEILING, INSIDE)
+        yield SceneMesh(f"floor of {room.id}", _floor(room), materials.floor(room.floor))
+        yield SceneMesh(f"ceiling of {room.id}", _ceiling(room, house.height), materials.CEILING, INSIDE)
     yield from _walls(house)
 
 
@@ -48,31 +48,31 @@ def scaled(mesh: Mesh, repeat: float) -> Mesh:
     return mesh._replace(uv=mesh.uv / np.float32(repeat))
 
 
-def _walls(house: HouseSpec) -> Iterator[Item]:
-    for piece in wall_meshes.slabs(house):
+def _walls(house: HouseSpec) -> Iterator[SceneMesh]:
+    for piece in wall_meshes.wall_slabs(house):
         face, material = piece.face, materials.wall(piece.face)
         group = INSIDE if piece.low > house.height / 2 else ALWAYS
-        yield Item(face.id, scaled(_slab(piece), materials.repeat(material)), material, group)
-        if piece.low < 1e-6 and not wall_meshes.outside(face):
-            yield Item(face.id, _baseboard(piece), materials.TRIM)
+        yield SceneMesh(face.id, scaled(_slab(piece), materials.repeat(material)), material, group)
+        if piece.low < 1e-6 and not wall_meshes.is_exterior(face):
+            yield SceneMesh(face.id, _baseboard(piece), materials.TRIM)
         if group == ALWAYS and piece.top > house.height - 0.01:
-            yield Item(face.id, _cap(piece), CUT, ABOVE)
+            yield SceneMesh(face.id, _cap(piece), CUT, ABOVE)
 
 
-def _slab(piece: Slab) -> Mesh:
+def _slab(piece: WallSlab) -> Mesh:
     """Its texture counts from the house's origin, so that it runs on from piece to piece."""
     x, y, _ = piece.centre
     return slab(piece.centre, piece.half, piece.yaw, x * math.cos(piece.yaw) + y * math.sin(piece.yaw))
 
 
-def _baseboard(piece: Slab) -> Mesh:
+def _baseboard(piece: WallSlab) -> Mesh:
     """A board on both faces of the slab; the one inside the wall is never seen."""
     (x, y, _), (a, b, h) = piece.centre, piece.half
     height = min(_BOARD_M, 2 * h)
     return slab((x, y, height / 2), (a + _BOARD_OUT_M, b + _BOARD_OUT_M, height / 2), piece.yaw)
 
 
-def _cap(piece: Slab) -> Mesh:
+def _cap(piece: WallSlab) -> Mesh:
     (x, y, _), (a, b, _) = piece.centre, piece.half
     return slab((x, y, piece.top + _CAP_M / 2), (a, b, _CAP_M / 2), piece.yaw)
 

@@ -19,12 +19,12 @@ _LINE_M = 0.08
 _BIT_M = 0.02
 
 
-def outside(face: Wall) -> bool:
+def is_exterior(face: Wall) -> bool:
     """Whether a face looks outdoors; ProcTHOR's own files say so in its id only."""
     return face.room == "exterior" or face.id.startswith("wall|exterior|")
 
 
-class Slab(NamedTuple):
+class WallSlab(NamedTuple):
     """A box ``half`` [m] along, across and up, turned by ``yaw`` [rad]; ``low`` and ``top`` [m] are its heights."""
 
     face: Wall
@@ -41,7 +41,7 @@ class Slab(NamedTuple):
         return self.centre[2] + self.half[2]
 
 
-class Side:
+class WallFace:
     """One face of a wall: a slab of half a wall's thickness on the side of its room."""
 
     def __init__(self, house: HouseSpec, face: Wall) -> None:
@@ -51,7 +51,7 @@ class Side:
         middle = self._at(self.length / 2, WALL_M / 2)
         self._side = 1.0 if self._within(middle) else -1.0
 
-    def slabs(self) -> Iterator[Slab]:
+    def slabs(self) -> Iterator[WallSlab]:
         """The face's pieces: beside, below and above its openings."""
         first, last = -self._reach(0.0, -1.0), self.length + self._reach(self.length, 1.0)
         start = first
@@ -70,7 +70,7 @@ class Side:
 
     def _within(self, point: Vec2) -> bool:
         rooms = self._house.rooms
-        if outside(self._face):
+        if is_exterior(self._face):
             return not any(plane.inside(point, room.polygon) for room in rooms)
         return any(room.id == self._face.room and plane.inside(point, room.polygon) for room in rooms)
 
@@ -95,27 +95,27 @@ class Side:
         ends = sorted(dx * ox + dy * oy for ox, oy in offsets)
         return max(ends[0], 0.0), min(ends[1], self.length)
 
-    def _slab(self, reach: Vec2, heights: Vec2) -> Iterator[Slab]:
+    def _slab(self, reach: Vec2, heights: Vec2) -> Iterator[WallSlab]:
         (begin, end), (low, high) = reach, heights
         if end - begin > 1e-6 and high - low > 1e-6:
             x, y = self._at((begin + end) / 2, self._side * WALL_M / 4)
             half = ((end - begin) / 2, WALL_M / 4, (high - low) / 2)
             yaw = math.atan2(self._along[1], self._along[0])
-            yield Slab(self._face, (x, y, (low + high) / 2), half, yaw)
+            yield WallSlab(self._face, (x, y, (low + high) / 2), half, yaw)
 
 
-def slabs(house: HouseSpec) -> Iterator[Slab]:
+def wall_slabs(house: HouseSpec) -> Iterator[WallSlab]:
     """Every piece of wall of the house."""
     for face in house.walls:
         if math.dist(face.a, face.b) > 1e-6:
-            yield from Side(house, face).slabs()
+            yield from WallFace(house, face).slabs()
 
 
-def around(house: HouseSpec, opening: Opening) -> str:
+def wall_of(house: HouseSpec, opening: Opening) -> str:
     """Id of a wall face that the opening is in, empty for none."""
     for face in house.walls:
         if math.dist(face.a, face.b) > 1e-6:
-            begin, end = Side(house, face).cut(opening)
+            begin, end = WallFace(house, face).cut(opening)
             if end - begin > 1e-6:
                 return face.id
     return ""
