@@ -1,0 +1,134 @@
+"""Pages of the documentation site that do not lie in docs/: a hook of mkdocs, named in mkdocs.yml.
+
+It adds a page of reference for each public module, the tutorial's notebook with what its cells print, and the project's
+own pages from the root of the repository. Links are written as GitHub needs them; here they get their places in the site.
+"""
+
+from __future__ import annotations
+
+import os
+import posixpath
+import re
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from mkdocs.structure.files import File, Files
+
+ROOT = Path(__file__).resolve().parents[1]
+MODULES = {
+    "Records": "hthor.types",
+    "Agents": "hthor.agents",
+    "Navigation": "hthor.navigation",
+    "The simulator": "hthor.world",
+    "Trials": "hthor.episode",
+    "Human models": "hthor.humans.model",
+    "Task kinds": "hthor.tasks.kind",
+    "Houses": "hthor.houses",
+    "The catalog": "hthor.catalog",
+    "Messages": "hthor.comms",
+    "Logs": "hthor.eval.log",
+    "Rules": "hthor.rules",
+    "Geometry": "hthor.geometry",
+    "Random numbers": "hthor.seeds",
+    "Errors": "hthor.errors",
+}
+"""The public modules, by the titles of their pages."""
+PROJECT = {
+    "CONTRIBUTING.md": "contributing.md",
+    "SECURITY.md": "security.md",
+    "CODE_OF_CONDUCT.md": "conduct.md",
+    "CHANGELOG.md": "changelog.md",
+    "leaderboard/README.md": "leaderboard-board.md",
+}
+"""Pages from outside docs/, by where they lie in the repository."""
+NOTEBOOK = "tutorial.ipynb"
+_LINK = re.compile(r"(\]\(|href=\")([^)\s\"#:]+)(#[^)\s\"]*)?(?=[)\"])")
+
+
+def on_config(config: Any) -> Any:
+    """Put the pages of reference where the navigation has `reference/`."""
+    config["nav"] = _with_reference(config["nav"])
+    return config
+
+
+def on_files(files: Files, config: Any) -> Files:
+    """Add the pages that are made here."""
+    for title, module in MODULES.items():
+        files.append(File.generated(config, _page(module), content=f"# {title}\n\n::: {module}\n"))
+    for source, page in PROJECT.items():
+        files.append(File.generated(config, page, content=(ROOT / source).read_text(encoding="utf-8")))
+    notebook = files.get_file_from_path(NOTEBOOK)
+    assert notebook is not None
+    text, pictures = executed(ROOT / "docs" / NOTEBOOK)
+    files.append(File.generated(config, "tutorial.md", content=text))
+    for name, data in pictures.items():
+        files.append(File.generated(config, name, content=data))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str:
+    """Links lead to the repository's files; in the site they lead to the pages made of these."""
+    made = {page: source for source, page in PROJECT.items()}
+    source = made.get(page.file.src_uri, f"docs/{page.file.src_uri}")
+
+    def moved(link: re.Match[str]) -> str:
+        path = posixpath.normpath(posixpath.join(posixpath.dirname(source), link[2]))
+        if not (ROOT / path).is_file():
+            return link[0]  # mkdocs says that it is broken
+        place = _in_site(path, files, config)
+        return f"{link[1]}{posixpath.relpath(place, posixpath.dirname(page.file.src_uri) or '.')}{link[3] or ''}"
+
+    return _LINK.sub(moved, markdown)
+
+
+def _in_site(path: str, files: Files, config: Any) -> str:
+    """Where a file of the repository is in the site; one that has no page there is added as it is."""
+    if path in PROJECT:
+        return PROJECT[path]
+    if path == f"docs/{NOTEBOOK}":
+        return "tutorial.md"
+    if path.startswith("docs/"):
+        return path.removeprefix("docs/")
+    place = f"repository/{path}"
+    if files.get_file_from_path(place) is None:
+        files.append(File.generated(config, place, content=(ROOT / path).read_bytes()))
+    return place
+
+
+def executed(notebook: Path) -> tuple[str, dict[str, bytes]]:
+    """A notebook as Markdown after a run of all its cells in an empty folder, and its pictures by their names.
+
+    Raises:
+        nbclient.exceptions.CellExecutionError: when a cell fails.
+    """
+    import nbformat
+    import sys
+    from nbconvert import MarkdownExporter
+    from nbconvert.preprocessors import ExecutePreprocessor
+    from traitlets.config import Config
+
+    os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    made = nbformat.read(notebook, as_version=4)
+    with tempfile.TemporaryDirectory() as folder:
+        ExecutePreprocessor(timeout=180, kernel_name="python3").preprocess(made, {"metadata": {"path": folder}})
+    resources = {"output_files_dir": "tutorial_files", "unique_key": notebook.stem}
+    text, more = MarkdownExporter(config=Config()).from_notebook_node(made, resources=resources)
+    return text, more["outputs"]
+
+
+def _with_reference(nav: list[Any]) -> list[Any]:
+    return [_entry(entry) for entry in nav]
+
+
+def _entry(entry: Any) -> Any:
+    if not isinstance(entry, dict):
+        return entry
+    (title, below), = entry.items()
+    if below == "reference/":
+        return {title: [{name: _page(module)} for name, module in MODULES.items()]}
+    return {title: _with_reference(below) if isinstance(below, list) else below}
+
+
+def _page(module: str) -> str:
+    return f"reference/{module.removeprefix('hthor.').replace('.', '-')}.md"
