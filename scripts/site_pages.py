@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import posixpath
 import re
+import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -103,18 +104,19 @@ def executed(notebook: Path) -> tuple[str, dict[str, bytes]]:
         nbclient.exceptions.CellExecutionError: when a cell fails.
     """
     import nbformat
-    import sys
+    from jupyter_client import AsyncKernelManager
+    from nbclient import NotebookClient
     from nbconvert import MarkdownExporter
-    from nbconvert.preprocessors import ExecutePreprocessor
-    from traitlets.config import Config
 
     os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    made = nbformat.read(notebook, as_version=4)
+    cells = nbformat.read(notebook, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
-        ExecutePreprocessor(timeout=180, kernel_name="python3").preprocess(made, {"metadata": {"path": folder}})
-    resources = {"output_files_dir": "tutorial_files", "unique_key": notebook.stem}
-    text, more = MarkdownExporter(config=Config()).from_notebook_node(made, resources=resources)
-    return text, more["outputs"]
+        kernel = AsyncKernelManager(kernel_name="python3", transport="ipc")
+        kernel.connection_file = f"{folder}/.kernel.json"
+        NotebookClient(cells, km=kernel, timeout=600, resources={"metadata": {"path": folder}}).execute()
+    names = {"output_files_dir": f"{notebook.stem}_files", "unique_key": notebook.stem}
+    text, made = MarkdownExporter().from_notebook_node(cells, resources=names)
+    return text, made["outputs"]
 
 
 def _with_reference(nav: list[Any]) -> list[Any]:
