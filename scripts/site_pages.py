@@ -104,16 +104,17 @@ def executed(notebook: Path) -> tuple[str, dict[str, bytes]]:
         nbclient.exceptions.CellExecutionError: when a cell fails.
     """
     import nbformat
-    from jupyter_client import AsyncKernelManager
     from nbclient import NotebookClient
     from nbconvert import MarkdownExporter
+    from traitlets.config import Config
 
+    os.environ["COLUMNS"] = "100"  # tables of commands are as wide as the page
     os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     cells = nbformat.read(notebook, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
-        kernel = AsyncKernelManager(kernel_name="python3", transport="ipc")
-        kernel.connection_file = f"{folder}/.kernel.json"
-        NotebookClient(cells, km=kernel, timeout=600, resources={"metadata": {"path": folder}}).execute()
+        place = {"metadata": {"path": folder}}
+        local = Config({"KernelManager": {"transport": "ipc"}})
+        NotebookClient(cells, timeout=600, kernel_name="python3", resources=place, config=local).execute()
     names = {"output_files_dir": f"{notebook.stem}_files", "unique_key": notebook.stem}
     text, made = MarkdownExporter().from_notebook_node(cells, resources=names)
     return text, made["outputs"]
