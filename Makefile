@@ -28,6 +28,7 @@ lint: .venv/.installed-dev
 fmt: .venv/.installed-dev
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+	$(BIN)/python scripts/wrap_markdown.py README.md CONTRIBUTING.md SECURITY.md CODE_OF_CONDUCT.md docs/*.md
 
 docs: .venv/.installed-docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet

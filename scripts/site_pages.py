@@ -104,17 +104,19 @@ def executed(notebook: Path) -> tuple[str, dict[str, bytes]]:
         nbclient.exceptions.CellExecutionError: when a cell fails.
     """
     import nbformat
+    from jupyter_client import KernelManager
     from nbclient import NotebookClient
     from nbconvert import MarkdownExporter
-    from traitlets.config import Config
 
     os.environ["COLUMNS"] = "100"  # tables of commands are as wide as the page
     os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     cells = nbformat.read(notebook, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
-        place = {"metadata": {"path": folder}}
-        local = Config({"KernelManager": {"transport": "ipc"}})
-        NotebookClient(cells, timeout=600, kernel_name="python3", resources=place, config=local).execute()
+        kernel = KernelManager(kernel_name="python3", transport="ipc", connection_file=f"{folder}/.kernel.json")
+        try:
+            NotebookClient(cells, km=kernel, timeout=600, resources={"metadata": {"path": folder}}).execute()
+        finally:
+            kernel.shutdown_kernel(now=True)
     names = {"output_files_dir": f"{notebook.stem}_files", "unique_key": notebook.stem}
     text, made = MarkdownExporter().from_notebook_node(cells, resources=names)
     return text, made["outputs"]
@@ -127,7 +129,7 @@ def _with_reference(nav: list[Any]) -> list[Any]:
 def _entry(entry: Any) -> Any:
     if not isinstance(entry, dict):
         return entry
-    (title, below), = entry.items()
+    ((title, below),) = entry.items()
     if below == "reference/":
         return {title: [{name: _page(module)} for name, module in MODULES.items()]}
     return {title: _with_reference(below) if isinstance(below, list) else below}
