@@ -1,7 +1,7 @@
 """Pages of the documentation site that do not lie in docs/: a hook of mkdocs, named in mkdocs.yml.
 
 It adds a page of reference for each public module, the tutorial's notebook with what its cells print, and the project's
-own pages from the root of the repository. Links are written as GitHub needs them; here they get their places in the site.
+own pages from the root of the repository. Links are written as GitHub needs them; here they lead to the site's pages.
 """
 
 from __future__ import annotations
@@ -107,6 +107,7 @@ def executed(notebook: Path) -> tuple[str, dict[str, bytes]]:
     from jupyter_client import KernelManager
     from nbclient import NotebookClient
     from nbconvert import MarkdownExporter
+    from nbconvert.filters import strip_ansi
 
     os.environ["COLUMNS"] = "100"  # tables of commands are as wide as the page
     os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
@@ -114,9 +115,13 @@ def executed(notebook: Path) -> tuple[str, dict[str, bytes]]:
     with tempfile.TemporaryDirectory() as folder:
         kernel = KernelManager(kernel_name="python3", transport="ipc", connection_file=f"{folder}/.kernel.json")
         try:
-            NotebookClient(cells, km=kernel, timeout=600, resources={"metadata": {"path": folder}}).execute()
+            place = {"metadata": {"path": folder}}
+            NotebookClient(cells, km=kernel, timeout=600, coalesce_streams=True, resources=place).execute()
         finally:
             kernel.shutdown_kernel(now=True)
+    for output in (output for cell in cells.cells for output in cell.get("outputs", ())):
+        if "text" in output:
+            output["text"] = strip_ansi(output["text"])
     names = {"output_files_dir": f"{notebook.stem}_files", "unique_key": notebook.stem}
     text, made = MarkdownExporter().from_notebook_node(cells, resources=names)
     return text, made["outputs"]
