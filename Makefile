@@ -31,7 +31,7 @@ fmt: .venv/.installed-dev
 	$(BIN)/python scripts/wrap_markdown.py README.md CONTRIBUTING.md SECURITY.md CODE_OF_CONDUCT.md docs/*.md
 
 docs: .venv/.installed-docs
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
 bench: .venv/.installed-dev
 	$(BIN)/python -m benchmarks

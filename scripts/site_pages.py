@@ -11,6 +11,7 @@ import posixpath
 import re
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,23 +19,24 @@ from mkdocs.structure.files import File, Files
 
 ROOT = Path(__file__).resolve().parents[1]
 MODULES = {
-    "Records": "hthor.types",
-    "Agents": "hthor.agents",
-    "Navigation": "hthor.navigation",
-    "The simulator": "hthor.world",
-    "Trials": "hthor.episode",
-    "Human models": "hthor.humans.model",
-    "Task kinds": "hthor.tasks.kind",
-    "Houses": "hthor.houses",
-    "The catalog": "hthor.catalog",
-    "Messages": "hthor.comms",
-    "Logs": "hthor.eval.log",
-    "Rules": "hthor.rules",
-    "Geometry": "hthor.geometry",
-    "Random numbers": "hthor.seeds",
-    "Errors": "hthor.errors",
+    "Records": ["hthor.types"],
+    "Agents": ["hthor.agents"],
+    "Navigation": ["hthor.navigation"],
+    "The simulator": ["hthor.world"],
+    "Trials": ["hthor.episode"],
+    "Human models": ["hthor.humans.model"],
+    "Task kinds": ["hthor.tasks.kind"],
+    "Houses": ["hthor.houses"],
+    "The catalog": ["hthor.catalog"],
+    "Messages": ["hthor.comms"],
+    "Logs": ["hthor.eval.records.trial_record", "hthor.eval.records.trial_log"],
+    "Results": ["hthor.eval.results.result_file"],
+    "Rules": ["hthor.rules"],
+    "Geometry": ["hthor.geometry"],
+    "Random numbers": ["hthor.seeds"],
+    "Errors": ["hthor.errors"],
 }
-"""The public modules, by the titles of their pages."""
+"""The public modules, by the titles of their pages of reference."""
 PROJECT = {
     "CONTRIBUTING.md": "contributing.md",
     "SECURITY.md": "security.md",
@@ -44,7 +46,9 @@ PROJECT = {
 }
 """Pages from outside docs/, by where they lie in the repository."""
 NOTEBOOK = "tutorial.ipynb"
-_LINK = re.compile(r"(\]\(|href=\")([^)\s\"#:]+)(#[^)\s\"]*)?(?=[)\"])")
+_LINK = re.compile(r"\[(?P<text>[^\]]*)\]\((?P<path>[^)\s#:]+)(?P<part>#[^)\s]*)?\)")
+_FILE = re.compile(r"(?:[\w/]+/)?[\w-]+\.(?:md|ipynb)")
+"""The text of a link that names a file, which is a page's title in the site."""
 
 
 def on_config(config: Any) -> Any:
@@ -55,8 +59,9 @@ def on_config(config: Any) -> Any:
 
 def on_files(files: Files, config: Any) -> Files:
     """Add the pages that are made here."""
-    for title, module in MODULES.items():
-        files.append(File.generated(config, _page(module), content=f"# {title}\n\n::: {module}\n"))
+    for title, modules in MODULES.items():
+        content = "\n".join([f"# {title}\n", *(f"::: {module}\n" for module in modules)])
+        files.append(File.generated(config, _page(modules), content=content))
     for source, page in PROJECT.items():
         files.append(File.generated(config, page, content=(ROOT / source).read_text(encoding="utf-8")))
     notebook = files.get_file_from_path(NOTEBOOK)
@@ -74,13 +79,24 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str
     source = made.get(page.file.src_uri, f"docs/{page.file.src_uri}")
 
     def moved(link: re.Match[str]) -> str:
-        path = posixpath.normpath(posixpath.join(posixpath.dirname(source), link[2]))
+        path = posixpath.normpath(posixpath.join(posixpath.dirname(source), link["path"]))
         if not (ROOT / path).is_file():
             return link[0]  # mkdocs says that it is broken
-        place = _in_site(path, files, config)
-        return f"{link[1]}{posixpath.relpath(place, posixpath.dirname(page.file.src_uri) or '.')}{link[3] or ''}"
+        place = posixpath.relpath(_in_site(path, files, config), posixpath.dirname(page.file.src_uri) or ".")
+        text = _title(ROOT / path) if _FILE.fullmatch(link["text"]) and place.endswith(".md") else link["text"]
+        return f"[{text}]({place}{link['part'] or ''})"
 
-    return _LINK.sub(moved, markdown)
+    return "".join(
+        part if part.startswith("```") else _LINK.sub(moved, part)
+        for part in re.split(r"(^```.*?^```)", markdown, flags=re.MULTILINE | re.DOTALL)
+    )
+
+
+def _title(path: Path) -> str:
+    """The first heading of a page or a notebook."""
+    found = re.search(r"^\s*\"?# (.*?)(?:\\n.*)?$", path.read_text(encoding="utf-8"), re.MULTILINE)
+    assert found is not None, path
+    return found[1]
 
 
 def _in_site(path: str, files: Files, config: Any) -> str:
@@ -136,9 +152,9 @@ def _entry(entry: Any) -> Any:
         return entry
     ((title, below),) = entry.items()
     if below == "reference/":
-        return {title: [{name: _page(module)} for name, module in MODULES.items()]}
+        return {title: [{name: _page(modules)} for name, modules in MODULES.items()]}
     return {title: _with_reference(below) if isinstance(below, list) else below}
 
 
-def _page(module: str) -> str:
-    return f"reference/{module.removeprefix('hthor.').replace('.', '-')}.md"
+def _page(modules: Sequence[str]) -> str:
+    return f"reference/{modules[0].removeprefix('hthor.').replace('.', '-')}.md"
