@@ -4,7 +4,7 @@
 # environment, called from an empty folder, the wheel passes `hthor doctor` and plays a few trials.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-python=${PYTHON:-$root/.venv/bin/python}
+python=$root/.venv/bin/python
 [ $# -le 1 ] || { sed -n '2,/^[^#]/{s/^# //p}' "$0" >&2; exit 2; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -25,6 +25,8 @@ with zipfile.ZipFile(sys.argv[1]) as wheel:
             print(hashlib.sha256(wheel.read(name)).hexdigest(), name)
 PY
 }
+
+make --silent -C "$root" .venv/.installed-dev
 
 echo "-- build the sdist and the wheel"
 mkdir "$work/tree"
