@@ -103,6 +103,20 @@ def test_what_an_extra_asks_for_is_pinned(extra: str):
     assert names <= pinned
 
 
+def test_no_file_of_the_project_is_ignored():
+    """Linters skip what git ignores, and `git add` leaves new files beside it out."""
+    listed = subprocess.run(
+        ["git", "ls-files", "--cached", "--ignored", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if listed.returncode:
+        pytest.skip("this copy of the project is no git repository")
+    assert listed.stdout.split() == []
+
+
 # ---- commands and places that pages name
 
 
