@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import importlib.util
 import json
 import re
@@ -10,12 +11,13 @@ import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 import yaml
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import hthor
@@ -138,7 +140,10 @@ def test_contributing_names_every_target_that_people_type():
 
 def test_modules_and_files_that_contributing_names_are_there():
     modules = re.findall(r"`python -m ([\w.]+)", CONTRIBUTING)
+    scripts = re.findall(r"`python (scripts/\w+\.py)", CONTRIBUTING)
     assert modules
+    assert scripts
+    assert [name for name in scripts if not (ROOT / name).is_file()] == []
     assert [name for name in modules if importlib.util.find_spec(name) is None] == []
     places = re.findall(
         r"`((?:hthor|tests|docs|examples|benchmarks|scripts|leaderboard|\.github)/[\w./]*)`", CONTRIBUTING
@@ -194,13 +199,18 @@ def test_prose_has_lines_that_fit(path: Path):
     assert [line for line in prose if len(line) > WIDTH] == [], "make fmt wraps them"
 
 
-def _wrapped(text: str) -> str:
+@functools.cache
+def _wrapper() -> ModuleType:
     spec = importlib.util.spec_from_file_location("wrap_markdown", ROOT / "scripts" / "wrap_markdown.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    wrapped: str = module.wrapped(text)
+    return module
+
+
+def _wrapped(text: str) -> str:
+    wrapped: str = _wrapper().wrapped(text)
     return wrapped
 
 
@@ -209,6 +219,7 @@ WORDS = st.lists(
 )
 
 
+@settings(deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(["", "- ", "12. ", "  * "]), WORDS), max_size=4))
 def test_wrapping_changes_white_space_alone_and_is_done_after_once(parts: list[tuple[str, list[str]]]):
     text = "\n\n".join(head + " ".join(["start", *words]) for head, words in parts) + "\n"

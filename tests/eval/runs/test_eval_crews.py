@@ -10,7 +10,6 @@ import eval_fakes as fakes
 import msgspec
 import pytest
 
-from hthor.tasks.suite import encode_suite, make_suite
 from hthor import tasks
 from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.config import cli_command, robot_team, sessions
@@ -21,7 +20,7 @@ from hthor.eval.results import aggregate
 from hthor.eval.runner import experiment, progress, run, run_options, trial_runner
 from hthor.guest import GuestConfig
 from hthor.report.drawing import trial_figure
-from hthor.tasks.suites import library
+from hthor.tasks.suite import encode_suite, make_suite
 from hthor.types import HUMAN
 
 HOUSE = "elder"
