@@ -31,6 +31,7 @@ MODULES = {
     "Messages": ["hthor.comms"],
     "Logs": ["hthor.eval.records.trial_record", "hthor.eval.records.trial_log"],
     "Results": ["hthor.eval.results.result_file"],
+    "Metrics": ["hthor.eval.metrics.metric"],
     "Rules": ["hthor.rules"],
     "Geometry": ["hthor.geometry"],
     "Random numbers": ["hthor.seeds"],
@@ -86,6 +87,7 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str
         text = _title(ROOT / path) if _FILE.fullmatch(link["text"]) and place.endswith(".md") else link["text"]
         return f"[{text}]({place}{link['part'] or ''})"
 
+    markdown = re.sub(r"^(<!--.*-->)\n(?=\S)", r"\1\n\n", markdown, flags=re.MULTILINE)  # else a table after it is text
     return "".join(
         part if part.startswith("```") else _LINK.sub(moved, part)
         for part in re.split(r"(^```.*?^```)", markdown, flags=re.MULTILINE | re.DOTALL)
