@@ -1,23 +1,40 @@
-# Two commands do everything: `make demo` runs the main job, `make test` checks the project.
-# Both make their own .venv with the pinned dependencies of constraints.txt.
+# `make demo` runs the main job, `make test` checks the whole project. For work on hthor itself: `make fmt` formats,
+# `make check` is the quick check before a commit, `make docs` builds the documentation site in site/, `make bench` times
+# trials, physics and pictures. All of them make their own .venv with the pinned dependencies of constraints.txt.
 
 PYTHON ?= $(shell for p in python3.12 python3.11 python3; do \
   $$p -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 12))' 2>/dev/null && { echo $$p; break; }; done)
 BIN := .venv/bin
 JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 
-.PHONY: demo test install clean python
+.PHONY: demo test check fmt lint docs bench install clean python
 
 demo: .venv/.installed
 	$(BIN)/hthor eval --agent none --agent frontier --agent oracle --humans proxy --suite smoke
 
-test: .venv/.installed-dev
+test: lint
+	@# a file's tests share worlds and runs, so one process does them all
+	$(BIN)/pytest -n $(JOBS) --dist loadfile
+
+check: lint
+	$(BIN)/pytest -q -n $(JOBS) --dist loadfile -m "not slow"
+
+lint: .venv/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	@# a file's tests share worlds and runs, so one process does them all
-	$(BIN)/pytest -n $(JOBS) --dist loadfile
+
+fmt: .venv/.installed-dev
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+	$(BIN)/python scripts/wrap_markdown.py README.md CONTRIBUTING.md SECURITY.md CODE_OF_CONDUCT.md docs/*.md
+
+docs: .venv/.installed-docs
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+
+bench: .venv/.installed-dev
+	$(BIN)/python -m benchmarks
 
 install: .venv/.installed
 
@@ -36,5 +53,9 @@ python:
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev,calibration]'
 	@touch .venv/.installed $@
 
+.venv/.installed-docs: pyproject.toml constraints.txt | .venv/bin/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
+	@touch .venv/.installed $@
+
 clean:
-	rm -rf .venv build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf .venv build dist site *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis

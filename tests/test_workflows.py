@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 SCRIPTS = sorted((ROOT / "scripts").rglob("*.sh"))
 STEPS = ROOT / "scripts" / "leaderboard"
-NAMES = {"guard", "submission-check", "official-eval", "leaderboard-validate", "pages", "nightly"}
+NAMES = {"guard", "submission-check", "official-eval", "leaderboard-validate", "pages", "nightly", "tests"}
 
 
 def _steps(path: Path) -> list[list[str]]:

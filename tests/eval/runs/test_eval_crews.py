@@ -10,7 +10,6 @@ import eval_fakes as fakes
 import msgspec
 import pytest
 
-from hthor.tasks.suite import encode_suite, make_suite
 from hthor import tasks
 from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.config import cli_command, robot_team, sessions
@@ -21,7 +20,7 @@ from hthor.eval.results import aggregate
 from hthor.eval.runner import experiment, progress, run, run_options, trial_runner
 from hthor.guest import GuestConfig
 from hthor.report.drawing import trial_figure
-from hthor.tasks.suites import library
+from hthor.tasks.suite import encode_suite, make_suite
 from hthor.types import HUMAN
 
 HOUSE = "elder"
@@ -210,7 +209,10 @@ def test_the_command_that_finishes_a_run_names_every_robot(tmp_path: Path):
     plan, _ = fakes.run_of(20, name="helper+other")
     told = cli_command.resume_command(tmp_path, plan)
     assert " --robots scout:helper.py,scout:other.py --humans proxy --suite fake --seed 0 " in told
-    assert shlex.split(cli_command.resume_command(tmp_path / "my run", plan))[-2:] == ["--out", str(tmp_path / "my run")]
+    assert shlex.split(cli_command.resume_command(tmp_path / "my run", plan))[-2:] == [
+        "--out",
+        str(tmp_path / "my run"),
+    ]
 
 
 def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):

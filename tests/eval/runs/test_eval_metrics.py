@@ -158,7 +158,9 @@ def test_a_hindrance_lasts_until_one_is_away_from_there():
     endless = log((20, "robot2", "in_way", {"by": HUMAN}), ticks=200, paths=paths)
     assert interference.hindered_by_pair(Trial(TRIAL, endless))["robot2 by human"] == interference.LONGEST_S
     late = log((190, "robot2", "in_way", {"by": HUMAN}), ticks=200, paths=paths)
-    assert interference.hindered_by_pair(Trial(TRIAL, late))["robot2 by human"] == pytest.approx(1.0), "not longer than the trial"
+    assert interference.hindered_by_pair(Trial(TRIAL, late))["robot2 by human"] == pytest.approx(1.0), (
+        "not longer than the trial"
+    )
 
 
 def test_two_hindrances_at_once_cost_no_more_time():

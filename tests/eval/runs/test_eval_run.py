@@ -208,7 +208,9 @@ def test_what_was_played_beside_a_killed_agent_does_not_count(tmp_path: Path):
         plan, dealt, fakes.player, folder=tmp_path / "calm", engine=fakes.Here(), watch=progress.Silent()
     )
     make = functools.partial(fakes.killing_player, 1, {})
-    other = run.run_evaluation(plan, dealt, make, folder=tmp_path / "killed", engine=fakes.Here(), watch=progress.Silent())
+    other = run.run_evaluation(
+        plan, dealt, make, folder=tmp_path / "killed", engine=fakes.Here(), watch=progress.Silent()
+    )
     assert other.hashes.trials == calm.hashes.trials
     assert session_restarts.load(tmp_path / "killed").participants == (dealt[0].participant,)
 

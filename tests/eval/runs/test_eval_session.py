@@ -16,7 +16,9 @@ from hthor.eval.config import sessions
 @given(st.integers(1, 130), st.integers(-(2**40), 2**40))
 def test_by_default_every_task_is_done_once(count: int, seed: int):
     tasks = [fakes.task(number) for number in range(count)]
-    hands = [sessions.assign_tasks(tasks, seed, participant) for participant in range(sessions.participants_needed(count))]
+    hands = [
+        sessions.assign_tasks(tasks, seed, participant) for participant in range(sessions.participants_needed(count))
+    ]
     assert sorted(number for hand in hands for number in hand) == list(range(count))
     assert max(map(len, hands)) <= rules.SESSION_TASKS
     assert max(map(len, hands)) - min(map(len, hands)) <= 1

@@ -61,10 +61,14 @@ def test_shards_are_a_partition_and_know_their_size(tasks: int, people: int, of:
         with pytest.raises(HthorError, match=f"{people} shards at most"):
             run_config.shard_config(plan, shard.Shard(number=1, of=of), tasks)
         return
-    parts = [run_config.shard_config(plan, shard.Shard(number=number, of=of), tasks).shard for number in range(1, of + 1)]
+    parts = [
+        run_config.shard_config(plan, shard.Shard(number=number, of=of), tasks).shard for number in range(1, of + 1)
+    ]
     held = [participant for part in parts for participant in part.share(range(people))]
     assert sorted(held) == list(range(people))
-    hands = [sessions.assign_tasks([fakes.task(number) for number in range(tasks)], 0, person) for person in range(people)]
+    hands = [
+        sessions.assign_tasks([fakes.task(number) for number in range(tasks)], 0, person) for person in range(people)
+    ]
     assert [part.trials for part in parts] == [sum(map(len, part.share(hands))) for part in parts]
 
 
