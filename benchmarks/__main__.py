@@ -21,7 +21,7 @@ def main() -> None:
     options = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__.splitlines()[0])
     options.add_argument("--quick", action="store_true", help="fewer repeats: a first idea in about a minute")
     options.add_argument("--json", action="store_true", help="JSON instead of a table")
-    options.add_argument("--suite", default=scenes.SUITE, help=f"one of {', '.join(tasks.suites())} (%(default)s)")
+    options.add_argument("--suite", default=scenes.SUITE, help=f"one of {', '.join(tasks.suite_names())} (%(default)s)")
     options.add_argument("--part", action="append", choices=PARTS, help="only this part; may be given more than once")
     options.add_argument("--profile", default="fast,nice", help="profiles of pictures, comma-separated (%(default)s)")
     given = options.parse_args()

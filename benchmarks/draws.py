@@ -67,7 +67,7 @@ def played(agent: str, way: str, suite: str, people: int) -> dict[str, list[floa
     """Each metric of each trial, and who did it."""
     found: dict[str, list[float]] = {name: [] for name in ("person", *METRICS)}
     (name, make), stage = AGENTS[agent], trial_runner.TrialRunner()
-    hands = sessions.make_sessions(library.suite(suite), agent=name)[:people]
+    hands = sessions.make_sessions(library.load_suite(suite), agent=name)[:people]
     with drawing(way):
         for hand in hands:
             human, minds = stage.enter(hand).human, {} if make is None else {"robot": make()}

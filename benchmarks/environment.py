@@ -211,7 +211,7 @@ def _resets(scene: Scene, suite: str) -> float:
     objects = _objects(scene)
     here = [
         task
-        for task in tasks.suite(suite).tasks
+        for task in tasks.load_suite(suite).tasks
         if task.house == scene.name and tuple((placed.id, placed.kind) for placed in task.objects) == objects
     ]
     scene.world.reset(here[0])

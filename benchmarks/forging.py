@@ -135,7 +135,7 @@ def main() -> None:
         entry = files.read(given.entry)
         beside = [files.read(path) for path in sorted(given.entry.parent.glob("*.json"))]
         control = next((one for one in beside if entry.uplift and one.hashes.run == entry.uplift.control), None)
-        suite = tasks.suite(given.suite) if given.suite else None
+        suite = tasks.load_suite(given.suite) if given.suite else None
         files.write(given.out, forged(entry, given.share, control, suite))
         return
     for line in _lines(given.draws):

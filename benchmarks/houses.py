@@ -56,7 +56,7 @@ def _try(seed: int, rooms: int) -> Try:
     document, errors = _first(seed, rooms)
     made = time.process_time()
     if document is not None:
-        house = loader.build(document, generate_valid.home_name(seed, rooms))
+        house = loader.house_from_document(document, generate_valid.home_name(seed, rooms))
         found = check_soundness(house, generate_valid.RADIUS_M)
         errors = tuple((finding.rule, str(finding)) for finding in found if finding.severity == "error")
     proved = time.process_time()

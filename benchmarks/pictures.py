@@ -67,7 +67,9 @@ def origin(name: str) -> str:
         facts = [TRIALS[name], task, houses.load(task.house).sha256, rules.sha256(), _sha256(ROOT / _REFERENCE)]
         return jsonio.sha256([*facts, *(_sha256(ROOT / path) for path in code)])
     if name in _OF_RUNS:
-        return jsonio.sha256([AGENTS, CASE, tasks.suite(SUITE).sha256, rules.sha256(), *map(_sha256, _code_of_pages())])
+        return jsonio.sha256(
+            [AGENTS, CASE, tasks.load_suite(SUITE).sha256, rules.sha256(), *map(_sha256, _code_of_pages())]
+        )
     return jsonio.sha256([houses.load(Path(name).stem).sha256, *(_sha256(ROOT / path) for path in _SHEETS)])
 
 
@@ -184,7 +186,7 @@ def _draw_scene(path: Path) -> None:
 
 
 def _task(task_id: str) -> TaskSpec:
-    return next(task for task in tasks.suite(task_id.partition("/")[0]).tasks if task.id == task_id)
+    return next(task for task in tasks.load_suite(task_id.partition("/")[0]).tasks if task.id == task_id)
 
 
 def _sha256(path: Path) -> str:

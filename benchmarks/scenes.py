@@ -10,7 +10,7 @@ from hthor import rules, tasks
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.runner import trial_runner
-from hthor.houses.space.geodesic import geodesics
+from hthor.houses.space.geodesic import house_geodesics
 from hthor.navigation.path_follower import Follower
 from hthor.types import HUMAN, Motion, TaskSpec, Vec2, Wait
 from hthor.world import World
@@ -33,7 +33,7 @@ class Scene(Struct, frozen=True):
 def scenes(suite: str) -> tuple[Scene, ...]:
     """One for every house of the suite, with its first task."""
     stage, found = trial_runner.TrialRunner(), {}
-    for session in make_sessions(tasks.suite(suite), agent="frontier"):
+    for session in make_sessions(tasks.load_suite(suite), agent="frontier"):
         for trial in session.trials:
             if trial.task.house not in found:
                 found[trial.task.house] = Scene(trial.task.house, trial.task, stage.world(trial))
@@ -42,7 +42,7 @@ def scenes(suite: str) -> tuple[Scene, ...]:
 
 def hands(suite: str, agent: str | RobotTeam) -> tuple[Session, ...]:
     """The sessions of the suite with one robot's mind, or with a crew."""
-    return make_sessions(tasks.suite(suite), agent=agent)
+    return make_sessions(tasks.load_suite(suite), agent=agent)
 
 
 Walk = list[tuple[int, str, Motion]]
@@ -77,6 +77,6 @@ def _next(world: World, seat: str, follower: Follower, tour: Iterator[Vec2]) -> 
     pose, spec = world.pose(seat), world.bodies[seat]
     outcome = world.outcome(seat)
     if follower.done or (outcome is not None and not outcome.ok):
-        ways = geodesics(world.house, spec.radius, spec.height)
+        ways = house_geodesics(world.house, spec.radius, spec.height)
         follower.take(ways.path(world.space[seat].nearest_free(pose.x, pose.y), next(tour)))
     return follower.next(pose) or Wait(seconds=rules.TICK_S)

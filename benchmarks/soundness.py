@@ -26,7 +26,7 @@ from hthor.houses import HouseLibrary
 from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
 from hthor.tasks.suites import suite_files
-from hthor.tasks.suites.suite_files import Source
+from hthor.tasks.suites.suite_files import HouseSource
 from hthor.world.validation import generate_valid
 
 
@@ -48,14 +48,14 @@ def main() -> None:
 
 def _measure(given: argparse.Namespace, folder: Path) -> None:
     files = [*given.houses, *_generated(given, folder / "generated")]
-    found = suite_files.sources(files)
+    found = suite_files.find_sources(files)
     recipe = Recipe(name="soundness", tasks=given.tasks)
     if given.raw:
         _count("first draws", [one for _, own in _shared(_first, recipe, found, given.jobs) for one in own])
     made = dict(proved.columns(recipe, found, jobs=given.jobs))
     columns = [made[number] for number in range(len(found))]
-    path = suite_files.write(
-        folder / "suite.json", suite_files.files(recipe.name, custom_suite.VERSION, found, columns)
+    path = suite_files.write_files(
+        folder / "suite.json", suite_files.make_files(recipe.name, custom_suite.VERSION, found, columns)
     )
     tasks = [task for column in columns for task in column]
     library = HouseLibrary(folder=path.with_suffix(".houses"))
@@ -64,14 +64,14 @@ def _measure(given: argparse.Namespace, folder: Path) -> None:
         _play(path, given, folder / "run")
 
 
-def _shared(work: object, recipe: Recipe, found: tuple[Source, ...], jobs: int) -> object:
+def _shared(work: object, recipe: Recipe, found: tuple[HouseSource, ...], jobs: int) -> object:
     return proof.shared(functools.partial(work, recipe), found, jobs=jobs)  # type: ignore[arg-type]
 
 
-def _first(recipe: Recipe, source: Source) -> list[Verdict]:
+def _first(recipe: Recipe, source: HouseSource) -> list[Verdict]:
     """Verdicts on the first draws in one house."""
     house = houses.load(source.given)
-    return [proof.examine(task, house) for task in custom_suite.in_house(recipe, house)]
+    return [proof.examine(task, house) for task in custom_suite.make_tasks(recipe, house)]
 
 
 def _generated(given: argparse.Namespace, folder: Path) -> list[str]:

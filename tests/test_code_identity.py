@@ -245,7 +245,7 @@ def test_a_circle_of_modules_has_a_hash(tmp_path: Path) -> None:
 )
 def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent: str, robot: str, model: str) -> None:
     """A trial is played under a profiler: no function outside of the counted modules is called."""
-    chosen = tasks.suite(suite)
+    chosen = tasks.load_suite(suite)
     stage = trial_runner.TrialRunner()
     trial = sessions.make_sessions(chosen, agent=agent, robot=robot, human=model)[0].trials[0]
     with stage.enter(sessions.make_sessions(chosen, agent=agent, robot=robot, human=model)[0]) as company:

@@ -32,7 +32,7 @@ from hthor.types import (
     Wait,
 )
 
-TASK = next(task for task in tasks.suite("smoke").tasks if task.kind == "object_goal_navigation")
+TASK = next(task for task in tasks.load_suite("smoke").tasks if task.kind == "object_goal_navigation")
 BODY = BodySpec(
     name="box",
     title="box",

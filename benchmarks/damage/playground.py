@@ -23,7 +23,7 @@ _SUBMITTED += "    def act(self, observation):\n        return Action()\n"
 
 def make(folder: Path) -> Path:
     """Fill the folder; plays three short trials with no robot and with the oracle."""
-    few = [one for one in tasks.suite("smoke").tasks if one.house == "hazel"][:3]
+    few = [one for one in tasks.load_suite("smoke").tasks if one.house == "hazel"][:3]
     short = tuple(msgspec.structs.replace(one, time_limit=15.0, t_star=10.0) for one in few)
     suite = make_suite("few", 1, short)
     jsonio.write(folder / "few.json", encode_suite(suite))
@@ -64,7 +64,7 @@ def _official(folder: Path, suite: tasks.Suite) -> None:
         houses=1,
         tasks=len(suite.tasks),
         suite_sha256=suite.sha256,
-        files=commitment.hashes(files),
+        files=commitment.hash_files(files),
         made_with={},
     )
     jsonio.write(folder / "suite.json", files["suite.json"])

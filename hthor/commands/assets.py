@@ -52,7 +52,7 @@ def build(
     talk = output.console(talk=True)
     files, source = debian.libraries(deb)
     output.say(f"building '{called}' from {source} ...", talk)
-    made = making.make(files, source, folder, called, cc_by=cc_by)
+    made = making.convert_models(files, source, folder, called, cc_by=cc_by)
     for pick, reason in made.skipped:
         output.say(f"left out {pick.kind} {pick.model}: {reason}", talk)
     if json:

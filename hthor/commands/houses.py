@@ -167,11 +167,15 @@ def census(
 
     columns = []
     if generated:
-        figures = [counting.measure(home.house) for home in _made(seed, None, generated)]
-        columns.append(counting.census("generated", figures))
-    columns.append(counting.census("hthor's own", [counting.measure(house) for _, house in _own(houses)]))
+        figures = [counting.measure_house(home.house) for home in _made(seed, None, generated)]
+        columns.append(counting.summarize_houses("generated", figures))
+    columns.append(
+        counting.summarize_houses("hthor's own", [counting.measure_house(house) for _, house in _own(houses)])
+    )
     if files:
-        columns.append(counting.census("given", [counting.measure(houses.load(file)) for file in files]))
+        columns.append(
+            counting.summarize_houses("given", [counting.measure_house(houses.load(file)) for file in files])
+        )
     if formats.asks_json(json, shape):
         output.put_json(columns)
         return

@@ -32,7 +32,7 @@ def show(
     """Show the scene priors: target, relation, place, frequency, word similarity and weight."""
     from hthor.catalog import priors
 
-    rows = priors.triplets() if target is None else priors.of(target)
+    rows = priors.triplets() if target is None else priors.triplets_of(target)
     if json:
         output.put_json({"origins": priors.table().origins, "triplets": rows})
         return
@@ -69,8 +69,8 @@ def build(
     from hthor.catalog.priors import making, scenes, words
 
     words.need()
-    seen = scenes.read(wheel)
-    table = making.make(seen, words.vectors, words.origin())
+    seen = scenes.read_scenes(wheel)
+    table = making.make_table(seen, words.vectors, words.origin())
     if out is not None:
         jsonio.write(out, making.encoded(table))
         output.say(f"wrote {out}")
@@ -87,7 +87,7 @@ def _check(table: Table, json: bool) -> None:
     from hthor.catalog.priors import making
 
     shipped = priors.table()
-    gaps = making.differences(shipped, table)
+    gaps = making.find_differences(shipped, table)
     same = making.encoded(shipped) == making.encoded(table)
     if json:
         rows = [{"triplet": " ".join(key), "number": part, "difference": gap} for key, part, gap in gaps]

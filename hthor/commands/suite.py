@@ -14,7 +14,7 @@ from hthor.commands.options import Json
 from hthor.console import output
 
 if TYPE_CHECKING:
-    from hthor.tasks.generation.secret_suites import Each, Proof
+    from hthor.tasks.generation.secret_suites import MapHouses, Proof
     from hthor.tasks.suites.commitment import Commitment
     from hthor.types import HouseSpec, TaskSpec
 
@@ -34,7 +34,7 @@ def salt(
     """Make a secret salt of 256 bits. Keep it: the suite cannot be revealed without it."""
     from hthor.tasks.suites import secret_salt as salts
 
-    salts.fresh(out)
+    salts.create_salt(out)
     output.put_files([out], json)
     sys.stderr.write(f"next:  hthor suite make NAME --salt-file {shlex.quote(str(out))}\n")
 
@@ -56,15 +56,15 @@ def make(
     from hthor.tasks.suites import commitment
 
     folder = out or Path(name)
-    secret_suites.unused(name)
+    secret_suites.check_name(name)
     held = _salt(salt_file, folder)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise HthorError(f"{folder} exists and is not empty. Choose another folder with --out.")
-    order = secret_suites.Order(name=name, houses=houses, tasks=tasks)
-    files = secret_suites.files(order, held, _proof(), _each(jobs, houses))
+    order = secret_suites.SuiteOrder(name=name, houses=houses, tasks=tasks)
+    files = secret_suites.make_files(order, held, _proof(), _each(jobs, houses))
     made_with = {**installation.versions(), "code": code_identity.makers_sha256()}
-    path = secret_suites.write(order, held, folder, files, made_with)
-    made = commitment.load(path)
+    path = secret_suites.write_suite(order, held, folder, files, made_with)
+    made = commitment.load_commitment(path)
     if json:
         output.put_json({"folder": str(folder), "commitment": made})
         return
@@ -79,7 +79,7 @@ def reveal(folder: Folder, salt_file: SaltFile, json: Json = False) -> None:
     """Publish the salt of a suite. From then on anybody can make the suite again, so it no longer serves as a test."""
     from hthor.tasks.suites import commitment
 
-    path = commitment.reveal(folder, _salt(salt_file, folder))
+    path = commitment.reveal_salt(folder, _salt(salt_file, folder))
     output.put_files([path], json)
     sys.stderr.write(f"next:  hthor suite verify {shlex.quote(str(folder))}\n")
 
@@ -101,9 +101,9 @@ def verify(
     from hthor.tasks.generation import secret_suites
     from hthor.tasks.suites import commitment
 
-    held = commitment.load(published or folder / commitment.COMMITMENT)
-    salt = commitment.revealed(folder) if salt_file is None else _salt(salt_file, folder)
-    found = list(commitment.changes(folder, held))
+    held = commitment.load_commitment(published or folder / commitment.COMMITMENT)
+    salt = commitment.read_revealed_salt(folder) if salt_file is None else _salt(salt_file, folder)
+    found = list(commitment.find_changes(folder, held))
     if salt is not None:
         found += secret_suites.differences(folder, held, salt, _proof(), _each(jobs, held.houses))
     state = "differs" if found else "sealed" if salt is None else "verified"
@@ -143,9 +143,9 @@ def _salt(path: Path, folder: Path) -> Any:
     from hthor.tasks.generation import secret_suites
     from hthor.tasks.suites import secret_salt as salts
 
-    secret_suites.beside(path, folder)
-    held = salts.read(path)
-    if salts.exposed(path):
+    secret_suites.check_salt_outside(path, folder)
+    held = salts.read_salt(path)
+    if salts.is_exposed(path):
         sys.stderr.write(f"warning: others can read {path}; 'chmod 600 {path}' keeps it secret\n")
     return held
 
@@ -164,7 +164,7 @@ def _possible(task: TaskSpec, house: HouseSpec) -> bool:
     return not proof.examine(task, house).faults
 
 
-def _each(jobs: int | None, total: int) -> Each:
+def _each(jobs: int | None, total: int) -> MapHouses:
     """What makes houses in several processes, with progress on standard error where somebody watches."""
     import functools
     import os

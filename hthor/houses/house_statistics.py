@@ -22,7 +22,7 @@ _STAND_M = 1.0
 _TENTHS = 10
 
 
-class Figures(Struct, frozen=True, kw_only=True):
+class HouseFigures(Struct, frozen=True, kw_only=True):
     """What one house measures.
 
     ``rooms`` holds kind, area [m2], doors, things and things on the floor or a wall of each room; a door counts for
@@ -32,7 +32,7 @@ class Figures(Struct, frozen=True, kw_only=True):
     """
 
     house: str
-    rooms: tuple[Count, ...]
+    rooms: tuple[RoomFigures, ...]
     doors: int
     ways: tuple[float, ...]
     free: float
@@ -43,7 +43,7 @@ class Figures(Struct, frozen=True, kw_only=True):
         return sum(room.area for room in self.rooms)
 
 
-class Count(Struct, frozen=True, kw_only=True):
+class RoomFigures(Struct, frozen=True, kw_only=True):
     """One room: its kind, area [m2], doors, all its things, and those that stand on the floor or hang on a wall."""
 
     kind: str
@@ -53,7 +53,7 @@ class Count(Struct, frozen=True, kw_only=True):
     top: int
 
 
-class Spread(Struct, frozen=True, kw_only=True):
+class Quantiles(Struct, frozen=True, kw_only=True):
     """Lower tenth, median and upper tenth of a figure, and how many there were."""
 
     low: float
@@ -62,22 +62,22 @@ class Spread(Struct, frozen=True, kw_only=True):
     count: int
 
 
-class Census(Struct, frozen=True, kw_only=True):
+class HouseStatistics(Struct, frozen=True, kw_only=True):
     """A population's figures by name; ``houses`` is how many were measured."""
 
     name: str
     houses: int
-    figures: dict[str, Spread]
+    figures: dict[str, Quantiles]
 
 
-def measure(house: HouseSpec) -> Figures:
+def measure_house(house: HouseSpec) -> HouseFigures:
     """Everything that the census counts of one house."""
     space = FreeSpace.of(house, BODY_M)
     reached = space.component(*space.nearest_free(house.start.x, house.start.y))
     doors = Counter(room for opening in house.openings if opening.passable for room in opening.rooms)
     things, top = Counter(t.room for t in house.things), Counter(t.room for t in house.things if not t.parent)
     rooms = tuple(
-        Count(
+        RoomFigures(
             kind=room.kind,
             area=abs(signed_area(room.polygon)),
             doors=doors[room.id],
@@ -87,7 +87,7 @@ def measure(house: HouseSpec) -> Figures:
         for room in house.rooms
     )
     area = sum(room.area for room in rooms)
-    return Figures(
+    return HouseFigures(
         house=house.id,
         rooms=rooms,
         doors=sum(opening.passable for opening in house.openings),
@@ -96,7 +96,7 @@ def measure(house: HouseSpec) -> Figures:
     )
 
 
-def census(name: str, houses: Iterable[Figures]) -> Census:
+def summarize_houses(name: str, houses: Iterable[HouseFigures]) -> HouseStatistics:
     """The figures of a population; rooms, things and ways are pooled over its houses.
 
     Raises:
@@ -121,17 +121,17 @@ def census(name: str, houses: Iterable[Figures]) -> Census:
         "start to receptacle, m": [way for one in all_ for way in one.ways],
         "free floor, %": [100.0 * one.free for one in all_],
     }
-    spreads = {label: spread(values) for label, values in figures.items() if values}
-    return Census(name=name, houses=len(all_), figures=spreads)
+    spreads = {label: quantiles_of(values) for label, values in figures.items() if values}
+    return HouseStatistics(name=name, houses=len(all_), figures=spreads)
 
 
-def spread(values: Sequence[float]) -> Spread:
+def quantiles_of(values: Sequence[float]) -> Quantiles:
     """Tenths and median of at least one value."""
     if len(values) == 1:
-        return Spread(low=values[0], median=values[0], high=values[0], count=1)
+        return Quantiles(low=values[0], median=values[0], high=values[0], count=1)
     tenths = statistics.quantiles(values, n=_TENTHS, method="inclusive")
     middle = statistics.median(values)
-    return Spread(low=min(tenths[0], middle), median=middle, high=max(tenths[-1], middle), count=len(values))
+    return Quantiles(low=min(tenths[0], middle), median=middle, high=max(tenths[-1], middle), count=len(values))
 
 
 def _ways(house: HouseSpec, space: FreeSpace) -> tuple[float, ...]:

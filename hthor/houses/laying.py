@@ -26,24 +26,24 @@ _SNAP_M = 0.30
 """How far above or below a surface a house file may place what lies on it."""
 
 
-def lay(house: HouseSpec) -> HouseSpec:
+def snap_objects(house: HouseSpec) -> HouseSpec:
     """The house with every small thing on its surface; `Thing.lift` keeps how much higher the file has it.
 
     A house that is laid down already stays as it is.
     """
-    laid = {thing.id: thing for thing in movable(house)}
+    laid = {thing.id: thing for thing in movable_objects(house)}
     things = tuple(_laid(thing, laid.get(thing.id, thing)) for thing in house.things)
     return msgspec.structs.replace(house, things=things)
 
 
-def movable(house: HouseSpec) -> tuple[Thing, ...]:
+def movable_objects(house: HouseSpec) -> tuple[Thing, ...]:
     """The small things that rest freely on a surface, exactly on it, in the house's order.
 
     Of two that are in one another the first is free. What lies on another small thing lies on it where that is laid.
     """
     small = {thing.id for thing in house.things if catalog.kind(thing.kind).pickable}
     standing = (thing for thing in house.things if thing.id not in small or not thing.parent)
-    crowd = _Crowd([*solids.walls(house), *(slab for thing in standing for slab in slabs(thing))])
+    crowd = _Crowd([*solids.wall_slabs(house), *(slab for thing in standing for slab in part_slabs(thing))])
     supports = {thing.id: thing for thing in house.things}
     found = []
     for thing in house.things:
@@ -51,7 +51,7 @@ def movable(house: HouseSpec) -> tuple[Thing, ...]:
             continue
         laid = _on_surface(thing, supports.get(thing.parent))
         if laid is None or not _fits(laid, house.height, crowd):
-            crowd.add(slabs(thing))
+            crowd.add(part_slabs(thing))
             continue
         crowd.add([_body(laid)])
         supports[thing.id] = laid
@@ -59,7 +59,7 @@ def movable(house: HouseSpec) -> tuple[Thing, ...]:
     return tuple(found)
 
 
-def slabs(thing: Thing) -> Iterator[Slab]:
+def part_slabs(thing: Thing) -> Iterator[Slab]:
     """Every part of a thing, closed, as an upright box."""
     for part in catalog.kind(thing.kind).parts(thing.size):
         x, y, z = plane.to_house(part.centre, thing.centre, thing.yaw)
@@ -120,7 +120,7 @@ class _Crowd:
         (x, y), radius = body.centre, math.hypot(*body.size) / 2
         low, high = body.low + SUNK_M, body.high - SUNK_M
         return any(
-            solids.overlap(body, slab) > SUNK_M
+            solids.overlap_depth(body, slab) > SUNK_M
             for u, v, r, bottom, top, slab in self._rows
             if bottom < high and top > low and (u - x) ** 2 + (v - y) ** 2 < (r + radius) ** 2
             if min(body.high, top) - max(body.low, bottom) > SUNK_M

@@ -45,9 +45,9 @@ class HouseLibrary(Struct, frozen=True, kw_only=True):
             HouseError: when the file cannot be used; names the file and the field.
         """
         path, file = self._locate(str(name_or_path))
-        document, house = schema.read(path, file)
-        structure.validate(house, file)
-        return loader.make_house(house, path.stem, jsonio.sha256(document), file, Assets(path, assets))
+        document, house = schema.read_house_file(path, file)
+        structure.validate_structure(house, file)
+        return loader.convert_house(house, path.stem, jsonio.sha256(document), file, Assets(path, assets))
 
     def _locate(self, given: str) -> tuple[Path, str]:
         """The path of a house's file, and what errors call it."""

@@ -21,18 +21,18 @@ from hthor.houses.schema import Agent, HouseFile, OpeningRow, RoomRow, WallRow
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec3, Wall
 
 
-def build(document: Any, name: str) -> HouseSpec:
+def house_from_document(document: Any, name: str) -> HouseSpec:
     """A house from a document in memory, such as `hthor.houses.generator` makes; ``name`` becomes its id.
 
     Raises:
         HouseError: naming ``name`` as the file, and the field.
     """
-    house = schema.convert(document, name)
-    structure.validate(house, name)
-    return make_house(house, name, jsonio.sha256(document), name, Assets(Path()))
+    house = schema.convert_document(document, name)
+    structure.validate_structure(house, name)
+    return convert_house(house, name, jsonio.sha256(document), name, Assets(Path()))
 
 
-def make_house(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) -> HouseSpec:
+def convert_house(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) -> HouseSpec:
     """A house from the valid content of a house file.
 
     Args:
@@ -42,7 +42,7 @@ def make_house(house: HouseFile, name: str, sha256: str, file: str, assets: Asse
         HouseError: naming ``file`` and the field.
     """
     walls = {wall.id: wall for wall in house.walls}
-    found = structure.start(house)
+    found = structure.find_start(house)
     if found is None:
         raise HouseError(file, "metadata.agent", "is missing")
     spec = HouseSpec(
@@ -58,7 +58,7 @@ def make_house(house: HouseFile, name: str, sha256: str, file: str, assets: Asse
         height=max(high for _, high in map(structure.wall_heights, house.walls)),
         start=_pose(found[1]),
     )
-    return laying.lay(spec)
+    return laying.snap_objects(spec)
 
 
 def _rooms(rows: list[RoomRow]) -> tuple[Room, ...]:
@@ -71,7 +71,7 @@ def _rooms(rows: list[RoomRow]) -> tuple[Room, ...]:
         kind = ROOM_KINDS[row.room_type]
         title = kind.replace("_", " ")
         number = f" {seen[row.room_type]}" if total[row.room_type] > 1 else ""
-        corners = structure.floor(row)
+        corners = structure.floor_polygon(row)
         polygon = corners if signed_area(corners) > 0.0 else corners[::-1]
         material = row.floor_material.name if row.floor_material is not None else ""
         rooms.append(Room(id=row.id, kind=kind, name=title + number, polygon=polygon, floor=material))
@@ -114,10 +114,10 @@ def _opening(row: OpeningRow, wall: WallRow, *, door: bool) -> Opening:
 
 
 def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
-    rooms = [(room.id, structure.floor(room)) for room in house.rooms]
+    rooms = [(room.id, structure.floor_polygon(room)) for room in house.rooms]
     things: list[Thing] = []
     units: dict[str, tuple[Thing, ...]] = {}
-    for where, row, parent in structure.objects(house):
+    for where, row, parent in structure.iter_objects(house):
         asset = assets.find(row.asset_id, file, f"{where}.assetId")
         at = row.position
         thing = Thing(
@@ -129,9 +129,9 @@ def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
             size=asset.size,
             yaw=wrap(0.0 - math.radians(row.rotation.y)),
             room=structure.room_at((at.x, at.z), rooms) or "",
-            parent=worktops.beneath((at.x, at.z), units[parent]).id if parent in units else parent,
+            parent=worktops.unit_below((at.x, at.z), units[parent]).id if parent in units else parent,
         )
-        units[row.id] = worktops.units(thing, asset.plan)
+        units[row.id] = worktops.split_worktop(thing, asset.plan)
         things += units[row.id]
     return tuple(things)
 

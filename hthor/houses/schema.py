@@ -51,7 +51,7 @@ class Rotation(Struct, frozen=True):
     y: float = 0.0
 
 
-class Colour(Struct, frozen=True):
+class Color(Struct, frozen=True):
     """Red, green, blue, 0 to 1."""
 
     r: float
@@ -63,7 +63,7 @@ class Material(Struct, frozen=True):
     """A surface's look."""
 
     name: str = ""
-    color: Colour | None = None
+    color: Color | None = None
 
 
 class RoomRow(Struct, frozen=True, rename="camel"):
@@ -137,7 +137,7 @@ class HouseFile(Struct, frozen=True):
     windows: list[OpeningRow] | None = None
 
 
-def read(path: Path, file: str) -> tuple[Any, HouseFile]:
+def read_house_file(path: Path, file: str) -> tuple[Any, HouseFile]:
     """The file's JSON document, and the same as records.
 
     Args:
@@ -149,10 +149,10 @@ def read(path: Path, file: str) -> tuple[Any, HouseFile]:
             version, or lacks a key or has a value of the wrong type.
     """
     document = _document(path, file)
-    return document, convert(document, file)
+    return document, convert_document(document, file)
 
 
-def convert(document: Any, file: str) -> HouseFile:
+def convert_document(document: Any, file: str) -> HouseFile:
     """A house's JSON document as records; errors as those of `read`, naming ``file``."""
     try:
         for where, value in _values(document, ""):

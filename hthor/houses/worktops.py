@@ -19,7 +19,7 @@ DEPTH_M = 0.61
 _LEAST_M = 0.1
 
 
-def units(thing: Thing, plan: str) -> tuple[Thing, ...]:
+def split_worktop(thing: Thing, plan: str) -> tuple[Thing, ...]:
     """The units of a worktop whose bounding box is ``thing``, the one along the back first, under the worktop's own id.
 
     Args:
@@ -33,7 +33,7 @@ def units(thing: Thing, plan: str) -> tuple[Thing, ...]:
     return tuple(_units(thing, plan))
 
 
-def beneath(place: Vec2, parts: Sequence[Thing]) -> Thing:
+def unit_below(place: Vec2, parts: Sequence[Thing]) -> Thing:
     """The unit under a place [m] on the plan, or the nearest one."""
     return min(parts, key=lambda one: distance_to_rectangle(place, one.centre[:2], one.size[:2], one.yaw))
 

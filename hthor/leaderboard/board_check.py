@@ -96,8 +96,8 @@ def _code(entry: Entry) -> tuple[str, str]:
 def _suite(entry: Entry, sizes: dict[str, int]) -> invariants.Found:
     """The suite is one of ours or committed to, and all of it was played."""
     suite = entry.run.suite
-    if suite.name in tasks.suites():
-        ours = library.read(suite.name)
+    if suite.name in tasks.suite_names():
+        ours = library.read_suite(suite.name)
         same = ours.sha256 == suite.sha256
         count = len(ours.tasks) if same else entry.run.trials
         limit_s = mean_limit([one.time_limit for one in ours.tasks])
@@ -114,9 +114,9 @@ def _suite(entry: Entry, sizes: dict[str, int]) -> invariants.Found:
 
 def _tasks(entry: Entry) -> list[TaskSpec]:
     """The task of each trial, where the suite is one of hthor's own as it is now; a secret one is not at hand."""
-    if entry.run.suite.name not in tasks.suites():
+    if entry.run.suite.name not in tasks.suite_names():
         return []
-    ours = library.read(entry.run.suite.name)
+    ours = library.read_suite(entry.run.suite.name)
     return trial_tasks.tasks(ours, entry) if ours.sha256 == entry.run.suite.sha256 else []
 
 

@@ -35,7 +35,7 @@ def look(kind: str, size: Vec3 | None = None, variant: int = 0) -> tuple[Piece, 
     """
     from hthor.looks import build  # only who draws needs the shapes of everything
 
-    return build.pieces(catalog.kind(kind), size, variant)
+    return build.build_pieces(catalog.kind(kind), size, variant)
 
 
 def __getattr__(name: str) -> Any:

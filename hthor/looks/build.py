@@ -121,14 +121,14 @@ _BUILDERS: Mapping[str, Builder] = {
 }
 
 
-def pieces(kind: Kind, size: Vec3 | None, variant: int) -> tuple[Piece, ...]:
+def build_pieces(kind: Kind, size: Vec3 | None, variant: int) -> tuple[Piece, ...]:
     """The pieces of a thing of ``kind`` in its local frame, one for each material and joint."""
     form = kind.form(size, variant)
     extent = kind.size if size is None else size
     draft = Draft.standing(kind.name, extent, form, variant)
     build = _BUILDERS.get(kind.name)
-    found = build(draft) if build else plain.pieces(draft.parts)
-    return tuple(joined(_boxed(list(found), extent), -extent[2] / 2.0))
+    found = build(draft) if build else plain.plain_pieces(draft.parts)
+    return tuple(merge_by_material(_boxed(list(found), extent), -extent[2] / 2.0))
 
 
 def _boxed(pieces: list[Piece], size: Vec3) -> list[Piece]:
@@ -140,7 +140,7 @@ def _boxed(pieces: list[Piece], size: Vec3) -> list[Piece]:
     return shaping.fitted(pieces, lo, hi) if missed > _CLOSE_M else pieces
 
 
-def joined(pieces: Iterable[Piece], lift: float = 0.0) -> list[Piece]:
+def merge_by_material(pieces: Iterable[Piece], lift: float = 0.0) -> list[Piece]:
     """Pieces of the same material and joint made one, and lifted by ``lift`` [m]."""
     groups: dict[tuple[Material, str], list[Mesh]] = {}
     for piece in pieces:

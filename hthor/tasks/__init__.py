@@ -6,8 +6,8 @@ Begin with `kind` (the contract of a kind of task) and `suites.library` (how a s
 from __future__ import annotations
 
 from hthor.tasks.suite import Suite
-from hthor.tasks.suites.library import suite, suites
+from hthor.tasks.suites.library import load_suite, suite_names
 
 CODE_ROOT = "makers"
 
-__all__ = ["Suite", "suite", "suites"]
+__all__ = ["Suite", "load_suite", "suite_names"]

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from hthor import catalog, rules
 from hthor.geometry import plane
 from hthor.tasks.arrangement.avatar import REACH_M
-from hthor.tasks.arrangement.reachability import SLACK_M, Bools, Ground, Walk
+from hthor.tasks.arrangement.reachability import SLACK_M, Bools, ReachableFloor, Walk
 from hthor.tasks.kind import LeastTimes, TaskKind
 from hthor.types import Goal, HouseSpec, Job, Placement, Snapshot, TaskSpec, Thing, ThingState, Vec2, Vec3
 
@@ -59,23 +59,25 @@ class JobKind(TaskKind):
             return f"target '{goal.target}' and relation '{goal.relation}' are not those of the first job"
         if len({job.target for job in goal.jobs}) < len(goal.jobs):
             return "has two jobs about the same object; one for each is allowed"
-        return next((f"jobs[{n}] {text}" for n, job in enumerate(goal.jobs) if (text := impossible(job, house))), "")
+        return next(
+            (f"jobs[{n}] {text}" for n, job in enumerate(goal.jobs) if (text := why_impossible(job, house))), ""
+        )
 
     def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
         return all(is_done(job, snapshot.things.get(job.target), house) for job in task.goal.jobs)
 
     def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
-        return not left(goal, objects, house)
+        return not jobs_left(goal, objects, house)
 
     def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> float:
-        first = len(left(task.goal, task.objects, house))
+        first = len(jobs_left(task.goal, task.objects, house))
         now = sum(1 for job in task.goal.jobs if not is_done(job, snapshot.things.get(job.target), house))
         return max(0.0, (first - now) / first) if first else float(not now)
 
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
-        ground = Ground.of(house)
+        ground = ReachableFloor.of(house)
         there = {placement.id: placement for placement in objects}
-        todo = left(goal, objects, house)
+        todo = jobs_left(goal, objects, house)
         longest = max((carrying_time(house, there[job.target], job) for job in todo), default=0.0)
         walks = [ground.walk([ground.touching(there[job.target])]) for job in todo]
 
@@ -101,7 +103,7 @@ def is_done(job: Job, state: ThingState | None, house: HouseSpec) -> bool:
     return state.support in job.destinations or _kind_of(state.support, house) in job.destinations
 
 
-def left(goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> tuple[Job, ...]:
+def jobs_left(goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> tuple[Job, ...]:
     """The jobs that the arrangement leaves to be done."""
     lying = {
         one.id: ThingState(id=one.id, kind=one.kind, position=one.position, support=one.support) for one in objects
@@ -113,13 +115,13 @@ def _state(placement: Placement) -> ThingState:
     return ThingState(id=placement.id, kind=placement.kind, position=placement.position, support=placement.support)
 
 
-def bearers(destinations: Collection[str], house: HouseSpec) -> tuple[Thing, ...]:
+def max_bearers(destinations: Collection[str], house: HouseSpec) -> tuple[Thing, ...]:
     """The things of the house with these ids, or of these kinds."""
     wanted = frozenset(destinations)
     return tuple(thing for thing in house.things if thing.id in wanted or thing.kind in wanted)
 
 
-def impossible(job: Job, house: HouseSpec) -> str:
+def why_impossible(job: Job, house: HouseSpec) -> str:
     """Why no arrangement of the house can do the job, empty when one can."""
     rooms = {room.id: room for room in house.rooms}
     if job.relation == "at":
@@ -150,7 +152,7 @@ def carrying_time(house: HouseSpec, placement: Placement, job: Job) -> float:
 
 def carrying_way(house: HouseSpec, placement: Placement, job: Job) -> float:
     """The least way [m], less the grid's slack, from within reach of the object to where it can be put down."""
-    ground = Ground.of(house)
+    ground = ReachableFloor.of(house)
     near, (ends, walk) = ground.touching(placement), _way(house, job.relation, job.destinations, job.place)
     if not (near.any() and ends.any()):
         return math.inf
@@ -171,7 +173,7 @@ def _edge(mask: Bools) -> Bools:
 @functools.lru_cache(maxsize=64)
 def _way(house: HouseSpec, relation: str, destinations: tuple[str, ...], place: Vec3 | None) -> tuple[Bools, Walk]:
     """Where whoever carries an object may stand when it is done, and the walk there."""
-    ground = Ground.of(house)
+    ground = ReachableFloor.of(house)
     mask = np.zeros(ground.space.free.shape, dtype=bool)
     if relation == "at" and place is not None:
         mask |= ground.touching(Placement(id="", kind="", position=place))
@@ -180,7 +182,7 @@ def _way(house: HouseSpec, relation: str, destinations: tuple[str, ...], place: 
         free = ground.space.free
         mask[free] = [_within(REACH_M, (x, y), rooms) for x, y in ground.space.centres(free)]
     else:
-        for thing in bearers(destinations, house):
+        for thing in max_bearers(destinations, house):
             mask |= ground.beside(thing)
     return mask, ground.walk([mask])
 

@@ -14,9 +14,9 @@ from msgspec import Struct
 from hthor import catalog, plugins
 from hthor.errors import HouseError, HthorError, TaskError, UnknownName
 from hthor.houses.space.free_space import FreeSpace
-from hthor.houses.space.solids import overlap
+from hthor.houses.space.solids import overlap_depth
 from hthor.tasks.arrangement.avatar import HEIGHT_M, RADIUS_M
-from hthor.tasks.arrangement.placement import Shelves, as_thing, footprint, rests_of, stands
+from hthor.tasks.arrangement.placement import SupportSurfaces, as_thing, footprint, rests_on, supports_of
 from hthor.tasks.kind import TaskKind
 from hthor.tasks.suite import Suite
 from hthor.types import HouseSpec, Placement, TaskSpec
@@ -29,7 +29,7 @@ _LISTED = 20
 """Tasks that an error names before it only counts the rest."""
 
 
-class Unsound(Struct, frozen=True, kw_only=True):
+class TaskFault(Struct, frozen=True, kw_only=True):
     """One thing that is wrong with a task of a suite: its place in the suite, its id, the field and the problem."""
 
     index: int
@@ -46,12 +46,12 @@ def validate(suite: Suite, file: str) -> None:
     """
     if not suite.tasks:
         raise TaskError(file, "tasks", "is empty; a suite needs at least one task")
-    found = tuple(unsound(suite))
+    found = tuple(find_faults(suite))
     if found:
         raise TaskError(file, f"tasks[{found[0].index}].{found[0].field}", _words(found, suite, file))
 
 
-def unsound(suite: Suite) -> Iterator[Unsound]:
+def find_faults(suite: Suite) -> Iterator[TaskFault]:
     """Everything that is wrong with the tasks of a suite, in its order."""
     seen: set[str] = set()
     loaded: dict[str, HouseSpec | str] = {}
@@ -59,15 +59,15 @@ def unsound(suite: Suite) -> Iterator[Unsound]:
         if task.house not in loaded:
             loaded[task.house] = _house(task.house, suite)
         house = loaded[task.house]
-        rows = [("house", house)] if isinstance(house, str) else list(faults(task, house))
+        rows = [("house", house)] if isinstance(house, str) else list(task_faults(task, house))
         if task.id in seen:
             rows.insert(0, ("id", f"'{task.id}' is the id of an earlier task; ids must be distinct"))
         seen.add(task.id)
         for field, problem in rows:
-            yield Unsound(index=index, task=task.id, field=field, problem=problem)
+            yield TaskFault(index=index, task=task.id, field=field, problem=problem)
 
 
-def _words(found: Sequence[Unsound], suite: Suite, file: str) -> str:
+def _words(found: Sequence[TaskFault], suite: Suite, file: str) -> str:
     """The first problem, then all the tasks that have one."""
     ids = list(dict.fromkeys(one.task for one in found))
     if len(ids) == 1:
@@ -77,7 +77,7 @@ def _words(found: Sequence[Unsound], suite: Suite, file: str) -> str:
     return f"{found[0].problem}. {many} 'hthor tasks check {shlex.quote(file)}' says what is wrong with each."
 
 
-def faults(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
+def task_faults(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
     """Everything that is wrong with a task in its house: pairs of a field and a problem."""
     if task.house_sha256 != house.sha256:
         yield "house_sha256", f"the task was made for {task.house_sha256}, the house '{task.house}' is {house.sha256}"
@@ -99,7 +99,7 @@ def _house(name: str, suite: Suite) -> HouseSpec | str:
 
 
 def _objects(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
-    shelves, ids = Shelves.of(house), {thing.id for thing in house.things}
+    shelves, ids = SupportSurfaces.of(house), {thing.id for thing in house.things}
     taken: set[str] = set()
     for number, placement in enumerate(task.objects):
         where = f"objects[{number}]"
@@ -122,7 +122,7 @@ def _objects(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
 
 
 def _support(
-    where: str, placement: Placement, shelves: Shelves, task: TaskSpec, house: HouseSpec
+    where: str, placement: Placement, shelves: SupportSurfaces, task: TaskSpec, house: HouseSpec
 ) -> Iterator[tuple[str, str]]:
     things = {thing.id: thing for thing in house.things}
     things |= {other.id: as_thing(other) for other in task.objects if other.kind in catalog.names()}
@@ -133,12 +133,12 @@ def _support(
             yield f"{where}.position", f"'{placement.id}' names no support, nor does it lie on free floor"
     elif placement.support not in things.keys() - {placement.id}:
         yield f"{where}.support", f"there is no thing '{placement.support}'; valid: {', '.join(sorted(things))}"
-    elif not any(stands(placement, rest, _ALOFT_M) for rest in rests_of(things[placement.support])):
+    elif not any(rests_on(placement, rest, _ALOFT_M) for rest in supports_of(things[placement.support])):
         yield f"{where}.position", f"'{placement.id}' rests on no surface of '{placement.support}'"
 
 
 def _crowded(one: Placement, two: Placement) -> bool:
-    return overlap(footprint(one), footprint(two)) > _ALOFT_M
+    return overlap_depth(footprint(one), footprint(two)) > _ALOFT_M
 
 
 def _goal(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:

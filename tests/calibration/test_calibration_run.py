@@ -36,7 +36,7 @@ from hthor.humans.population import parameter_registry
 from hthor.humans.population.population import Population
 from hthor.tasks.suite import make_suite
 
-PAPER = tasks.suite("paper")
+PAPER = tasks.load_suite("paper")
 TINY = make_suite("tiny", 1, tuple(task for task in PAPER.tasks if task.house == PAPER.tasks[0].house)[:2])
 
 

@@ -23,7 +23,7 @@ from hthor.calibration.simulation.trial_identity import Identity
 from hthor.errors import HthorError, RunError, RunLocked, UnknownName
 from hthor.eval.records import trial_record
 
-SUITE = tasks.suite("paper")
+SUITE = tasks.load_suite("paper")
 PAPER = targets.load("paper")
 
 

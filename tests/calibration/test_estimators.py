@@ -270,7 +270,7 @@ def test_too_few_data_leave_a_population_as_it_was(rng: np.random.Generator) -> 
 @pytest.fixture(scope="module")
 def played() -> tuple[Parameters, list[TrialRecord]]:
     """Six people of one population, some with robots, four trials each in two houses."""
-    smoke = tasks.suite("smoke")
+    smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house in ("alder", "hazel"))[:4])
     population = Parameters(v_pace=0.45, omega=1.2, t_manip=1.6, t_read=4.2, sigma=0.1, a0=3.0)
     return population, parameter_recovery.logs(population, few, trial_runner.TrialRunner(), seed=5, people=6)

@@ -31,7 +31,7 @@ def present(house: str) -> set[str]:
 
 
 def applicable(target: str, kinds: set[str]) -> list[priors.Triplet]:
-    return [row for row in priors.of(target) if row.reference in kinds]
+    return [row for row in priors.triplets_of(target) if row.reference in kinds]
 
 
 # ---- what there is, by counting
@@ -75,7 +75,7 @@ def test_every_part_has_its_source() -> None:
 
 def test_an_unknown_target_names_the_nearest() -> None:
     with pytest.raises(UnknownName, match="Did you mean 'mug'"):
-        priors.of("muug")
+        priors.triplets_of("muug")
 
 
 # ---- the weights, from the two parts
@@ -85,12 +85,12 @@ def test_frequencies_are_the_counts() -> None:
     for row in priors.triplets():
         assert 0 <= row.seen <= row.of
         assert row.frequency == round(row.seen / row.of, 3)
-    assert all(len({row.of for row in priors.of(target)}) == 1 for target in priors.targets())
+    assert all(len({row.of for row in priors.triplets_of(target)}) == 1 for target in priors.targets())
 
 
 @pytest.mark.parametrize("target", catalog.TARGETS)
 def test_the_two_parts_give_the_shipped_weights(target: str) -> None:
-    rows = priors.of(target)
+    rows = priors.triplets_of(target)
     often, alike = sum(max(row.frequency, 0.01) for row in rows), sum(math.exp(row.similarity / 0.15) for row in rows)
     for row in rows:
         parts = 0.75 * max(row.frequency, 0.01) / often + 0.25 * math.exp(row.similarity / 0.15) / alike
@@ -102,7 +102,7 @@ part = st.floats(0.0, 1.0)
 
 @given(st.lists(st.tuples(part, part), min_size=1, max_size=12))
 def test_weights_add_up_and_nothing_is_impossible(parts: list[tuple[float, float]]) -> None:
-    weights = priors.weighed([often for often, _ in parts], [alike for _, alike in parts])
+    weights = priors.weigh_triplets([often for often, _ in parts], [alike for _, alike in parts])
     assert sum(weights) == pytest.approx(1.0)
     assert min(weights) > 0.0
     order = sorted(range(len(parts)), key=lambda at: parts[at])
@@ -140,7 +140,7 @@ def test_relations_are_drawn_as_they_weigh(target: str, house: str) -> None:
     kinds = present(house)
     rows = applicable(target, kinds)
     assert len(rows) >= 2
-    drawn = Counter(scene_graph.draw(target, kinds, root).key for root in range(SAMPLES))
+    drawn = Counter(scene_graph.draw_triplet(target, kinds, root).key for root in range(SAMPLES))
     counts = [drawn[row.key] for row in rows]
     assert sum(counts) == SAMPLES, "something else was drawn than what the house has"
     total = sum(row.weight for row in rows)

@@ -67,7 +67,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ],
 )
 def test_counting(wheel: Path, triplet: tuple[str, str, str], counted: tuple[int, int]) -> None:
-    assert scenes.count(scenes.read(wheel).scenes, *triplet) == counted
+    assert scenes.count(scenes.read_scenes(wheel).scenes, *triplet) == counted
 
 
 def one_hot(phrases: Sequence[str]) -> np.ndarray:
@@ -75,7 +75,7 @@ def one_hot(phrases: Sequence[str]) -> np.ndarray:
 
 
 def test_making_a_table(wheel: Path) -> None:
-    made = making.make(scenes.read(wheel), one_hot, ORIGIN)
+    made = making.make_table(scenes.read_scenes(wheel), one_hot, ORIGIN)
     assert [row.key for row in made.triplets] == [row.key for row in priors.triplets()]
     assert made.origins[0].version == "9.9"
     apple = {row.key[1:]: row for row in made.triplets if row.target == "apple"}
@@ -91,10 +91,10 @@ def test_the_shipped_file_is_as_it_would_be_written() -> None:
 
 def test_differences_are_found() -> None:
     ours, rows = priors.table(), priors.triplets()
-    assert making.differences(ours, ours) == []
+    assert making.find_differences(ours, ours) == []
     first = msgspec.structs.replace(rows[0], weight=rows[0].weight + 0.25, similarity=rows[0].similarity - 0.5)
     other = msgspec.structs.replace(ours, triplets=(first, *rows[1:-1]))
-    found = making.differences(ours, other)
+    found = making.find_differences(ours, other)
     assert [(key, number) for key, number, _ in found] == [
         (rows[0].key, "similarity"),
         (rows[0].key, "weight"),
@@ -106,10 +106,10 @@ def test_differences_are_found() -> None:
 def test_what_ships_is_what_the_sources_give() -> None:
     try:
         words.need()
-        seen = scenes.read()
+        seen = scenes.read_scenes()
     except MissingExtra as absent:
         pytest.skip(str(absent))
-    assert making.encoded(making.make(seen, words.vectors, words.origin())) == making.encoded(priors.table())
+    assert making.encoded(making.make_table(seen, words.vectors, words.origin())) == making.encoded(priors.table())
 
 
 @pytest.fixture
@@ -133,7 +133,7 @@ def test_show(hthor) -> None:
     assert row.split()[:7] == ["near", "coffee_machine", "7", "0.058", "0.523", "0.071", "yes"]
     rows = json.loads(hthor("show", "mug", "--json").stdout)["triplets"]
     assert [tuple(row[name] for name in ("target", "relation", "reference")) for row in rows] == [
-        row.key for row in priors.of("mug")
+        row.key for row in priors.triplets_of("mug")
     ]
     assert len(json.loads(hthor("show", "--json").stdout)["triplets"]) == 65
     assert isinstance(hthor("show", "sofa").exception, UnknownName)
@@ -152,7 +152,7 @@ def test_build_and_check(hthor, encoder: None, wheel: Path, tmp_path: Path) -> N
 
 
 def test_check_of_the_same(hthor, encoder: None, wheel: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(making, "make", lambda *_: priors.table())
+    monkeypatch.setattr(making, "make_table", lambda *_: priors.table())
     said = hthor("build", "--wheel", str(wheel), "--check")
     assert (said.exit_code, said.stdout.split(":")[0]) == (0, "same")
 

@@ -36,8 +36,8 @@ def hthor(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     monkeypatch.setenv("COLUMNS", "200")
     monkeypatch.delenv("FORCE_COLOR", raising=False)
     monkeypatch.setenv("_TYPER_FORCE_DISABLE_TERMINAL", "1")  # the command sets it; this takes it back afterwards
-    real = tasks.suite
-    monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
+    real = tasks.load_suite
+    monkeypatch.setattr(tasks, "load_suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
     monkeypatch.setattr(trial_runner, "make_runner", fakes.player)
 
     def run(*words: str) -> Said:

@@ -197,7 +197,7 @@ def test_the_shell_completes_values(both: Path) -> None:
 
 def test_what_is_offered_is_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert completion_values.agents() == list(plugins.names("agent"))
-    assert completion_values.suites() == list(tasks.suites())
+    assert completion_values.suites() == list(tasks.suite_names())
     assert completion_values.houses() == list(houses.names())
     assert completion_values.engines() == sorted(engines.engine_names())
     assert completion_values.robots() == sorted((*plugins.names("robot"), *robot_team.ALIASES))

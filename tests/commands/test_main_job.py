@@ -49,7 +49,7 @@ TRIALS = 12
 @pytest.fixture(scope="module", autouse=True)
 def brief() -> Iterator[tasks.Suite]:
     """A suite of a few houses' tasks, and its file."""
-    chosen = tuple(task for task in tasks.suite("smoke").tasks if task.house in HOUSES)
+    chosen = tuple(task for task in tasks.load_suite("smoke").tasks if task.house in HOUSES)
     suite = make_suite("brief", 1, chosen)
     SUITE.write_bytes(encode_suite(suite))
     yield suite
@@ -281,7 +281,7 @@ def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(tmp_path
 def dealt(agent: str, count: int = 2) -> tuple[trial_runner.Sources, Session]:
     """Where an agent's file lies, and the first trials of its first person."""
     who = robot_team.form_team(["scout"], [agent])
-    whole = make_sessions(tasks.suite(SUITE), agent=who, participants=1)[0]
+    whole = make_sessions(tasks.load_suite(SUITE), agent=who, participants=1)[0]
     return trial_runner.Sources(minds=who.minds, manifests=who.manifests), msgspec.structs.replace(
         whole, trials=whole.trials[:count]
     )

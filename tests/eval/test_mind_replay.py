@@ -31,7 +31,7 @@ PNG = b"\x89PNG\r\n"
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small run with the oracle: one person, three trials in one house."""
     folder = tmp_path_factory.mktemp("mind")
-    smoke = tasks.suite("smoke")
+    smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "hazel")[:3])
     (folder / "few.json").write_bytes(encode_suite(few))
     options = run_options.RunOptions(
@@ -158,7 +158,7 @@ def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> N
         "    def act(self, observation):\n        if observation.tick > 20:\n            raise RuntimeError('lost')\n"
         "        return Action(motion=Move(forward=0.3))\n"
     )
-    one = make_suite("one", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == "hazel")[:1])
+    one = make_suite("one", 1, tuple(task for task in tasks.load_suite("smoke").tasks if task.house == "hazel")[:1])
     (tmp_path / "one.json").write_bytes(encode_suite(one))
     options = run_options.RunOptions(
         agents=(str(agent),), suite=str(tmp_path / "one.json"), jobs=1, out=tmp_path / "run", max_faults="100%"

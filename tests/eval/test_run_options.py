@@ -31,7 +31,7 @@ from hthor.guest import GuestFault
 from hthor.leaderboard.entries import overrides
 from hthor.types import Action
 
-SMOKE = tasks.suite("smoke").tasks
+SMOKE = tasks.load_suite("smoke").tasks
 
 
 @settings(deadline=None)
@@ -45,7 +45,10 @@ def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
 
 @pytest.mark.parametrize("count", [10, 20, 30])
 def test_a_choice_is_spread_over_houses_and_kinds(count: int) -> None:
-    whole, some = tasks.suite("standard").tasks, task_subset.choose_subset(tasks.suite("standard").tasks, count)
+    whole, some = (
+        tasks.load_suite("standard").tasks,
+        task_subset.choose_subset(tasks.load_suite("standard").tasks, count),
+    )
     for field in ("house", "kind"):
         every = Counter(getattr(task, field) for task in whole)
         here = Counter(getattr(task, field) for task in some)

@@ -12,7 +12,7 @@ from test_check import SIDE, TABLE, house, on, thing
 
 from hthor import catalog
 from hthor.errors import HthorError
-from hthor.houses.checks.findings import error, sound
+from hthor.houses.checks.findings import error, is_sound
 from hthor.houses.checks.house_checks import check
 from hthor.world.validation import drop_test, generate_valid, penetration
 from hthor.world.validation.drop_test import drop_findings
@@ -125,7 +125,7 @@ def test_a_home_that_the_proof_refuses_is_followed_by_the_next_attempt(monkeypat
     refusal = error("penetration", "sofa", "is deep in the wall")
     verdicts = iter([(refusal,), ()])
     monkeypatch.setattr(generate_valid.generator, "generate", generate)
-    monkeypatch.setattr(generate_valid.loader, "build", lambda document, name: house())
+    monkeypatch.setattr(generate_valid.loader, "house_from_document", lambda document, name: house())
     monkeypatch.setattr(generate_valid, "prove", lambda spec, radius: next(verdicts))
     home = generate_valid.generate_valid_home(7, 5)
     assert tried == [(7, 5, 0, generate_valid.ATTEMPTS), (7, 5, 2, generate_valid.ATTEMPTS)]
@@ -138,7 +138,7 @@ def test_a_home_that_the_proof_refuses_is_followed_by_the_next_attempt(monkeypat
 def test_a_home_is_sound_and_the_same_every_time():
     home = generate_valid.generate_valid_home(11, 4)
     assert check_soundness(home.house, generate_valid.RADIUS_M) == home.findings
-    assert sound(home.findings)
+    assert is_sound(home.findings)
     assert len(home.house.rooms) == 4
     assert generate_valid.generate_valid_home(11, 4).document == home.document
 

@@ -17,7 +17,7 @@ from hthor.world import World
 
 HOUSE = houses.load("juniper")
 MOVE = plugins.load("task kind", "mobile_manipulation")
-SMOKE = tasks.suite("smoke")
+SMOKE = tasks.load_suite("smoke")
 
 
 def changed(task, **fields):
@@ -32,9 +32,9 @@ def with_object(task, id, **fields):
 @pytest.fixture(scope="module")
 def task():
     goal = Goal(target="mug", relation="on", destination="dining_table")
-    row = scene_graph.triplet("mug", "near", "apple")
+    row = scene_graph.find_triplet("mug", "near", "apple")
     assert row in priors.triplets()
-    return generate.task(HOUSE, MOVE, goal, 3, name="test/juniper/mug", fixed=row)
+    return generate.make_task(HOUSE, MOVE, goal, 3, name="test/juniper/mug", fixed=row)
 
 
 def faults(task):

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hthor import catalog, houses
 from hthor.geometry.plane import to_house
 from hthor.houses.checks import plan_rules
-from hthor.houses.checks.findings import Finding, sound
+from hthor.houses.checks.findings import Finding, is_sound
 from hthor.houses.checks.house_checks import STRICT, check
 from hthor.houses.space import boxes, solids
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec2, Wall
@@ -95,8 +95,8 @@ def test_a_room_too_narrow(width: float):
 
 def test_the_narrowest_stretch_of_a_crooked_room_counts():
     hook = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.9, 4.0), (2.9, 3.0), (0.0, 3.0))
-    assert plan_rules.narrowest(hook) == pytest.approx(1.1)
-    assert plan_rules.narrowest(((0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (0.0, 2.0))) == pytest.approx(2.0)
+    assert plan_rules.least_width(hook) == pytest.approx(1.1)
+    assert plan_rules.least_width(((0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (0.0, 2.0))) == pytest.approx(2.0)
 
 
 def test_a_narrow_door():
@@ -210,7 +210,7 @@ def test_findings_come_with_errors_first_and_names_that_are_known():
     ranks = [finding.severity == "warning" for finding in findings]
     assert ranks == sorted(ranks)
     assert {finding.rule for finding in findings if finding.severity == "error"} <= set(STRICT)
-    assert not sound(findings)
+    assert not is_sound(findings)
 
 
 # --------------------------------------------------------------------------------------------------------------- boxes
@@ -222,31 +222,31 @@ KINDS = [name for name in catalog.names() if catalog.kind(name).joints()]
 @given(share=st.floats(0, 1), yaw=st.floats(-math.pi, math.pi))
 def test_an_opened_thing_keeps_its_parts_whole(name: str, share: float, yaw: float):
     """Opening turns and shifts parts, no more: the upright box around each holds the part's own corners."""
-    moved = list(boxes.of(thing("it", name, 1.0, 2.0, yaw), share))
-    still = list(boxes.of(thing("it", name, 1.0, 2.0, yaw)))
+    moved = list(boxes.boxes_of(thing("it", name, 1.0, 2.0, yaw), share))
+    still = list(boxes.boxes_of(thing("it", name, 1.0, 2.0, yaw)))
     for (part, box), (same, shut) in zip(moved, still, strict=True):
         assert part == same
         assert box.half == shut.half
         assert np.linalg.det(box.turn) == pytest.approx(1.0)
         if not part.moves:
             assert box.centre == shut.centre
-        slab = boxes.slab(box)
+        slab = boxes.bounding_slab(box)
         reach = sum(h * abs(t) for h, t in zip(box.half, box.turn[2], strict=True))
         assert slab.high - slab.low == pytest.approx(2 * reach, abs=1e-5)
 
 
 def test_slides_slide_and_hinges_turn():
     joint = catalog.kind("fridge").joints()[0]
-    anchor, _ = boxes.moved(joint, joint.anchor, 1.0)
+    anchor, _ = boxes.joint_motion(joint, joint.anchor, 1.0)
     assert anchor == pytest.approx(joint.anchor)
     tip = (joint.anchor[0] + 0.5, joint.anchor[1], 0.2)
-    opened, _ = boxes.moved(joint, tip, 1.0)
+    opened, _ = boxes.joint_motion(joint, tip, 1.0)
     assert math.dist(opened, joint.anchor) == pytest.approx(math.dist(tip, joint.anchor))
     assert opened[1] > tip[1]
 
 
 def test_the_upright_box_of_an_upright_part_is_the_part():
-    slab = boxes.slab(boxes.Box((1.0, 2.0, 3.0), (0.3, 0.2, 0.1), boxes.about((0.0, 0.0, 1.0), 0.4)))
+    slab = boxes.bounding_slab(boxes.Box((1.0, 2.0, 3.0), (0.3, 0.2, 0.1), boxes.rotation((0.0, 0.0, 1.0), 0.4)))
     assert slab == solids.Slab((1.0, 2.0), (0.6, 0.4), pytest.approx(0.4), pytest.approx(2.9), pytest.approx(3.1))
 
 
@@ -255,5 +255,5 @@ def test_the_upright_box_of_an_upright_part_is_the_part():
 
 def test_lenient_judgement_of_the_samples_is_kind_and_strict_is_not(samples):
     spec = houses.load(samples[0])
-    assert sound(check(spec, 0.20))
-    assert not sound(check(spec, 0.20, strict=True))
+    assert is_sound(check(spec, 0.20))
+    assert not is_sound(check(spec, 0.20, strict=True))

@@ -28,7 +28,7 @@ def own() -> Any:
 def built(change: Callable[[Any], None], document: Any = None) -> HouseSpec:
     changed = copy.deepcopy(own() if document is None else document)
     change(changed)
-    return loader.build(changed, "mine")
+    return loader.house_from_document(changed, "mine")
 
 
 def without_hash(house: HouseSpec) -> HouseSpec:
@@ -51,7 +51,7 @@ def newer(document: Any) -> None:
 def test_a_document_and_its_file_are_one_house(tmp_path: Path):
     path = tmp_path / "mine.json"
     path.write_text(json.dumps(own()))
-    assert loader.build(own(), "mine") == houses.load(path)
+    assert loader.house_from_document(own(), "mine") == houses.load(path)
 
 
 def test_the_newer_form_is_the_same_house():
@@ -162,6 +162,6 @@ def test_nearly_every_room_of_the_samples_can_be_reached_by_broader_bodies_too(s
 
 def test_what_the_generator_writes_is_read_back():
     document = generate(1, 4)
-    house = loader.build(document, "made")
+    house = loader.house_from_document(document, "made")
     assert len(house.rooms) == 4
     assert len({thing.id for thing in house.things}) == len(house.things)

@@ -17,7 +17,7 @@ from hthor.errors import HthorError
 from hthor.geometry.plane import distance_to_rectangle, signed_area
 from hthor.houses.checks.house_checks import check, sound
 from hthor.houses.space import solids
-from hthor.houses.space.free_space import FreeSpace, obstacles
+from hthor.houses.space.free_space import FreeSpace, obstacle_rectangles
 from hthor.houses.space.geodesic import Geodesics
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Wall
 
@@ -372,14 +372,14 @@ def test_narrow_doors_overlaps_and_strays_are_warnings():
 
 def test_overlap_is_the_least_shift_that_parts_two_boxes():
     one = solids.Slab((0.0, 0.0), (2.0, 1.0), 0.0, 0.0, 1.0)
-    assert solids.overlap(one, solids.Slab((0.9, 0.9), (2.0, 1.0), 0.0, 0.5, 2.0)) == pytest.approx(0.1)
-    assert solids.overlap(one, solids.Slab((0.9, 0.9), (2.0, 1.0), 0.0, 1.0, 2.0)) == 0.0
-    assert solids.overlap(one, solids.Slab((0.0, 1.6), (1.0, 1.0), math.pi / 4, 0.0, 1.0)) == 0.0
+    assert solids.overlap_depth(one, solids.Slab((0.9, 0.9), (2.0, 1.0), 0.0, 0.5, 2.0)) == pytest.approx(0.1)
+    assert solids.overlap_depth(one, solids.Slab((0.9, 0.9), (2.0, 1.0), 0.0, 1.0, 2.0)) == 0.0
+    assert solids.overlap_depth(one, solids.Slab((0.0, 1.6), (1.0, 1.0), math.pi / 4, 0.0, 1.0)) == 0.0
 
 
 def test_a_wall_with_two_faces_is_one_wall_cut_at_its_doorway():
     spec = two_rooms()
-    shared = [slab for slab in solids.walls(spec) if slab.centre[0] == pytest.approx(3.0)]
+    shared = [slab for slab in solids.wall_slabs(spec) if slab.centre[0] == pytest.approx(3.0)]
     assert len(shared) == 3
     spans = sorted((slab.centre[1] - slab.size[0] / 2, slab.centre[1] + slab.size[0] / 2, slab.low) for slab in shared)
     assert [value for span in spans for value in span] == pytest.approx(
@@ -407,7 +407,7 @@ def test_every_room_of_the_sample_houses_can_be_reached(samples):
 def test_shortest_paths_of_the_sample_houses_are_no_longer_than_over_the_grid(samples):
     spec = houses.load(samples[-1])
     space = FreeSpace(spec, 0.20)
-    assert len(obstacles(spec, 1.8)) > 20
+    assert len(obstacle_rectangles(spec, 1.8)) > 20
     start = space.centre_of(*space.cell_of(*space.nearest_free(spec.start.x, spec.start.y)))
     over = grid_lengths(space, start)
     cells = list(over)[::301]

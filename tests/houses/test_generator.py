@@ -20,11 +20,11 @@ from hthor.geometry.plane import signed_area
 from hthor.houses import generator, loader
 from hthor.houses.checks.house_checks import check, sound
 from hthor.houses.generator import document, scenes, validity
-from hthor.houses.generator.attempt import Flaw
+from hthor.houses.generator.attempt import AttemptFailed
 from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.floorplan import boundary, doors, growth, layout, room_specs
-from hthor.houses.generator.furnishing.clutter import takes_all
-from hthor.houses.generator.furnishing.item_styles import Maker
+from hthor.houses.generator.furnishing.clutter import all_fit
+from hthor.houses.generator.furnishing.item_styles import ItemStyler
 from hthor.types import HouseSpec
 
 few = settings(max_examples=3, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
@@ -35,7 +35,7 @@ HOUSES = ((3, 4), (4, 5), (5, 6), (6, 7))
 
 @functools.cache
 def made(seed: int, rooms: int, needs: frozenset[str] | None = None) -> HouseSpec:
-    return loader.build(generator.generate(seed, rooms, needs=needs), "made")
+    return loader.house_from_document(generator.generate(seed, rooms, needs=needs), "made")
 
 
 # ----------------------------------------------------------------------------------------------------- whole houses
@@ -47,7 +47,7 @@ def test_a_generated_house_is_sound(seed: int, rooms: int) -> None:
     assert len(house.rooms) == rooms
     assert sound(check(house, 0.25, strict=True))
     space, free = validity.floor(house)
-    assert list(validity.faults(house, space, validity.reached(free))) == []
+    assert list(validity.find_faults(house, space, validity.reached(free))) == []
     kinds = {thing.kind for thing in house.things}
     assert {*catalog.RECEPTACLES, "sink", "chair"} <= kinds
     assert not kinds & set(catalog.TARGETS)
@@ -115,9 +115,9 @@ def test_requests_that_cannot_be_met_are_refused() -> None:
 
 def test_when_all_attempts_fail_the_rules_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def failing(*_: object) -> None:
-        raise Flaw("room-area", "too small")
+        raise AttemptFailed("room-area", "too small")
 
-    monkeypatch.setattr(generator, "build", failing)
+    monkeypatch.setattr(generator, "build_document", failing)
     with pytest.raises(
         generator.GeneratorError, match=r"seed 5 in 2 attempts: attempt 0: too small \(room-area\)"
     ) as info:
@@ -126,15 +126,15 @@ def test_when_all_attempts_fail_the_rules_are_named(monkeypatch: pytest.MonkeyPa
 
 
 def test_a_failed_attempt_is_followed_by_another_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    true, calls = generator.build, []
+    true, calls = generator.build_document, []
 
     def once(*arguments: object) -> object:
         calls.append(arguments)
         if len(calls) == 1:
-            raise Flaw("start-free", "no floor")
+            raise AttemptFailed("start-free", "no floor")
         return true(*arguments)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(generator, "build", once)
+    monkeypatch.setattr(generator, "build_document", once)
     assert generator.generate(5, 4)["metadata"]["generator"]["attempt"] == 1
 
 
@@ -145,15 +145,15 @@ def test_a_failed_attempt_is_followed_by_another_one(monkeypatch: pytest.MonkeyP
 @settings(max_examples=40, deadline=None, derandomize=True)
 def test_rooms_tile_the_cells_of_the_outline(seed: int, rooms: int) -> None:
     dice = Dice(seed)
-    shape, tree = boundary.boundary(rooms, dice), room_specs.choose(rooms, dice, None).tree
+    shape, tree = boundary.draw_boundary(rooms, dice), room_specs.choose_spec(rooms, dice, None).tree
     if shape is None:
         return
-    labels = growth.grow(shape.cells, tree, dice)
+    labels = growth.grow_rooms(shape.cells, tree, dice)
     if labels is None:
         return
     assert ((labels > 0) == shape.cells).all()
     assert set(np.unique(labels[shape.cells]).tolist()) == set(range(2, rooms + 2))
-    plan = layout.plan(shape, labels, tree)
+    plan = layout.plan_rooms(shape, labels, tree)
     if plan is not None:
         assert sum(room.area for room in plan.rooms) == pytest.approx(float(shape.cells.sum()) * shape.scale**2)
         for room in plan.rooms:
@@ -164,10 +164,10 @@ def test_rooms_tile_the_cells_of_the_outline(seed: int, rooms: int) -> None:
 @settings(max_examples=40, deadline=None, derandomize=True)
 def test_doors_join_all_rooms_as_a_tree_and_bathrooms_are_dead_ends_of_their_level(seed: int, rooms: int) -> None:
     dice = Dice(seed)
-    shape, tree = boundary.boundary(rooms, dice), room_specs.choose(rooms, dice, None).tree
-    labels = None if shape is None else growth.grow(shape.cells, tree, dice)
-    plan = None if shape is None or labels is None else layout.plan(shape, labels, tree)
-    pairs = None if plan is None else doors.links(tree, plan, dice)
+    shape, tree = boundary.draw_boundary(rooms, dice), room_specs.choose_spec(rooms, dice, None).tree
+    labels = None if shape is None else growth.grow_rooms(shape.cells, tree, dice)
+    plan = None if shape is None or labels is None else layout.plan_rooms(shape, labels, tree)
+    pairs = None if plan is None else doors.choose_doors(tree, plan, dice)
     if plan is None or pairs is None:
         return
     assert len(pairs) == rooms - 1
@@ -187,8 +187,8 @@ def test_the_beta_distribution_has_its_mean_and_variance() -> None:
 
 def test_a_surface_that_is_full_is_noticed() -> None:
     (surface,) = catalog.kind("stool").rests((0.36, 0.36, 0.48))
-    assert takes_all(surface, [])
-    assert not takes_all(surface, [(-0.05, -0.05, 0.05, 0.05, 0.1)])
+    assert all_fit(surface, [])
+    assert not all_fit(surface, [(-0.05, -0.05, 0.05, 0.05, 0.1)])
 
 
 def test_rules_name_what_is_wrong() -> None:
@@ -196,14 +196,14 @@ def test_rules_name_what_is_wrong() -> None:
     sofa = next(row for row in made_["objects"] if row["assetId"].startswith("hthor_sofa"))
     table = next(row for row in made_["objects"] if row["assetId"].startswith("hthor_dining_table"))
     sofa["position"] = {**table["position"], "y": sofa["position"]["y"]}
-    house = loader.build(made_, "crowded")
+    house = loader.house_from_document(made_, "crowded")
     space, free = validity.floor(house)
-    rules = {rule for rule, _, _ in validity.faults(house, space, validity.reached(free))}
+    rules = {rule for rule, _, _ in validity.find_faults(house, space, validity.reached(free))}
     assert "thing-in-thing" in rules
 
 
 def test_names_count_kinds_that_come_more_than_once() -> None:
-    maker = Maker(Dice(1))
+    maker = ItemStyler(Dice(1))
     pieces = [maker.make("chair"), maker.make("sofa"), maker.make("chair")]
     assert list(document.names(pieces)) == ["chair_1", "sofa", "chair_2"]
     assert [piece.kind for piece in document.without(pieces, {"chair_1"})] == ["sofa", "chair"]
@@ -229,7 +229,7 @@ PRESENCE = {
 @pytest.mark.parametrize("scene", scenes.SCENES[:10:5], ids=lambda scene: scene.name)
 def test_the_committed_scenes_are_what_their_rows_make(scene: scenes.Scene) -> None:
     path = Path(houses.__file__).parent / "data" / f"{scene.name}.json"
-    assert path.read_bytes() == jsonio.pretty(scenes.make(scene))
+    assert path.read_bytes() == jsonio.pretty(scenes.make_scene(scene))
 
 
 def test_the_ten_scenes_have_the_optional_references_that_the_priors_count_on() -> None:

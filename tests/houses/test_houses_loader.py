@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from hthor import catalog, houses, jsonio
 from hthor.errors import HouseError, UnknownName
 from hthor.geometry.plane import inside, rectangle, signed_area, turn
-from hthor.houses.checks.polygons import crossing, distance_to_segment, overlap_area, simplified
+from hthor.houses.checks.polygons import distance_to_segment, find_crossing, overlap_area, simplify
 from hthor.types import HouseSpec, Opening, Vec2, Wall
 from hthor.world.validation.house_soundness import check_soundness
 
@@ -391,15 +391,15 @@ def test_overlap_with_itself_is_the_area(yaw: float, x: float, y: float) -> None
     shape: list[Vec2] = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
     turned = [(a + x, b + y) for a, b in (turn(corner, yaw) for corner in shape)]
     assert overlap_area(turned, turned) == pytest.approx(3.0, rel=1e-6)
-    assert crossing(turned) is None
+    assert find_crossing(turned) is None
 
 
 def test_simple_and_crossed_polygons() -> None:
-    assert crossing(SQUARE) is None
-    assert crossing(((0, 0), (1, 1), (1, 0), (0, 1))) is not None
-    assert crossing(((0, 0), (2, 0), (1, 0), (1, 1))) is not None
+    assert find_crossing(SQUARE) is None
+    assert find_crossing(((0, 0), (1, 1), (1, 0), (0, 1))) is not None
+    assert find_crossing(((0, 0), (2, 0), (1, 0), (1, 1))) is not None
     doubled = [corner for corner in SQUARE for _ in range(2)]
-    assert simplified([*doubled, SQUARE[0]]) == SQUARE
+    assert simplify([*doubled, SQUARE[0]]) == SQUARE
     assert all(a != b for a, b in pairwise(SQUARE))
 
 

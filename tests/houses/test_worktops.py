@@ -51,7 +51,7 @@ def outline(thing: Thing) -> Slab:
 )
 def test_the_units_fill_the_outline_and_nothing_else(plan: str, w: float, d: float, yaw: float):
     whole = worktop(w, d, yaw)
-    units = worktops.units(whole, plan)
+    units = worktops.split_worktop(whole, plan)
     depth, arms = worktops.DEPTH_M, {"L": 1, "C": 2}[plan]
     assert len(units) == 1 + 2 * arms
     assert len({unit.id for unit in units}) == len(units)
@@ -63,13 +63,13 @@ def test_the_units_fill_the_outline_and_nothing_else(plan: str, w: float, d: flo
         assert abs(u) < w / 2
         assert abs(v) < d / 2
     for one, two in itertools.combinations(units, 2):
-        assert solids.overlap(outline(one), outline(two)) < 1e-9
+        assert solids.overlap_depth(outline(one), outline(two)) < 1e-9
     assert catalog.kind("counter_top").surfaces(units[0].size)
 
 
 @pytest.mark.parametrize(("plan", "w", "d"), [("", 3.0, 3.0), ("I", 2.4, 0.61), ("L", 3.0, 0.65), ("C", 1.25, 3.0)])
 def test_a_straight_or_tiny_one_is_one_thing(plan: str, w: float, d: float):
-    assert worktops.units(worktop(w, d), plan) == (worktop(w, d),)
+    assert worktops.split_worktop(worktop(w, d), plan) == (worktop(w, d),)
 
 
 def house(folder: Path, asset: str, rotation: int = 0) -> HouseSpec:

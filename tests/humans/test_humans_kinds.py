@@ -67,7 +67,7 @@ class Scripted:
 
 def suite_task(name, **changed):
     """The suite's first task in the house."""
-    found = next(task for task in tasks.suite(name).tasks if task.house == HOUSE)
+    found = next(task for task in tasks.load_suite(name).tasks if task.house == HOUSE)
     return msgspec.structs.replace(found, **changed)
 
 
@@ -186,7 +186,9 @@ def test_the_same_trial_takes_the_same_course(world, name):
 @pytest.mark.parametrize("kind", plugins.names("task kind"))
 def test_nothing_that_robots_say_makes_a_person_fall_over(world, kind):
     """In every kind of task, whatever they are told of, true or not."""
-    pool = {task.kind: task for name in (*KINDS, "smoke") for task in tasks.suite(name).tasks if task.house == HOUSE}
+    pool = {
+        task.kind: task for name in (*KINDS, "smoke") for task in tasks.load_suite(name).tasks if task.house == HOUSE
+    }
     task = pool.get(kind)
     if task is None:
         pytest.skip(f"no suite has a task of kind {kind} in {HOUSE}")

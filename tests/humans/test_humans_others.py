@@ -190,7 +190,7 @@ def test_rates_no_robot_that_is_not_there(name, log):
 def test_both_ends_play_every_kind_of_task(suite):
     from hthor.eval.runner import trial_runner
 
-    task = msgspec.structs.replace(library.suite(suite).tasks[0], time_limit=30.0)
+    task = msgspec.structs.replace(library.load_suite(suite).tasks[0], time_limit=30.0)
     one = sessions.make_sessions(make_suite("one", 1, (task,)), agent="oracle", robot="tender", human="greedy")[0]
     stage = trial_runner.TrialRunner()
     for made in (greedy.Model, random.Model):

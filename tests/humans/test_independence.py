@@ -51,7 +51,7 @@ def alone(stage: trial_runner.TrialRunner) -> list[EpisodeLog]:
 
 def first_trials(agent: str, stage: trial_runner.TrialRunner, mind: object = None) -> list[EpisodeLog]:
     """The first trials of a few people, in a few houses."""
-    smoke, logs = tasks.suite("smoke"), []
+    smoke, logs = tasks.load_suite("smoke"), []
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house in HOUSES))
     for session in make_sessions(few, agent=agent)[:PEOPLE]:
         with stage.enter(session) as company:

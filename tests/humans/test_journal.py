@@ -87,7 +87,7 @@ def test_what_was_written_down_stands() -> None:
 @pytest.fixture(scope="module")
 def played() -> list[TrialRecord]:
     """A few trials of one person with the oracle, in one house."""
-    smoke = tasks.suite("smoke")
+    smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "alder"))
     whole = make_sessions(few, agent="oracle", seed=3)[0]
     return list(trial_runner.make_runner()(Session(participant=whole.participant, trials=whole.trials[:4])))

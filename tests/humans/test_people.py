@@ -370,8 +370,8 @@ def test_words_for_several_peoples(files: Path):
 @pytest.fixture
 def fake(monkeypatch: pytest.MonkeyPatch) -> None:
     """A suite called ``fake`` of twenty tasks, played in no time."""
-    real = tasks.suite
-    monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
+    real = tasks.load_suite
+    monkeypatch.setattr(tasks, "load_suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
     monkeypatch.setattr(trial_runner, "make_runner", fakes.player)
 
 
@@ -465,7 +465,7 @@ def test_a_worker_finds_files_by_path(files: Path):
     """Real worker processes, started in another folder than the files lie in."""
     model = "from hthor.humans.models.proxy import Model as Proxy\nclass Model(Proxy): pass\n"
     (files / "mine.py").write_text('"""Mine."""\n' + model)
-    suite = fakes.frozen("one", 1, tasks.suite("smoke").tasks[:1])
+    suite = fakes.frozen("one", 1, tasks.load_suite("smoke").tasks[:1])
     found = resolve.find(f"{files}/mine.py@{files}/pop.npz")
     (one,) = sessions.make_sessions(suite, agent="none", human=found, participants=1)
     code = (

@@ -52,7 +52,7 @@ def test_a_run_of_other_people_is_refused_in_one_sentence_that_says_what_would_d
 
 def test_half_and_twice_the_people_of_a_shipped_suite_are_a_setting_of_its_own():
     plan, _ = fakes.run_of(COUNT)
-    smoke = tasks.suite("smoke")
+    smoke = tasks.load_suite("smoke")
     suite = run_config.SuiteRef(name="smoke", version=str(smoke.version), sha256=smoke.sha256)
     for participants, trials, found in ((6, 60, {}), (2, 20, {"participants": "2"}), (12, 120, {"participants": "12"})):
         some = msgspec.structs.replace(plan, suite=suite, participants=participants, trials=trials)

@@ -377,16 +377,16 @@ def test_fresh_tasks_are_of_the_recipe_and_of_no_other_draw():
     from hthor import tasks
     from hthor.tasks.generation import fresh_tasks
 
-    made = fresh_tasks.suite("smoke", 7, 3, lambda drafts: [True] * len(drafts))
-    known = {(task.house, task.human_start) for task in tasks.suite("smoke").tasks}
+    made = fresh_tasks.make_fresh_suite("smoke", 7, 3, lambda drafts: [True] * len(drafts))
+    known = {(task.house, task.human_start) for task in tasks.load_suite("smoke").tasks}
     assert len(made.tasks) == 3
     assert not known & {(task.house, task.human_start) for task in made.tasks}
-    assert fresh_tasks.suite("smoke", 7, 3, lambda drafts: [True] * len(drafts)) == made
-    assert {task.kind for task in made.tasks} <= {task.kind for task in tasks.suite("smoke").tasks}
+    assert fresh_tasks.make_fresh_suite("smoke", 7, 3, lambda drafts: [True] * len(drafts)) == made
+    assert {task.kind for task in made.tasks} <= {task.kind for task in tasks.load_suite("smoke").tasks}
     refused: list[str] = []
 
     def possible(drafts):
         refused.extend(task.house for task in drafts if len(refused) < 1)
         return [task.house not in refused[:1] or len(drafts) == 1 for task in drafts]
 
-    assert len(fresh_tasks.suite("smoke", 7, 2, possible).tasks) == 2, "what cannot be done is drawn again"
+    assert len(fresh_tasks.make_fresh_suite("smoke", 7, 2, possible).tasks) == 2, "what cannot be done is drawn again"

@@ -142,7 +142,7 @@ def test_triangles_are_few() -> None:
 
 
 def test_most_kinds_look_like_more_than_their_solids() -> None:
-    unlike = [name for name in NAMES if len(looks.look(name)) == len(plain.pieces(catalog.kind(name).parts()))]
+    unlike = [name for name in NAMES if len(looks.look(name)) == len(plain.plain_pieces(catalog.kind(name).parts()))]
     assert len(unlike) < len(NAMES) / 3
     assert len(looks.look("apple")) > 1
 
@@ -225,7 +225,7 @@ def test_turning_and_stretching_keep_a_mesh_sound(angle: float, axis: str, facto
 def test_plain_cylinders_lie_along_their_axis(axis: str) -> None:
     half = {"x": (0.5, 0.1, 0.1), "y": (0.1, 0.5, 0.1), "z": (0.1, 0.1, 0.5)}[axis]
     part = Part(shape="cylinder", centre=(1.0, 2.0, 3.0), half=half, rgba=(1.0, 1.0, 1.0, 1.0), axis=axis)  # type: ignore[arg-type]
-    low, high = shaping.bounds(plain.pieces([part]))
+    low, high = shaping.bounds(plain.plain_pieces([part]))
     assert (high - low) / 2 == pytest.approx(half, abs=1e-3)
     assert (high + low) / 2 == pytest.approx(part.centre, abs=1e-6)
 

@@ -104,12 +104,12 @@ def deb(members: dict[str, bytes]) -> bytes:
     return parts
 
 
-def make(folder: Path, *, cc_by: bool = False) -> making.Made:
-    return making.make(libraries(), "tiny.deb", folder, "tiny", cc_by=cc_by, picks=PICKS)
+def make(folder: Path, *, cc_by: bool = False) -> making.ConvertedModel:
+    return making.convert_models(libraries(), "tiny.deb", folder, "tiny", cc_by=cc_by, picks=PICKS)
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory: pytest.TempPathFactory) -> making.Made:
+def built(tmp_path_factory: pytest.TempPathFactory) -> making.ConvertedModel:
     return make(tmp_path_factory.mktemp("packs") / "tiny", cc_by=True)
 
 
@@ -124,7 +124,7 @@ def test_a_debian_package_is_read(tmp_path: Path) -> None:
     assert source == "tiny.deb"
 
 
-def test_what_was_taken_and_what_was_not_is_said(built: making.Made) -> None:
+def test_what_was_taken_and_what_was_not_is_said(built: making.ConvertedModel) -> None:
     assert built.pack.kinds == ("dining_table", "mug", "sofa")
     reasons = {skipped.pick.kind: skipped.reason for skipped in built.skipped}
     assert reasons["fridge"] == "a fridge opens, and no model of a pack can"
@@ -138,7 +138,7 @@ def test_only_public_domain_unless_asked(tmp_path: Path) -> None:
     assert not (tmp_path / "free" / "ATTRIBUTION.md").exists()
 
 
-def test_every_model_has_a_licence_row(built: making.Made) -> None:
+def test_every_model_has_a_licence_row(built: making.ConvertedModel) -> None:
     rows = (built.pack.folder / "LICENCES.md").read_text()
     for model in built.pack.contents.models:
         assert f"| {model.kind} | {model.title} | {model.author} | {model.licence} | {model.source} |" in rows
@@ -154,7 +154,7 @@ def test_every_pick_s_library_has_a_licence_and_every_kind_exists() -> None:
     assert len({(pick.kind, pick.library, pick.model) for pick in picks.PICKS}) == len(picks.PICKS)
 
 
-def test_the_same_library_gives_the_same_pack(built: making.Made, tmp_path: Path) -> None:
+def test_the_same_library_gives_the_same_pack(built: making.ConvertedModel, tmp_path: Path) -> None:
     again = make(tmp_path / "again", cc_by=True).pack
     assert again.sha256 == built.pack.sha256
     for name in ("pack.json", "meshes.npz"):
@@ -175,7 +175,7 @@ def test_a_pack_is_written_over_and_nothing_is_left_lying_about(tmp_path: Path) 
     kind=st.sampled_from(["dining_table", "sofa", "mug"]),
     scale=st.tuples(*[st.floats(0.85, 1.15) for _ in range(3)]),
 )
-def test_pieces_fill_the_thing_and_bear_what_lies_on_it(built: making.Made, kind: str, scale: Vec3) -> None:
+def test_pieces_fill_the_thing_and_bear_what_lies_on_it(built: making.ConvertedModel, kind: str, scale: Vec3) -> None:
     size = tuple(a * b for a, b in zip(catalog.kind(kind).size, scale, strict=True))
     pieces = built.pack.look(kind, size)
     assert pieces is not None
@@ -201,7 +201,7 @@ def _height_under(triangles: np.ndarray, x: float, y: float) -> float:
     return best
 
 
-def test_the_front_is_where_ours_is(built: making.Made) -> None:
+def test_the_front_is_where_ours_is(built: making.ConvertedModel) -> None:
     """The settee's back is at the rear, which is -y in our frame and -z in the library's."""
     pieces = built.pack.look("sofa", catalog.kind("sofa").size)
     assert pieces is not None
@@ -210,7 +210,7 @@ def test_the_front_is_where_ours_is(built: making.Made) -> None:
     assert top[:, 1].max() < 0.0
 
 
-def test_pictures_are_small_and_found(built: making.Made) -> None:
+def test_pictures_are_small_and_found(built: making.ConvertedModel) -> None:
     pieces = built.pack.look("dining_table", catalog.kind("dining_table").size)
     assert pieces is not None
     image = built.pack.texture(pieces[0].material.texture)
@@ -219,7 +219,7 @@ def test_pictures_are_small_and_found(built: making.Made) -> None:
     assert image[0, 0].astype(int) == pytest.approx((200, 120, 10), abs=4)
 
 
-def test_what_a_pack_has_not_is_left_to_us(built: making.Made) -> None:
+def test_what_a_pack_has_not_is_left_to_us(built: making.ConvertedModel) -> None:
     assert built.pack.look("fridge", catalog.kind("fridge").size) is None
     assert built.pack.look("dining_table", (6.0, 0.3, 0.1)) is None, "a model is not stretched beyond recognition"
 
@@ -229,7 +229,7 @@ def test_things_that_would_float_are_refused(tmp_path: Path) -> None:
     holes = boxes(((0, 65, 0), (20, 70, 80)), ((100, 0, 0), (120, 70, 80)))
     files[CC0] = library(CATALOGUE, {"tiny/table/table.obj": holes.encode(), "tiny/settee/settee.obj": SETTEE.encode()})
     with pytest.raises(PackError, match="too little of its 'top' is level"):
-        making.make(files, "t", tmp_path / "t", "t", cc_by=False, picks=PICKS[:1])
+        making.convert_models(files, "t", tmp_path / "t", "t", cc_by=False, picks=PICKS[:1])
 
 
 # ----------------------------------------------------------------------------------------------------- broken or absent
@@ -278,7 +278,7 @@ def test_an_installed_library_is_used(tmp_path: Path, monkeypatch: pytest.Monkey
 )
 def test_broken_libraries_are_refused(tmp_path: Path, files: dict[str, bytes], expected: str) -> None:
     with pytest.raises(PackError, match=expected):
-        making.make(files, "tiny.deb", tmp_path / "p", "p", cc_by=False, picks=PICKS[:1])
+        making.convert_models(files, "tiny.deb", tmp_path / "p", "p", cc_by=False, picks=PICKS[:1])
     assert list(tmp_path.iterdir()) == []
 
 
@@ -349,13 +349,13 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_obj_corners_of_all_sorts() -> None:
     text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1 2 3 4\nf -4//1 -3//1 -2//1\nf 1 1 2\n"
-    (group,) = obj.read(text, lambda name: "")
+    (group,) = obj.read_obj(text, lambda name: "")
     assert len(group.faces) == 3, "a square is two triangles, and one without area is dropped"
     assert group.normals is None, "some corners have none"
 
 
 def test_materials() -> None:
-    paints = obj.paint("newmtl a\nKd 1 0 0\nd 0.5\nnewmtl b\nTr 0.25\nKs 0.2 0.4 0.6\nmap_Kd dir\\pic.jpg\n")
+    paints = obj.read_paints("newmtl a\nKd 1 0 0\nd 0.5\nnewmtl b\nTr 0.25\nKs 0.2 0.4 0.6\nmap_Kd dir\\pic.jpg\n")
     assert paints["a"].rgba == (1.0, 0.0, 0.0, 0.5)
     assert paints["b"].rgba[3] == 0.75
     assert paints["b"].picture == "dir/pic.jpg"
@@ -366,12 +366,12 @@ def test_detailed_models_need_the_extra(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setitem(__import__("sys").modules, "fast_simplification", None)
     rng = np.random.default_rng(0)
     group = obj.Group(obj.Paint(), rng.random((300, 3)), np.zeros((300, 2)), None, np.arange(300).reshape(-1, 3))
-    assert thinning.thinned([group], 1000) == [group]
+    assert thinning.decimate([group], 1000) == [group]
     with pytest.raises(MissingExtra, match=r"hthor\[assets\]"):
-        thinning.thinned([group], 70)
+        thinning.decimate([group], 70)
 
 
-def test_a_world_takes_a_pack_before_our_own(built: making.Made) -> None:
+def test_a_world_takes_a_pack_before_our_own(built: making.ConvertedModel) -> None:
     from hthor.world import World
     from hthor.world.rendering.scene.asset_source import AssetSource
 

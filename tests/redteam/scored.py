@@ -81,7 +81,7 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
     before = sorted(one for one in home.rglob("*"))
     step_s = 1.0 if "timeout" in case.kinds and len(case.kinds) == 1 else 20.0
     guest.Guest = functools.partial(Guest, step_s=step_s, bank_s=0.0, memory_mb=512, disk_mb=64)  # type: ignore[misc]
-    task = next(task for task in tasks.suite("smoke").tasks if task.id == _TASK)
+    task = next(task for task in tasks.load_suite("smoke").tasks if task.id == _TASK)
     suite = make_suite("short", 1, (msgspec.structs.replace(task, time_limit=_LIMIT_S),))
     ref = AgentRef(name="agent", source="agent.py", sha256=hashlib.sha256(text.encode()).hexdigest())
     crew = robot_team.form_team(["scout"], [robot_team.AgentInfo(ref=ref, path=str(path))])

@@ -22,7 +22,7 @@ from hthor.report.html import matplotlib_svg
 from hthor.report.page.figures import trial_map
 from hthor.types import AgentRef, Event, RobotSeat, TrialSpec
 
-TASK = next(task for task in tasks.suite("smoke").tasks if task.kind == "mobile_manipulation")
+TASK = next(task for task in tasks.load_suite("smoke").tasks if task.kind == "mobile_manipulation")
 
 
 @pytest.fixture(scope="module")

@@ -25,8 +25,8 @@ def main(name: str) -> None:
     from hthor.eval.config import robot_team
     from hthor.eval.runner import engines, trial_runner
 
-    real, introduce = tasks.suite, robot_team.load_agent_info
-    tasks.suite = lambda word: eval_fakes.suite(20) if word == "fake" else real(word)
+    real, introduce = tasks.load_suite, robot_team.load_agent_info
+    tasks.load_suite = lambda word: eval_fakes.suite(20) if word == "fake" else real(word)
     trial_runner.make_runner = functools.partial(command_fakes.perform, name)
     robot_team.load_agent_info = lambda word, *_: (
         eval_fakes.character(word) if word in ("helper", "clumsy") else introduce(word)

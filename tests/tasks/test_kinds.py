@@ -22,12 +22,12 @@ from hthor.tasks.arrangement import commonsense_places
 from hthor.tasks.arrangement.avatar import HEIGHT_M, RADIUS_M, REACH_M
 from hthor.tasks.arrangement.free_spots import NEAR_M
 from hthor.tasks.generation import generate
-from hthor.tasks.generation.suite_specs import PLANS
+from hthor.tasks.generation.suite_specs import SUITE_SPECS
 from hthor.tasks.kinds import multi_robot_collection as collection
-from hthor.tasks.subgoals import PLACE_M, TOGETHER_M, JobKind, carrying_time, is_done, left
+from hthor.tasks.subgoals import PLACE_M, TOGETHER_M, JobKind, carrying_time, is_done, jobs_left
 from hthor.tasks.suite import encode_suite
 from hthor.tasks.suites import library
-from hthor.tasks.validate import faults
+from hthor.tasks.validate import task_faults
 from hthor.types import Goal, Job, Pose, Snapshot, TaskSpec, ThingState
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "put_away.py"
@@ -97,7 +97,7 @@ def test_the_contract_of_every_kind(name, house, root):
     kind, home = plugins.load("task kind", name), HOUSES[house]
     task = drawn(kind, house, root)
     assert kind.draw(home, root) == (task.goal, task.objects)
-    assert list(faults(task, home)) == []
+    assert list(task_faults(task, home)) == []
     assert not kind.objection(task.goal, home)
     assert task.instruction.strip()
     assert task.instruction.endswith(".")
@@ -207,7 +207,7 @@ def test_t_star_is_no_more_than_any_carrier_needs():
         paths, there = Geodesics.of(space), {placement.id: placement for placement in task.objects}
         cells = space.centres(space.free)[::37]
         longest = 0.0
-        for job in left(task.goal, task.objects, house):
+        for job in jobs_left(task.goal, task.objects, house):
             x, y, _ = there[job.target].position
             near = [cell for cell in cells if math.dist(cell, (x, y)) <= REACH_M]
             supports = [one for one in house.things if one.id in job.destinations or one.kind in job.destinations]
@@ -228,7 +228,7 @@ def test_a_person_who_cannot_reach_an_object_has_no_t_star():
 
 @pytest.fixture(params=["collect", "rearrange", "tidy", "carry"])
 def suite(request):
-    return tasks.suite(request.param)
+    return tasks.load_suite(request.param)
 
 
 def test_each_kind_has_two_tasks_in_each_scene(suite):
@@ -244,13 +244,13 @@ def test_each_kind_has_two_tasks_in_each_scene(suite):
 
 @pytest.mark.parametrize("name", ["collect", "rearrange", "tidy", "carry"])
 def test_a_house_made_anew_is_the_same(name):
-    again = generate.in_house(PLANS[name], HOUSES["elder"])
-    assert again == tuple(task for task in tasks.suite(name).tasks if task.house == "elder")
-    assert library.path_of(name).read_bytes() == encode_suite(tasks.suite(name))
+    again = generate.house_tasks(SUITE_SPECS[name], HOUSES["elder"])
+    assert again == tuple(task for task in tasks.load_suite(name).tasks if task.house == "elder")
+    assert library.suite_path(name).read_bytes() == encode_suite(tasks.load_suite(name))
 
 
 def test_apples_are_apart_and_too_much_for_one():
-    suite = tasks.suite("collect")
+    suite = tasks.load_suite("collect")
     cold = 0
     for task in suite.tasks:
         house = HOUSES[task.house]
@@ -270,7 +270,7 @@ def test_apples_are_apart_and_too_much_for_one():
 
 def test_a_person_alone_is_never_timed_too_long():
     """`alone` against every order of fetching, walked along exact paths between real stands."""
-    task = tasks.suite("collect").tasks[3]
+    task = tasks.load_suite("collect").tasks[3]
     house = HOUSES[task.house]
     space = FreeSpace.of(house, RADIUS_M, HEIGHT_M)
     paths = Geodesics.of(space)
@@ -284,7 +284,7 @@ def test_a_person_alone_is_never_timed_too_long():
 
 
 def test_a_task_that_needs_no_help_or_too_much_is_a_misfit():
-    task, kind = tasks.suite("collect").tasks[3], EXTENDED["collect"]
+    task, kind = tasks.load_suite("collect").tasks[3], EXTENDED["collect"]
     house = HOUSES[task.house]
     assert collection.TEAM_S < rules.TIME_LIMIT_S < collection.ALONE_S
     assert collection.team(task, house) <= collection.TEAM_S
@@ -298,10 +298,10 @@ def test_a_task_that_needs_no_help_or_too_much_is_a_misfit():
 
 
 def test_shuffled_targets_are_elsewhere_and_the_rest_in_place():
-    for task in tasks.suite("rearrange").tasks:
+    for task in tasks.load_suite("rearrange").tasks:
         house = HOUSES[task.house]
         there = {placement.id: placement for placement in task.objects}
-        todo = {job.target for job in left(task.goal, task.objects, house)}
+        todo = {job.target for job in jobs_left(task.goal, task.objects, house)}
         assert 2 <= len(todo) <= 4
         assert {job.target for job in task.goal.jobs} == set(catalog.TARGETS) == set(there)
         assert task.goal.target == task.goal.jobs[0].target in todo
@@ -312,9 +312,9 @@ def test_shuffled_targets_are_elsewhere_and_the_rest_in_place():
 
 
 def test_what_is_displaced_counts_against_what_is_fixed():
-    kind, task = EXTENDED["rearrange"], tasks.suite("rearrange").tasks[0]
+    kind, task = EXTENDED["rearrange"], tasks.load_suite("rearrange").tasks[0]
     house, things, end = HOUSES[task.house], at_start(task), finished(task)
-    todo = [job.target for job in left(task.goal, task.objects, house)]
+    todo = [job.target for job in jobs_left(task.goal, task.objects, house)]
     fine = next(job.target for job in task.goal.jobs if job.target not in todo)
     assert kind.progress(task, seen(things), house) == 0.0
     fixed = {**things, todo[0]: end[todo[0]]}
@@ -329,22 +329,22 @@ def test_what_is_displaced_counts_against_what_is_fixed():
 
 
 def test_strewn_targets_are_where_nobody_wants_them_and_the_rest_where_they_may_be():
-    for task in tasks.suite("tidy").tasks:
+    for task in tasks.load_suite("tidy").tasks:
         house = HOUSES[task.house]
         kinds = {thing.id: thing.kind for thing in house.things}
-        verdicts = {one.id: commonsense_places.of(one.id)[kinds[one.support]].verdict for one in task.objects}
+        verdicts = {one.id: commonsense_places.places_of(one.id)[kinds[one.support]].verdict for one in task.objects}
         out = [target for target, verdict in verdicts.items() if verdict == "out"]
         assert 2 <= len(out) <= 4
-        assert sorted(job.target for job in left(task.goal, task.objects, house)) == sorted(out)
+        assert sorted(job.target for job in jobs_left(task.goal, task.objects, house)) == sorted(out)
         assert task.goal.target in out
         assert {job.target for job in task.goal.jobs} == set(catalog.TARGETS)
         for job in task.goal.jobs:
             assert set(job.destinations) <= set(kinds.values())
-            assert all(commonsense_places.of(job.target)[kind].verdict != "out" for kind in job.destinations)
+            assert all(commonsense_places.places_of(job.target)[kind].verdict != "out" for kind in job.destinations)
 
 
 def test_trunks_stand_free_in_one_room_and_go_to_another():
-    for task in tasks.suite("carry").tasks:
+    for task in tasks.load_suite("carry").tasks:
         house, (trunk,), (job,) = HOUSES[task.house], task.objects, task.goal.jobs
         room = next(room for room in house.rooms if room.id in job.destinations)
         assert job.hands == 2
@@ -361,7 +361,7 @@ def test_trunks_stand_free_in_one_room_and_go_to_another():
 
 def test_what_is_collected_and_tidied_is_in_reach_of_an_arm():
     for name in ("collect", "tidy"):
-        for task in tasks.suite(name).tasks[:4]:
+        for task in tasks.load_suite(name).tasks[:4]:
             space = FreeSpace.of(HOUSES[task.house], RADIUS_M, HEIGHT_M)
             for placement in task.objects:
                 x, y, _ = placement.position
@@ -374,7 +374,7 @@ def test_what_is_collected_and_tidied_is_in_reach_of_an_arm():
 def test_the_judgement_covers_every_place_and_follows_its_numbers():
     bearing = {kind for kind in catalog.names() if catalog.kind(kind).rests()}
     for target in catalog.TARGETS:
-        found = commonsense_places.of(target)
+        found = commonsense_places.places_of(target)
         assert set(found) == bearing
         edges = {place: weight for (how, place), weight in priors.weights(target).items() if how != "near"}
         for kind, row in found.items():
@@ -393,7 +393,7 @@ def test_the_judgement_covers_every_place_and_follows_its_numbers():
 
 def test_the_judgement_counts_what_its_source_says():
     """The counts are in the rows: "23 of 103"."""
-    rows = [row for row in commonsense_places.rows() if row.basis == "scenes"]
+    rows = [row for row in commonsense_places.all_places() if row.basis == "scenes"]
     for row in rows:
         names, _, count = row.source.removeprefix("receptacles.json: ").rpartition(", ")
         seen_there, total = (int(word) for word in count.split(" of "))
@@ -416,13 +416,13 @@ def test_the_judgement_counts_what_its_source_says():
     ],
 )
 def test_common_sense(target, kind, out):
-    assert commonsense_places.is_out(target, kind) == out
-    assert ("stove" in commonsense_places.homes("apple")) is False
+    assert commonsense_places.is_misplaced(target, kind) == out
+    assert ("stove" in commonsense_places.usual_places("apple")) is False
 
 
 def test_nothing_is_judged_of_what_is_no_target():
     with pytest.raises(UnknownName, match="spaceship"):
-        commonsense_places.of("spaceship")
+        commonsense_places.places_of("spaceship")
 
 
 # ------------------------------------------------------------------------------------------------------ small houses

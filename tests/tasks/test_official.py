@@ -19,16 +19,16 @@ from hthor import catalog, cli, houses, jsonio, tasks
 from hthor.errors import HthorError, TaskError, UnknownName
 from hthor.houses.checks.findings import error
 from hthor.tasks.generation import secret_suites, standard
-from hthor.tasks.generation.secret_suites import Order, Proof
+from hthor.tasks.generation.secret_suites import Proof, SuiteOrder
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites import commitment, library
 from hthor.tasks.suites import secret_salt as salts
 from hthor.tasks.suites.secret_salt import Salt
-from hthor.tasks.validate import faults
+from hthor.tasks.validate import task_faults
 
 TEXT = "5f1d0c9be7a84e2699c3b1d07a4418f2e35b6097cd12fa8870b94d6e1ac53f28"
 SALT, OTHER = Salt(TEXT), Salt(TEXT[::-1])
-ORDER = Order(name="tiny", houses=2, tasks=4)
+ORDER = SuiteOrder(name="tiny", houses=2, tasks=4)
 PURPOSES = st.lists(st.text(max_size=8) | st.integers(-(2**62), 2**62), max_size=4).map(tuple)
 
 
@@ -42,22 +42,22 @@ PROOF = Proof(house=soundly, task=lambda task, house: house.sha256 == task.house
 @pytest.fixture(scope="module")
 def parts():
     """What comes of the two houses' lots, worked out once."""
-    return [secret_suites.part(lot, PROOF) for lot in secret_suites.lots(ORDER, SALT)]
+    return [secret_suites.make_house_tasks(lot, PROOF) for lot in secret_suites.house_orders(ORDER, SALT)]
 
 
 @pytest.fixture(scope="module")
 def files(parts):
-    return secret_suites.files(ORDER, SALT, PROOF, lambda work, lots: parts)
+    return secret_suites.make_files(ORDER, SALT, PROOF, lambda work, lots: parts)
 
 
 @pytest.fixture
 def folder(files, tmp_path: Path) -> Path:
-    secret_suites.write(ORDER, SALT, tmp_path / "tiny", files, {"hthor": "1"})
+    secret_suites.write_suite(ORDER, SALT, tmp_path / "tiny", files, {"hthor": "1"})
     return tmp_path / "tiny"
 
 
 def differences(folder: Path, parts, salt: Salt = SALT):
-    held = commitment.load(folder / "commitment.json")
+    held = commitment.load_commitment(folder / "commitment.json")
     return list(secret_suites.differences(folder, held, salt, PROOF, lambda work, lots: parts))
 
 
@@ -68,20 +68,20 @@ def test_a_fresh_salt_is_random_readable_by_its_owner_alone_and_never_written_ov
     one, two = tmp_path / "deep" / "one", tmp_path / "two"
     before = os.umask(0)
     try:
-        salts.fresh(one)
-        salts.fresh(two)
+        salts.create_salt(one)
+        salts.create_salt(two)
     finally:
         os.umask(before)
     assert stat.S_IMODE(one.stat().st_mode) == 0o600
-    assert not salts.exposed(one)
-    assert salts.read(one).commitment() != salts.read(two).commitment()
+    assert not salts.is_exposed(one)
+    assert salts.read_salt(one).commitment() != salts.read_salt(two).commitment()
     assert len(bytes.fromhex(one.read_text().strip())) == 32
     held = one.read_bytes()
     with pytest.raises(HthorError, match="never written over"):
-        salts.fresh(one)
+        salts.create_salt(one)
     assert one.read_bytes() == held
     one.chmod(0o640)
-    assert salts.exposed(one)
+    assert salts.is_exposed(one)
 
 
 @pytest.mark.parametrize(
@@ -102,10 +102,10 @@ def test_salts_that_could_be_guessed_are_refused_and_not_repeated(data, told, tm
     if data is not None:
         path.write_bytes(data)
     if told is None:
-        salts.read(path)
+        salts.read_salt(path)
         return
     with pytest.raises(HthorError, match=told) as caught:
-        salts.read(path)
+        salts.read_salt(path)
     assert "hthor suite salt" in str(caught.value)
     shown = str(caught.value).removeprefix(str(path))
     assert not data or data.decode(errors="ignore").strip()[:12] not in shown or not data.strip()
@@ -114,7 +114,7 @@ def test_salts_that_could_be_guessed_are_refused_and_not_repeated(data, told, tm
 def test_white_space_around_a_salt_does_not_count(tmp_path: Path):
     (tmp_path / "a").write_text(TEXT)
     (tmp_path / "b").write_text(f"  {TEXT}\r\n")
-    assert salts.read(tmp_path / "a").reveal() == salts.read(tmp_path / "b").reveal() == TEXT
+    assert salts.read_salt(tmp_path / "a").reveal() == salts.read_salt(tmp_path / "b").reveal() == TEXT
 
 
 def test_a_salt_is_shown_by_nothing_and_stays_in_its_process():
@@ -139,33 +139,33 @@ def test_roots_and_words_are_of_their_purpose_alone(one, two):
 
 @given(st.text(st.characters(min_codepoint=33, max_codepoint=126), min_size=1, max_size=80))
 def test_a_text_never_seems_to_hold_more_than_its_letters_can(text):
-    assert -1e-9 <= salts.bits(text) <= 6.6 * len(text)
-    assert salts.bits(text * 40) <= 40 * salts.bits(text) + 8 * (len(text) + 40)
+    assert -1e-9 <= salts.estimate_bits(text) <= 6.6 * len(text)
+    assert salts.estimate_bits(text * 40) <= 40 * salts.estimate_bits(text) + 8 * (len(text) + 40)
 
 
 # -------------------------------------------------------------------------------------------------------- the suite
 
 
 def test_the_same_salt_gives_the_same_bytes(parts):
-    again = secret_suites.part(secret_suites.lots(ORDER, Salt(TEXT))[1], PROOF)
+    again = secret_suites.make_house_tasks(secret_suites.house_orders(ORDER, Salt(TEXT))[1], PROOF)
     assert again == parts[1]
 
 
 def test_another_salt_or_another_name_gives_other_houses_and_tasks(parts):
-    names = {lot.house for salt in (SALT, OTHER) for lot in secret_suites.lots(ORDER, salt)}
-    names |= {lot.house for lot in secret_suites.lots(msgspec.structs.replace(ORDER, name="tiny2"), SALT)}
+    names = {lot.house for salt in (SALT, OTHER) for lot in secret_suites.house_orders(ORDER, salt)}
+    names |= {lot.house for lot in secret_suites.house_orders(msgspec.structs.replace(ORDER, name="tiny2"), SALT)}
     assert len(names) == 6
-    roots = [root for lot in secret_suites.lots(ORDER, SALT) for pair in lot.roots for root in pair]
+    roots = [root for lot in secret_suites.house_orders(ORDER, SALT) for pair in lot.roots for root in pair]
     assert len(set(roots)) == len(roots)
-    other = secret_suites.part(secret_suites.lots(ORDER, OTHER)[1], PROOF)
+    other = secret_suites.make_house_tasks(secret_suites.house_orders(ORDER, OTHER)[1], PROOF)
     assert other.file != parts[1].file
     assert json.loads(other.file)["rooms"] != json.loads(parts[1].file)["rooms"]
     assert {task.house_sha256 for task in other.tasks}.isdisjoint(task.house_sha256 for task in parts[1].tasks)
 
 
 def test_its_tasks_are_sound_and_in_houses_of_its_own(files, folder: Path):
-    suite = tasks.suite(folder)
-    assert suite == tasks.suite(folder / "suite.json")
+    suite = tasks.load_suite(folder)
+    assert suite == tasks.load_suite(folder / "suite.json")
     assert len(suite.tasks) == 4
     assert len({task.house for task in suite.tasks}) == 2
     assert {task.split for task in suite.tasks} == {"new"}
@@ -174,14 +174,14 @@ def test_its_tasks_are_sound_and_in_houses_of_its_own(files, folder: Path):
     known = {*houses.names(), *houses.names("unseen")}
     for task in suite.tasks:
         assert task.house not in known
-        assert list(faults(task, suite.houses.load(task.house))) == []
+        assert list(task_faults(task, suite.houses.load(task.house))) == []
         assert {thing.kind for thing in suite.houses.load(task.house).things} >= set(catalog.RECEPTACLES)
-    assert library.own_houses(folder) == {path[7:]: data for path, data in files.items() if path != "suite.json"}
-    assert library.own_houses("smoke") == {}
+    assert library.house_files(folder) == {path[7:]: data for path, data in files.items() if path != "suite.json"}
+    assert library.house_files("smoke") == {}
 
 
 def test_nothing_that_is_written_tells_the_salt_or_a_root(folder: Path):
-    roots = [root for lot in secret_suites.lots(ORDER, SALT) for pair in lot.roots for root in pair]
+    roots = [root for lot in secret_suites.house_orders(ORDER, SALT) for pair in lot.roots for root in pair]
     secret = [TEXT, TEXT[:16], TEXT[-16:]]
     secret += [form for root in roots for form in (str(root), f"{root % 2**128:x}"[:16], str(root % 2**63))]
     written = b"".join(path.read_bytes() for path in sorted(folder.rglob("*.json"))).decode()
@@ -194,42 +194,46 @@ def test_what_is_learned_of_public_suites_by_heart_finds_nothing_in_it(folder: P
     def marks(task):
         return task.instruction, task.robot_starts[0]
 
-    public = [task for name in ("smoke", "paper", "standard") for task in tasks.suite(name).tasks]
-    assert len({marks(task) for task in tasks.suite("standard").tasks}) == 2000, "there a table would find everything"
-    assert {marks(task) for task in public}.isdisjoint(marks(task) for task in tasks.suite(folder).tasks)
+    public = [task for name in ("smoke", "paper", "standard") for task in tasks.load_suite(name).tasks]
+    assert len({marks(task) for task in tasks.load_suite("standard").tasks}) == 2000, (
+        "there a table would find everything"
+    )
+    assert {marks(task) for task in public}.isdisjoint(marks(task) for task in tasks.load_suite(folder).tasks)
 
 
 def test_starts_lie_on_the_grid_so_that_no_digit_tells_how_they_were_drawn(folder: Path):
-    for task in tasks.suite(folder).tasks:
+    for task in tasks.load_suite(folder).tasks:
         for pose in (task.human_start, *task.robot_starts):
             assert (round(pose.x, 4), round(pose.y, 4), round(pose.yaw, 4)) == (pose.x, pose.y, pose.yaw)
 
 
 def test_a_house_that_is_unsound_or_too_small_is_drawn_again(monkeypatch: pytest.MonkeyPatch):
-    lot = secret_suites.lots(Order(name="tiny", houses=1, tasks=1), SALT)[0]
+    lot = secret_suites.house_orders(SuiteOrder(name="tiny", houses=1, tasks=1), SALT)[0]
     seen = []
 
     def first_is_bad(house):
         seen.append(house.sha256)
         return (error("start-free", house.id, "bad"),) if len(seen) == 1 else ()
 
-    made = secret_suites.part(lot, Proof(house=first_is_bad, task=PROOF.task))
+    made = secret_suites.make_house_tasks(lot, Proof(house=first_is_bad, task=PROOF.task))
     assert len(set(seen)) == 2
     assert made.tasks[0].house_sha256 == seen[1] == jsonio.sha256(json.loads(made.file))
     bad = msgspec.structs.replace(lot, roots=lot.roots[:1])
     with pytest.raises(HthorError, match=r"no house of 4 rooms came of 1 roots; .*bad \(start-free\)"):
-        secret_suites.part(bad, Proof(house=lambda house: (error("start-free", house.id, "bad"),), task=PROOF.task))
+        secret_suites.make_house_tasks(
+            bad, Proof(house=lambda house: (error("start-free", house.id, "bad"),), task=PROOF.task)
+        )
 
 
 def test_a_task_that_cannot_be_done_is_drawn_again():
-    lot = secret_suites.lots(Order(name="tiny", houses=1, tasks=1), SALT)[0]
+    lot = secret_suites.house_orders(SuiteOrder(name="tiny", houses=1, tasks=1), SALT)[0]
     seen = []
 
     def second(task, house):
         seen.append(task)
         return len(seen) == 2
 
-    made = secret_suites.part(lot, Proof(house=lambda _: (), task=second))
+    made = secret_suites.make_house_tasks(lot, Proof(house=lambda _: (), task=second))
     assert list(made.tasks) == seen[1:]
     assert seen[0] != seen[1]
     assert (seen[0].goal, seen[0].house_sha256) == (seen[1].goal, seen[1].house_sha256)
@@ -247,12 +251,12 @@ def test_a_task_that_cannot_be_done_is_drawn_again():
 )
 def test_orders_that_cannot_be_met(name, many, count, told):
     with pytest.raises(HthorError, match=told):
-        secret_suites.lots(Order(name=name, houses=many, tasks=count), SALT)
+        secret_suites.house_orders(SuiteOrder(name=name, houses=many, tasks=count), SALT)
 
 
 @given(st.integers(1, 40), st.integers(0, 400))
 def test_tasks_are_shared_out_evenly_and_a_quarter_are_searches(many, more):
-    lots = secret_suites.lots(Order(name="fine", houses=many, tasks=many + more), SALT)
+    lots = secret_suites.house_orders(SuiteOrder(name="fine", houses=many, tasks=many + more), SALT)
     sums = [sum(count for _, count in lot.counts) for lot in lots]
     assert sum(sums) == many + more
     assert max(sums) - min(sums) <= 1
@@ -267,19 +271,19 @@ def test_tasks_are_shared_out_evenly_and_a_quarter_are_searches(many, more):
 
 
 def test_the_commitment_binds_every_file(folder: Path, files):
-    held = commitment.load(folder / "commitment.json")
+    held = commitment.load_commitment(folder / "commitment.json")
     assert held.files.keys() == files.keys()
-    assert held.suite_sha256 == tasks.suite(folder).sha256
-    assert list(commitment.changes(folder, held)) == []
+    assert held.suite_sha256 == tasks.load_suite(folder).sha256
+    assert list(commitment.find_changes(folder, held)) == []
     for path, data in files.items():
         for place in (0, len(data) // 2, len(data) - 1):
             (folder / path).write_bytes(data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :])
-            assert list(commitment.changes(folder, held)) == [(path, "was changed after it was committed to")]
+            assert list(commitment.find_changes(folder, held)) == [(path, "was changed after it was committed to")]
         (folder / path).unlink()
-        assert list(commitment.changes(folder, held)) == [(path, "is missing")]
+        assert list(commitment.find_changes(folder, held)) == [(path, "is missing")]
         (folder / path).write_bytes(data)
     (folder / "houses" / "more.json").write_bytes(b"{}")
-    assert [path for path, _ in commitment.changes(folder, held)] == ["houses/more.json"]
+    assert [path for path, _ in commitment.find_changes(folder, held)] == ["houses/more.json"]
 
 
 def test_what_comes_of_the_salt_is_what_was_committed_to(folder: Path, parts):
@@ -292,29 +296,29 @@ def test_what_comes_of_the_salt_is_what_was_committed_to(folder: Path, parts):
 
 def test_a_suite_that_was_not_drawn_from_its_salt_is_found_out(folder: Path, parts):
     """Its maker picked the tasks by hand and committed to them: every hash fits, but they do not come of the salt."""
-    suite = tasks.suite(folder)
+    suite = tasks.load_suite(folder)
     easier = msgspec.structs.replace(suite.tasks[0], t_star=suite.tasks[0].t_star / 2)
     forged = make_suite(suite.name, suite.version, (easier, *suite.tasks[1:]))
     names = [f"houses/{part.house}.json" for part in parts]
     files = {"suite.json": encode_suite(forged), **{name: (folder / name).read_bytes() for name in names}}
-    secret_suites.write(ORDER, SALT, folder, files, {})
-    assert list(commitment.changes(folder, commitment.load(folder / "commitment.json"))) == []
+    secret_suites.write_suite(ORDER, SALT, folder, files, {})
+    assert list(commitment.find_changes(folder, commitment.load_commitment(folder / "commitment.json"))) == []
     found = dict(differences(folder, parts))
     assert found.keys() == {"suite.json", "commitment.json"}
     assert "line 1 is the first" in found["suite.json"]  # the hash of all tasks stands there
-    held = commitment.load(folder / "commitment.json")
+    held = commitment.load_commitment(folder / "commitment.json")
     swapped = {**held.files, names[0]: held.files[names[1]], "houses/x.json": "0" * 64}
     jsonio.write(folder / "commitment.json", jsonio.pretty(msgspec.structs.replace(held, files=swapped)))
     assert {names[0], "houses/x.json"} <= dict(differences(folder, parts)).keys()
 
 
 def test_only_the_right_salt_is_revealed(folder: Path):
-    assert commitment.revealed(folder) is None
+    assert commitment.read_revealed_salt(folder) is None
     with pytest.raises(TaskError, match="salt of another suite"):
-        commitment.reveal(folder, OTHER)
+        commitment.reveal_salt(folder, OTHER)
     assert not (folder / "revealed.json").exists()
-    assert commitment.reveal(folder, SALT) == folder / "revealed.json"
-    found = commitment.revealed(folder)
+    assert commitment.reveal_salt(folder, SALT) == folder / "revealed.json"
+    found = commitment.read_revealed_salt(folder)
     assert found is not None
     assert found.reveal() == TEXT
 
@@ -325,15 +329,15 @@ def test_damaged_records_name_the_field(folder: Path, tmp_path: Path):
     for change, told in (({"houses": "two"}, "houses"), ({"date": "now"}, "date")):
         path.write_text(json.dumps({**document, **change}))
         with pytest.raises(TaskError, match=told):
-            commitment.load(path)
+            commitment.load_commitment(path)
     path.write_text("{")
     with pytest.raises(TaskError, match="not JSON"):
-        commitment.load(path)
+        commitment.load_commitment(path)
     with pytest.raises(TaskError, match="hthor suite make"):
-        commitment.load(tmp_path / "none.json")
+        commitment.load_commitment(tmp_path / "none.json")
     (folder / "revealed.json").write_text(json.dumps({"schema": "hthor.revealed/1", "name": "tiny", "salt": "ä"}))
     with pytest.raises(TaskError, match="ASCII"):
-        commitment.revealed(folder)
+        commitment.read_revealed_salt(folder)
 
 
 # ------------------------------------------------------------------------------------------------- the command line
@@ -451,16 +455,16 @@ def test_a_suite_whose_houses_are_missing_says_so(folder: Path):
     for path in (folder / "houses").glob("*.json"):
         path.unlink()
     with pytest.raises(TaskError, match=r"tasks\[0\].house: unknown house"):
-        tasks.suite(folder)
+        tasks.load_suite(folder)
     with pytest.raises(TaskError, match="cannot be read"):
-        tasks.suite(folder / "houses")
+        tasks.load_suite(folder / "houses")
 
 
 def test_tasks_alike_are_told_apart(parts):
     one = parts[0].tasks[0]
     step = msgspec.structs.replace(one.human_start, x=one.human_start.x + 0.8, y=one.human_start.y + 0.7)
     near = msgspec.structs.replace(one.human_start, x=one.human_start.x + 0.7)
-    assert standard.alike(one, msgspec.structs.replace(one, human_start=near, id="other"))
-    assert not standard.alike(one, msgspec.structs.replace(one, human_start=step))
-    assert not standard.alike(one, msgspec.structs.replace(one, house="elsewhere"))
-    assert not any(standard.alike(a, b) for part in parts for a in part.tasks for b in part.tasks if a.id != b.id)
+    assert standard.are_alike(one, msgspec.structs.replace(one, human_start=near, id="other"))
+    assert not standard.are_alike(one, msgspec.structs.replace(one, human_start=step))
+    assert not standard.are_alike(one, msgspec.structs.replace(one, house="elsewhere"))
+    assert not any(standard.are_alike(a, b) for part in parts for a in part.tasks for b in part.tasks if a.id != b.id)

@@ -19,7 +19,7 @@ from hthor.tasks.suite import encode_suite
 from hthor.tasks.suites import library
 from hthor.tasks.validate import validate
 
-SUITE = tasks.suite("standard")
+SUITE = tasks.load_suite("standard")
 FIND, MOVE = "object_goal_navigation", "mobile_manipulation"
 LEVELS, SPLITS = ("easy", "medium", "hard"), ("seen", "new")
 PAGE = (Path(__file__).parents[2] / "docs" / "suites.md").read_text(encoding="utf-8")
@@ -60,7 +60,7 @@ def test_each_is_sound(name):
 def test_one_is_made_again_byte_for_byte():
     recipe = unseen.RECIPES[3]
     file = Path(houses.__file__).parent / "unseen" / f"{recipe.name}.json"
-    assert jsonio.pretty(unseen.make(recipe)) == file.read_bytes()
+    assert jsonio.pretty(unseen.make_unseen(recipe)) == file.read_bytes()
 
 
 def test_the_others_are_written_where_one_says(tmp_path: Path, capsys, monkeypatch):
@@ -87,7 +87,7 @@ def test_it_has_two_thousand_distinct_tasks_a_hundred_a_house():
 def test_no_two_of_its_tasks_are_alike():
     for house in HOUSES:
         own = [task for task in SUITE.tasks if task.house == house.id]
-        assert not any(standard.alike(one, two) for one, two in itertools.combinations(own, 2))
+        assert not any(standard.are_alike(one, two) for one, two in itertools.combinations(own, 2))
 
 
 def test_the_split_is_between_the_ten_scenes_and_the_others():
@@ -167,13 +167,13 @@ def test_all_of_it_can_be_run():
 @pytest.mark.parametrize("name", ["juniper", "aspen"])
 def test_a_slice_is_made_again_byte_for_byte(name):
     split = "seen" if name in names() else "new"
-    made = list(itertools.islice(standard.in_house(standard.PLAN, houses.load(name), split), 3))
+    made = list(itertools.islice(standard.make_tasks(standard.SPEC, houses.load(name), split), 3))
     held = [task for task in SUITE.tasks if task.house == name][:3]
     assert [jsonio.canonical(task) for task in made] == [jsonio.canonical(task) for task in held]
 
 
 def test_the_file_is_as_the_suite_is_written_and_small_enough_to_ship():
-    data = library.path_of("standard").read_bytes()
+    data = library.suite_path("standard").read_bytes()
     assert data == encode_suite(SUITE)
     assert len(data) < 4_000_000
 

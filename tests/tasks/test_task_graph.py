@@ -39,7 +39,7 @@ def test_the_benchmark_has_its_parts():
 def test_orders_count_565_and_1583():
     found = {}
     for name in ("navigation", "manipulation"):
-        plan = suite_specs.PLANS[name]
+        plan = suite_specs.SUITE_SPECS[name]
         orders = [order for house in plan.houses for order in plan.orders(plan, houses.load(house))]
         assert len({order.name for order in orders}) == len(orders)
         found[name] = len(orders)
@@ -66,10 +66,11 @@ def test_the_counts_follow_from_the_tables_alone():
 @pytest.mark.parametrize("target", catalog.TARGETS)
 @pytest.mark.parametrize("where", ["everything", "juniper"])
 def test_relations_are_drawn_as_often_as_they_weigh(target, where):
-    kinds = EVERYTHING if where == "everything" else scene_graph.present(houses.load(where))
-    counts = Counter(scene_graph.draw(target, kinds, seeds.derive(ROOT, number)) for number in range(SAMPLES))
+    kinds = EVERYTHING if where == "everything" else scene_graph.kinds_present(houses.load(where))
+    counts = Counter(scene_graph.draw_triplet(target, kinds, seeds.derive(ROOT, number)) for number in range(SAMPLES))
     weights = {
-        row: priors.weights(target)[row.relation, row.reference] for row in scene_graph.applicable(target, kinds)
+        row: priors.weights(target)[row.relation, row.reference]
+        for row in scene_graph.applicable_triplets(target, kinds)
     }
     total = sum(weights.values())
     assert set(counts) <= set(weights)
@@ -78,12 +79,12 @@ def test_relations_are_drawn_as_often_as_they_weigh(target, where):
 
 
 def test_a_whole_graph_is_drawn_target_by_target():
-    kinds = scene_graph.present(houses.load("alder"))
-    one = scene_graph.sample(kinds, ROOT)
+    kinds = scene_graph.kinds_present(houses.load("alder"))
+    one = scene_graph.sample_graph(kinds, ROOT)
     assert set(one) == set(catalog.TARGETS)
-    assert one == scene_graph.sample(kinds, ROOT) != scene_graph.sample(kinds, ROOT + 1)
-    fixed = scene_graph.triplet("mug", "in", "sink")
-    assert scene_graph.sample(kinds, ROOT, fixed) == {**one, "mug": fixed}
+    assert one == scene_graph.sample_graph(kinds, ROOT) != scene_graph.sample_graph(kinds, ROOT + 1)
+    fixed = scene_graph.find_triplet("mug", "in", "sink")
+    assert scene_graph.sample_graph(kinds, ROOT, fixed) == {**one, "mug": fixed}
 
 
 def test_poses_realise_the_graph_that_was_drawn():
@@ -91,7 +92,9 @@ def test_poses_realise_the_graph_that_was_drawn():
     house, kept, drawn = houses.load("hazel"), 0, 0
     things = {thing.id: thing.kind for thing in house.things}
     for root in range(8):
-        wanted = scene_graph.sample(scene_graph.present(house), seeds.derive(seeds.derive(root), "graph", 0))
+        wanted = scene_graph.sample_graph(
+            scene_graph.kinds_present(house), seeds.derive(seeds.derive(root), "graph", 0)
+        )
         for placed in arrange(house, seeds.derive(root)):
             row = wanted[placed.id]
             kinds = things.get(placed.near, placed.near), things.get(placed.support)
@@ -100,13 +103,13 @@ def test_poses_realise_the_graph_that_was_drawn():
     assert kept >= 0.85 * drawn
 
 
-rows = st.tuples(*(st.sampled_from(scene_graph.applicable(target, EVERYTHING)) for target in catalog.TARGETS))
+rows = st.tuples(*(st.sampled_from(scene_graph.applicable_triplets(target, EVERYTHING)) for target in catalog.TARGETS))
 
 
 @given(chosen=rows, root=st.integers(0, 1 << 40))
 def test_targets_come_after_what_they_are_near_to_but_one_of_a_ring(chosen, root):
     wanted = {row.target: row for row in chosen}
-    order = scene_graph.order(wanted, root)
+    order = scene_graph.placement_order(wanted, root)
     assert sorted(order) == sorted(catalog.TARGETS)
     for place, target in enumerate(order):
         row = wanted[target]
@@ -119,11 +122,11 @@ def test_targets_come_after_what_they_are_near_to_but_one_of_a_ring(chosen, root
 
 def test_wrong_names_are_told():
     with pytest.raises(UnknownName, match="Did you mean 'apple'"):
-        scene_graph.draw("appel", EVERYTHING, 1)
+        scene_graph.draw_triplet("appel", EVERYTHING, 1)
     with pytest.raises(ValueError, match="no reference"):
-        scene_graph.draw("apple", frozenset(), 1)
+        scene_graph.draw_triplet("apple", frozenset(), 1)
     with pytest.raises(KeyError):
-        scene_graph.triplet("apple", "on", "fridge")
+        scene_graph.find_triplet("apple", "on", "fridge")
 
 
 # --------------------------------------------------------------------------------------------------------- arrangements
@@ -148,7 +151,7 @@ def test_a_given_triplet_holds_and_so_does_all_that_is_near(name):
     house = houses.load(name)
     things = {thing.id: thing.kind for thing in house.things}
     for number, row in enumerate(priors.triplets()[::6]):
-        if row.reference not in scene_graph.present(house):
+        if row.reference not in scene_graph.kinds_present(house):
             continue
         objects = arrange(house, seeds.derive(ROOT, number), fixed=row)
         mine = next(placed for placed in objects if placed.id == row.target)
@@ -161,7 +164,7 @@ def test_a_given_triplet_holds_and_so_does_all_that_is_near(name):
 
 def test_a_target_of_a_ring_is_near_the_one_that_came_later():
     house = houses.load("alder")
-    fixed = scene_graph.triplet("tomato", "near", "lettuce")
+    fixed = scene_graph.find_triplet("tomato", "near", "lettuce")
     rings = 0
     for root in range(12):
         placed = {one.id: one for one in arrange(house, root, fixed=fixed)}
@@ -171,7 +174,7 @@ def test_a_target_of_a_ring_is_near_the_one_that_came_later():
 
 
 def test_where_only_the_destination_is_near_it_lies_on_the_floor():
-    house, row = houses.load("willow"), scene_graph.triplet("remote_control", "near", "television")
+    house, row = houses.load("willow"), scene_graph.find_triplet("remote_control", "near", "television")
     objects = arrange(house, ROOT, {"remote_control": "tv_stand"}, fixed=row)
     mine = next(placed for placed in objects if placed.id == "remote_control")
     assert mine.support == ""
@@ -182,7 +185,7 @@ def test_where_only_the_destination_is_near_it_lies_on_the_floor():
 
 
 def test_where_the_only_plate_is_at_the_destination_another_is_brought():
-    house, row = houses.load("rowan"), scene_graph.triplet("tomato", "on", "plate")
+    house, row = houses.load("rowan"), scene_graph.find_triplet("tomato", "on", "plate")
     objects = {placed.id: placed for placed in arrange(house, ROOT, {"tomato": "dining_table"}, fixed=row)}
     things = {thing.id: thing.kind for thing in house.things}
     plate = objects[f"{BROUGHT}_plate"]
@@ -195,5 +198,5 @@ def test_what_cannot_be_is_said():
     house = houses.load("alder")
     with pytest.raises(HthorError, match="tomato-on-plate"):
         arrange(
-            house, ROOT, fixed=scene_graph.triplet("tomato", "on", "plate")
+            house, ROOT, fixed=scene_graph.find_triplet("tomato", "on", "plate")
         )  # no plate in this house, nothing banned

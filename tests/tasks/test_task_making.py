@@ -21,7 +21,7 @@ from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites import library, suite_files
-from hthor.tasks.validate import unsound
+from hthor.tasks.validate import find_faults
 from hthor.types import HouseSpec, TaskSpec
 
 DATA = Path(houses.__file__).parent / "data"
@@ -47,19 +47,19 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def made(home: Path) -> tuple[TaskSpec, ...]:
-    return custom_suite.in_house(RECIPE, houses.load(home))
+    return custom_suite.make_tasks(RECIPE, houses.load(home))
 
 
 @pytest.fixture
 def suite(home: Path, made: tuple[TaskSpec, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    files = suite_files.files("mine", custom_suite.VERSION, suite_files.sources([str(home)]), [made])
-    return suite_files.write(tmp_path / "mine.json", files)
+    files = suite_files.make_files("mine", custom_suite.VERSION, suite_files.find_sources([str(home)]), [made])
+    return suite_files.write_files(tmp_path / "mine.json", files)
 
 
 def broken(path: Path, *numbers: int) -> Path:
     """The suite with objects of some tasks a metre too high."""
-    found = library.read(path)
+    found = library.read_suite(path)
     rows = [_raised(task) if number in numbers else task for number, task in enumerate(found.tasks)]
     path.write_bytes(encode_suite(make_suite(found.name, found.version, tuple(rows))))
     return path
@@ -75,25 +75,27 @@ def _raised(task: TaskSpec) -> TaskSpec:
 
 
 def test_equal_recipes_give_equal_tasks_and_other_seeds_others(home: Path, made: tuple[TaskSpec, ...]):
-    assert custom_suite.in_house(RECIPE, houses.load(home)) == made
-    assert custom_suite.in_house(msgspec.structs.replace(RECIPE, seed=6, tasks=1), houses.load(home))[0] not in made
+    assert custom_suite.make_tasks(RECIPE, houses.load(home)) == made
+    assert custom_suite.make_tasks(msgspec.structs.replace(RECIPE, seed=6, tasks=1), houses.load(home))[0] not in made
     assert [task.id for task in made] == sorted({task.id for task in made}, key=[task.id for task in made].index)
     assert {task.house for task in made} == {"my home"}
 
 
 def test_what_cannot_be_done_is_drawn_again_with_another_goal_in_the_end():
-    first = custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), ELDER)[0].goal
+    first = custom_suite.make_tasks(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), ELDER)[0].goal
     tried: list[TaskSpec] = []
 
     def possible(task: TaskSpec, house: HouseSpec) -> bool:
         tried.append(task)
         return task.goal != first
 
-    (task,) = custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), ELDER, possible)
+    (task,) = custom_suite.make_tasks(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), ELDER, possible)
     assert task.goal != first
     assert len(tried) > 1
     with pytest.raises(HthorError, match="has no room for another task like 'mine/elder/navigation-01'"):
-        custom_suite.in_house(Recipe(name="mine", tasks=1, kinds=("object_goal_navigation",)), ELDER, lambda *_: False)
+        custom_suite.make_tasks(
+            Recipe(name="mine", tasks=1, kinds=("object_goal_navigation",)), ELDER, lambda *_: False
+        )
 
 
 def test_a_suite_brings_its_houses_and_what_they_need(suite: Path, made: tuple[TaskSpec, ...], home: Path):
@@ -101,19 +103,19 @@ def test_a_suite_brings_its_houses_and_what_they_need(suite: Path, made: tuple[T
     assert names == [DATABASE, "my home.json"]
     rows = json.loads((suite.with_suffix(".houses") / DATABASE).read_bytes())
     assert rows == {"Cup": [CUP]}, "only what the house names"
-    found = tasks.suite(suite)
+    found = tasks.load_suite(suite)
     assert found.tasks == made
     assert found.houses.load("my home") == houses.load(home)
-    assert set(library.own_houses(suite)) == set(names)
+    assert set(library.house_files(suite)) == set(names)
 
 
 def test_a_folder_does_as_well(home: Path, made: tuple[TaskSpec, ...], tmp_path: Path):
-    files = suite_files.files("mine", custom_suite.VERSION, suite_files.sources([str(home)]), [made])
-    out = suite_files.write(tmp_path / "mine", files)
+    files = suite_files.make_files("mine", custom_suite.VERSION, suite_files.find_sources([str(home)]), [made])
+    out = suite_files.write_files(tmp_path / "mine", files)
     assert sorted(path.name for path in out.iterdir()) == ["houses", "suite.json"]
-    assert tasks.suite(out).tasks == made
+    assert tasks.load_suite(out).tasks == made
     with pytest.raises(HthorError, match="is there already"):
-        suite_files.clear(out)
+        suite_files.check_unused(out)
 
 
 def test_houses_are_told_apart_by_name(home: Path, tmp_path: Path):
@@ -121,22 +123,22 @@ def test_houses_are_told_apart_by_name(home: Path, tmp_path: Path):
     shutil.copy(home, twin)
     shutil.copy(home.parent / DATABASE, tmp_path / DATABASE)
     with pytest.raises(HthorError, match="two of the houses are called 'my home'"):
-        suite_files.sources([str(home), str(twin)])
+        suite_files.find_sources([str(home), str(twin)])
     shutil.copy(DATA / "alder.json", tmp_path / "birch.json")
     with pytest.raises(HthorError, match="called like a house of hthor's own"):
-        suite_files.sources([str(tmp_path / "birch.json")])
-    assert suite_files.sources(["alder"])[0].file is None
+        suite_files.find_sources([str(tmp_path / "birch.json")])
+    assert suite_files.find_sources(["alder"])[0].file is None
     for name in ("smoke", "a b", "", "../x"):
         with pytest.raises(HthorError, match="suite"):
-            suite_files.named(name)
+            suite_files.check_name(name)
 
 
 # -------------------------------------------------------------------------------------------------- before it is played
 
 
 def test_every_unsound_task_is_named(suite: Path):
-    found = library.read(broken(suite, 0, 2))
-    assert {one.index for one in unsound(found)} == {0, 2}
+    found = library.read_suite(broken(suite, 0, 2))
+    assert {one.index for one in find_faults(found)} == {0, 2}
     with pytest.raises(TaskError) as error:
         task_selection.select_tasks(str(suite), "")
     assert "2 of the suite's 3 tasks cannot be run as they are" in str(error.value)
@@ -145,7 +147,7 @@ def test_every_unsound_task_is_named(suite: Path):
 
 
 def test_the_check_lists_every_task(suite: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
-    ids = [task.id for task in library.read(broken(suite, 0, 1, 2)).tasks]
+    ids = [task.id for task in library.read_suite(broken(suite, 0, 1, 2)).tasks]
     monkeypatch.setattr(sys, "argv", ["hthor", "tasks", "check", str(suite), "--jobs", "1"])
     with pytest.raises(SystemExit) as end:
         cli.main()
@@ -234,6 +236,6 @@ def test_a_house_of_ones_own_is_made_into_a_suite_once(
     first = custom_houses.resolve(options, told.append)
     assert custom_houses.resolve(options, told.append) == first
     assert len(told) == 1
-    assert tasks.suite(first.suite).tasks == made
+    assert tasks.load_suite(first.suite).tasks == made
     assert first.houses == ()
-    assert tasks.suite(first.suite).name == "in-my-home"
+    assert tasks.load_suite(first.suite).name == "in-my-home"

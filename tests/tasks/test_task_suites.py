@@ -20,10 +20,10 @@ from hthor.tasks.kind import TaskKind
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites import library
-from hthor.tasks.validate import faults
+from hthor.tasks.validate import task_faults
 from hthor.types import Goal, Placement, Snapshot
 
-NAVIGATION, MANIPULATION, PAPER = (tasks.suite(name) for name in ("navigation", "manipulation", "paper"))
+NAVIGATION, MANIPULATION, PAPER = (tasks.load_suite(name) for name in ("navigation", "manipulation", "paper"))
 EXACT = (NAVIGATION, MANIPULATION)
 SOME = [*NAVIGATION.tasks[::61], *MANIPULATION.tasks[::173]]
 
@@ -60,7 +60,7 @@ def test_the_suites_have_as_many_tasks_as_the_benchmark():
     assert placed == {(target, place) for target, places in TEMPLATES.items() for place in places}
     assert len(placed) == 19
     said = {task.id.split("/", 2)[2] for task in NAVIGATION.tasks}
-    assert said == {scene_graph.words(row) for row in priors.triplets()}
+    assert said == {scene_graph.triplet_words(row) for row in priors.triplets()}
     assert len(said) == 65
 
 
@@ -98,8 +98,8 @@ def test_every_stratum_has_its_share():
 @pytest.mark.parametrize("task", SOME, ids=lambda task: task.id)
 def test_a_slice_is_valid_and_as_difficult_as_it_says(task):
     house = houses.load(task.house)
-    assert list(faults(task, house)) == []
-    assert difficulty.of(task, house) == task.difficulty
+    assert list(task_faults(task, house)) == []
+    assert difficulty.level_of(task, house) == task.difficulty
     assert plugins.load("task kind", task.kind).t_star(task, house) == task.t_star
     assert len(task.robot_starts) == suite_specs.ROBOTS
     assert {one.id for one in task.objects} >= set(catalog.TARGETS)
@@ -115,26 +115,26 @@ def test_a_slice_can_be_done(task):
 
 @pytest.mark.parametrize("name", ["navigation", "manipulation"])
 def test_a_slice_made_again_is_the_same(name):
-    plan, frozen = suite_specs.PLANS[name], {task.id: task for task in tasks.suite(name).tasks}
+    plan, frozen = suite_specs.SUITE_SPECS[name], {task.id: task for task in tasks.load_suite(name).tasks}
     for scene, place in (("willow", 7), ("hazel", 31)):
         house = houses.load(scene)
-        made = generate.ordered(plan, house, plan.orders(plan, house)[place])
+        made = generate.make_ordered_task(plan, house, plan.orders(plan, house)[place])
         assert jsonio.canonical(made) == jsonio.canonical(frozen[made.id])
 
 
 @pytest.mark.parametrize("name", ["smoke", "paper"])
 def test_a_suite_made_again_is_the_same_file(name):
-    assert encode_suite(generate.build(suite_specs.PLANS[name])) == library.path_of(name).read_bytes()
+    assert encode_suite(generate.build_suite(suite_specs.SUITE_SPECS[name])) == library.suite_path(name).read_bytes()
 
 
-@pytest.mark.parametrize("name", sorted(suite_specs.PLANS))
+@pytest.mark.parametrize("name", sorted(suite_specs.SUITE_SPECS))
 def test_files_are_canonical_and_carry_their_hash(name):
-    data = library.path_of(name).read_bytes()
+    data = library.suite_path(name).read_bytes()
     assert len(data) < 3_000_000
-    suite = library.read(name)
+    suite = library.read_suite(name)
     assert encode_suite(suite) == data
     assert suite.sha256 == jsonio.sha256(json.loads(data)["tasks"])
-    assert (suite.name, suite.version) == (name, suite_specs.PLANS[name].version)
+    assert (suite.name, suite.version) == (name, suite_specs.SUITE_SPECS[name].version)
 
 
 # --------------------------------------------------------------------------------------------------- kinds of any sort
@@ -168,9 +168,9 @@ class Visit(TaskKind):
 
 
 def test_a_kind_without_a_target_gets_starts_all_the_same():
-    task = generate.task(houses.load("willow"), Visit(), None, 5, name="visit/willow/1", robots=3)
+    task = generate.make_task(houses.load("willow"), Visit(), None, 5, name="visit/willow/1", robots=3)
     assert (task.t_star, task.time_limit, len(task.robot_starts)) == (1.0, 30.0, 3)
-    assert task == generate.task(houses.load("willow"), Visit(), None, 5, name="visit/willow/1", robots=3)
+    assert task == generate.make_task(houses.load("willow"), Visit(), None, 5, name="visit/willow/1", robots=3)
 
 
 # ---------------------------------------------------------------------------------------------------------- difficulty
@@ -180,9 +180,9 @@ def test_difficulty_grows_with_the_way_and_with_what_lies_before():
     task = MANIPULATION.tasks[0]
     house = houses.load(task.house)
     far = msgspec.structs.replace(task, t_star=160.0)
-    assert difficulty.of(far, house) == "hard"
-    assert difficulty.measured(far, house).before == difficulty.measured(task, house).before
-    assert 0.0 <= difficulty.measured(task, house).before <= 1.0
+    assert difficulty.level_of(far, house) == "hard"
+    assert difficulty.measure_difficulty(far, house).before == difficulty.measure_difficulty(task, house).before
+    assert 0.0 <= difficulty.measure_difficulty(task, house).before <= 1.0
     levels = [difficulty.Difficulty(least=t, before=0.0).level for t in (1.0, difficulty.MEDIUM_S, difficulty.HARD_S)]
     assert levels == ["easy", "medium", "hard"]
 
@@ -191,12 +191,12 @@ def test_masses_are_those_of_the_priors():
     house = houses.load("alder")
     kinds = {thing.id: thing.kind for thing in house.things}
     total = Counter()
-    for id, mass in difficulty.masses(house, "mug").items():
+    for id, mass in difficulty.prior_mass(house, "mug").items():
         total[kinds[id]] += mass
     weights = priors.weights("mug")
     assert weights["in", "sink"] < total["sink"] < 2 * weights["in", "sink"]  # a mug near an apple may be there too
     assert sum(total.values()) <= 1.0
-    assert set(difficulty.masses(house, "laptop").values()) == {1.0}
+    assert set(difficulty.prior_mass(house, "laptop").values()) == {1.0}
 
 
 # ------------------------------------------------------------------------------------------------------------ commands
@@ -265,6 +265,6 @@ def test_check_names_task_field_and_reason(hthor, tmp_path):
 def test_a_task_is_found_by_its_id_in_ones_own_file_too(tmp_path):
     path = tmp_path / "own.json"
     path.write_bytes(encode_suite(make_suite("own", 1, PAPER.tasks[:2])))
-    assert library.find(PAPER.tasks[1].id, path)[1] == PAPER.tasks[1]
+    assert library.find_task(PAPER.tasks[1].id, path)[1] == PAPER.tasks[1]
     with pytest.raises(UnknownName, match="unknown task"):
-        library.find("paper/alder/nothing", path)
+        library.find_task("paper/alder/nothing", path)

@@ -15,21 +15,21 @@ from hthor.catalog import priors
 from hthor.errors import HthorError, TaskError, UnknownName
 from hthor.geometry.plane import to_house, to_local
 from hthor.houses.space.free_space import FreeSpace
-from hthor.houses.space.geodesic import geodesics
+from hthor.houses.space.geodesic import house_geodesics
 from hthor.tasks.arrangement.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
-from hthor.tasks.arrangement.occlusion import Sight
-from hthor.tasks.arrangement.placement import Shelves, gap_to
-from hthor.tasks.arrangement.reachability import Ground
+from hthor.tasks.arrangement.occlusion import LinesOfSight
+from hthor.tasks.arrangement.placement import SupportSurfaces, distance_to_thing
+from hthor.tasks.arrangement.reachability import ReachableFloor
 from hthor.tasks.arrangement.target_arrangement import NEAR_M, arrange
 from hthor.tasks.generation import generate
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
 from hthor.tasks.suite import encode_suite
 from hthor.tasks.suites import library
-from hthor.tasks.validate import faults
+from hthor.tasks.validate import task_faults
 from hthor.types import Goal, HouseSpec, Placement, Pose, Room, Snapshot, Thing, ThingState, Wall
 
 FIND, MOVE = (plugins.load("task kind", name) for name in ("object_goal_navigation", "mobile_manipulation"))
-SMOKE = tasks.suite("smoke")
+SMOKE = tasks.load_suite("smoke")
 HOUSES = {name: houses.load(name) for name in {task.house for task in SMOKE.tasks}}
 
 
@@ -62,7 +62,7 @@ def hall(*things, length=10.0, depth=4.0):
 
 
 def apple_on(thing, u=0.0, v=0.0):
-    rest = min(Shelves(hall(thing)).all, key=lambda rest: abs(rest.centre[2] - 0.9))
+    rest = min(SupportSurfaces(hall(thing)).all, key=lambda rest: abs(rest.centre[2] - 0.9))
     x, y, z = rest.point(u, v)
     relation = "in" if rest.surface.inside else "on"
     position = (x, y, z + catalog.kind("apple").size[2] / 2)
@@ -158,7 +158,9 @@ def test_starts_are_free_and_away_from_the_target_and_from_each_other(task):
         assert space.is_free(start.x, start.y)
         assert math.hypot(start.x - x, start.y - y) > 1.5
         assert all(math.hypot(start.x - other.x, start.y - other.y) > 1.0 for other in starts[:number])
-    assert math.isfinite(geodesics(HOUSES[task.house], RADIUS_M, HEIGHT_M).distance(*((s.x, s.y) for s in starts[:2])))
+    assert math.isfinite(
+        house_geodesics(HOUSES[task.house], RADIUS_M, HEIGHT_M).distance(*((s.x, s.y) for s in starts[:2]))
+    )
 
 
 def test_t_star_is_that_of_the_kind_and_the_least_time_a_plausible_bound(task):
@@ -172,9 +174,9 @@ def test_t_star_is_that_of_the_kind_and_the_least_time_a_plausible_bound(task):
     assert least(task) >= straight - rules.FIND_RANGE_M - 0.1
     if task.kind == FIND.name:
         # Somebody who walks to the nearest place beside the target and looks takes longer.
-        ground = Ground.of(spec)
+        ground = ReachableFloor.of(spec)
         lit = ground.space.centres(ground.seeing(target, frozenset({target.support})))
-        longest = geodesics(spec, RADIUS_M, HEIGHT_M).distances(start, lit).min() + rules.HANDLING_S
+        longest = house_geodesics(spec, RADIUS_M, HEIGHT_M).distances(start, lit).min() + rules.HANDLING_S
         assert least(task) <= longest / rules.PACE_M_S
         assert kind.instruction(task.goal, task.objects) == task.instruction
 
@@ -185,8 +187,8 @@ def test_no_task_is_solved_before_it_begins(task):
     target = next(placement for placement in task.objects if placement.id == task.goal.target)
     eye = (task.human_start.x, task.human_start.y, EYE_M)
     close = math.dist(eye, target.position) <= rules.FIND_RANGE_M
-    assert not (close and Sight.of(spec).seen([eye], [target.position])[0])
-    assert list(faults(task, spec)) == []
+    assert not (close and LinesOfSight.of(spec).seen([eye], [target.position])[0])
+    assert list(task_faults(task, spec)) == []
 
 
 # --------------------------------------------------------------------------------------------------------- the kinds
@@ -257,8 +259,8 @@ def test_a_closed_fridge_costs_reaching_and_opening():
     fridge = furniture("cold", "fridge", 8.0, 3.5, math.pi)
     apple = apple_on(fridge)
     goal, spec = Goal(target="apple", relation="find"), hall(fridge)
-    assert not Ground(spec).seeing(apple).any()
-    assert Ground(spec).seeing(apple, frozenset({"cold"})).any()
+    assert not ReachableFloor(spec).seeing(apple).any()
+    assert ReachableFloor(spec).seeing(apple, frozenset({"cold"})).any()
     times = FIND.least_times(spec, (apple,), goal)([(1.0, 1.0)])
     assert times[0] >= math.dist((1.0, 1.0), (8.0, 3.5)) - rules.FIND_RANGE_M - 0.2 + rules.HANDLING_S
     assert math.isfinite(times[0])
@@ -304,7 +306,7 @@ def _explained(spec, placement, kind):
         if relation == "near" and reference in catalog.TARGETS:
             return True
         marks = [thing for thing in spec.things if thing.kind == reference]
-        if relation == "near" and any(gap_to(placement.position[:2], mark) <= NEAR_M for mark in marks):
+        if relation == "near" and any(distance_to_thing(placement.position[:2], mark) <= NEAR_M for mark in marks):
             return True
     return False
 
@@ -316,12 +318,12 @@ def test_an_empty_hall_has_no_place_for_anything():
 
 def test_a_rebuild_gives_the_same_bytes(tmp_path):
     plan = generate.PLANS["smoke"]
-    rebuilt = generate.in_house(plan, HOUSES["juniper"])
+    rebuilt = generate.house_tasks(plan, HOUSES["juniper"])
     assert [jsonio.canonical(task) for task in rebuilt] == [
         jsonio.canonical(task) for task in SMOKE.tasks if task.house == "juniper"
     ]
-    assert encode_suite(SMOKE) == library.path_of("smoke").read_bytes()
-    assert SMOKE.sha256 == jsonio.sha256(json.loads(library.path_of("smoke").read_bytes())["tasks"])
+    assert encode_suite(SMOKE) == library.suite_path("smoke").read_bytes()
+    assert SMOKE.sha256 == jsonio.sha256(json.loads(library.suite_path("smoke").read_bytes())["tasks"])
 
 
 def test_the_command_names_its_plans(capsys):
@@ -389,7 +391,7 @@ T1 = ("tasks", 1)
 def test_a_damaged_suite_names_file_and_field(tmp_path, change, field, problem):
     path = damaged(tmp_path, change)
     with pytest.raises(TaskError) as caught:
-        tasks.suite(path)
+        tasks.load_suite(path)
     assert caught.value.field == field
     assert problem in caught.value.problem
     assert str(path) in str(caught.value)
@@ -401,30 +403,30 @@ def test_two_objects_in_one_place_and_a_goal_met_at_once_are_found(tmp_path):
         objects[1].update(position=objects[0]["position"], support=objects[0]["support"], kind=objects[0]["kind"])
 
     with pytest.raises(TaskError, match="in one another"):
-        tasks.suite(damaged(tmp_path, stack))
+        tasks.load_suite(damaged(tmp_path, stack))
     task = next(task for task in SMOKE.tasks if task.kind == MOVE.name)
     kinds = {thing.id: thing.kind for thing in HOUSES[task.house].things}
     support = next(placement.support for placement in task.objects if placement.id == task.goal.target)
     goal = msgspec.structs.replace(
         task.goal, destination=kinds[support], relation=catalog.kind(kinds[support]).relation
     )
-    found = list(faults(msgspec.structs.replace(task, goal=goal), HOUSES[task.house]))
+    found = list(task_faults(msgspec.structs.replace(task, goal=goal), HOUSES[task.house]))
     assert ("goal", "is met before anybody has moved") in found
 
 
 def test_a_sound_suite_of_ones_own_loads_from_its_path(tmp_path):
     path = damaged(tmp_path, lambda document: None)
-    assert tasks.suite(path).tasks == tasks.suite(str(path)).tasks == SMOKE.tasks[:3]
+    assert tasks.load_suite(path).tasks == tasks.load_suite(str(path)).tasks == SMOKE.tasks[:3]
 
 
 def test_a_suite_that_was_changed_or_cannot_be_read_is_refused(tmp_path):
     with pytest.raises(TaskError, match="changed after it was made"):
-        tasks.suite(damaged(tmp_path, at(*T1, "t_star", value=1.0), rehash=False))
+        tasks.load_suite(damaged(tmp_path, at(*T1, "t_star", value=1.0), rehash=False))
     (tmp_path / "own.json").write_bytes(b"{")
     with pytest.raises(TaskError, match="not JSON"):
-        tasks.suite(tmp_path / "own.json")
+        tasks.load_suite(tmp_path / "own.json")
     with pytest.raises(TaskError, match="cannot be read"):
-        tasks.suite("absent.json")
+        tasks.load_suite("absent.json")
     with pytest.raises(UnknownName, match="Did you mean 'smoke'"):
-        tasks.suite("smok")
-    assert "smoke" in tasks.suites()
+        tasks.load_suite("smok")
+    assert "smoke" in tasks.suite_names()

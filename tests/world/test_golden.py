@@ -33,7 +33,7 @@ def script(task):
 
 def course(house: str) -> list[tuple[int, ...]]:
     """Poses and things [cm], every half second, of a person and a robot who both follow the script."""
-    task = next(task for task in tasks.suite("smoke").tasks if task.house == house)
+    task = next(task for task in tasks.load_suite("smoke").tasks if task.house == house)
     from hthor import plugins
 
     world = World(house, robots=(plugins.load("robot", "scout"),))

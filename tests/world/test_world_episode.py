@@ -209,7 +209,7 @@ def test_our_own_houses_can_be_lived_in(name: str) -> None:
     world = World(name, robots=("scout",))
     wait(world, 10)
     assert world.still
-    assert set(solids.furniture(world.house)) == set(solids.furniture(houses.load(name)))
+    assert set(solids.furniture_slabs(world.house)) == set(solids.furniture_slabs(houses.load(name)))
 
 
 def test_sample_houses_can_be_lived_in(samples: list[Path]) -> None:

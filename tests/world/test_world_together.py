@@ -21,7 +21,7 @@ from hthor.world import World
 from hthor.world.carrying import trailer_kernel
 
 TRUNK = catalog.kind("trunk")
-ROWS = free_space.obstacles(tiny.house(), 1.0)
+ROWS = free_space.obstacle_rectangles(tiny.house(), 1.0)
 HALF = np.array(TRUNK.size[:2]) / 2
 
 

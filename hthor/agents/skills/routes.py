@@ -11,9 +11,9 @@ import numpy as np
 
 from hthor.geometry import plane
 from hthor.houses.space.free_space import FreeSpace
-from hthor.houses.space.geodesic import geodesics
-from hthor.houses.space.grid_kernel import stand_all
-from hthor.houses.space.visibility import Sight
+from hthor.houses.space.geodesic import house_geodesics
+from hthor.houses.space.grid_kernel import are_free_points
+from hthor.houses.space.visibility import LinesOfSight
 from hthor.navigation.waiting_spots import park
 from hthor.types import BodySpec, HouseSpec, Room, Thing, Vec2, Vec3
 
@@ -32,9 +32,9 @@ def _passes(a: Vec2, b: Vec2, point: Vec2, radius: float) -> bool:
 
 
 @functools.lru_cache(maxsize=8)
-def _sight(house: HouseSpec) -> Sight:
+def _sight(house: HouseSpec) -> LinesOfSight:
     """Lines of sight through a house, worked out once a process."""
-    return Sight(house)
+    return LinesOfSight(house)
 
 
 class Routes:
@@ -43,7 +43,7 @@ class Routes:
     def __init__(self, house: HouseSpec, body: BodySpec) -> None:
         self.house, self.body = house, body
         self.space = FreeSpace.of(house, body.radius, body.height)
-        self.ways = geodesics(house, body.radius, body.height)
+        self.ways = house_geodesics(house, body.radius, body.height)
         self._beside = functools.lru_cache(maxsize=256)(self.space.nearest_free)
         self._near = functools.lru_cache(maxsize=256)(self._walk)
 
@@ -59,7 +59,7 @@ class Routes:
         """Those of the spots where the body may be."""
         (ox, oy), cell = self.space.origin, self.space.cell
         places = (np.array(spots, dtype=float).reshape(-1, 2) - (ox, oy)) / cell
-        return list(itertools.compress(spots, stand_all(self.space.free, places).tolist()))
+        return list(itertools.compress(spots, are_free_points(self.space.free, places).tolist()))
 
     def lengths(self, here: Vec2, spots: Sequence[Vec2]) -> list[float]:
         """Lengths [m] of the shortest ways to free spots; inf where there is none."""
@@ -75,7 +75,7 @@ class Routes:
         space = FreeSpace.of(self.house, max(self.body.radius, _BROAD_M), self.body.height)
         a, b = space.nearest_free(*here), space.nearest_free(*spot)
         if max(math.dist(a, here), math.dist(b, spot)) < _BROAD_M:
-            way = geodesics(self.house, space.radius, space.height).path(a, b)
+            way = house_geodesics(self.house, space.radius, space.height).path(a, b)
             if way:
                 return (*way, self.space.nearest_free(*spot))
         return self.way(here, self.space.nearest_free(*spot))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hthor.geometry import plane
-from hthor.houses.space.grid_kernel import close
+from hthor.houses.space.grid_kernel import cells_within
 from hthor.types import Thing, Vec2, Vec3
 
 Floats = NDArray[np.float64]
@@ -142,7 +142,7 @@ def _lattice(points: tuple[Vec3, ...], reach: float, grid_m: float) -> tuple[Vec
     plan = np.array(points)[:, :2].copy()
     low, high = np.ceil((plan.min(0) - reach) / grid_m), np.floor((plan.max(0) + reach) / grid_m)
     xs, ys = (np.arange(low[axis], high[axis] + 1) * grid_m for axis in (0, 1))
-    rows, columns = np.nonzero(close(xs, ys, plan, reach))
+    rows, columns = np.nonzero(cells_within(xs, ys, plan, reach))
     return tuple(zip(xs[columns].tolist(), ys[rows].tolist(), strict=True))
 
 

@@ -61,7 +61,7 @@ class Recovered(Struct, frozen=True, kw_only=True):
 
 def run(count: int, *, people: int = 12, seed: int = 0, suite: str = "paper", first: int = 0) -> Iterator[Dataset]:
     """Simulate datasets and estimate each."""
-    held = tasks.suite(suite)
+    held = tasks.load_suite(suite)
     stage = trial_runner.TrialRunner(trial_runner.Sources(houses=str(held.houses.folder or "")))
     cube = design_points.spread(first + count, len(parameter_registry.names()), seed, "recovery")[first:]
     for number, point in enumerate(cube, first):

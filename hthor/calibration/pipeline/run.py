@@ -68,7 +68,7 @@ def resolve_options(options: CalibrationOptions) -> Brief:
     """What is to be done, every default resolved."""
     if len(options.targets) != 1:
         raise HthorError("--target takes one set of published results, or any number of logs; not both.")
-    aims, suite = targets.load(options.targets[0]), library.suite(options.suite)
+    aims, suite = targets.load(options.targets[0]), library.load_suite(options.suite)
     given = {"sessions": options.sessions, "studies": options.studies}
     sizes: Sizes = msgspec.structs.replace(
         QUICK if options.quick else FULL, **{name: value for name, value in given.items() if value is not None}

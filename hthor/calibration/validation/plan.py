@@ -78,7 +78,7 @@ def rounds(options: ValidationOptions) -> tuple[Round, ...]:
         raise HthorError(f"--participants {count} is too few: a group of the published study has {PEOPLE}.")
     found = resolve.find(options.name)
     for name in options.suites:
-        tasks.suite(name)
+        tasks.load_suite(name)
     rivals = () if options.quick else tuple(name for name in RIVALS if name != found.name)
     kin = kinds.names() if options.kinds else ()
     return (
@@ -93,7 +93,7 @@ def folder(options: ValidationOptions) -> Path:
     """Where the report goes."""
     if options.out:
         return options.out
-    found, suite = resolve.find(options.name), tasks.suite(SUITE)
+    found, suite = resolve.find(options.name), tasks.load_suite(SUITE)
     what = [
         found.sha256,
         suite.sha256,
@@ -107,7 +107,7 @@ def folder(options: ValidationOptions) -> Path:
 
 def asked(options: ValidationOptions, one: Round) -> run_options.RunOptions:
     """A round as an evaluation, in a folder of its own."""
-    suite = tasks.suite(one.suite)
+    suite = tasks.load_suite(one.suite)
     name = f"{resolve.find(one.word).name}-{Path(suite.name).name}-{one.participants}"
     return run_options.RunOptions(
         agents=AGENTS,

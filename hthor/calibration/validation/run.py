@@ -58,7 +58,7 @@ def run_validation(options: ValidationOptions, watcher: Watch) -> Outcome:
         RunError: when a run's folder holds another run, or the calibration's folder no evidence.
     """
     planned = plan.rounds(options)
-    found, suite = resolve.find(options.name), tasks.suite(SUITE)
+    found, suite = resolve.find(options.name), tasks.load_suite(SUITE)
     known, missing = _evidence(found, options.calibration)
     folder = plan.folder(options)
     stage = _Stage(options, watcher)
@@ -77,7 +77,7 @@ def run_validation(options: ValidationOptions, watcher: Watch) -> Outcome:
         evidence=known,
         evidence_missing=missing,
         kinds=[_played(one.word, stage, one) for one in planned if one.role == "kind"],
-        suites=[_played(tasks.suite(one.suite).name, stage, one) for one in planned if one.role == "suite"],
+        suites=[_played(tasks.load_suite(one.suite).name, stage, one) for one in planned if one.role == "suite"],
     )
     jsonio.write(folder / "validation.json", jsonio.pretty(findings))
     jsonio.write(folder / "validation.html", page.render(findings).encode())
@@ -102,11 +102,11 @@ class _Stage:
             condition = CONDITIONS[AGENTS.index(plugins.file_stem("agent", done.plan.name))]
             runs[condition] = reader.records(done.folder, done.plan)[1]
             self.notes = self.notes or done.plan.humans.notes
-        return trial_tables.table(runs, tasks.suite(one.suite))
+        return trial_tables.table(runs, tasks.load_suite(one.suite))
 
 
 def _played(name: str, stage: _Stage, one: Round) -> Played:
-    return measures.played(name, stage.play(one), tables.t_star(tasks.suite(one.suite)))
+    return measures.played(name, stage.play(one), tables.t_star(tasks.load_suite(one.suite)))
 
 
 def _subject(found: People, notes: Sequence[str]) -> Subject:

@@ -96,7 +96,7 @@ def targets() -> tuple[str, ...]:
     return tuple(dict.fromkeys(row.target for row in triplets()))
 
 
-def of(target: str) -> tuple[Triplet, ...]:
+def triplets_of(target: str) -> tuple[Triplet, ...]:
     """The triplets of one target.
 
     Raises:
@@ -114,12 +114,12 @@ def weights(target: str) -> dict[tuple[str, str], float]:
     Raises:
         UnknownName: when ``target`` is none of the six.
     """
-    rows = of(target)
+    rows = triplets_of(target)
     total = sum(row.weight for row in rows)
     return {(row.relation, row.reference): row.weight / total for row in rows}
 
 
-def weighed(frequencies: Sequence[float], similarities: Sequence[float]) -> list[float]:
+def weigh_triplets(frequencies: Sequence[float], similarities: Sequence[float]) -> list[float]:
     """The weights that follow from the two parts of one target's triplets; they add up to 1.
 
     Three quarters of each weight are the frequency's share of all frequencies, each at least `LEAST_FREQUENCY`; the

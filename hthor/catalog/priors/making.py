@@ -24,7 +24,7 @@ Encoder = Callable[[Sequence[str]], "NDArray[Any]"]
 """Phrases to unit vectors, one a row."""
 
 
-def make(seen: scenes.Scenes, encode: Encoder, encoder: Origin) -> Table:
+def make_table(seen: scenes.Scenes, encode: Encoder, encoder: Origin) -> Table:
     """The table anew.
 
     Args:
@@ -62,7 +62,7 @@ def _with_weights(rows: Sequence[Triplet]) -> list[Triplet]:
     done: list[Triplet] = []
     for _, group in groupby(rows, key=lambda row: row.target):
         mine = list(group)
-        weights = priors.weighed([row.frequency for row in mine], [row.similarity for row in mine])
+        weights = priors.weigh_triplets([row.frequency for row in mine], [row.similarity for row in mine])
         done += [
             msgspec.structs.replace(row, weight=round(weight, DIGITS))
             for row, weight in zip(mine, weights, strict=True)
@@ -86,7 +86,7 @@ def encoded(table: Table) -> bytes:
     return ("{\n" + ",\n".join(blocks) + "\n}\n").encode()
 
 
-def differences(one: Table, other: Table) -> list[tuple[tuple[str, str, str], str, float]]:
+def find_differences(one: Table, other: Table) -> list[tuple[tuple[str, str, str], str, float]]:
     """Every number that differs, largest first: (the triplet's key, which number, by how much).
 
     A triplet that only one of them has counts as a difference of its whole weight.

@@ -64,7 +64,7 @@ class Scenes(Struct, frozen=True):
     origin: Origin
 
 
-def read(wheel: Path | None = None) -> Scenes:
+def read_scenes(wheel: Path | None = None) -> Scenes:
     """The scenes of a wheel's file, or of the installed package.
 
     Raises:

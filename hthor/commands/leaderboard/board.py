@@ -170,7 +170,7 @@ def open_(
     from hthor.leaderboard.ranking import admission
     from hthor.tasks.suites import commitment
 
-    made = commitment.load(season) if season is not None else None
+    made = commitment.load_commitment(season) if season is not None else None
     written = [board / admission.NAME]
     files.write(written[0], admission.opened(board, made))
     if made is not None:

@@ -67,21 +67,21 @@ def make_suite(
     from hthor.tasks.generation import custom_suite
     from hthor.tasks.suites import suite_files
 
-    given = suite_files.sources(houses)
-    suite_files.clear(out)
+    given = suite_files.find_sources(houses)
+    suite_files.check_unused(out)
     kinds = tuple(dict.fromkeys(task_selection.find_kind(one).name for one in kind or ()))
     recipe = custom_suite.Recipe(
-        name=suite_files.named(name or out.stem), tasks=tasks, kinds=kinds, difficulty=difficulty or "", seed=seed
+        name=suite_files.check_name(name or out.stem), tasks=tasks, kinds=kinds, difficulty=difficulty or "", seed=seed
     )
     columns: dict[int, tuple[TaskSpec, ...]] = {}
     with _watched(recipe.name, len(given), quiet, "houses") as tell:
         for number, column in proved.columns(recipe, given, jobs=jobs or len(os.sched_getaffinity(0))):
             columns[number] = column
             tell(False)
-    made = suite_files.files(
+    made = suite_files.make_files(
         recipe.name, custom_suite.VERSION, given, [columns[number] for number in range(len(given))]
     )
-    path = suite_files.write(out, made)
+    path = suite_files.write_files(out, made)
     total, command = sum(map(len, columns.values())), f"hthor eval --suite {shlex.quote(str(path))} --agent frontier"
     if json:
         output.put_json({"suite": str(path), "name": recipe.name, "tasks": total, "houses": len(given)})
@@ -105,7 +105,7 @@ def check_tasks(
     from hthor.eval.task_check import proof
     from hthor.tasks.suites import library
 
-    shelves = [_some(library.read(name), name) for name in suites]
+    shelves = [_some(library.read_suite(name), name) for name in suites]
     workers = jobs or len(os.sched_getaffinity(0))
     rows: list[dict[str, Any]] = []
     faults: list[Fault] = []

@@ -56,10 +56,10 @@ def list_tasks(
         if any(wanted.values()):
             given = next(name for name, value in wanted.items() if value)
             raise typer.BadParameter("name a suite; this option selects among its tasks", param_hint=f"--{given}")
-        rows = [_suite_row(rooms.suite(name)) for name in rooms.suites()]
+        rows = [_suite_row(rooms.load_suite(name)) for name in rooms.suite_names()]
         output.put_json(rows) if formats.asks_json(json, shape) else put_rows(rows, ("sha256",), shape)
         return
-    found = rooms.suite(suite)
+    found = rooms.load_suite(suite)
     rows = [row for row in map(_task_row, found.tasks) if _fits(row, wanted)]
     if formats.asks_json(json, shape):
         output.put_json(rows)
@@ -76,9 +76,9 @@ def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
     from hthor.tasks.generation import difficulty
     from hthor.tasks.suites import library
 
-    shelf, spec = library.find(task, suite)
+    shelf, spec = library.find_task(task, suite)
     house = shelf.houses.load(spec.house)
-    hard = difficulty.measured(spec, house)
+    hard = difficulty.measure_difficulty(spec, house)
     if json:
         output.put_json({"suite": shelf.name, "task": spec, "before": round(hard.before, 3), "score_s": hard.score})
         return
@@ -119,7 +119,7 @@ def draw_task(
     from hthor.tasks.suites import library
     from hthor.world import World
 
-    found, spec = library.find(task, suite)
+    found, spec = library.find_task(task, suite)
     world = World(found.houses.load(spec.house), objects=[(one.id, one.kind) for one in spec.objects])
     path = out or Path(spec.id.replace("/", "-") + ".png")
     limit = 10 * spec.time_limit

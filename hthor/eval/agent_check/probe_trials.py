@@ -76,7 +76,7 @@ class Rehearsal:
     def __init__(self, character: AgentInfo, robot: str, camera: str = OWN) -> None:
         self._stage = trial_runner.TrialRunner()
         crew = robot_team.form_team([robot], [character], camera=camera)
-        known = {task.id: task for task in tasks.suite("smoke").tasks}
+        known = {task.id: task for task in tasks.load_suite("smoke").tasks}
         short = [msgspec.structs.replace(known[name], time_limit=_LIMIT_S) for name in _TASKS]
         dealt = make_sessions(make_suite("rehearsal", 1, tuple(short)), agent=crew, participants=1)[0]
         by_task = {trial.task.id: trial for trial in dealt.trials}

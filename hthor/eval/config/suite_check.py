@@ -20,9 +20,9 @@ def checked_suite(name_or_path: str) -> Suite:
         UnknownName: when no suite has that name.
         TaskError: as `hthor.tasks.suite`, naming the tasks that cannot be run.
     """
-    if name_or_path in tasks.suites() or not Path(name_or_path).exists():
-        return tasks.suite(name_or_path)
-    found = library.read(name_or_path)
+    if name_or_path in tasks.suite_names() or not Path(name_or_path).exists():
+        return tasks.load_suite(name_or_path)
+    found = library.read_suite(name_or_path)
     mark = _mark(found, name_or_path)
     if not mark.exists():
         validate(found, name_or_path)
@@ -32,5 +32,5 @@ def checked_suite(name_or_path: str) -> Suite:
 
 def _mark(found: Suite, path: str) -> Path:
     """The file that is there when the suite was found sound."""
-    own = {name: hashlib.sha256(data).hexdigest() for name, data in library.own_houses(path).items()}
+    own = {name: hashlib.sha256(data).hexdigest() for name, data in library.house_files(path).items()}
     return installation.cache() / "sound" / jsonio.sha256([found.sha256, own, code_identity.makers_sha256()])

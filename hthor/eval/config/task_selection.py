@@ -59,7 +59,7 @@ def select_tasks(suite: str, kind: str) -> TaskSelection:
     if not kind:
         return _whole_suite(suite_check.checked_suite(suite or "smoke"))
     known = find_kind(kind)
-    if not suite and known.short not in tasks.suites():
+    if not suite and known.short not in tasks.suite_names():
         raise HthorError(f"there is no suite of tasks of the kind '{known.name}'; name one that has some with --suite.")
     whole = suite_check.checked_suite(suite or known.short)
     chosen = _only_kind(whole, known.name)
@@ -111,7 +111,7 @@ def _has_difficulty(task: TaskSpec, houses: HouseLibrary, difficulty: str) -> bo
 
     if not difficulty:
         return True
-    return (task.difficulty or difficulties.of(task, houses.load(task.house))) == difficulty
+    return (task.difficulty or difficulties.level_of(task, houses.load(task.house))) == difficulty
 
 
 def limit_selection(whole: TaskSelection, limit: int | None) -> TaskSelection:
@@ -182,7 +182,7 @@ def _generated_tasks(kind: TaskKind, path: str) -> tuple[Suite, tuple[str, ...]]
     made, missing = [], []
     for name in houses.names():
         try:
-            made.append(generate.task(houses.load(name), kind, None, _ROOT, name=f"{kind.short}/{name}"))
+            made.append(generate.make_task(houses.load(name), kind, None, _ROOT, name=f"{kind.short}/{name}"))
         except HthorError as error:
             missing.append(f"there is no task in {name}: {error}")
     if not made:

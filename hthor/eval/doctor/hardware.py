@@ -147,7 +147,7 @@ def _houses() -> CheckResult:
     from hthor import houses, tasks
     from hthor.looks import pack
 
-    scenes, suites, packs = houses.names(), tasks.suites(), pack.installed()
+    scenes, suites, packs = houses.names(), tasks.suite_names(), pack.installed()
     says = f"{len(scenes)} houses, {len(suites)} suites, furniture packs: {', '.join(packs) or 'none'}"
     if not scenes or not suites:
         return CheckResult(name="houses", status="fail", says=says, fix="pip install --force-reinstall hthor")

@@ -39,7 +39,7 @@ def play() -> Course:
     from hthor.eval.records import trial_record
     from hthor.eval.runner import trial_runner
 
-    first = sessions.make_sessions(tasks.suite(_SUITE), agent=_AGENT, human=_PEOPLE, seed=_SEED)[0]
+    first = sessions.make_sessions(tasks.load_suite(_SUITE), agent=_AGENT, human=_PEOPLE, seed=_SEED)[0]
     done = next(iter(trial_runner.make_runner()(msgspec.structs.replace(first, trials=first.trials[:1]))))
     course = msgspec.json.decode(trial_record.encode(done))
     for name in (*_NAMES, "check"):

@@ -187,7 +187,7 @@ def runner_factory(
 
 def own_houses(options: RunOptions) -> dict[str, bytes]:
     """The house files that the suite brings with it, by name; none for a suite of ours."""
-    return library.own_houses(options.suite) if options.suite and Path(options.suite).exists() else {}
+    return library.house_files(options.suite) if options.suite and Path(options.suite).exists() else {}
 
 
 def _again(options: RunOptions, chosen: TaskSelection, part: RunJob) -> str:

@@ -207,7 +207,7 @@ def hidden(options: RunOptions) -> tuple[str, ...]:
     words = (*options.humans, options.suite, options.kind, str(options.out or ""))
     places = [RUNS, *(Path(word.rpartition("@")[2]) for word in words if word)]
     if options.suite and Path(options.suite).is_file():
-        places.append(library.houses_of(Path(options.suite)))
+        places.append(library.houses_folder(Path(options.suite)))
     return tuple(str(path.resolve()) for path in places if path.exists())
 
 

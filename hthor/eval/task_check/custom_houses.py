@@ -17,7 +17,7 @@ from hthor.eval.task_check import make_suite as proved
 from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
 from hthor.tasks.suites import suite_files
-from hthor.tasks.suites.suite_files import Source
+from hthor.tasks.suites.suite_files import HouseSource
 
 TASKS = 10
 """How many tasks a house is given: as many as a person does."""
@@ -43,11 +43,11 @@ def resolve(options: RunOptions, tell: Callable[[str], None]) -> RunOptions:
         raise HthorError(f"--house {files[0]} makes tasks of its own; leave out --suite, or name a house of the suite.")
     if options.kind.endswith(".py"):
         raise HthorError("--house with a house of your own takes hthor's kinds of task; make a suite for your kind.")
-    path = _suite(options, suite_files.sources(files), tell)
+    path = _suite(options, suite_files.find_sources(files), tell)
     return msgspec.structs.replace(options, suite=str(path), houses=(), difficulty="", kind="")
 
 
-def _suite(options: RunOptions, found: tuple[Source, ...], tell: Callable[[str], None]) -> Path:
+def _suite(options: RunOptions, found: tuple[HouseSource, ...], tell: Callable[[str], None]) -> Path:
     """The folder of the suite, made unless it is there."""
     kinds = (task_selection.find_kind(options.kind).name,) if options.kind else ()
     recipe = Recipe(name=_name(found), tasks=TASKS, kinds=kinds, difficulty=options.difficulty)  # type: ignore[arg-type]
@@ -59,11 +59,11 @@ def _suite(options: RunOptions, found: tuple[Source, ...], tell: Callable[[str],
         jobs = options.jobs or len(os.sched_getaffinity(0))
         made = dict(proved.columns(recipe, found, jobs=jobs))
         columns = [made[number] for number in range(len(found))]
-        suite_files.write(folder, suite_files.files(recipe.name, custom_suite.VERSION, found, columns))
+        suite_files.write_files(folder, suite_files.make_files(recipe.name, custom_suite.VERSION, found, columns))
     return folder
 
 
-def _name(found: tuple[Source, ...]) -> str:
+def _name(found: tuple[HouseSource, ...]) -> str:
     """What the suite is called: as its house, or by how many there are."""
     stem = found[0].file.stem if len(found) == 1 and found[0].file else f"{len(found)}-houses"
     name = _FORBIDDEN.sub("-", stem).strip("-._")[:50] or "house"

@@ -9,13 +9,13 @@ from hthor import houses
 from hthor.eval.task_check import proof
 from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
-from hthor.tasks.suites.suite_files import Source
+from hthor.tasks.suites.suite_files import HouseSource
 from hthor.types import HouseSpec, TaskSpec
 
 CODE_ROOT = "makers"
 
 
-def columns(recipe: Recipe, given: Sequence[Source], *, jobs: int) -> Iterator[tuple[int, tuple[TaskSpec, ...]]]:
+def columns(recipe: Recipe, given: Sequence[HouseSource], *, jobs: int) -> Iterator[tuple[int, tuple[TaskSpec, ...]]]:
     """The tasks of each house with the house's number, as they are ready. Closing the iterator ends the workers.
 
     Raises:
@@ -24,8 +24,8 @@ def columns(recipe: Recipe, given: Sequence[Source], *, jobs: int) -> Iterator[t
     yield from proof.shared(functools.partial(_column, recipe), given, jobs=jobs)
 
 
-def _column(recipe: Recipe, source: Source) -> tuple[TaskSpec, ...]:
-    return custom_suite.in_house(recipe, houses.load(source.given), _possible)
+def _column(recipe: Recipe, source: HouseSource) -> tuple[TaskSpec, ...]:
+    return custom_suite.make_tasks(recipe, houses.load(source.given), _possible)
 
 
 def _possible(task: TaskSpec, house: HouseSpec) -> bool:

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from hthor import catalog, plugins, rules
 from hthor.geometry import plane
-from hthor.tasks.arrangement.occlusion import Sight
-from hthor.tasks.arrangement.reachability import Ground
+from hthor.tasks.arrangement.occlusion import LinesOfSight
+from hthor.tasks.arrangement.reachability import ReachableFloor
 from hthor.types import HUMAN, Drop, Job, Motion, Move, Open, Outcome, Pick, Place, Rotate, TaskSpec, Thing, Vec2, Vec3
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ class _Performance:
         self.world, self.task, self.house = world, task, world.house
         self.kind = plugins.load("task kind", task.kind)
         self.limit = round(limit_s / rules.TICK_S)
-        self.ground = Ground.of(world.house)
+        self.ground = ReachableFloor.of(world.house)
         self.body = world.bodies[HUMAN]
         self.things = {thing.id: thing for thing in world.house.things}
         self.met, self.reason = False, ""
@@ -206,8 +206,8 @@ class _Performance:
             near = near[self._sight(frozenset({thing.id})).seen(self._eyes(near), [point])]
         return near
 
-    def _sight(self, opened: frozenset[str]) -> Sight:
-        return Sight.of(self.house, opened)
+    def _sight(self, opened: frozenset[str]) -> LinesOfSight:
+        return LinesOfSight.of(self.house, opened)
 
     def _eyes(self, cells: Floats) -> Floats:
         return np.column_stack((cells, np.full(len(cells), self.body.eye)))

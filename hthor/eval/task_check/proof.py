@@ -28,7 +28,7 @@ from hthor.eval.runner import worker
 from hthor.eval.task_check import omniscient_solver
 from hthor.houses.library import OURS, HouseLibrary
 from hthor.tasks.arrangement.placement import NEAR_M, as_thing
-from hthor.tasks.validate import faults as mistakes
+from hthor.tasks.validate import task_faults as mistakes
 from hthor.types import HUMAN, HouseSpec, Placement, TaskSpec, Thing, ThingState, Vec3
 
 CODE_ROOT = "makers"

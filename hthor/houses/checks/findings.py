@@ -32,11 +32,11 @@ def warning(rule: str, where: str, problem: str) -> Finding:
     return Finding(severity="warning", rule=rule, where=where, problem=problem)
 
 
-def sound(findings: Iterable[Finding]) -> bool:
+def is_sound(findings: Iterable[Finding]) -> bool:
     """Whether no finding is an error."""
     return not any(finding.severity == "error" for finding in findings)
 
 
-def named(kind: str) -> str:
+def readable_kind(kind: str) -> str:
     """A kind's name as people write it."""
     return kind.replace("_", " ")

@@ -16,15 +16,15 @@ import numpy as np
 from hthor import catalog, rules
 from hthor.geometry.plane import distance_to_rectangle, to_house, to_local
 from hthor.houses.checks import plan_rules, thing_rules
-from hthor.houses.checks.findings import Finding, error, named, sound, warning
+from hthor.houses.checks.findings import Finding, error, is_sound, readable_kind, warning
 from hthor.houses.space import boxes
 from hthor.houses.space.free_space import Bools, FreeSpace
-from hthor.houses.space.visibility import Sight
+from hthor.houses.space.visibility import LinesOfSight
 from hthor.types import HouseSpec, Thing, Vec3
 
 CODE_PART = "tools"
 
-__all__ = ["STAND_M", "STRICT", "Finding", "check", "sound"]
+__all__ = ["STAND_M", "STRICT", "Finding", "check", "is_sound"]
 
 STAND_M = 1.0
 """A receptacle counts as reachable when a body can stand within this distance of its edge."""
@@ -63,17 +63,17 @@ def check(house: HouseSpec, radius: float, height: float = 1.8, *, strict: bool 
     findings += _rooms(house, space, reached)
     findings += _doors(house, radius, height)
     findings += _receptacles(house, space, reached)
-    findings += thing_rules.strays(house)
+    findings += thing_rules.check_indoors(house)
     if strict:
-        findings += plan_rules.rooms(house)
-        findings += plan_rules.doors(house, height)
+        findings += plan_rules.check_rooms(house)
+        findings += plan_rules.check_doors(house, height)
         findings += _present(house)
-        findings += thing_rules.floats(house)
-        findings += thing_rules.swings(house)
+        findings += thing_rules.check_supported(house)
+        findings += thing_rules.check_swings(house)
         findings += _objects(house, space, reached)
         findings = [_promoted(finding) for finding in findings]
     else:
-        findings += thing_rules.overlaps(house)
+        findings += thing_rules.check_overlaps(house)
     return tuple(sorted(findings, key=lambda finding: finding.severity != "error"))
 
 
@@ -107,7 +107,7 @@ def _receptacles(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator
             near = places[np.hypot(places[:, 0] - thing.centre[0], places[:, 1] - thing.centre[1]) < _radius(thing)]
             gaps = (distance_to_rectangle((x, y), thing.centre[:2], thing.size[:2], thing.yaw) for x, y in near)
             if not any(gap <= STAND_M for gap in gaps):
-                problem = f"nowhere to stand within {STAND_M} m of the {named(thing.kind)}"
+                problem = f"nowhere to stand within {STAND_M} m of the {readable_kind(thing.kind)}"
                 yield warning("receptacle-reachable", thing.id, problem)
 
 
@@ -118,7 +118,7 @@ def _radius(thing: Thing) -> float:
 def _present(house: HouseSpec) -> Iterator[Finding]:
     missing = [kind for kind in catalog.RECEPTACLES if all(thing.kind != kind for thing in house.things)]
     if missing:
-        problem = f"has no {', no '.join(named(kind) for kind in missing)}; a home has all eight receptacles"
+        problem = f"has no {', no '.join(readable_kind(kind) for kind in missing)}; a home has all eight receptacles"
         yield warning("receptacles-present", house.id, problem)
 
 
@@ -128,7 +128,7 @@ def _objects(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Fin
     On the plan, that is, but for the benchmark's target kinds: a search for one of these ends only when it is so near
     to the eyes.
     """
-    things, sight, places = {thing.id: thing for thing in house.things}, Sight(house), space.centres(reached)
+    things, sight, places = {thing.id: thing for thing in house.things}, LinesOfSight(house), space.centres(reached)
     for thing in house.things:
         if not (thing.parent or catalog.kind(thing.kind).pickable):
             continue
@@ -145,16 +145,18 @@ def _objects(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Fin
                 if not len(near)
                 else f"none of {len(near)} places within {reach:.2f} m"
             )
-            problem = f"the {named(thing.kind)} on or in '{thing.parent or 'the floor'}' is hidden: {where} shows it"
+            problem = (
+                f"the {readable_kind(thing.kind)} on or in '{thing.parent or 'the floor'}' is hidden: {where} shows it"
+            )
             yield warning("object-visible", thing.id, problem)
 
 
 def _opened(thing: Thing, support: Thing | None) -> Vec3:
     """Where the thing is once its support stands open: what lies in a drawer comes out with it."""
-    below = boxes.beneath(thing, support) if support is not None else None
+    below = boxes.surface_below(thing, support) if support is not None else None
     if support is None or below is None or not below[0].moves:
         return thing.centre
     joints = {joint.name: joint for joint in catalog.kind(support.kind).joints(support.size)}
     local = to_local(thing.centre, support.centre, support.yaw)
-    moved, _ = boxes.moved(joints[below[0].moves], local, 1.0)
+    moved, _ = boxes.joint_motion(joints[below[0].moves], local, 1.0)
     return to_house(moved, support.centre, support.yaw)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from hthor.geometry.plane import signed_area
 from hthor.houses.checks import polygons
-from hthor.houses.checks.findings import Finding, named, warning
+from hthor.houses.checks.findings import Finding, readable_kind, warning
 from hthor.houses.space import solids
 from hthor.houses.space.free_space import STEP_M
 from hthor.houses.space.solids import Slab
@@ -30,10 +30,10 @@ _DOUBLE_M = 1.3
 _HAIR_M = 1e-6
 
 
-def rooms(house: HouseSpec) -> Iterator[Finding]:
+def check_rooms(house: HouseSpec) -> Iterator[Finding]:
     """``room-size``: smaller than `AREA_M2`, or somewhere narrower than `WIDTH_M`."""
     for room in house.rooms:
-        area, width = abs(signed_area(room.polygon)), narrowest(room.polygon)
+        area, width = abs(signed_area(room.polygon)), least_width(room.polygon)
         if area < AREA_M2:
             problem = f"the {room.name or room.kind} has {area:.2f} m2; a room needs {AREA_M2} m2"
             yield warning("room-size", room.id, problem)
@@ -42,7 +42,7 @@ def rooms(house: HouseSpec) -> Iterator[Finding]:
             yield warning("room-size", room.id, problem)
 
 
-def narrowest(polygon: tuple[Vec2, ...]) -> float:
+def least_width(polygon: tuple[Vec2, ...]) -> float:
     """Least length [m] of any cut through the polygon along x or y; its least width when its corners are square."""
     turned = tuple((y, x) for x, y in polygon)
     return min(_narrowest(polygon), _narrowest(turned))
@@ -51,12 +51,14 @@ def narrowest(polygon: tuple[Vec2, ...]) -> float:
 def _narrowest(polygon: tuple[Vec2, ...]) -> float:
     marks = sorted({round(x, 6) for x, _ in polygon})
     middles = [(a + b) / 2 for a, b in itertools.pairwise(marks) if b - a > 1e-3]
-    return min((high - low for x in middles for low, high in polygons.spans(x, polygon)), default=0.0)
+    return min((high - low for x in middles for low, high in polygons.vertical_spans(x, polygon)), default=0.0)
 
 
-def doors(house: HouseSpec, height: float) -> Iterator[Finding]:
+def check_doors(house: HouseSpec, height: float) -> Iterator[Finding]:
     """``door-clear``: a doorway with less than `CLEAR_M` between its jambs and whatever stands near it."""
-    pieces = [(thing, slab) for thing, slab in solids.furniture(house) if slab.low < height and slab.high > STEP_M]
+    pieces = [
+        (thing, slab) for thing, slab in solids.furniture_slabs(house) if slab.low < height and slab.high > STEP_M
+    ]
     for opening in house.openings:
         if not opening.passable:
             continue
@@ -64,7 +66,7 @@ def doors(house: HouseSpec, height: float) -> Iterator[Finding]:
         width = math.dist(opening.a, opening.b)
         clear = widest_gap(width, [*_leaves(opening, width), *(span for _, span in near)])
         if clear < CLEAR_M - _HAIR_M:
-            who = ", ".join(f"'{thing.id}' ({named(thing.kind)})" for thing, _ in near)
+            who = ", ".join(f"'{thing.id}' ({readable_kind(thing.kind)})" for thing, _ in near)
             problem = f"{clear:.2f} m clear; a doorway needs {CLEAR_M} m"
             yield warning("door-clear", opening.id, problem + (f"; in the way: {who}" if who else ""))
 

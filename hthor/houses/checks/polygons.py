@@ -12,7 +12,7 @@ Polygon = Sequence[Vec2]
 _SAME_M = 1e-6
 
 
-def simplified(polygon: Polygon) -> tuple[Vec2, ...]:
+def simplify(polygon: Polygon) -> tuple[Vec2, ...]:
     """The corners without those that repeat the one before, or the first at the end."""
     corners: list[Vec2] = []
     for corner in polygon:
@@ -61,7 +61,7 @@ def _on(side: tuple[Vec2, Vec2], point: Vec2) -> bool:
     return distance_to_segment(point, *side) < _SAME_M and min(math.dist(point, end) for end in side) >= _SAME_M
 
 
-def crossing(polygon: Polygon) -> tuple[int, int] | None:
+def find_crossing(polygon: Polygon) -> tuple[int, int] | None:
     """Indices of two sides that cross, touch or fold back on each other, but for a common corner; None for none."""
     sides = edges(polygon)
     count = len(sides)
@@ -104,11 +104,11 @@ def _crossing_x(a: tuple[Vec2, Vec2], b: tuple[Vec2, Vec2]) -> list[float]:
     return [a[0][0] + (a[1][0] - a[0][0]) * one / (one - two)]
 
 
-def spans(x: float, polygon: Polygon) -> list[tuple[float, float]]:
+def vertical_spans(x: float, polygon: Polygon) -> list[tuple[float, float]]:
     """The stretches [m] in y of a polygon that the upright line at ``x`` runs through, lowest first."""
     ys = sorted(ay + (by - ay) * (x - ax) / (bx - ax) for (ax, ay), (bx, by) in edges(polygon) if (ax > x) != (bx > x))
     return list(zip(ys[::2], ys[1::2], strict=True))
 
 
 def _shared(x: float, p: Polygon, q: Polygon) -> float:
-    return sum(max(0.0, min(b, d) - max(a, c)) for a, b in spans(x, p) for c, d in spans(x, q))
+    return sum(max(0.0, min(b, d) - max(a, c)) for a, b in vertical_spans(x, p) for c, d in vertical_spans(x, q))

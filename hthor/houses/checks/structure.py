@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from hthor.errors import HouseError
 from hthor.geometry.plane import inside, signed_area
-from hthor.houses.checks.polygons import crossing, distance_to_outline, overlap_area, simplified
+from hthor.houses.checks.polygons import distance_to_outline, find_crossing, overlap_area, simplify
 from hthor.houses.schema import Agent, HouseFile, ObjectRow, OpeningRow, RoomRow, WallRow
 from hthor.types import Vec2
 
@@ -29,7 +29,7 @@ _HOLE_M = 0.1
 _AREA_M2 = 0.01
 
 
-class Fault(Exception):
+class StructureFault(Exception):
     """A field and what is wrong there, on its way to becoming a `HouseError`."""
 
     def __init__(self, field: str, problem: str) -> None:
@@ -37,7 +37,7 @@ class Fault(Exception):
         super().__init__(problem)
 
 
-def validate(house: HouseFile, file: str) -> None:
+def validate_structure(house: HouseFile, file: str) -> None:
     """Raise `HouseError` for the first fault found; returns for a sound file."""
     try:
         _check_ids(house)
@@ -48,11 +48,11 @@ def validate(house: HouseFile, file: str) -> None:
             _check_opening(where, opening, house)
         _check_objects(house)
         _check_start(house)
-    except Fault as fault:
+    except StructureFault as fault:
         raise HouseError(file, fault.field, fault.problem) from None
 
 
-def objects(house: HouseFile) -> Iterator[tuple[str, ObjectRow, str]]:
+def iter_objects(house: HouseFile) -> Iterator[tuple[str, ObjectRow, str]]:
     """Every object of the tree with its field path and its parent's id, parents first."""
 
     def walk(rows: list[ObjectRow], where: str, parent: str) -> Iterator[tuple[str, ObjectRow, str]]:
@@ -64,7 +64,7 @@ def objects(house: HouseFile) -> Iterator[tuple[str, ObjectRow, str]]:
     return walk(house.objects, "objects", "")
 
 
-def start(house: HouseFile) -> tuple[str, Agent] | None:
+def find_start(house: HouseFile) -> tuple[str, Agent] | None:
     """The start pose with its field path: the single one, else the default robot's, else the first robot's."""
     if house.metadata.agent is not None:
         return "metadata.agent", house.metadata.agent
@@ -76,9 +76,9 @@ def start(house: HouseFile) -> tuple[str, Agent] | None:
     return None
 
 
-def floor(room: RoomRow) -> tuple[Vec2, ...]:
+def floor_polygon(room: RoomRow) -> tuple[Vec2, ...]:
     """The floor's corners in the house frame."""
-    return simplified([(corner.x, corner.z) for corner in room.floor_polygon])
+    return simplify([(corner.x, corner.z) for corner in room.floor_polygon])
 
 
 def wall_line(wall: WallRow) -> tuple[Vec2, Vec2]:
@@ -114,106 +114,112 @@ def _check_ids(house: HouseFile) -> None:
         [(f"rooms[{i}]", row.id) for i, row in enumerate(house.rooms)],
         [(f"walls[{i}]", row.id) for i, row in enumerate(house.walls)],
         openings,
-        [(where, row.id) for where, row, _ in objects(house)],
+        [(where, row.id) for where, row, _ in iter_objects(house)],
     )
     for group in groups:
         seen: dict[str, str] = {}
         for where, name in group:
             if name in seen:
-                raise Fault(f"{where}.id", f"the id '{name}' is already that of {seen[name]}; ids must be unique")
+                raise StructureFault(
+                    f"{where}.id", f"the id '{name}' is already that of {seen[name]}; ids must be unique"
+                )
             seen[name] = where
 
 
 def _check_rooms(rooms: list[RoomRow]) -> None:
     if not rooms:
-        raise Fault("rooms", "is empty; a house needs at least one room")
+        raise StructureFault("rooms", "is empty; a house needs at least one room")
     for index, room in enumerate(rooms):
         if room.room_type not in ROOM_KINDS:
             valid = ", ".join(ROOM_KINDS)
-            raise Fault(f"rooms[{index}].roomType", f"unknown room type '{room.room_type}'; valid: {valid}")
-        _check_polygon(f"rooms[{index}].floorPolygon", floor(room))
-    floors = [floor(room) for room in rooms]
+            raise StructureFault(f"rooms[{index}].roomType", f"unknown room type '{room.room_type}'; valid: {valid}")
+        _check_polygon(f"rooms[{index}].floorPolygon", floor_polygon(room))
+    floors = [floor_polygon(room) for room in rooms]
     for later in range(len(rooms)):
         for earlier in range(later):
             area = overlap_area(floors[earlier], floors[later])
             if area > OVERLAP_M2:
                 names = f"'{rooms[later].id}' overlaps '{rooms[earlier].id}' (rooms[{earlier}])"
-                raise Fault(f"rooms[{later}].floorPolygon", f"{names} by {area:.2f} m2; rooms must not overlap")
+                raise StructureFault(
+                    f"rooms[{later}].floorPolygon", f"{names} by {area:.2f} m2; rooms must not overlap"
+                )
 
 
 def _check_polygon(where: str, corners: Sequence[Vec2]) -> None:
     if len(corners) < 3:
-        raise Fault(where, f"needs at least 3 different corners, got {len(corners)}")
-    sides = crossing(corners)
+        raise StructureFault(where, f"needs at least 3 different corners, got {len(corners)}")
+    sides = find_crossing(corners)
     if sides is not None:
-        raise Fault(where, f"crosses itself: sides {sides[0]} and {sides[1]} meet")
+        raise StructureFault(where, f"crosses itself: sides {sides[0]} and {sides[1]} meet")
     area = abs(signed_area(corners))
     if area < _AREA_M2:
-        raise Fault(where, f"encloses no area: {area:.4f} m2")
+        raise StructureFault(where, f"encloses no area: {area:.4f} m2")
 
 
 def _check_walls(house: HouseFile) -> None:
     if not house.walls:
-        raise Fault("walls", "is empty; a house needs walls")
+        raise StructureFault("walls", "is empty; a house needs walls")
     known = {room.id for room in house.rooms} | {EXTERIOR}
     for index, wall in enumerate(house.walls):
         where = f"walls[{index}]"
         if wall.room_id not in known:
-            raise Fault(f"{where}.roomId", f"no room has the id '{wall.room_id}'; rooms: {_names(known)}")
+            raise StructureFault(f"{where}.roomId", f"no room has the id '{wall.room_id}'; rooms: {_names(known)}")
         if len(wall.polygon) != 4:
-            raise Fault(f"{where}.polygon", f"needs 4 corners, got {len(wall.polygon)}")
+            raise StructureFault(f"{where}.polygon", f"needs 4 corners, got {len(wall.polygon)}")
         low, high = wall_heights(wall)
         if high - low < _SLACK_M:
-            raise Fault(f"{where}.polygon", f"has no height: its corners lie between {low:g} and {high:g} m")
+            raise StructureFault(f"{where}.polygon", f"has no height: its corners lie between {low:g} and {high:g} m")
         if math.dist(*wall_line(wall)) < _SLACK_M:
-            raise Fault(f"{where}.polygon", "has no length: its first two corners coincide")
+            raise StructureFault(f"{where}.polygon", "has no length: its first two corners coincide")
 
 
 def _check_opening(where: str, opening: OpeningRow, house: HouseFile) -> None:
     rooms = {room.id for room in house.rooms} | {EXTERIOR}
     for key, name in (("room0", opening.room0), ("room1", opening.room1)):
         if name not in rooms:
-            raise Fault(f"{where}.{key}", f"no room has the id '{name}'; rooms: {_names(rooms)}")
+            raise StructureFault(f"{where}.{key}", f"no room has the id '{name}'; rooms: {_names(rooms)}")
     walls = {wall.id: wall for wall in house.walls}
     for key, wall in (("wall0", opening.wall0), ("wall1", opening.wall1)):
         if wall is not None and wall not in walls:
-            raise Fault(f"{where}.{key}", f"no wall has the id '{wall}'")
+            raise StructureFault(f"{where}.{key}", f"no wall has the id '{wall}'")
     _check_hole(f"{where}.holePolygon", opening, walls[opening.wall0])
 
 
 def _check_hole(where: str, opening: OpeningRow, wall: WallRow) -> None:
     if len(opening.hole_polygon) != 2:
-        raise Fault(where, f"needs 2 opposite corners, got {len(opening.hole_polygon)}")
+        raise StructureFault(where, f"needs 2 opposite corners, got {len(opening.hole_polygon)}")
     a, b = opening.hole_polygon
     if abs(b.x - a.x) < _SLACK_M or abs(b.y - a.y) < _SLACK_M:
-        raise Fault(where, "has no area: its two corners must be opposite")
+        raise StructureFault(where, "has no area: its two corners must be opposite")
     low, high = wall_heights(wall)
     for key, span, limit in (("x", (a.x, b.x), math.dist(*wall_line(wall))), ("y", (a.y, b.y), high - low)):
         for index, value in enumerate(span):
             if not -_HOLE_M <= value <= limit + _HOLE_M:
-                raise Fault(f"{where}[{index}].{key}", f"{value:g} lies outside of '{wall.id}', 0 to {limit:.3f} m")
+                raise StructureFault(
+                    f"{where}[{index}].{key}", f"{value:g} lies outside of '{wall.id}', 0 to {limit:.3f} m"
+                )
 
 
 def _check_objects(house: HouseFile) -> None:
-    rooms = [(room.id, floor(room)) for room in house.rooms]
+    rooms = [(room.id, floor_polygon(room)) for room in house.rooms]
     ceiling = max(high for _, high in map(wall_heights, house.walls))
-    for where, row, _ in objects(house):
+    for where, row, _ in iter_objects(house):
         if room_at((row.position.x, row.position.z), rooms) is None:
             at = f"x {row.position.x:.2f}, z {row.position.z:.2f}"
-            raise Fault(f"{where}.position", f"'{row.id}' lies outside of every room, at {at}")
+            raise StructureFault(f"{where}.position", f"'{row.id}' lies outside of every room, at {at}")
         if not -OUTSIDE_M <= row.position.y <= ceiling + OUTSIDE_M:
             problem = f"'{row.id}' lies at height {row.position.y:.2f}; floor 0, ceiling {ceiling:.2f} m"
-            raise Fault(f"{where}.position.y", problem)
+            raise StructureFault(f"{where}.position.y", problem)
 
 
 def _check_start(house: HouseFile) -> None:
-    found = start(house)
+    found = find_start(house)
     if found is None:
-        raise Fault("metadata.agent", "is missing; it gives the start position and rotation")
+        raise StructureFault("metadata.agent", "is missing; it gives the start position and rotation")
     where, agent = found
-    rooms = [(room.id, floor(room)) for room in house.rooms]
+    rooms = [(room.id, floor_polygon(room)) for room in house.rooms]
     if room_at((agent.position.x, agent.position.z), rooms, slack=0.0) is None:
-        raise Fault(f"{where}.position", "lies outside of every room")
+        raise StructureFault(f"{where}.position", "lies outside of every room")
 
 
 def _names(names: Iterable[str]) -> str:

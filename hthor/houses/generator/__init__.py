@@ -12,10 +12,10 @@ from typing import Any
 
 from hthor import jsonio
 from hthor.errors import HthorError
-from hthor.houses.generator.attempt import Flaw, build
+from hthor.houses.generator.attempt import AttemptFailed, build_document
 from hthor.houses.generator.draws import Dice
-from hthor.houses.generator.floorplan.room_specs import SPECS, choose
-from hthor.houses.generator.furnishing.requirements import OPTIONAL, wants
+from hthor.houses.generator.floorplan.room_specs import SPECS, choose_spec
+from hthor.houses.generator.furnishing.requirements import OPTIONAL, draw_requirements
 
 CODE_ROOT = "makers"
 
@@ -68,11 +68,13 @@ def generate(
     given = None if needs is None or isinstance(needs, str) else frozenset(needs)
     for attempt in range(first, first + tries):
         dice = Dice(seed).of("house", VERSION, rooms, attempt)
-        chosen = choose(rooms, dice, spec)
+        chosen = choose_spec(rooms, dice, spec)
         record = {"version": VERSION, "seed": seed, "rooms": rooms, "attempt": attempt}
         try:
-            return build(chosen, wants(needs if isinstance(needs, str) else given, dice.of("wants")), dice, record)
-        except Flaw as flaw:
+            return build_document(
+                chosen, draw_requirements(needs if isinstance(needs, str) else given, dice.of("wants")), dice, record
+            )
+        except AttemptFailed as flaw:
             reasons.append((flaw.rule, flaw.problem))
     raise GeneratorError(seed, rooms, tuple(reasons))
 

@@ -11,18 +11,18 @@ from hthor.houses.generator import document, starts, validity
 from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.finishes import Finish
 from hthor.houses.generator.floorplan import doors, growth, layout
-from hthor.houses.generator.floorplan.boundary import boundary
+from hthor.houses.generator.floorplan.boundary import draw_boundary
 from hthor.houses.generator.floorplan.doors import Door
-from hthor.houses.generator.floorplan.layout import Plan
-from hthor.houses.generator.floorplan.room_specs import LIVING, Spec, leaves
+from hthor.houses.generator.floorplan.layout import FloorPlan
+from hthor.houses.generator.floorplan.room_specs import LIVING, RoomSpec, iter_leaves
 from hthor.houses.generator.furnishing import clutter
 from hthor.houses.generator.furnishing.clutter import Table
 from hthor.houses.generator.furnishing.floor_space import RADIUS_M, RoomSpace
-from hthor.houses.generator.furnishing.furnish import furnish
-from hthor.houses.generator.furnishing.item_styles import Maker
+from hthor.houses.generator.furnishing.furnish import furnish_rooms
+from hthor.houses.generator.furnishing.item_styles import ItemStyler
 from hthor.houses.generator.furnishing.pieces import Piece
-from hthor.houses.generator.furnishing.requirements import Wants
-from hthor.houses.generator.furnishing.wall_items import Wallwork
+from hthor.houses.generator.furnishing.requirements import Requirements
+from hthor.houses.generator.furnishing.wall_items import WallDecorator
 from hthor.houses.space.free_space import FreeSpace
 from hthor.types import HouseSpec
 
@@ -31,7 +31,7 @@ _PASSAGE = 0.2
 """What a door to a living room adds to a plan's quality."""
 
 
-class Flaw(Exception):
+class AttemptFailed(Exception):
     """Why an attempt came to nothing: the ``rule`` that it broke, and how."""
 
     def __init__(self, rule: str, problem: str) -> None:
@@ -39,14 +39,14 @@ class Flaw(Exception):
         super().__init__(f"{problem} ({rule})")
 
 
-def build(spec: Spec, wants: Wants, dice: Dice, record: dict[str, Any]) -> dict[str, Any]:
+def build_document(spec: RoomSpec, wants: Requirements, dice: Dice, record: dict[str, Any]) -> dict[str, Any]:
     """A house file's document; ``record`` is written into its metadata.
 
     Raises:
         Flaw: when the attempt fails.
     """
     plan, found = _floor_plan(spec, dice)
-    finish, maker = Finish(plan, dice.of("finish")), Maker(dice.of("maker"))
+    finish, maker = Finish(plan, dice.of("finish")), ItemStyler(dice.of("maker"))
     walls = document.Walls(plan, finish, found)
     shell: dict[str, Any] = {
         "rooms": document.rooms(plan, finish),
@@ -56,11 +56,11 @@ def build(spec: Spec, wants: Wants, dice: Dice, record: dict[str, Any]) -> dict[
         "objects": [],
         "metadata": document.metadata(spec.name, _middle(plan), record),
     }
-    space = FreeSpace(loader.build(shell, "house"), RADIUS_M, validity.HEIGHT_M)
+    space = FreeSpace(loader.house_from_document(shell, "house"), RADIUS_M, validity.HEIGHT_M)
     rooms = [RoomSpace(room, plan, found, space) for room in plan.rooms]
-    if missing := furnish(rooms, wants, maker, dice.of("furnish")):
-        raise Flaw("furniture-place", f"no place was found for the {missing.replace('_', ' ')}")
-    work = [Wallwork(room, plan, found, maker, finish.height) for room in rooms]
+    if missing := furnish_rooms(rooms, wants, maker, dice.of("furnish")):
+        raise AttemptFailed("furniture-place", f"no place was found for the {missing.replace('_', ' ')}")
+    work = [WallDecorator(room, plan, found, maker, finish.height) for room in rooms]
     for wall, room in zip(work, rooms, strict=True):
         wall.glaze(dice.of("windows", room.room.number))
         wall.decorate(dice.of("decoration", room.room.number))
@@ -82,9 +82,9 @@ def build(spec: Spec, wants: Wants, dice: Dice, record: dict[str, Any]) -> dict[
         pieces = document.without(pieces, hidden)
         shell["objects"] = document.objects(pieces)
         if gone := next(iter(sorted(wants.must - _kinds(pieces))), ""):
-            raise Flaw("object-visible", f"the only {gone.replace('_', ' ')} is where nobody sees it")
+            raise AttemptFailed("object-visible", f"the only {gone.replace('_', ' ')} is where nobody sees it")
         if _judged(shell, spec, dice, record):
-            raise Flaw("object-visible", "things came to be hidden when others were taken away")
+            raise AttemptFailed("object-visible", "things came to be hidden when others were taken away")
     return shell
 
 
@@ -92,62 +92,62 @@ def _kinds(pieces: list[Piece]) -> set[str]:
     return {each.kind for piece in pieces for each in (piece, *piece.children)}
 
 
-def _judged(shell: dict[str, Any], spec: Spec, dice: Dice, record: dict[str, Any]) -> set[str]:
+def _judged(shell: dict[str, Any], spec: RoomSpec, dice: Dice, record: dict[str, Any]) -> set[str]:
     """Give the document its start; ids of the small things that nobody can see, when nothing else is wrong."""
-    house = loader.build(shell, "house")
+    house = loader.house_from_document(shell, "house")
     space, free = validity.floor(house)
     walkable = validity.reached(free)
-    start = starts.start(house, space, walkable, dice.of("start"))
+    start = starts.choose_start(house, space, walkable, dice.of("start"))
     if start is None:
-        raise Flaw("start-free", "no floor is roomy enough to start on")
+        raise AttemptFailed("start-free", "no floor is roomy enough to start on")
     shell["metadata"] = document.metadata(spec.name, start, record)
     pose = msgspec.structs.replace(house.start, x=start[0], y=start[1])
     placed: HouseSpec = msgspec.structs.replace(house, start=pose)
     hidden = set()
-    for rule, where, problem in validity.faults(placed, space, walkable):
+    for rule, where, problem in validity.find_faults(placed, space, walkable):
         if rule != "object-visible":
-            raise Flaw(rule, f"{where}: {problem}")
+            raise AttemptFailed(rule, f"{where}: {problem}")
         hidden.add(where)
     return hidden
 
 
-def _floor_plan(spec: Spec, dice: Dice) -> tuple[Plan, list[Door]]:
+def _floor_plan(spec: RoomSpec, dice: Dice) -> tuple[FloorPlan, list[Door]]:
     """The best division of the first outline that has one, and its doors."""
-    count = sum(1 for _ in leaves(spec.tree))
+    count = sum(1 for _ in iter_leaves(spec.tree))
     for outline in range(_OUTLINES):
         own = dice.of("outline", outline)
-        shape = boundary(count, own)
+        shape = draw_boundary(count, own)
         if shape is None:
             continue
-        best: tuple[float, Plan, list[tuple[int, int]]] | None = None
+        best: tuple[float, FloorPlan, list[tuple[int, int]]] | None = None
         for number in range(_DIVISIONS):
-            labels = growth.grow(shape.cells, spec.tree, own.of("rooms", number))
-            plan = None if labels is None else layout.plan(shape, labels, spec.tree)
+            labels = growth.grow_rooms(shape.cells, spec.tree, own.of("rooms", number))
+            plan = None if labels is None else layout.plan_rooms(shape, labels, spec.tree)
             if labels is None or plan is None:
                 continue
-            pairs = doors.links(spec.tree, plan, own.of("links", number))
+            pairs = doors.choose_doors(spec.tree, plan, own.of("links", number))
             if pairs is None:
                 continue
             passages = sum(LIVING in (plan.room(one).kind, plan.room(two).kind) for one, two in pairs)
-            score = layout.quality(labels, spec.tree) + _PASSAGE * passages
+            score = layout.plan_quality(labels, spec.tree) + _PASSAGE * passages
             if best is None or score > best[0]:
                 best = (score, plan, pairs)
         for number in range(_DOORINGS if best is not None else 0):
             found = doors.place(best[2], best[1], own.of("doors", number)) if best is not None else None
             if best is not None and found is not None:
                 return best[1], found
-    raise Flaw("floor-plan", f"none of {_OUTLINES} outlines could be divided into the rooms of '{spec.name}'")
+    raise AttemptFailed("floor-plan", f"none of {_OUTLINES} outlines could be divided into the rooms of '{spec.name}'")
 
 
-def _middle(plan: Plan) -> tuple[float, float, int]:
+def _middle(plan: FloorPlan) -> tuple[float, float, int]:
     """Some place indoors, for a house that has no start yet."""
     row, column = next((j, i) for j, line in enumerate(plan.labels) for i, mark in enumerate(line) if mark)
     return ((column + 0.5) * plan.scale, (row + 0.5) * plan.scale, 0)
 
 
-def _laid(rooms: list[RoomSpace], wants: Wants, maker: Maker, dice: Dice) -> list[Piece]:
+def _laid(rooms: list[RoomSpace], wants: Requirements, maker: ItemStyler, dice: Dice) -> list[Piece]:
     """All pieces with the small things on them."""
     tables = [Table(piece, room.room.kind) for room in rooms for piece in room.pieces]
-    if missing := clutter.lay_all(tables, wants, maker, dice):
-        raise Flaw("clutter-place", f"no place was found for the {missing.replace('_', ' ')}")
+    if missing := clutter.place_clutter(tables, wants, maker, dice):
+        raise AttemptFailed("clutter-place", f"no place was found for the {missing.replace('_', ' ')}")
     return [msgspec.structs.replace(table.piece, children=tuple(table.children)) for table in tables]

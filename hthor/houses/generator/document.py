@@ -16,7 +16,7 @@ import msgspec
 from hthor.geometry.plane import turn
 from hthor.houses.generator.finishes import Finish
 from hthor.houses.generator.floorplan.doors import HIGH_M, Door
-from hthor.houses.generator.floorplan.layout import OUTSIDE, Plan, Seam
+from hthor.houses.generator.floorplan.layout import OUTSIDE, FloorPlan, Seam
 from hthor.houses.generator.furnishing.pieces import Piece
 from hthor.houses.generator.furnishing.wall_items import Window
 from hthor.types import Vec2
@@ -28,7 +28,7 @@ def _round(value: float, digits: int = 4) -> float:
     return round(value, digits) + 0.0
 
 
-def rooms(plan: Plan, finish: Finish) -> list[dict[str, Any]]:
+def rooms(plan: FloorPlan, finish: Finish) -> list[dict[str, Any]]:
     """The rows of ``rooms``."""
     return [
         {
@@ -50,7 +50,7 @@ class Walls:
     A face runs from ``a`` to ``b`` of the opening in it, so that a leaf's hinge is the end that comes first.
     """
 
-    def __init__(self, plan: Plan, finish: Finish, doors: Sequence[Door]) -> None:
+    def __init__(self, plan: FloorPlan, finish: Finish, doors: Sequence[Door]) -> None:
         self.rows: list[dict[str, Any]] = []
         self._names: dict[tuple[int, Vec2, Vec2], str] = {}
         self._ends: dict[tuple[Vec2, Vec2], tuple[Vec2, Vec2]] = {}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from hthor.houses.generator.draws import Dice
-from hthor.houses.generator.floorplan.layout import OUTSIDE, Plan, RoomPlan
+from hthor.houses.generator.floorplan.layout import OUTSIDE, FloorPlan, RoomPlan
 from hthor.houses.generator.floorplan.room_specs import BATHROOM, BEDROOM, KITCHEN, LIVING
 
 Rgb = tuple[float, float, float]
@@ -56,7 +56,7 @@ class Finish:
         height: of the ceiling [m]. outdoors: material of the outer walls.
     """
 
-    def __init__(self, plan: Plan, dice: Dice) -> None:
+    def __init__(self, plan: FloorPlan, dice: Dice) -> None:
         self.height = round(_CEILING_M[0] + _CEILING_M[1] * dice.beta(1.25, 2.5, "ceiling"), 2)
         self.outdoors = material(*dice.pick(_OUTDOORS, "outdoors"))
         self.sky = dice.pick(_SKIES, "sky")
@@ -83,7 +83,7 @@ class Finish:
         """Material of a room's walls, or of the outer ones."""
         return self.outdoors if room == OUTSIDE else self._walls[room]
 
-    def lights(self, plan: Plan) -> list[dict[str, Any]]:
+    def lights(self, plan: FloorPlan) -> list[dict[str, Any]]:
         """The sun, and one lamp under each ceiling."""
         sun = {
             "id": "DirectionalLight",
@@ -101,7 +101,7 @@ def material(name: str, rgb: Rgb) -> dict[str, Any]:
     return {"name": name, "color": dict(zip("rgb", rgb, strict=True))}
 
 
-def _lamp(room: RoomPlan, plan: Plan, height: float) -> dict[str, Any]:
+def _lamp(room: RoomPlan, plan: FloorPlan, height: float) -> dict[str, Any]:
     """In the middle of the room's cell that is nearest to its middle."""
     cells = [(i, j) for j, row in enumerate(plan.labels) for i, mark in enumerate(row) if mark == room.number]
     u, v = (sum(axis) / len(cells) for axis in zip(*cells, strict=True))

@@ -70,7 +70,7 @@ SCENES = (
 """In the order of the scene priors' table of which scene has which optional reference."""
 
 
-def make(scene: Scene) -> dict[str, Any]:
+def make_scene(scene: Scene) -> dict[str, Any]:
     """The document of one scene."""
     return generator.generate(scene.seed, scene.rooms, scene.spec, needs=scene.needs)
 
@@ -79,7 +79,7 @@ def main(arguments: list[str]) -> None:
     """Write all scenes."""
     folder = Path(arguments[0]) if arguments else Path(str(resources.files("hthor.houses").joinpath("data")))
     for scene in SCENES:
-        generator.write(make(scene), folder / f"{scene.name}.json")
+        generator.write(make_scene(scene), folder / f"{scene.name}.json")
         sys.stdout.write(f"{folder / scene.name}.json\n")
 
 

@@ -13,7 +13,7 @@ _ROOMY_M = 0.45
 _SHARES = {"living_room": 4.0, "kitchen": 3.0, "bedroom": 2.0, "bathroom": 0.4}
 
 
-def start(house: HouseSpec, space: FreeSpace, reached: Bools, dice: Dice) -> tuple[float, float, int] | None:
+def choose_start(house: HouseSpec, space: FreeSpace, reached: Bools, dice: Dice) -> tuple[float, float, int] | None:
     """A place (x, y) [m] on the quarter-metre grid and quarter turns clockwise from +y; None when no place is roomy."""
     weights = [_SHARES[room.kind] for room in house.rooms]
     for attempt in range(20):

@@ -40,7 +40,7 @@ RECIPES = (
 )
 
 
-def make(recipe: Recipe) -> dict[str, Any]:
+def make_unseen(recipe: Recipe) -> dict[str, Any]:
     """The document of one house."""
     return generator.generate(recipe.seed, recipe.rooms)
 
@@ -49,7 +49,7 @@ def main(arguments: list[str]) -> None:
     """Write all houses."""
     folder = Path(arguments[0]) if arguments else Path(str(resources.files("hthor.houses").joinpath("unseen")))
     for recipe in RECIPES:
-        generator.write(make(recipe), folder / f"{recipe.name}.json")
+        generator.write(make_unseen(recipe), folder / f"{recipe.name}.json")
         sys.stdout.write(f"{folder / recipe.name}.json\n")
 
 

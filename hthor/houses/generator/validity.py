@@ -11,7 +11,7 @@ from hthor import catalog
 from hthor.geometry.plane import inside, to_house, to_local
 from hthor.houses.checks.house_checks import check
 from hthor.houses.generator.floorplan.doors import LEAF_M
-from hthor.houses.generator.furnishing.clutter import takes_all
+from hthor.houses.generator.furnishing.clutter import all_fit
 from hthor.houses.space import grid_kernel, solids
 from hthor.houses.space.free_space import Bools, FreeSpace
 from hthor.houses.space.solids import WALL_M, Slab
@@ -54,7 +54,7 @@ def floor(house: HouseSpec, radius: float = RADIUS_M) -> tuple[FreeSpace, Bools]
     """The free-space grid, and its free cells when all leaves stand open."""
     space = FreeSpace(house, radius, HEIGHT_M)
     rows = np.array(leaves(house), dtype=float).reshape(-1, 5)
-    free: Bools = grid_kernel.clear(space.free, rows, *space.origin, space.cell, radius)
+    free: Bools = grid_kernel.clear_cells(space.free, rows, *space.origin, space.cell, radius)
     return space, free
 
 
@@ -69,7 +69,7 @@ def reached(free: Bools) -> Bools:
     return mask
 
 
-def faults(house: HouseSpec, space: FreeSpace, walkable: Bools) -> Iterator[Fault]:
+def find_faults(house: HouseSpec, space: FreeSpace, walkable: Bools) -> Iterator[Fault]:
     """Everything that is wrong: by rule, id and words.
 
     The rules of `hthor.houses.checks.house_checks`, applied strictly, then those about open doors, solids and free
@@ -113,12 +113,12 @@ def parts(thing: Thing) -> list[Slab]:
 
 def _solids(house: HouseSpec) -> Iterator[Fault]:
     """Nothing stands in anything else; where bounding boxes meet, as a chair's and its table's, the solids decide."""
-    walls = solids.walls(house)
+    walls = solids.wall_slabs(house)
     leaf = [Slab((x, y), (2 * w, 2 * d), yaw, 0.0, 2.0) for x, y, w, d, yaw in leaves(house)]
-    boxes = [(thing, box) for thing, box in solids.furniture(house)]
+    boxes = [(thing, box) for thing, box in solids.furniture_slabs(house)]
     for k, (thing, box) in enumerate(boxes):
         for wall in (*walls, *leaf):
-            if _within(thing, wall, math.hypot(*box.size) / 2) and solids.overlap(box, wall) > DEEP_M:
+            if _within(thing, wall, math.hypot(*box.size) / 2) and solids.overlap_depth(box, wall) > DEEP_M:
                 yield "thing-in-wall", thing.id, f"the {thing.kind} reaches into a wall or an open door"
                 break
         for other, rival in boxes[k + 1 :]:
@@ -130,7 +130,7 @@ def _solids(house: HouseSpec) -> Iterator[Fault]:
 
 def _deep(one: Slab, two: Slab) -> float:
     """How deep two boxes are in one another, upwards too."""
-    return min(solids.overlap(one, two), min(one.high, two.high) - max(one.low, two.low))
+    return min(solids.overlap_depth(one, two), min(one.high, two.high) - max(one.low, two.low))
 
 
 def _surfaces(house: HouseSpec) -> Iterator[Fault]:
@@ -145,7 +145,7 @@ def _surfaces(house: HouseSpec) -> Iterator[Fault]:
             laid = [
                 box for child in children.get(thing.id, []) if (box := _laid(child, thing, surface.centre)) is not None
             ]
-            if not takes_all(surface, laid, strict=True):
+            if not all_fit(surface, laid, strict=True):
                 yield "surface-full", thing.id, f"no room on its {surface.name} for some target"
 
 

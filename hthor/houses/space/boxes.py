@@ -28,35 +28,37 @@ class Box(NamedTuple):
     turn: Floats
 
 
-def of(thing: Thing, share: float = 0.0) -> Iterator[tuple[Part, Box]]:
+def boxes_of(thing: Thing, share: float = 0.0) -> Iterator[tuple[Part, Box]]:
     """Every part of a thing with its box, its doors and drawers ``share`` of the way open, 0 to 1."""
     kind = catalog.kind(thing.kind)
-    return posed(kind.parts(thing.size, thing.variant), kind.joints(thing.size), thing, share)
+    return posed_boxes(kind.parts(thing.size, thing.variant), kind.joints(thing.size), thing, share)
 
 
-def posed(parts: Iterable[Part], joints: Iterable[Joint], thing: Thing, share: float) -> Iterator[tuple[Part, Box]]:
+def posed_boxes(
+    parts: Iterable[Part], joints: Iterable[Joint], thing: Thing, share: float
+) -> Iterator[tuple[Part, Box]]:
     """Every part with its box, given in the frame of ``thing``, the joints ``share`` of the way open, 0 to 1."""
     named = {joint.name: joint for joint in joints}
-    house = about((0.0, 0.0, 1.0), thing.yaw)
+    house = rotation((0.0, 0.0, 1.0), thing.yaw)
     for part in parts:
         centre, turn = part.centre, house
         if part.moves and share > 0.0:
-            centre, inner = moved(named[part.moves], part.centre, share)
+            centre, inner = joint_motion(named[part.moves], part.centre, share)
             turn = house @ inner
         yield part, Box(plane.to_house(centre, thing.centre, thing.yaw), part.half, turn)
 
 
-def moved(joint: Joint, point: Vec3, share: float) -> tuple[Vec3, Floats]:
+def joint_motion(joint: Joint, point: Vec3, share: float) -> tuple[Vec3, Floats]:
     """Where a joint ``share`` of the way open takes a point of the local frame, and how it turns what is there."""
     if joint.kind == "slide":
         x, y, z = (p + a * joint.travel * share for p, a in zip(point, joint.axis, strict=True))
         return (x, y, z), np.eye(3)
-    turn = about(joint.axis, joint.travel * share)
+    turn = rotation(joint.axis, joint.travel * share)
     x, y, z = (float(v) for v in np.array(joint.anchor) + turn @ (np.array(point) - np.array(joint.anchor)))
     return (x, y, z), turn
 
 
-def about(axis: Vec3, angle: float) -> Floats:
+def rotation(axis: Vec3, angle: float) -> Floats:
     """(3, 3) the turn by ``angle`` [rad] about a unit vector, right-handed."""
     x, y, z = axis
     cos, sin = math.cos(angle), math.sin(angle)
@@ -66,7 +68,7 @@ def about(axis: Vec3, angle: float) -> Floats:
     return turn
 
 
-def slab(box: Box) -> Slab:
+def bounding_slab(box: Box) -> Slab:
     """The upright box around a box: exact for one that only turned about z."""
     upright = abs(abs(box.turn[2, 2]) - 1.0) < 1e-12
     if upright:
@@ -76,12 +78,12 @@ def slab(box: Box) -> Slab:
     # Tipped over, as an oven's door: turned about a level axis, so one level direction of the box is still an edge.
     level = min(range(3), key=lambda axis: abs(box.turn[2, axis]))
     yaw = math.atan2(box.turn[1, level], box.turn[0, level])
-    frame = about((0.0, 0.0, 1.0), yaw).T @ box.turn
+    frame = rotation((0.0, 0.0, 1.0), yaw).T @ box.turn
     x, y, z = (float(v) for v in np.abs(frame) @ np.array(box.half))
     return Slab(box.centre[:2], (2 * x, 2 * y), yaw, box.centre[2] - z, box.centre[2] + z)
 
 
-def beneath(thing: Thing, support: Thing) -> tuple[Surface, float] | None:
+def surface_below(thing: Thing, support: Thing) -> tuple[Surface, float] | None:
     """The surface of ``support`` that is nearest below or above the thing's underside, and the gap [m] between them.
 
     Positive when the thing is above the surface; None when its middle is over no surface.

@@ -14,7 +14,14 @@ from numpy.typing import NDArray
 from hthor import rules
 from hthor.errors import HthorError
 from hthor.houses.space import solids
-from hthor.houses.space.grid_kernel import clear, inside, label_at, nearest, stand, walk
+from hthor.houses.space.grid_kernel import (
+    cells_in_polygon,
+    clear_cells,
+    free_share,
+    is_free_point,
+    label_at,
+    nearest_free_cell,
+)
 from hthor.types import HouseSpec, Room, Vec2
 
 STEP_M = 0.05
@@ -60,9 +67,9 @@ class FreeSpace:
         high = np.ceil(corners.max(0) / self.cell - 1e-6).astype(int) + _PAD
         self.origin: Vec2 = (float(low[0]) * self.cell, float(low[1]) * self.cell)
         indoors = _indoors(house, self.origin, (int(high[1] - low[1]), int(high[0] - low[0])))
-        rectangles = obstacles(house, height)
-        self.free: Bools = _frozen(clear(indoors, rectangles, *self.origin, self.cell, radius))
-        self.raw: Bools = _frozen(clear(indoors, rectangles, *self.origin, self.cell, self.cell / 2))
+        rectangles = obstacle_rectangles(house, height)
+        self.free: Bools = _frozen(clear_cells(indoors, rectangles, *self.origin, self.cell, radius))
+        self.raw: Bools = _frozen(clear_cells(indoors, rectangles, *self.origin, self.cell, self.cell / 2))
 
     @staticmethod
     @functools.lru_cache(maxsize=32)
@@ -87,17 +94,17 @@ class FreeSpace:
 
     def is_free(self, x: float, y: float) -> bool:
         """Whether the body's axis may be here."""
-        return bool(stand(self.free, (x - self.origin[0]) / self.cell, (y - self.origin[1]) / self.cell))
+        return bool(is_free_point(self.free, (x - self.origin[0]) / self.cell, (y - self.origin[1]) / self.cell))
 
     def segment_free(self, a: Vec2, b: Vec2) -> bool:
         """Whether the axis can go straight from ``a`` to ``b`` through free places only."""
         (ox, oy), c = self.origin, self.cell
-        return walk(self.free, (a[0] - ox) / c, (a[1] - oy) / c, (b[0] - ox) / c, (b[1] - oy) / c) >= 1.0  # type: ignore[no-any-return]
+        return free_share(self.free, (a[0] - ox) / c, (a[1] - oy) / c, (b[0] - ox) / c, (b[1] - oy) / c) >= 1.0  # type: ignore[no-any-return]
 
     def advance(self, a: Vec2, b: Vec2) -> float:
         """The share [0, 1] of the way from ``a`` straight to ``b`` that is free; 0 when ``a`` is not."""
         ox, oy, c = *self.origin, self.cell
-        return float(walk(self.free, (a[0] - ox) / c, (a[1] - oy) / c, (b[0] - ox) / c, (b[1] - oy) / c))
+        return float(free_share(self.free, (a[0] - ox) / c, (a[1] - oy) / c, (b[0] - ox) / c, (b[1] - oy) / c))
 
     def nearest_free(self, x: float, y: float, within: Bools | None = None) -> Vec2:
         """The place itself when free, or else the middle of the nearest free cell.
@@ -109,9 +116,9 @@ class FreeSpace:
             HthorError: when no cell is free.
         """
         cells = self.free if within is None else self.free & within
-        if stand(cells, (x - self.origin[0]) / self.cell, (y - self.origin[1]) / self.cell):
+        if is_free_point(cells, (x - self.origin[0]) / self.cell, (y - self.origin[1]) / self.cell):
             return (x, y)
-        row, column = nearest(cells, *self.origin, self.cell, float(x), float(y))
+        row, column = nearest_free_cell(cells, *self.origin, self.cell, float(x), float(y))
         if row < 0:
             raise HthorError(f"house '{self.house.id}' has no free floor for a body of radius {self.radius} m")
         return self.centre_of(row, column)
@@ -140,12 +147,12 @@ class FreeSpace:
     def room_mask(self, room: Room) -> Bools:
         """(ny, nx) mask of the cells whose middle lies in the room, free or not."""
         ny, nx = self.free.shape
-        return np.asarray(inside(np.array(room.polygon), *self.origin, self.cell, ny, nx, 0.0), dtype=bool)
+        return np.asarray(cells_in_polygon(np.array(room.polygon), *self.origin, self.cell, ny, nx, 0.0), dtype=bool)
 
 
-def obstacles(house: HouseSpec, height: float) -> Floats:
+def obstacle_rectangles(house: HouseSpec, height: float) -> Floats:
     """(N, 5) rectangles in the way of a body ``height`` [m] tall: centre x, y, half width, half depth [m], yaw."""
-    slabs = [*solids.walls(house), *(slab for _, slab in solids.furniture(house))]
+    slabs = [*solids.wall_slabs(house), *(slab for _, slab in solids.furniture_slabs(house))]
     rows = [
         (*slab.centre, slab.size[0] / 2, slab.size[1] / 2, slab.yaw)
         for slab in slabs
@@ -162,7 +169,7 @@ def _frozen(cells: Bools) -> Bools:
 def _indoors(house: HouseSpec, origin: Vec2, shape: tuple[int, int]) -> Bools:
     cells = np.zeros(shape, dtype=bool)
     for room in house.rooms:
-        cells |= inside(np.array(room.polygon), *origin, rules.GRID_M, *shape, _SEAM_M)
+        cells |= cells_in_polygon(np.array(room.polygon), *origin, rules.GRID_M, *shape, _SEAM_M)
     return cells
 
 

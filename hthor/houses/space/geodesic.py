@@ -30,8 +30,10 @@ class Geodesics:
 
     def __init__(self, space: FreeSpace) -> None:
         self.space = space
-        self._corners, self._signs = visibility_graph_kernel.corners(space.free)
-        self._start, self._end, self._length = visibility_graph_kernel.edges(space.free, self._corners, self._signs)
+        self._corners, self._signs = visibility_graph_kernel.find_corners(space.free)
+        self._start, self._end, self._length = visibility_graph_kernel.graph_edges(
+            space.free, self._corners, self._signs
+        )
         self._from = functools.lru_cache(maxsize=64)(lambda a: self.field([a]))
 
     @staticmethod
@@ -40,7 +42,7 @@ class Geodesics:
         """The same as the constructor, worked out once a process for one free space."""
         return Geodesics(space)
 
-    def field(self, sources: ArrayLike, costs: ArrayLike | None = None) -> Field:
+    def field(self, sources: ArrayLike, costs: ArrayLike | None = None) -> DistanceField:
         """Distances from the nearest of several places.
 
         Args:
@@ -48,7 +50,7 @@ class Geodesics:
         """
         points = np.asarray(sources, dtype=float).reshape(-1, 2)
         first = np.zeros(len(points)) if costs is None else np.asarray(costs, dtype=float)
-        return Field(self, points, first)
+        return DistanceField(self, points, first)
 
     def distance(self, a: Vec2, b: Vec2) -> float:
         """Length [m] of the shortest path; inf where there is none."""
@@ -63,7 +65,7 @@ class Geodesics:
         return self._from((float(a[0]), float(a[1]))).path(b)
 
 
-class Field:
+class DistanceField:
     """Distance to everywhere from a set of sources, each with a cost to begin with."""
 
     def __init__(self, owner: Geodesics, sources: Floats, costs: Floats) -> None:
@@ -72,7 +74,7 @@ class Field:
         self._free, self._labels = space.free, space.components
         self._local = (sources - space.origin) / space.cell
         self._costs = costs / space.cell
-        self._reach, self._before, self._came = visibility_graph_kernel.spread(
+        self._reach, self._before, self._came = visibility_graph_kernel.shortest_to_corners(
             space.free, owner._corners, owner._signs, owner._start, owner._end, owner._length, self._local, self._costs
         )
         order = np.argsort(self._reach, kind="stable")
@@ -102,7 +104,7 @@ class Field:
 
     def _query(self, points: ArrayLike) -> tuple[Floats, Ints]:
         places = (np.asarray(points, dtype=float).reshape(-1, 2) - self._owner.space.origin) / self._owner.space.cell
-        answer: tuple[Floats, Ints] = visibility_graph_kernel.reach(
+        answer: tuple[Floats, Ints] = visibility_graph_kernel.shortest_to_places(
             self._free,
             self._labels,
             self._owner._corners,
@@ -118,6 +120,6 @@ class Field:
         return answer
 
 
-def geodesics(house: HouseSpec, radius: float, height: float = 1.8) -> Geodesics:
+def house_geodesics(house: HouseSpec, radius: float, height: float = 1.8) -> Geodesics:
     """Shortest paths for a body in a house, worked out once a process."""
     return Geodesics.of(FreeSpace.of(house, radius, height))

@@ -20,7 +20,7 @@ EPS = 2e-5
 
 
 @numba.njit(cache=True)
-def inside(polygon: Floats, ox: float, oy: float, cell: float, ny: int, nx: int, slack: float) -> Any:
+def cells_in_polygon(polygon: Floats, ox: float, oy: float, cell: float, ny: int, nx: int, slack: float) -> Any:
     """Cells whose middle lies in the polygon, or within ``slack`` of it (tested at the corners of a small square)."""
     out = np.zeros((ny, nx), dtype=np.bool_)
     for j in range(ny):
@@ -42,7 +42,7 @@ def inside(polygon: Floats, ox: float, oy: float, cell: float, ny: int, nx: int,
 
 
 @numba.njit(cache=True)
-def clear(indoors: Any, rectangles: Floats, ox: float, oy: float, cell: float, radius: float) -> Any:
+def clear_cells(indoors: Any, rectangles: Floats, ox: float, oy: float, cell: float, radius: float) -> Any:
     """The indoor cells whose middle is at least ``radius`` [m] from every rectangle (and in none)."""
     out = indoors.copy()
     ny, nx = out.shape
@@ -68,7 +68,7 @@ def is_open(free: Any, i: int, j: int) -> bool:
 
 
 @numba.njit(cache=True)
-def stand(free: Any, x: float, y: float) -> bool:
+def is_free_point(free: Any, x: float, y: float) -> bool:
     """Whether the point lies in a free cell or on its edge, and not where two blocked cells meet corner to corner."""
     i0, i1 = math.floor(x - EPS), math.floor(x + EPS)
     j0, j1 = math.floor(y - EPS), math.floor(y + EPS)
@@ -82,16 +82,16 @@ def stand(free: Any, x: float, y: float) -> bool:
 
 
 @numba.njit(cache=True)
-def stand_all(free: Any, places: Floats) -> Any:
+def are_free_points(free: Any, places: Floats) -> Any:
     """(N,) bool: `stand` for each of the places (N, 2)."""
     out = np.empty(len(places), dtype=np.bool_)
     for k in range(len(places)):
-        out[k] = stand(free, places[k, 0], places[k, 1])
+        out[k] = is_free_point(free, places[k, 0], places[k, 1])
     return out
 
 
 @numba.njit(cache=True)
-def nearest(free: Any, ox: float, oy: float, cell: float, x: float, y: float) -> Any:
+def nearest_free_cell(free: Any, ox: float, oy: float, cell: float, x: float, y: float) -> Any:
     """Row and column of the free cell whose middle is nearest to a point [m], the first of equals; -1 for none."""
     row, column, least = -1, -1, math.inf
     for j in range(free.shape[0]):
@@ -108,7 +108,7 @@ def nearest(free: Any, ox: float, oy: float, cell: float, x: float, y: float) ->
 
 
 @numba.njit(cache=True)
-def close(xs: Floats, ys: Floats, points: Floats, reach: float) -> Any:
+def cells_within(xs: Floats, ys: Floats, points: Floats, reach: float) -> Any:
     """(ny, nx) bool: which places of a lattice are within ``reach`` of any of the points (N, 2)."""
     out = np.zeros((len(ys), len(xs)), dtype=np.bool_)
     surely, hardly = reach * reach * (1.0 - 1e-12), reach * reach * (1.0 + 1e-12)
@@ -126,7 +126,7 @@ def close(xs: Floats, ys: Floats, points: Floats, reach: float) -> Any:
 @numba.njit(cache=True)
 def label_at(free: Any, labels: Any, x: float, y: float) -> int:
     """The label of the free cell that the point lies in or on the edge of; 0 when there is none."""
-    if stand(free, x, y):
+    if is_free_point(free, x, y):
         for j in (math.floor(y - EPS), math.floor(y + EPS)):
             for i in (math.floor(x - EPS), math.floor(x + EPS)):
                 if is_open(free, i, j):
@@ -135,9 +135,9 @@ def label_at(free: Any, labels: Any, x: float, y: float) -> int:
 
 
 @numba.njit(cache=True)
-def walk(free: Any, ax: float, ay: float, bx: float, by: float) -> float:
+def free_share(free: Any, ax: float, ay: float, bx: float, by: float) -> float:
     """The share of the segment that is free from its beginning on: 1.0 when all of it is."""
-    if not stand(free, ax, ay):
+    if not is_free_point(free, ax, ay):
         return 0.0
     dx, dy = bx - ax, by - ay
     length = math.sqrt(dx * dx + dy * dy)
@@ -158,16 +158,16 @@ def walk(free: Any, ax: float, ay: float, bx: float, by: float) -> float:
             m = 0.5 * (t + u)
             x, y = ax + m * dx, ay + m * dy
             i, j = math.floor(x), math.floor(y)
-            if not (is_open(free, i, j) or stand(free, x, y)):
+            if not (is_open(free, i, j) or is_free_point(free, x, y)):
                 return t
         if u >= 1.0:
             break
         x, y = ax + u * dx, ay + u * dy
-        if abs(x - round(x)) <= EPS and abs(y - round(y)) <= EPS and not stand(free, x, y):
+        if abs(x - round(x)) <= EPS and abs(y - round(y)) <= EPS and not is_free_point(free, x, y):
             return t
         if tx == u:
             tx += stepx
         if ty == u:
             ty += stepy
         t = u
-    return 1.0 if stand(free, bx, by) else t
+    return 1.0 if is_free_point(free, bx, by) else t

@@ -25,7 +25,7 @@ class Slab(NamedTuple):
     high: float
 
 
-def walls(house: HouseSpec) -> tuple[Slab, ...]:
+def wall_slabs(house: HouseSpec) -> tuple[Slab, ...]:
     """Every wall, cut at the passable doorways (closed doors and windows stay solid), each stretch once.
 
     A wall reaches half its thickness beyond its two ends, so that corners are closed; not beyond a doorway's jambs.
@@ -38,7 +38,7 @@ def walls(house: HouseSpec) -> tuple[Slab, ...]:
     return tuple(slabs.values())
 
 
-def furniture(house: HouseSpec) -> tuple[tuple[Thing, Slab], ...]:
+def furniture_slabs(house: HouseSpec) -> tuple[tuple[Thing, Slab], ...]:
     """Every thing that stands on the floor or hangs on a wall with its bounding box.
 
     What rests on or in another thing is left out: its support already stands there.
@@ -106,7 +106,7 @@ def _slab(wall: Wall, along: Vec2, begin: float, end: float, low: float, high: f
         yield Slab(centre, (end - begin, WALL_M), math.atan2(along[1], along[0]), low, high)
 
 
-def overlap(one: Slab, two: Slab) -> float:
+def overlap_depth(one: Slab, two: Slab) -> float:
     """How deep [m] two boxes are in one another, by the least sideways shift that parts them; 0 when they are apart."""
     if one.low >= two.high or two.low >= one.high:
         return 0.0

@@ -21,7 +21,7 @@ _NEAR_TOP = 0.4
 """A thing is looked for at its centre and this share of its height above it, as the world does."""
 
 
-class Sight:
+class LinesOfSight:
     """Lines of sight through every opaque part of a house's walls and things, everything that opens standing open."""
 
     def __init__(self, house: HouseSpec) -> None:
@@ -29,12 +29,14 @@ class Sight:
         self._span: dict[str, tuple[int, int]] = {}
         for thing in house.things:
             begin = len(rows)
-            rows += [(box.centre, box.half, box.turn) for part, box in boxes.of(thing, 1.0) if part.rgba[3] >= _CLEAR]
+            rows += [
+                (box.centre, box.half, box.turn) for part, box in boxes.boxes_of(thing, 1.0) if part.rgba[3] >= _CLEAR
+            ]
             self._span[thing.id] = (begin, len(rows))
-        for slab in solids.walls(house):
+        for slab in solids.wall_slabs(house):
             centre = (*slab.centre, (slab.low + slab.high) / 2)
             half = (slab.size[0] / 2, slab.size[1] / 2, (slab.high - slab.low) / 2)
-            rows.append((centre, half, boxes.about((0.0, 0.0, 1.0), slab.yaw)))
+            rows.append((centre, half, boxes.rotation((0.0, 0.0, 1.0), slab.yaw)))
         self._pos = np.array([row[0] for row in rows]).reshape(-1, 3)
         self._half = np.array([row[1] for row in rows]).reshape(-1, 3)
         self._mat = np.array([row[2] for row in rows]).reshape(-1, 9)

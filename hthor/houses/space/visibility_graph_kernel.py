@@ -13,11 +13,11 @@ from typing import Any
 import numba
 import numpy as np
 
-from hthor.houses.space.grid_kernel import is_open, label_at, walk
+from hthor.houses.space.grid_kernel import free_share, is_open, label_at
 
 
 @numba.njit(cache=True)
-def corners(free: Any) -> Any:
+def find_corners(free: Any) -> Any:
     """Grid vertices with just one blocked neighbour: (N, 2) int64 places, (N, 2) int64 signs towards that cell."""
     ny, nx = free.shape
     places, signs = np.empty((ny * nx, 2), np.int64), np.empty((ny * nx, 2), np.int64)
@@ -37,13 +37,13 @@ def corners(free: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def taut(signs: Any, k: int, vx: float, vy: float) -> bool:
+def can_bend(signs: Any, k: int, vx: float, vy: float) -> bool:
     """Whether a string from corner ``k`` along v can bend there: v does not point away from the blocked cell."""
     return not (vx * signs[k, 0] < 0.0 and vy * signs[k, 1] < 0.0)
 
 
 @numba.njit(cache=True)
-def bends(signs: Any, k: int, ux: float, uy: float, vx: float, vy: float) -> bool:
+def turns_round(signs: Any, k: int, ux: float, uy: float, vx: float, vy: float) -> bool:
     """Whether a string that comes to corner ``k`` along u and leaves along v bends round the blocked cell, or not."""
     turn = ux * vy - uy * vx
     side = ux * signs[k, 1] - uy * signs[k, 0]
@@ -51,7 +51,7 @@ def bends(signs: Any, k: int, ux: float, uy: float, vx: float, vy: float) -> boo
 
 
 @numba.njit(cache=True)
-def edges(free: Any, corners: Any, signs: Any) -> Any:
+def graph_edges(free: Any, corners: Any, signs: Any) -> Any:
     """The graph in compressed rows: (N + 1,) first edge of each corner, (E,) where it leads, (E,) how long it is."""
     n = len(corners)
     one, two = [0], [0]
@@ -61,10 +61,10 @@ def edges(free: Any, corners: Any, signs: Any) -> Any:
     for i in range(n):
         for j in range(i + 1, n):
             vx, vy = float(corners[j, 0] - corners[i, 0]), float(corners[j, 1] - corners[i, 1])
-            if not (taut(signs, i, vx, vy) and taut(signs, j, -vx, -vy)):
+            if not (can_bend(signs, i, vx, vy) and can_bend(signs, j, -vx, -vy)):
                 continue
             if (
-                walk(free, float(corners[i, 0]), float(corners[i, 1]), float(corners[j, 0]), float(corners[j, 1]))
+                free_share(free, float(corners[i, 0]), float(corners[i, 1]), float(corners[j, 0]), float(corners[j, 1]))
                 >= 1.0
             ):
                 one.append(i)
@@ -84,7 +84,9 @@ def edges(free: Any, corners: Any, signs: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def spread(free: Any, corners: Any, signs: Any, start: Any, end: Any, length: Any, sources: Any, costs: Any) -> Any:
+def shortest_to_corners(
+    free: Any, corners: Any, signs: Any, start: Any, end: Any, length: Any, sources: Any, costs: Any
+) -> Any:
     """Dijkstra's algorithm from the sources: (N,) lengths, (N,) corner before or -1 - source, (N, 2) way from it."""
     n = len(corners)
     reach, before, came = np.full(n, np.inf), np.full(n, -1, np.int64), np.zeros((n, 2))
@@ -94,9 +96,9 @@ def spread(free: Any, corners: Any, signs: Any, start: Any, end: Any, length: An
         for s in range(len(sources)):
             vx, vy = sources[s, 0] - corners[i, 0], sources[s, 1] - corners[i, 1]
             whole = costs[s] + math.hypot(vx, vy)
-            if whole >= reach[i] or not taut(signs, i, vx, vy):
+            if whole >= reach[i] or not can_bend(signs, i, vx, vy):
                 continue
-            if walk(free, sources[s, 0], sources[s, 1], float(corners[i, 0]), float(corners[i, 1])) >= 1.0:
+            if free_share(free, sources[s, 0], sources[s, 1], float(corners[i, 0]), float(corners[i, 1])) >= 1.0:
                 reach[i], before[i] = whole, -1 - s
                 came[i, 0], came[i, 1] = -vx, -vy
         if reach[i] < np.inf:
@@ -109,7 +111,7 @@ def spread(free: Any, corners: Any, signs: Any, start: Any, end: Any, length: An
             j, longer = end[e], whole + length[e]
             if longer < reach[j]:
                 vx, vy = float(corners[j, 0] - corners[i, 0]), float(corners[j, 1] - corners[i, 1])
-                if bends(signs, i, came[i, 0], came[i, 1], vx, vy):
+                if turns_round(signs, i, came[i, 0], came[i, 1], vx, vy):
                     reach[j], before[j] = longer, i
                     came[j, 0], came[j, 1] = vx, vy
                     heapq.heappush(heap, (longer, j))
@@ -117,7 +119,7 @@ def spread(free: Any, corners: Any, signs: Any, start: Any, end: Any, length: An
 
 
 @numba.njit(cache=True)
-def reach(
+def shortest_to_places(
     free: Any,
     labels: Any,
     corners: Any,
@@ -143,15 +145,19 @@ def reach(
             continue
         for s in range(len(sources)):
             whole = costs[s] + math.hypot(sources[s, 0] - x, sources[s, 1] - y)
-            if whole < best[p] and walk(free, sources[s, 0], sources[s, 1], x, y) >= 1.0:
+            if whole < best[p] and free_share(free, sources[s, 0], sources[s, 1], x, y) >= 1.0:
                 best[p], last[p] = whole, -1 - s
         for i in order:
             if reach[i] >= best[p]:
                 break
             vx, vy = x - corners[i, 0], y - corners[i, 1]
             whole = reach[i] + math.hypot(vx, vy)
-            if whole >= best[p] or not taut(signs, i, vx, vy) or not bends(signs, i, came[i, 0], came[i, 1], vx, vy):
+            if (
+                whole >= best[p]
+                or not can_bend(signs, i, vx, vy)
+                or not turns_round(signs, i, came[i, 0], came[i, 1], vx, vy)
+            ):
                 continue
-            if walk(free, float(corners[i, 0]), float(corners[i, 1]), x, y) >= 1.0:
+            if free_share(free, float(corners[i, 0]), float(corners[i, 1]), x, y) >= 1.0:
                 best[p], last[p] = whole, i
     return best, last

@@ -102,5 +102,5 @@ def write(path: Path, document: object) -> None:
 
 def commitments(board: Path) -> dict[str, Commitment]:
     """The commitments to official suites that lie with the board, by the hash of the suite."""
-    held = [commitment.load(path) for path in sorted((board / SUITES).glob("*.json"))]
+    held = [commitment.load_commitment(path) for path in sorted((board / SUITES).glob("*.json"))]
     return {one.suite_sha256: one for one in held}

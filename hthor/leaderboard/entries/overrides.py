@@ -64,7 +64,7 @@ def refusal(folder: Path, plan: RunConfig, found: Mapping[str, str]) -> str:
 
 def tasks_of(plan: RunConfig) -> int | None:
     """How many tasks the suite has; None of one that does not ship with hthor in this version."""
-    if plan.suite.name not in tasks.suites():
+    if plan.suite.name not in tasks.suite_names():
         return None
     sha256, size = _size(plan.suite.name)
     return size if sha256 == plan.suite.sha256 else None
@@ -73,5 +73,5 @@ def tasks_of(plan: RunConfig) -> int | None:
 @functools.cache
 def _size(name: str) -> tuple[str, int]:
     """The hash of a suite that ships, and how many tasks it has."""
-    suite = library.read(name)
+    suite = library.read_suite(name)
     return suite.sha256, len(suite.tasks)

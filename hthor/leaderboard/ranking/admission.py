@@ -61,7 +61,7 @@ class Admission(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 @functools.cache
 def own() -> Admission:
     """What every board takes: the people of the benchmark, seed 0, and hthor's own suites, which are public."""
-    suites = (library.read(name) for name in tasks.suites())
+    suites = (library.read_suite(name) for name in tasks.suite_names())
     return Admission(
         people=(Named(name=resolve.PROXY, sha256=resolve.find(resolve.PROXY).sha256),),
         seeds=(0,),

@@ -101,8 +101,8 @@ def _draw(entry: Entry, board: Path, word: str, count: int, folder: Path, jobs: 
     """Write a suite of fresh tasks to a folder."""
     name = entry.run.suite.name
     lot = hashlib.sha256(f"hthor fresh\n{word}\n{entry.digest}\n".encode()).hexdigest()
-    if name in tasks.suites():
-        drawn = fresh_tasks.suite(name, int(lot[:30], 16), count, functools.partial(_possible, jobs=jobs))
+    if name in tasks.suite_names():
+        drawn = fresh_tasks.make_fresh_suite(name, int(lot[:30], 16), count, functools.partial(_possible, jobs=jobs))
         jsonio.write(folder / secret_suites.SUITE, encode_suite(drawn))
         return
     season = files.commitments(board).get(entry.run.suite.sha256)
@@ -111,9 +111,9 @@ def _draw(entry: Entry, board: Path, word: str, count: int, folder: Path, jobs: 
     from hthor.world.validation.house_soundness import check_soundness
 
     homes = max(1, min(season.houses, count // _HOUSE_TASKS))
-    order = secret_suites.Order(name=f"fresh-{lot[:10]}", houses=homes, tasks=count)
+    order = secret_suites.SuiteOrder(name=f"fresh-{lot[:10]}", houses=homes, tasks=count)
     judges = secret_suites.Proof(house=check_soundness, task=lambda task, house: not proof.examine(task, house).faults)
-    for path, data in secret_suites.files(order, Salt(lot), judges).items():
+    for path, data in secret_suites.make_files(order, Salt(lot), judges).items():
         jsonio.write(folder / path, data)
 
 

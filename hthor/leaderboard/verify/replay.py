@@ -149,7 +149,7 @@ def player(suite: str, crew: RobotTeam, who: People, required: str, given: Agent
         given: arguments and files that they are given.
     """
     code_identity.keep_compiled()
-    own = bool(suite) and Path(suite).exists() and bool(library.own_houses(suite))
+    own = bool(suite) and Path(suite).exists() and bool(library.house_files(suite))
     folder = Path(suite) if Path(suite).is_dir() else Path(suite).parent
     houses = str((folder / "houses").resolve()) if own else ""
     held = run_isolation.resolve_isolation("auto", required, sorted(set(crew.minds.values())))

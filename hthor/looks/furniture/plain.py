@@ -12,7 +12,7 @@ from hthor.looks.meshes.mesh import Material, Mesh, Piece
 from hthor.types import Part
 
 
-def pieces(parts: Iterable[Part]) -> list[Piece]:
+def plain_pieces(parts: Iterable[Part]) -> list[Piece]:
     """One piece a part."""
     return [piece(part) for part in parts]
 

@@ -29,18 +29,18 @@ _CLEAR = 0.02
 _SOFT = ("bed", "sofa", "armchair", "chair")
 
 
-class Skipped(NamedTuple):
+class ModelSkipped(NamedTuple):
     """A model that is not in the pack, and why."""
 
     pick: Pick
     reason: str
 
 
-class Made(NamedTuple):
+class ConvertedModel(NamedTuple):
     """What came of a build."""
 
     pack: Pack
-    skipped: tuple[Skipped, ...]
+    skipped: tuple[ModelSkipped, ...]
 
 
 class _Piece(NamedTuple):
@@ -49,7 +49,7 @@ class _Piece(NamedTuple):
     pictures: dict[str, bytes]
 
 
-def make(
+def convert_models(
     files: Mapping[str, bytes],
     source: str,
     folder: Path,
@@ -57,7 +57,7 @@ def make(
     *,
     cc_by: bool,
     picks: Iterable[Pick] | None = None,
-) -> Made:
+) -> ConvertedModel:
     """Write a pack into ``folder``, over one that may be there.
 
     Args:
@@ -74,16 +74,16 @@ def make(
             raise PackError(f"{source} has no library '{library}'; it has: {', '.join(sorted(files)) or 'none'}.")
     libraries = {library: Library(library, files[library]) for library in needed}
     taken: list[_Piece] = []
-    skipped: list[Skipped] = []
+    skipped: list[ModelSkipped] = []
     for pick in wanted:
         try:
             taken.append(_take(libraries[pick.library], pick))
         except ValueError as error:
-            skipped.append(Skipped(pick, str(error)))
+            skipped.append(ModelSkipped(pick, str(error)))
     if not taken:
         raise PackError(f"no model of {source} could be used; the first: {skipped[0].reason if skipped else 'none'}.")
     _write(taken, source, folder, name)
-    return Made(Pack(folder), tuple(skipped))
+    return ConvertedModel(Pack(folder), tuple(skipped))
 
 
 # ------------------------------------------------------------------------------------------------------------ one model
@@ -93,14 +93,14 @@ def _take(library: Library, pick: Pick) -> _Piece:
     if fitting.opens(pick.kind):
         raise ValueError(f"a {pick.kind} opens, and no model of a pack can")
     entry = library.entry(pick.model)
-    groups, size = shape.placed(_read(library, entry), entry.size, entry.rotation, pick.turns)
+    groups, size = shape.place_shape(_read(library, entry), entry.size, entry.rotation, pick.turns)
     own = catalog.kind(pick.kind).size
     if not fitting.fits(size, own):
         raise ValueError(f"{_metres(size)} is too far from {_metres(own)}")
-    groups = thinning.thinned(groups, TRIANGLES)
+    groups = thinning.decimate(groups, TRIANGLES)
     meshes = [shape.mesh(group) for group in groups]
     places = fitting.supports(pick.kind)
-    rests = shape.rests(meshes, size, places, own, soft=pick.kind in _SOFT)
+    rests = shape.find_surfaces(meshes, size, places, own, soft=pick.kind in _SOFT)
     pictures: dict[str, bytes] = {}
     if fitting.stretch(pick.kind, size, rests, own) is None:
         raise ValueError("its place for things would have to be moved too far")
@@ -128,7 +128,7 @@ def _read(library: Library, entry: Entry) -> list[obj.Group]:
         return library.read(path).decode("latin-1") if library.has(path) else ""
 
     try:
-        groups = obj.read(library.read(entry.path).decode("latin-1"), materials)
+        groups = obj.read_obj(library.read(entry.path).decode("latin-1"), materials)
     except ValueError as error:
         raise PackError(f"library '{library.name}': {entry.path}: {error}") from None
     if not groups:

@@ -29,7 +29,7 @@ class Group(NamedTuple):
     faces: Any
 
 
-def read(text: str, materials: Callable[[str], str]) -> list[Group]:
+def read_obj(text: str, materials: Callable[[str], str]) -> list[Group]:
     """The groups of an OBJ file, one a material, in order of appearance; corners that are equal are one vertex.
 
     Args:
@@ -54,7 +54,7 @@ def read(text: str, materials: Callable[[str], str]) -> list[Group]:
             elif word == "usemtl":
                 current = rest.strip()
             elif word == "mtllib":
-                paints |= paint(materials(rest.strip()))
+                paints |= read_paints(materials(rest.strip()))
         except (ValueError, IndexError) as error:
             raise ValueError(f"line {number}, '{line.strip()[:40]}': {error}") from None
     widths = {"v": 3, "vt": 2, "vn": 3}
@@ -92,7 +92,7 @@ def _group(paint: Paint, triangles: list[tuple[Corner, Corner, Corner]], data: d
     return Group(paint, vertices, uv, normals, faces)
 
 
-def paint(text: str) -> dict[str, Paint]:
+def read_paints(text: str) -> dict[str, Paint]:
     """The materials of an MTL file by name."""
     paints: dict[str, Paint] = {}
     name = ""

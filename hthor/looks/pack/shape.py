@@ -23,7 +23,7 @@ _LEAST = 0.5
 """A resting place must be at least this share of the kind's own along either side."""
 
 
-def placed(groups: list[Group], size: Vec3, rotation: tuple[float, ...], turns: int) -> tuple[list[Group], Vec3]:
+def place_shape(groups: list[Group], size: Vec3, rotation: tuple[float, ...], turns: int) -> tuple[list[Group], Vec3]:
     """The groups centred at the middle of their box, z up, front towards +y, as large as the catalogue says; the size.
 
     The library's own frame has y up and its front towards +z.
@@ -72,7 +72,9 @@ def _normals(vertices: Any, faces: Any) -> Any:
     return normals
 
 
-def rests(meshes: list[Mesh], size: Vec3, places: tuple[Surface, ...], own: Vec3, *, soft: bool) -> tuple[Rest, ...]:
+def find_surfaces(
+    meshes: list[Mesh], size: Vec3, places: tuple[Surface, ...], own: Vec3, *, soft: bool
+) -> tuple[Rest, ...]:
     """Where things lie on a model: the level part of what is under each of the kind's ``places``.
 
     Args:

@@ -14,7 +14,7 @@ _NEAR = 8
 _FEWEST = 60
 
 
-def thinned(groups: list[Group], most: int) -> list[Group]:
+def decimate(groups: list[Group], most: int) -> list[Group]:
     """The groups with about ``most`` triangles together, each losing the same share, or themselves if they have fewer.
 
     Raises:

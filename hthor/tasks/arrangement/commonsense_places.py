@@ -24,7 +24,7 @@ BELONGS, ACCEPTABLE = 0.1, 0.03
 """Least shares of the two better verdicts: one place in ten, and one in thirty-three."""
 
 
-class Row(Struct, frozen=True, kw_only=True):
+class CommonsensePlace(Struct, frozen=True, kw_only=True):
     """One judgement. ``basis`` says what ``share`` was counted in, and is "none" for a kind that neither source knows:
     it will not do, but nothing is put there to be tidied up either. ``source`` names the row or the count.
     """
@@ -38,36 +38,36 @@ class Row(Struct, frozen=True, kw_only=True):
 
 
 class _File(Struct, frozen=True):
-    rows: tuple[Row, ...]
+    rows: tuple[CommonsensePlace, ...]
 
 
 @cache
-def rows() -> tuple[Row, ...]:
+def all_places() -> tuple[CommonsensePlace, ...]:
     """All judgements, by target."""
     data = resources.files(__package__).joinpath("judgement.json").read_bytes()
     return msgspec.json.decode(data, type=_File).rows
 
 
 @cache
-def of(target: str) -> dict[str, Row]:
+def places_of(target: str) -> dict[str, CommonsensePlace]:
     """The judgements of a target by the kind of thing that it lies on or in.
 
     Raises:
         UnknownName: when nothing is judged of ``target``.
     """
-    found = {row.kind: row for row in rows() if row.target == target}
+    found = {row.kind: row for row in all_places() if row.target == target}
     if not found:
-        raise UnknownName("target", target, sorted({row.target for row in rows()}))
+        raise UnknownName("target", target, sorted({row.target for row in all_places()}))
     return found
 
 
-def homes(target: str) -> tuple[str, ...]:
+def usual_places(target: str) -> tuple[str, ...]:
     """The kinds of things where the target may lie, the likeliest first."""
-    good = [row for row in of(target).values() if row.verdict != "out"]
+    good = [row for row in places_of(target).values() if row.verdict != "out"]
     return tuple(row.kind for row in sorted(good, key=lambda row: (-row.share, row.kind)))
 
 
-def is_out(target: str, kind: str) -> bool:
+def is_misplaced(target: str, kind: str) -> bool:
     """Whether common sense finds the target out of place on or in a thing of that kind, and has reason to."""
-    row = of(target).get(kind)
+    row = places_of(target).get(kind)
     return row is not None and row.verdict == "out" and row.basis != "none"

@@ -14,8 +14,8 @@ from hthor import catalog, seeds
 from hthor.geometry.plane import inside
 from hthor.houses.space.free_space import FreeSpace
 from hthor.tasks.arrangement.avatar import HEIGHT_M
-from hthor.tasks.arrangement.placement import Rest, Shelves, laid, placed
-from hthor.tasks.arrangement.reachability import Ground
+from hthor.tasks.arrangement.placement import SupportSurface, SupportSurfaces, place_on, place_on_floor
+from hthor.tasks.arrangement.reachability import ReachableFloor
 from hthor.types import HouseSpec, Placement, Room, Thing
 
 Floats = NDArray[np.float64]
@@ -27,7 +27,7 @@ LANE_M = 0.35
 _TRIES = 60
 
 
-def spot(
+def find_spot(
     house: HouseSpec,
     id: str,
     kind: str,
@@ -45,7 +45,7 @@ def spot(
         weigh: how likely a thing is to bear it, for every thing; zero for never. A thing's surfaces share by size.
         root: of all draws.
     """
-    rests = Shelves.of(house).rests
+    rests = SupportSurfaces.of(house).rests
     areas: dict[str, float] = {}
     for rest in rests:
         areas[rest.thing.id] = areas.get(rest.thing.id, 0.0) + _area(rest)
@@ -55,17 +55,17 @@ def spot(
     for attempt in range(_TRIES):
         rest = rests[seeds.choice(weights, root, "rest", attempt)]
         u, v, turn = (2 * seeds.draw(root, axis, attempt) - 1 for axis in ("u", "v", "yaw"))
-        placement = msgspec.structs.replace(placed(kind, rest, u, v, math.pi * turn), id=id)
-        if Shelves.of(house).fits(rest, placement, done) and at_hand(house, placement):
+        placement = msgspec.structs.replace(place_on(kind, rest, u, v, math.pi * turn), id=id)
+        if SupportSurfaces.of(house).fits(rest, placement, done) and is_within_reach(house, placement):
             return placement
     return None
 
 
-def at_hand(house: HouseSpec, placement: Placement) -> bool:
+def is_within_reach(house: HouseSpec, placement: Placement) -> bool:
     """Whether the object can be seen and is at most `NEAR_M` away from free floor that the house's start is joined to;
     what it lies shut in being open.
     """
-    ground = Ground.of(house)
+    ground = ReachableFloor.of(house)
     holder = next((thing for thing in house.things if thing.id == placement.support), None)
     shut = placement.relation == "in" and holder is not None and catalog.kind(holder.kind).hides
     opened = frozenset({placement.support}) if shut else frozenset[str]()
@@ -75,7 +75,7 @@ def at_hand(house: HouseSpec, placement: Placement) -> bool:
     return bool(len(cells)) and float(np.hypot(cells[:, 0] - x, cells[:, 1] - y).min()) <= NEAR_M
 
 
-def floor_spot(
+def find_floor_spot(
     house: HouseSpec, id: str, kind: str, room: Room, clear: float, root: int, near: Thing | None = None
 ) -> Placement | None:
     """A place on the floor of a room with ``clear`` [m] free all round the object's middle, None where there is none.
@@ -90,9 +90,9 @@ def floor_spot(
         away = np.hypot(cells[:, 0] - near.centre[0], cells[:, 1] - near.centre[1])
         cells = cells[away <= away.min() + 0.2]
     x, y = cells[int(seeds.draw(root, "cell") * len(cells))]
-    placement = laid(kind, (float(x), float(y)), math.pi * (2 * seeds.draw(root, "yaw") - 1))
+    placement = place_on_floor(kind, (float(x), float(y)), math.pi * (2 * seeds.draw(root, "yaw") - 1))
     placement = msgspec.structs.replace(placement, id=id)
-    return placement if Shelves.of(house).lies(house, placement, ()) else None
+    return placement if SupportSurfaces.of(house).lies(house, placement, ()) else None
 
 
 def room_of(house: HouseSpec, thing_id: str) -> str:
@@ -100,7 +100,7 @@ def room_of(house: HouseSpec, thing_id: str) -> str:
     return next((thing.room for thing in house.things if thing.id == thing_id), "")
 
 
-def unique(house: HouseSpec, kinds: Iterable[str]) -> tuple[Thing, ...]:
+def unique_things(house: HouseSpec, kinds: Iterable[str]) -> tuple[Thing, ...]:
     """The things of these kinds of which the house has just one, so that "the" says which."""
     rows = [[thing for thing in house.things if thing.kind == kind] for kind in kinds]
     return tuple(row[0] for row in rows if len(row) == 1)
@@ -120,5 +120,5 @@ def _room_floor(house: HouseSpec, room: Room, clear: float) -> Floats:
     return floor
 
 
-def _area(rest: Rest) -> float:
+def _area(rest: SupportSurface) -> float:
     return rest.surface.half[0] * rest.surface.half[1]

@@ -22,7 +22,7 @@ Box = tuple[Vec3, Vec3, float]
 """Centre, half extents [m] and yaw of an upright box, house frame."""
 
 
-class Sight:
+class LinesOfSight:
     """Lines of sight in a house, through every opaque part of its walls and furniture.
 
     Args:
@@ -39,9 +39,9 @@ class Sight:
 
     @staticmethod
     @functools.lru_cache(maxsize=64)
-    def of(house: HouseSpec, opened: frozenset[str] = frozenset()) -> Sight:
+    def of(house: HouseSpec, opened: frozenset[str] = frozenset()) -> LinesOfSight:
         """The same as the constructor, worked out once a process."""
-        return Sight(house, opened)
+        return LinesOfSight(house, opened)
 
     def seen(self, eyes: ArrayLike, points: ArrayLike) -> Bools:
         """(N,) bool: from which of the eyes (N, 3) [m] any of the points (P, 3) [m] can be seen, at any distance."""
@@ -54,7 +54,7 @@ class Sight:
 
 
 def _walls(house: HouseSpec) -> Iterator[Box]:
-    for slab in solids.walls(house):
+    for slab in solids.wall_slabs(house):
         centre = (slab.centre[0], slab.centre[1], (slab.low + slab.high) / 2)
         yield centre, (slab.size[0] / 2, slab.size[1] / 2, (slab.high - slab.low) / 2), slab.yaw
 

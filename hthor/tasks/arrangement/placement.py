@@ -11,8 +11,8 @@ from msgspec import Struct
 
 from hthor import catalog
 from hthor.geometry.plane import distance_to_rectangle, inside, rectangle, to_house, to_local
-from hthor.houses.laying import slabs
-from hthor.houses.space.solids import Slab, overlap
+from hthor.houses.laying import part_slabs
+from hthor.houses.space.solids import Slab, overlap_depth
 from hthor.types import HouseSpec, Placement, Surface, Thing, Vec2, Vec3
 
 EDGE_M = 0.01
@@ -26,7 +26,7 @@ NEAR_M = 1.0
 """Two things are near each other within this distance on the plan."""
 
 
-class Rest(Struct, frozen=True, kw_only=True):
+class SupportSurface(Struct, frozen=True, kw_only=True):
     """One surface of one thing of a house, where objects may rest."""
 
     thing: Thing
@@ -44,7 +44,7 @@ class Rest(Struct, frozen=True, kw_only=True):
         return to_house(local, self.thing.centre, self.thing.yaw)
 
 
-class Shelves:
+class SupportSurfaces:
     """The resting places of a house and what already stands on them.
 
     Attributes:
@@ -52,9 +52,9 @@ class Shelves:
     """
 
     def __init__(self, house: HouseSpec) -> None:
-        self.all = tuple(rest for thing in house.things for rest in rests_of(thing))
+        self.all = tuple(rest for thing in house.things for rest in supports_of(thing))
         self.rests = tuple(rest for rest in self.all if LOW_M <= rest.centre[2] <= HIGH_M)
-        owned = [(thing.id, slab) for thing in house.things for slab in slabs(thing)]
+        owned = [(thing.id, slab) for thing in house.things for slab in part_slabs(thing)]
         self._solids = tuple(slab for _, slab in owned)
         self._owners = tuple(id for id, _ in owned)
         rows = [(*slab.centre, math.hypot(*slab.size) / 2) for slab in self._solids]
@@ -62,13 +62,13 @@ class Shelves:
 
     @staticmethod
     @functools.lru_cache(maxsize=32)
-    def of(house: HouseSpec) -> Shelves:
+    def of(house: HouseSpec) -> SupportSurfaces:
         """The same as the constructor, worked out once a process."""
-        return Shelves(house)
+        return SupportSurfaces(house)
 
-    def fits(self, rest: Rest, placement: Placement, others: Iterable[Placement]) -> bool:
+    def fits(self, rest: SupportSurface, placement: Placement, others: Iterable[Placement]) -> bool:
         """Whether the object rests on the surface, under its clearance, and touches nothing else."""
-        return stands(placement, rest) and self._clear(placement, others)
+        return rests_on(placement, rest) and self._clear(placement, others)
 
     def lies(self, house: HouseSpec, placement: Placement, others: Iterable[Placement]) -> bool:
         """Whether the object lies on the floor of a room of the house, whole, and touches nothing."""
@@ -86,7 +86,7 @@ class Shelves:
     def _clear(self, placement: Placement, others: Iterable[Placement]) -> bool:
         body = footprint(placement, GAP_M)
         rivals = [self._solids[number] for number in self._about(body)]
-        return not any(overlap(body, rival) > 0.0 for rival in [*rivals, *(footprint(other) for other in others)])
+        return not any(overlap_depth(body, rival) > 0.0 for rival in [*rivals, *(footprint(other) for other in others)])
 
     def _about(self, body: Slab) -> list[int]:
         """Numbers of the solids that may touch a box: a circle round each meets a circle round it."""
@@ -95,9 +95,9 @@ class Shelves:
         return list(map(int, np.flatnonzero(gaps < reach + self._radius)))
 
 
-def rests_of(thing: Thing) -> tuple[Rest, ...]:
+def supports_of(thing: Thing) -> tuple[SupportSurface, ...]:
     """The surfaces of one thing, lowest first."""
-    return tuple(Rest(thing=thing, surface=surface) for surface in catalog.kind(thing.kind).rests(thing.size))
+    return tuple(SupportSurface(thing=thing, surface=surface) for surface in catalog.kind(thing.kind).rests(thing.size))
 
 
 def as_thing(placement: Placement) -> Thing:
@@ -114,7 +114,7 @@ def as_thing(placement: Placement) -> Thing:
     )
 
 
-def stands(placement: Placement, rest: Rest, slip: float = 1e-6) -> bool:
+def rests_on(placement: Placement, rest: SupportSurface, slip: float = 1e-6) -> bool:
     """Whether the object's bottom lies on the surface, its footprint `EDGE_M` inside, its top under the clearance."""
     size = catalog.kind(placement.kind).size
     x, y, z = to_local(placement.position, rest.thing.centre, rest.thing.yaw)
@@ -129,7 +129,7 @@ def stands(placement: Placement, rest: Rest, slip: float = 1e-6) -> bool:
     )
 
 
-def placed(kind: str, rest: Rest, u: float, v: float, yaw: float) -> Placement:
+def place_on(kind: str, rest: SupportSurface, u: float, v: float, yaw: float) -> Placement:
     """An object of a kind at shares ``u``, ``v`` in [-1, 1] of a surface, rounded to 0.1 mm on the plan."""
     x, y, z = rest.point(u, v)
     height = catalog.kind(kind).size[2]
@@ -143,7 +143,7 @@ def placed(kind: str, rest: Rest, u: float, v: float, yaw: float) -> Placement:
     )
 
 
-def laid(kind: str, place: Vec2, yaw: float) -> Placement:
+def place_on_floor(kind: str, place: Vec2, yaw: float) -> Placement:
     """An object of a kind on the floor, rounded to 0.1 mm on the plan."""
     x, y = place
     position = (round(x, 4), round(y, 4), round(catalog.kind(kind).size[2] / 2, 9))
@@ -157,11 +157,11 @@ def footprint(placement: Placement, gap: float = 0.0) -> Slab:
     return Slab((x, y), (w + 2 * gap, d + 2 * gap), placement.yaw, z - h / 2 + _LIFT_M, z + h / 2 + gap)
 
 
-def gap_to(point: Vec2, thing: Thing) -> float:
+def distance_to_thing(point: Vec2, thing: Thing) -> float:
     """Distance [m] on the plan from a point to a thing's edge, zero within."""
     return distance_to_rectangle(point, (thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw)
 
 
 def _depth(one: Slab, two: Slab) -> float:
     """How deep [m] two boxes are in one another, by the least shift that parts them, sideways or upward."""
-    return min(overlap(one, two), min(one.high, two.high) - max(one.low, two.low))
+    return min(overlap_depth(one, two), min(one.high, two.high) - max(one.low, two.low))

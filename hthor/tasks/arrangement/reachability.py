@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from hthor import catalog, rules
 from hthor.geometry.plane import to_house
 from hthor.houses.space.free_space import FreeSpace
-from hthor.houses.space.geodesic import Field, Geodesics
+from hthor.houses.space.geodesic import DistanceField, Geodesics
 from hthor.tasks.arrangement.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
-from hthor.tasks.arrangement.occlusion import Sight
+from hthor.tasks.arrangement.occlusion import LinesOfSight
 from hthor.types import HouseSpec, Placement, Thing, Vec2, Vec3
 
 Bools = NDArray[np.bool_]
@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 SLACK_M = rules.GRID_M * math.sqrt(0.5)
 
 
-class Ground:
+class ReachableFloor:
     """A house's floor for the person's avatar. Masks are (ny, nx) bool over the cells of ``space``, free cells only."""
 
     def __init__(self, house: HouseSpec) -> None:
@@ -37,9 +37,9 @@ class Ground:
 
     @staticmethod
     @functools.lru_cache(maxsize=32)
-    def of(house: HouseSpec) -> Ground:
+    def of(house: HouseSpec) -> ReachableFloor:
         """The same as the constructor, worked out once a process."""
-        return Ground(house)
+        return ReachableFloor(house)
 
     @functools.cached_property
     def joined(self) -> Bools:
@@ -58,7 +58,7 @@ class Ground:
         places = self.space.centres(mask)
         eyes = np.column_stack((places, np.full(len(places), EYE_M)))
         lit = np.linalg.norm(eyes - placement.position, axis=1) <= reach_m + SLACK_M
-        lit[lit] = Sight.of(self.house, opened).seen(eyes[lit], _samples(placement))
+        lit[lit] = LinesOfSight.of(self.house, opened).seen(eyes[lit], _samples(placement))
         mask[mask] = lit
         return mask
 
@@ -109,11 +109,11 @@ class Ground:
 class Walk:
     """The shortest walk from anywhere through one cell of each of several masks in turn."""
 
-    def __init__(self, ground: Ground, stops: Sequence[Bools]) -> None:
+    def __init__(self, ground: ReachableFloor, stops: Sequence[Bools]) -> None:
         self._space, self._stops = ground.space, tuple(stops)
-        self._fields: dict[int, Field] = {}
+        self._fields: dict[int, DistanceField] = {}
         for number in reversed(range(len(self._stops))):
-            edge = ground.space.centres(rim(self._stops[number], ground.space.free))
+            edge = ground.space.centres(entry_cells(self._stops[number], ground.space.free))
             self._fields[number] = ground.paths.field(edge, self._left(edge, number + 1))
 
     def lengths(self, starts: ArrayLike) -> Floats:
@@ -143,7 +143,7 @@ def _samples(placement: Placement) -> tuple[Vec3, Vec3]:
     return (x, y, z), (x, y, z + 0.4 * catalog.kind(placement.kind).size[2])
 
 
-def rim(mask: Bools, free: Bools) -> Bools:
+def entry_cells(mask: Bools, free: Bools) -> Bools:
     """The cells of a mask through which one enters it."""
     out = np.zeros_like(mask)
     outside = free & ~mask

@@ -12,8 +12,8 @@ from hthor import catalog, seeds
 from hthor.catalog import priors
 from hthor.catalog.priors import Triplet
 from hthor.geometry.plane import inside
-from hthor.tasks.arrangement.placement import NEAR_M, Rest, Shelves, gap_to, placed
-from hthor.tasks.arrangement.reachability import Ground
+from hthor.tasks.arrangement.placement import NEAR_M, SupportSurface, SupportSurfaces, distance_to_thing, place_on
+from hthor.tasks.arrangement.reachability import ReachableFloor
 from hthor.types import HouseSpec, Placement, Thing, Vec2
 
 TRIES = 60
@@ -22,7 +22,7 @@ _ODD = 0.005
 """The weight of surfaces where people do not put an object, where it is to be near something and nothing else is."""
 
 
-class Wish(Struct, frozen=True, kw_only=True):
+class PlacementRequest(Struct, frozen=True, kw_only=True):
     """What is to be placed how: a relation, the kind of thing that the target must not rest on or in, and the ids of
     the objects placed before that have to be near it.
 
@@ -37,8 +37,8 @@ class Wish(Struct, frozen=True, kw_only=True):
     careful: bool = True
 
 
-def find(
-    house: HouseSpec, root: int, wish: Wish, done: Sequence[Placement], *, first: bool = False
+def find_placement(
+    house: HouseSpec, root: int, wish: PlacementRequest, done: Sequence[Placement], *, first: bool = False
 ) -> Placement | None:
     """A pose for one relation, None where none was found.
 
@@ -50,16 +50,16 @@ def find(
     for rest, mark, attempt in _rests(house, root, wish, done, first):
         edge = (row.relation, row.reference)
         u, v, turn = (2 * seeds.draw(root, *edge, axis, attempt) - 1 for axis in ("u", "v", "yaw"))
-        placement = placed(row.target, rest, u, v, math.pi * turn)
-        near = near_enough(house, placement, mark, wish, done)
-        if near and Shelves.of(house).fits(rest, placement, done) and reachable(house, placement, rest):
+        placement = place_on(row.target, rest, u, v, math.pi * turn)
+        near = is_near_enough(house, placement, mark, wish, done)
+        if near and SupportSurfaces.of(house).fits(rest, placement, done) and is_reachable(house, placement, rest):
             return msgspec.structs.replace(placement, near="" if mark is None else mark.id)
     return None
 
 
 def _rests(
-    house: HouseSpec, root: int, wish: Wish, done: Sequence[Placement], first: bool
-) -> Iterator[tuple[Rest, Thing | Placement | None, int]]:
+    house: HouseSpec, root: int, wish: PlacementRequest, done: Sequence[Placement], first: bool
+) -> Iterator[tuple[SupportSurface, Thing | Placement | None, int]]:
     """Surfaces to try, large ones more often, each with what the object must be near to, and the attempt's number.
 
     What is only to be near something rests where people put such an object, if there is such a place.
@@ -76,11 +76,11 @@ def _rests(
 
 
 def _pairs(
-    house: HouseSpec, wish: Wish, done: Sequence[Placement], first: bool
-) -> list[tuple[Rest, Thing | Placement | None]]:
+    house: HouseSpec, wish: PlacementRequest, done: Sequence[Placement], first: bool
+) -> list[tuple[SupportSurface, Thing | Placement | None]]:
     """Surfaces that would do, each with what the object is near to there."""
     reference = wish.row.reference
-    rests = [rest for rest in Shelves.of(house).rests if rest.thing.kind != wish.ban]
+    rests = [rest for rest in SupportSurfaces.of(house).rests if rest.thing.kind != wish.ban]
     if wish.careful and wish.ban:
         rests = [rest for rest in rests if _beneath(house, rest.thing) != wish.ban]
     if wish.row.relation != "near":
@@ -95,8 +95,12 @@ def _pairs(
     return [(rest, mark) for mark in marks for rest in outside if rest.thing.id != mark.id and _may_be_near(rest, mark)]
 
 
-def near_enough(
-    house: HouseSpec, placement: Placement, mark: Thing | Placement | None, wish: Wish, done: Sequence[Placement]
+def is_near_enough(
+    house: HouseSpec,
+    placement: Placement,
+    mark: Thing | Placement | None,
+    wish: PlacementRequest,
+    done: Sequence[Placement],
 ) -> bool:
     """Whether a placement is near to what it is to be near to, and to what was to be near to it."""
     place = (placement.position[0], placement.position[1])
@@ -106,9 +110,9 @@ def near_enough(
     return not wish.careful or all(_room(house, place) == _room(house, _middle(one)) for one in marks)
 
 
-def reachable(house: HouseSpec, placement: Placement, rest: Rest) -> bool:
+def is_reachable(house: HouseSpec, placement: Placement, rest: SupportSurface) -> bool:
     """Whether the person can stand somewhere, all that is shut being open, to see it close by and to reach it."""
-    ground = Ground.of(house)
+    ground = ReachableFloor.of(house)
     opened = frozenset({rest.thing.id}) if rest.surface.inside else frozenset[str]()
     return bool((ground.seeing(placement, opened) & ground.touching(placement) & ground.joined).any())
 
@@ -129,10 +133,10 @@ def _middle(mark: Thing | Placement) -> Vec2:
 
 def _distance(place: Vec2, mark: Thing | Placement) -> float:
     if isinstance(mark, Thing):
-        return gap_to(place, mark)
+        return distance_to_thing(place, mark)
     return math.dist(place, _middle(mark))
 
 
-def _may_be_near(rest: Rest, mark: Thing | Placement) -> bool:
+def _may_be_near(rest: SupportSurface, mark: Thing | Placement) -> bool:
     x, y, _ = rest.centre
     return _distance((x, y), mark) <= NEAR_M + math.hypot(*rest.surface.half)

@@ -13,12 +13,12 @@ from hthor.types import HouseSpec
 CODE_PART = "tools"
 
 
-def present(house: HouseSpec) -> frozenset[str]:
+def kinds_present(house: HouseSpec) -> frozenset[str]:
     """Kinds that a triplet may refer to in a house: those of its things, and the targets that every task brings."""
     return frozenset(thing.kind for thing in house.things) | frozenset(catalog.TARGETS)
 
 
-def applicable(target: str, kinds: Set[str]) -> tuple[Triplet, ...]:
+def applicable_triplets(target: str, kinds: Set[str]) -> tuple[Triplet, ...]:
     """The triplets of a target whose reference is among ``kinds``, in the table's order.
 
     Raises:
@@ -27,20 +27,20 @@ def applicable(target: str, kinds: Set[str]) -> tuple[Triplet, ...]:
     return tuple(row for row in _rows(target).values() if row.reference in kinds)
 
 
-def draw(target: str, kinds: Set[str], root: int) -> Triplet:
+def draw_triplet(target: str, kinds: Set[str], root: int) -> Triplet:
     """One triplet of a target, by weight among those whose reference is among ``kinds``.
 
     Raises:
         UnknownName: when ``target`` is none of the six.
         ValueError: when no reference of the target is there.
     """
-    first = next(draws(target, kinds, root), None)
+    first = next(triplets_in_random_order(target, kinds, root), None)
     if first is None:
         raise ValueError(f"no reference of '{target}' is among {sorted(kinds)}")
     return first
 
 
-def draws(target: str, kinds: Set[str], root: int) -> Iterator[Triplet]:
+def triplets_in_random_order(target: str, kinds: Set[str], root: int) -> Iterator[Triplet]:
     """The triplets of a target in the order in which they are drawn by weight, none twice: the sample, then what to
     turn to where that has no room.
     """
@@ -53,13 +53,13 @@ def draws(target: str, kinds: Set[str], root: int) -> Iterator[Triplet]:
         del weights[edge]
 
 
-def sample(kinds: Set[str], root: int, fixed: Triplet | None = None) -> dict[str, Triplet]:
+def sample_graph(kinds: Set[str], root: int, fixed: Triplet | None = None) -> dict[str, Triplet]:
     """A scene graph: a triplet for each target, by weight; ``fixed`` is that of its target, whatever its weight."""
-    graph = {target: draw(target, kinds, seeds.derive(root, target)) for target in catalog.TARGETS}
+    graph = {target: draw_triplet(target, kinds, seeds.derive(root, target)) for target in catalog.TARGETS}
     return graph if fixed is None else {**graph, fixed.target: fixed}
 
 
-def order(graph: Mapping[str, Triplet], root: int) -> list[str]:
+def placement_order(graph: Mapping[str, Triplet], root: int) -> list[str]:
     """The targets in an order in which each comes after what it is near, where the graph lets it, mixed otherwise.
 
     Of a ring of targets that are near one another some one comes first; the last then has to be near both.
@@ -73,7 +73,7 @@ def order(graph: Mapping[str, Triplet], root: int) -> list[str]:
     return done
 
 
-def triplet(target: str, relation: str, reference: str) -> Triplet:
+def find_triplet(target: str, relation: str, reference: str) -> Triplet:
     """The row of the table.
 
     Raises:
@@ -82,7 +82,7 @@ def triplet(target: str, relation: str, reference: str) -> Triplet:
     return _rows(target)[relation, reference]
 
 
-def words(row: Triplet) -> str:
+def triplet_words(row: Triplet) -> str:
     """A triplet as part of a task's id, such as ``apple-in-fridge``."""
     return f"{row.target}-{row.relation}-{row.reference}"
 

@@ -11,7 +11,7 @@ from hthor.catalog.priors import Triplet
 from hthor.errors import HthorError
 from hthor.tasks.arrangement import fallback_placement, scene_graph
 from hthor.tasks.arrangement.placement import NEAR_M
-from hthor.tasks.arrangement.relation_placement import TRIES, Wish, find
+from hthor.tasks.arrangement.relation_placement import TRIES, PlacementRequest, find_placement
 from hthor.types import HouseSpec, Placement
 
 CODE_PART = "tools"
@@ -58,7 +58,7 @@ def arrange(
         done = _spread(house, seeds.derive(root, "graph", attempt), bans, fixed)
         if done is not None:
             return _in_order(done)
-    what = "some target" if fixed is None else f"'{scene_graph.words(fixed)}'"
+    what = "some target" if fixed is None else f"'{scene_graph.triplet_words(fixed)}'"
     raise HthorError(f"house '{house.id}' has no place for {what}: it needs a free surface within reach")
 
 
@@ -73,9 +73,10 @@ def _serial(house: HouseSpec, root: int, bans: Mapping[str, str]) -> list[Placem
         target = catalog.TARGETS[number]
         own, there = seeds.derive(root, target), kinds | {placement.kind for placement in done}
         wishes = (
-            Wish(row=row, ban=bans.get(target, ""), careful=False) for row in scene_graph.draws(target, there, own)
+            PlacementRequest(row=row, ban=bans.get(target, ""), careful=False)
+            for row in scene_graph.triplets_in_random_order(target, there, own)
         )
-        spots = (find(house, own, wish, done) for wish in wishes)
+        spots = (find_placement(house, own, wish, done) for wish in wishes)
         spot = next((spot for spot in spots if spot is not None), None)
         if spot is None:
             raise HthorError(f"house '{house.id}' has no place for the {target}: it needs a free surface within reach")
@@ -85,18 +86,22 @@ def _serial(house: HouseSpec, root: int, bans: Mapping[str, str]) -> list[Placem
 
 def _spread(house: HouseSpec, root: int, bans: Mapping[str, str], fixed: Triplet | None) -> list[Placement] | None:
     """All targets by one scene graph, None where a target has no place."""
-    kinds = scene_graph.present(house)
-    if not all(scene_graph.applicable(target, kinds) for target in catalog.TARGETS):
+    kinds = scene_graph.kinds_present(house)
+    if not all(scene_graph.applicable_triplets(target, kinds) for target in catalog.TARGETS):
         return None
-    wanted = scene_graph.sample(kinds, root, fixed)
+    wanted = scene_graph.sample_graph(kinds, root, fixed)
     done: list[Placement] = []
-    for target in scene_graph.order(wanted, root):
+    for target in scene_graph.placement_order(wanted, root):
         own, ban = seeds.derive(root, target), bans.get(target, "")
         waiting = tuple(one.id for one in done if one.id in wanted and _waits(wanted[one.id], one, target))
-        rows = [fixed] if fixed is not None and target == fixed.target else list(scene_graph.draws(target, kinds, own))
+        rows = (
+            [fixed]
+            if fixed is not None and target == fixed.target
+            else list(scene_graph.triplets_in_random_order(target, kinds, own))
+        )
         for row in rows:
-            wish = Wish(row=row, ban=ban, waiting=waiting, tries=_MOST_TRIES if row is fixed else TRIES)
-            spot = find(house, own, wish, done, first=row is wanted[target])
+            wish = PlacementRequest(row=row, ban=ban, waiting=waiting, tries=_MOST_TRIES if row is fixed else TRIES)
+            spot = find_placement(house, own, wish, done, first=row is wanted[target])
             spots = (spot,) if spot is not None else _makeshift(house, own, wish, done) if row is fixed else ()
             if spots:
                 break
@@ -108,7 +113,7 @@ def _spread(house: HouseSpec, root: int, bans: Mapping[str, str], fixed: Triplet
     return done
 
 
-def _makeshift(house: HouseSpec, root: int, wish: Wish, done: Sequence[Placement]) -> tuple[Placement, ...]:
+def _makeshift(house: HouseSpec, root: int, wish: PlacementRequest, done: Sequence[Placement]) -> tuple[Placement, ...]:
     """What helps where the house's own surfaces do not because some are banned; () where nothing does."""
     if not wish.ban or wish.row.reference in catalog.TARGETS:
         return ()

@@ -15,8 +15,8 @@ from hthor import plugins, seeds
 from hthor.errors import HthorError
 from hthor.tasks.generation import generate, standard
 from hthor.tasks.generation.difficulty import Level
-from hthor.tasks.generation.standard import Possible, anything
-from hthor.tasks.generation.suite_specs import FIND, MOVE, ROBOTS, Order, Plan, counted
+from hthor.tasks.generation.standard import IsPossible, accept_any
+from hthor.tasks.generation.suite_specs import FIND, MOVE, ROBOTS, SuiteSpec, TaskOrder, by_count
 from hthor.types import Goal, HouseSpec, TaskSpec
 
 VERSION = 1
@@ -40,32 +40,32 @@ class Recipe(Struct, frozen=True, kw_only=True):
     seed: int = 0
 
 
-def in_house(recipe: Recipe, house: HouseSpec, possible: Possible = anything) -> tuple[TaskSpec, ...]:
+def make_tasks(recipe: Recipe, house: HouseSpec, possible: IsPossible = accept_any) -> tuple[TaskSpec, ...]:
     """The tasks of one house, no two of them alike; what is not ``possible`` is drawn again.
 
     Raises:
         HthorError: when the house has no room for so many.
     """
     orders = functools.partial(_orders, recipe)
-    plan = Plan(name=recipe.name, version=VERSION, root=seeds.derive(_ROOT, recipe.seed), houses=(), orders=orders)
+    plan = SuiteSpec(name=recipe.name, version=VERSION, root=seeds.derive(_ROOT, recipe.seed), houses=(), orders=orders)
     made = _House(plan, house, possible)
     for order in plan.orders(plan, house):
         made.add(order)
     return tuple(made.done)
 
 
-def _orders(recipe: Recipe, plan: Plan, house: HouseSpec) -> list[Order]:
+def _orders(recipe: Recipe, plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
     """What is to be made in a house."""
-    rows: list[Order] = []
+    rows: list[TaskOrder] = []
     for kind, count in _counts(recipe):
         if not count:
             continue
         if kind in (FIND, MOVE):
-            rows += counted((kind, count))(plan, house)
+            rows += by_count((kind, count))(plan, house)
             continue
         short = plugins.load("task kind", kind).short
         names = [f"{plan.name}/{house.id}/{short}-{number + 1:02d}" for number in range(count)]
-        rows += [Order(name=name, kind=kind, share=seeds.draw(plan.root, name, "share")) for name in names]
+        rows += [TaskOrder(name=name, kind=kind, share=seeds.draw(plan.root, name, "share")) for name in names]
     return [msgspec.structs.replace(row, level=recipe.difficulty) for row in rows]
 
 
@@ -81,12 +81,12 @@ def _counts(recipe: Recipe) -> list[tuple[str, int]]:
 class _House:
     """One house's tasks, made one after the other."""
 
-    def __init__(self, plan: Plan, house: HouseSpec, possible: Possible) -> None:
+    def __init__(self, plan: SuiteSpec, house: HouseSpec, possible: IsPossible) -> None:
         self._plan, self._house, self._possible = plan, house, possible
         self._hopeless: set[Goal] = set()
         self.done: list[TaskSpec] = []
 
-    def add(self, order: Order) -> None:
+    def add(self, order: TaskOrder) -> None:
         """One more task. Where its goal cannot be met here, say for want of room on the desk, another one is taken.
 
         Raises:
@@ -100,7 +100,7 @@ class _House:
                 except HthorError as error:
                     reason = str(error)
                     continue
-                if any(standard.alike(made, other) for other in self.done):
+                if any(standard.are_alike(made, other) for other in self.done):
                     reason = "what was drawn is like an earlier task"
                 elif not self._possible(made, self._house):
                     reason = "what was drawn cannot be done"
@@ -112,7 +112,7 @@ class _House:
         named = f"house '{self._house.id}' has no room for another task like '{order.name}'"
         raise HthorError(f"{named}: {reason}. Ask for fewer or for others.")
 
-    def _goals(self, order: Order) -> list[Goal | None]:
+    def _goals(self, order: TaskOrder) -> list[Goal | None]:
         """The order's goal, then the others of its kind, without those that came to nothing before."""
         if order.goal is None:
             return [None]
@@ -120,8 +120,8 @@ class _House:
         others = [known[number] for number in seeds.shuffled(len(known), self._plan.root, order.name, "others")]
         return [goal for goal in dict.fromkeys((order.goal, *others)) if goal not in self._hopeless]
 
-    def _made(self, order: Order, goal: Goal | None, lap: int) -> TaskSpec:
-        return generate.task(
+    def _made(self, order: TaskOrder, goal: Goal | None, lap: int) -> TaskSpec:
+        return generate.make_task(
             self._house,
             plugins.load("task kind", order.kind),
             goal,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hthor import catalog, plugins
 from hthor.catalog import priors
-from hthor.tasks.arrangement.reachability import Ground
+from hthor.tasks.arrangement.reachability import ReachableFloor
 from hthor.tasks.kind import TaskKind
 from hthor.types import HouseSpec, Placement, TaskSpec, Thing
 
@@ -44,12 +44,12 @@ class Difficulty(Struct, frozen=True, kw_only=True):
         return "easy" if self.score < MEDIUM_S else "medium" if self.score < HARD_S else "hard"
 
 
-def of(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Level:
+def level_of(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Level:
     """The stratum of a task in its house; ``kind`` is the task's, found by its name when absent."""
-    return measured(task, house, kind).level
+    return measure_difficulty(task, house, kind).level
 
 
-def measured(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Difficulty:
+def measure_difficulty(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Difficulty:
     """What the stratum follows from; of several targets the mean."""
     own: TaskKind = kind or plugins.load("task kind", task.kind)
     wanted = {job.target for job in task.goal.todo}
@@ -64,7 +64,7 @@ def _before(task: TaskSpec, target: Placement, house: HouseSpec) -> float:
     A place is worth its mass for the time that it takes to walk there from the start and to look: who searches by
     common sense goes first where the object is most likely for the least time.
     """
-    mass = masses(house, target.kind)
+    mass = prior_mass(house, target.kind)
     ways = _ways(house, (task.human_start.x, task.human_start.y))
     worth = {id: share / (ways[id] / _PACE_M_S + _LOOK_S) for id, share in mass.items()}
     brought = {placed.id: placed.support for placed in task.objects}
@@ -76,7 +76,7 @@ def _before(task: TaskSpec, target: Placement, house: HouseSpec) -> float:
 
 
 @functools.lru_cache(maxsize=256)
-def masses(house: HouseSpec, kind: str) -> dict[str, float]:
+def prior_mass(house: HouseSpec, kind: str) -> dict[str, float]:
     """By id of a house's things, how much of the priors' mass of a kind of object lies there.
 
     The weight of a triplet is shared among the things of its reference's kind; what is near another target is where
@@ -99,7 +99,7 @@ def masses(house: HouseSpec, kind: str) -> dict[str, float]:
 @functools.lru_cache(maxsize=256)
 def _ways(house: HouseSpec, start: tuple[float, float]) -> dict[str, float]:
     """Walking distance [m] from a start to the free floor nearest to each thing."""
-    ground = Ground.of(house)
+    ground = ReachableFloor.of(house)
     lengths = ground.paths.distances(ground.space.nearest_free(*start), _beside(house))
     return {thing.id: float(length) for thing, length in zip(house.things, lengths, strict=True)}
 
@@ -107,10 +107,10 @@ def _ways(house: HouseSpec, start: tuple[float, float]) -> dict[str, float]:
 @functools.lru_cache(maxsize=32)
 def _beside(house: HouseSpec) -> NDArray[np.float64]:
     """(N, 2) [m] for each thing the place nearest to its middle where somebody can stand."""
-    space = Ground.of(house).space
+    space = ReachableFloor.of(house).space
     floor = space.component(*space.nearest_free(house.start.x, house.start.y))
     return np.array([_nearest(house, thing, floor) for thing in house.things]).reshape(-1, 2)
 
 
 def _nearest(house: HouseSpec, thing: Thing, floor: NDArray[np.bool_]) -> tuple[float, float]:
-    return Ground.of(house).space.nearest_free(thing.centre[0], thing.centre[1], floor)
+    return ReachableFloor.of(house).space.nearest_free(thing.centre[0], thing.centre[1], floor)

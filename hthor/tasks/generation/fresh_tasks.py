@@ -9,17 +9,17 @@ import msgspec
 from hthor import houses, seeds
 from hthor.errors import HthorError, UnknownName
 from hthor.tasks.generation import generate, standard
-from hthor.tasks.generation.suite_specs import PLANS, Plan
+from hthor.tasks.generation.suite_specs import SUITE_SPECS, SuiteSpec
 from hthor.tasks.suite import Suite, make_suite
 from hthor.types import TaskSpec
 
 _VERSION = 1
 _LAPS = 50
-Possible = Callable[[Sequence[TaskSpec]], Sequence[bool]]
+ArePossible = Callable[[Sequence[TaskSpec]], Sequence[bool]]
 """Whether each of these tasks can be done."""
 
 
-def suite(name: str, root: int, count: int, possible: Possible) -> Suite:
+def make_fresh_suite(name: str, root: int, count: int, possible: ArePossible) -> Suite:
     """A suite of so many tasks by the recipe of one of hthor's own, which shares no draw with it.
 
     The houses, the kinds of task and their shares, the goals and how hard tasks are aimed to be are the recipe's; what
@@ -47,14 +47,14 @@ def suite(name: str, root: int, count: int, possible: Possible) -> Suite:
     raise HthorError(f"{missing} could not be drawn; ask for fewer")
 
 
-def _plan(name: str) -> Plan:
-    plans = {**PLANS, standard.PLAN.name: standard.PLAN}
+def _plan(name: str) -> SuiteSpec:
+    plans = {**SUITE_SPECS, standard.SPEC.name: standard.SPEC}
     if name not in plans:
         raise UnknownName("recipe of tasks", name, tuple(sorted(plans)))
     return plans[name]
 
 
-def _drafts(plan: Plan, numbers: Sequence[int], lap: int) -> Iterator[tuple[int, TaskSpec]]:
+def _drafts(plan: SuiteSpec, numbers: Sequence[int], lap: int) -> Iterator[tuple[int, TaskSpec]]:
     """A task for each of these numbers, as far as its house takes one: of as many houses and orders as there are."""
     shelves = [(house, order) for house in plan.houses for order in plan.orders(plan, houses.load(house))]
     order_of = seeds.shuffled(len(shelves), plan.root, "orders")
@@ -62,7 +62,7 @@ def _drafts(plan: Plan, numbers: Sequence[int], lap: int) -> Iterator[tuple[int,
         house, order = shelves[order_of[number % len(shelves)]]
         own = msgspec.structs.replace(plan, root=seeds.derive(plan.root, "task", number, lap))
         try:
-            task = generate.ordered(own, houses.load(house), order)
+            task = generate.make_ordered_task(own, houses.load(house), order)
         except HthorError:
             continue
         yield number, msgspec.structs.replace(task, id=f"fresh/{number:04d}")

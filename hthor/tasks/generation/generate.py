@@ -19,8 +19,8 @@ from hthor.errors import HthorError, UnknownName
 from hthor.tasks.arrangement.target_arrangement import arrange
 from hthor.tasks.generation import difficulty
 from hthor.tasks.generation.difficulty import Level
-from hthor.tasks.generation.start_poses import Begin, begin
-from hthor.tasks.generation.suite_specs import PLANS, ROBOTS, Order, Plan
+from hthor.tasks.generation.start_poses import StartPoses, draw_start_poses
+from hthor.tasks.generation.suite_specs import ROBOTS, SUITE_SPECS, SuiteSpec, TaskOrder
 from hthor.tasks.kind import TaskKind
 from hthor.tasks.suite import Suite, encode_suite, make_suite
 from hthor.tasks.suites import library
@@ -32,27 +32,27 @@ _CLOSE_S = 0.5
 _TRIES = 20
 
 
-def build(plan: Plan) -> Suite:
+def build_suite(plan: SuiteSpec) -> Suite:
     """The suite that a plan describes: its houses' tasks in turn, the first of each, then the second of each.
 
     Raises:
         HthorError: when a house cannot take one of its tasks.
     """
-    columns = [in_house(plan, houses.load(name)) for name in plan.houses]
+    columns = [house_tasks(plan, houses.load(name)) for name in plan.houses]
     longest = max(len(column) for column in columns)
     tasks = [column[number] for number in range(longest) for column in columns if number < len(column)]
     return make_suite(plan.name, plan.version, tuple(tasks))
 
 
-def in_house(plan: Plan, house: HouseSpec) -> tuple[TaskSpec, ...]:
+def house_tasks(plan: SuiteSpec, house: HouseSpec) -> tuple[TaskSpec, ...]:
     """One house's tasks of a plan."""
-    return tuple(ordered(plan, house, order) for order in plan.orders(plan, house))
+    return tuple(make_ordered_task(plan, house, order) for order in plan.orders(plan, house))
 
 
-def ordered(plan: Plan, house: HouseSpec, order: Order) -> TaskSpec:
+def make_ordered_task(plan: SuiteSpec, house: HouseSpec, order: TaskOrder) -> TaskSpec:
     """One task of a plan, whatever the others are."""
     lap = dict(plan.redrawn).get(order.name, 0)
-    return task(
+    return make_task(
         house,
         plugins.load("task kind", order.kind),
         order.goal,
@@ -68,7 +68,7 @@ def ordered(plan: Plan, house: HouseSpec, order: Order) -> TaskSpec:
     )
 
 
-def task(
+def make_task(
     house: HouseSpec,
     kind: TaskKind,
     goal: Goal | None,
@@ -104,7 +104,7 @@ def task(
     """
     hardness = seeds.draw(root, name, "share") if share is None else share
     wanted = EASY_S + hardness * (HARD_S - EASY_S)
-    best: tuple[Begin, Goal, tuple[Placement, ...]] | None = None
+    best: tuple[StartPoses, Goal, tuple[Placement, ...]] | None = None
     reason = ""
     for attempt in range(2 * _TRIES):
         own = seeds.derive(root, name, attempt)
@@ -113,12 +113,12 @@ def task(
         except HthorError as error:
             reason = f": {error}"
             continue
-        found = begin(house, kind, aim, objects, wanted, own, robots=robots, strict=attempt < _TRIES)
+        found = draw_start_poses(house, kind, aim, objects, wanted, own, robots=robots, strict=attempt < _TRIES)
         if found is None:
             continue
         made = _spec(house, kind, name, found, aim, objects)
         problem = kind.misfit(made, house)
-        if problem or (level and difficulty.of(made, house, kind) != level):
+        if problem or (level and difficulty.level_of(made, house, kind) != level):
             reason = f": {problem or f'none was {level}'}"
             continue
         if best is None or abs(found.least - wanted) < abs(best[0].least - wanted):
@@ -128,7 +128,7 @@ def task(
     if best is None:
         raise HthorError(f"no arrangement was found for task '{name}' in {2 * _TRIES} tries{reason}")
     made = msgspec.structs.replace(_spec(house, kind, name, *best), split=split)
-    return msgspec.structs.replace(made, difficulty=difficulty.of(made, house, kind)) if told else made
+    return msgspec.structs.replace(made, difficulty=difficulty.level_of(made, house, kind)) if told else made
 
 
 def _scene(
@@ -143,7 +143,7 @@ def _spec(
     house: HouseSpec,
     kind: TaskKind,
     name: str,
-    start: Begin,
+    start: StartPoses,
     goal: Goal,
     objects: tuple[Placement, ...],
 ) -> TaskSpec:
@@ -165,10 +165,10 @@ def _spec(
 def main(arguments: Sequence[str]) -> int:
     """Write the suite of the given name."""
     try:
-        if not arguments or arguments[0] not in PLANS:
-            raise UnknownName("suite plan", arguments[0] if arguments else "", PLANS)
-        path = Path(arguments[1]) if len(arguments) > 1 else library.path_of(arguments[0])
-        jsonio.write(path, encode_suite(build(PLANS[arguments[0]])))
+        if not arguments or arguments[0] not in SUITE_SPECS:
+            raise UnknownName("suite plan", arguments[0] if arguments else "", SUITE_SPECS)
+        path = Path(arguments[1]) if len(arguments) > 1 else library.suite_path(arguments[0])
+        jsonio.write(path, encode_suite(build_suite(SUITE_SPECS[arguments[0]])))
     except HthorError as error:
         sys.stderr.write(f"{error}\n")
         return error.exit_code

@@ -21,13 +21,13 @@ from hthor.errors import HthorError, TaskError
 from hthor.houses import generator, loader
 from hthor.houses.checks.findings import Finding
 from hthor.houses.generator import attempt
-from hthor.houses.generator.attempt import Flaw
+from hthor.houses.generator.attempt import AttemptFailed
 from hthor.houses.generator.draws import Dice
-from hthor.houses.generator.floorplan.room_specs import choose
-from hthor.houses.generator.furnishing.requirements import wants
+from hthor.houses.generator.floorplan.room_specs import choose_spec
+from hthor.houses.generator.furnishing.requirements import draw_requirements
 from hthor.tasks.generation import standard
-from hthor.tasks.generation.standard import Possible
-from hthor.tasks.generation.suite_specs import Plan, counted
+from hthor.tasks.generation.standard import IsPossible
+from hthor.tasks.generation.suite_specs import SuiteSpec, by_count
 from hthor.tasks.suite import SuiteFile, encode_suite, in_turn, make_suite
 from hthor.tasks.suites import commitment, library
 from hthor.tasks.suites.commitment import COMMITMENT, Commitment
@@ -44,7 +44,7 @@ SEARCHES = 0.26
 _TRIES = 40
 
 
-class Order(Struct, frozen=True, kw_only=True):
+class SuiteOrder(Struct, frozen=True, kw_only=True):
     """What a suite is to be: its name, how many houses, and how many tasks over all of them."""
 
     name: str
@@ -52,7 +52,7 @@ class Order(Struct, frozen=True, kw_only=True):
     tasks: int
 
 
-Each = Callable[[Callable[["Lot"], "Part"], Iterable["Lot"]], Iterable["Part"]]
+MapHouses = Callable[[Callable[["HouseOrder"], "HouseTasks"], Iterable["HouseOrder"]], Iterable["HouseTasks"]]
 """Does something to each, in order, as `map` does: in this process or in several."""
 
 
@@ -60,10 +60,10 @@ class Proof(Struct, frozen=True, kw_only=True):
     """Proves what is drawn: ``house`` returns what is wrong with a house, ``task`` whether a task can be done in it."""
 
     house: Callable[[HouseSpec], Sequence[Finding]]
-    task: Possible
+    task: IsPossible
 
 
-class Lot(Struct, frozen=True, kw_only=True):
+class HouseOrder(Struct, frozen=True, kw_only=True):
     """One house to be made: its opaque id, roots to try for it and for its tasks, and how many tasks of each kind."""
 
     suite: str
@@ -73,7 +73,7 @@ class Lot(Struct, frozen=True, kw_only=True):
     counts: tuple[tuple[str, int], ...]
 
 
-class Part(Struct, frozen=True, kw_only=True):
+class HouseTasks(Struct, frozen=True, kw_only=True):
     """One house that was made: its file and its tasks."""
 
     house: str
@@ -81,15 +81,19 @@ class Part(Struct, frozen=True, kw_only=True):
     tasks: tuple[TaskSpec, ...]
 
 
-def write(order: Order, salt: Salt, folder: Path, files: Mapping[str, bytes], made_with: Mapping[str, str]) -> Path:
+def write_suite(
+    order: SuiteOrder, salt: Salt, folder: Path, files: Mapping[str, bytes], made_with: Mapping[str, str]
+) -> Path:
     """Write a suite's files to its folder, and the commitment to them and to the salt; gives the commitment's path."""
     for path, data in files.items():
         jsonio.write(folder / path, data)
-    jsonio.write(folder / COMMITMENT, jsonio.pretty(committed(order, salt, files, made_with)))
+    jsonio.write(folder / COMMITMENT, jsonio.pretty(make_commitment(order, salt, files, made_with)))
     return folder / COMMITMENT
 
 
-def committed(order: Order, salt: Salt, files: Mapping[str, bytes], made_with: Mapping[str, str]) -> Commitment:
+def make_commitment(
+    order: SuiteOrder, salt: Salt, files: Mapping[str, bytes], made_with: Mapping[str, str]
+) -> Commitment:
     """The commitment to a suite's files and salt."""
     return Commitment(
         name=order.name,
@@ -97,24 +101,24 @@ def committed(order: Order, salt: Salt, files: Mapping[str, bytes], made_with: M
         houses=order.houses,
         tasks=order.tasks,
         suite_sha256=msgspec.json.decode(files[SUITE], type=SuiteFile).sha256,
-        files=commitment.hashes(files),
+        files=commitment.hash_files(files),
         made_with={"houses": str(generator.VERSION), "official": str(VERSION), **made_with},
     )
 
 
-def files(order: Order, salt: Salt, proof: Proof, each: Each = map) -> dict[str, bytes]:
+def make_files(order: SuiteOrder, salt: Salt, proof: Proof, each: MapHouses = map) -> dict[str, bytes]:
     """The files of a suite by their path in its folder: ``suite.json`` and ``houses/*.json``.
 
     Raises:
         HthorError: when the order is none that can be met.
     """
-    parts = list(each(functools.partial(part, proof=proof), lots(order, salt)))
+    parts = list(each(functools.partial(make_house_tasks, proof=proof), house_orders(order, salt)))
     columns = [[_named(task, order, salt, number) for number, task in enumerate(one.tasks)] for one in parts]
     suite = make_suite(order.name, VERSION, tuple(in_turn(columns)))
     return {SUITE: encode_suite(suite), **{f"houses/{one.house}.json": one.file for one in parts}}
 
 
-def lots(order: Order, salt: Salt) -> tuple[Lot, ...]:
+def house_orders(order: SuiteOrder, salt: Salt) -> tuple[HouseOrder, ...]:
     """What is to be made for an order, with all that is drawn from the salt.
 
     Raises:
@@ -128,7 +132,7 @@ def lots(order: Order, salt: Salt) -> tuple[Lot, ...]:
         counts = (("object_goal_navigation", searches), ("mobile_manipulation", tasks - searches))
         names = [(order.name, sort, number) for sort in ("house", "tasks")]
         found.append(
-            Lot(
+            HouseOrder(
                 suite=order.name,
                 house="h" + salt.word(12, order.name, "house id", number),
                 rooms=ROOMS[number % len(ROOMS)],
@@ -139,7 +143,7 @@ def lots(order: Order, salt: Salt) -> tuple[Lot, ...]:
     return tuple(found)
 
 
-def part(lot: Lot, proof: Proof) -> Part:
+def make_house_tasks(lot: HouseOrder, proof: Proof) -> HouseTasks:
     """One house and its tasks: of the first root that gives a sound house with room for all of them.
 
     Raises:
@@ -149,31 +153,33 @@ def part(lot: Lot, proof: Proof) -> Part:
     for house_root, tasks_root in lot.roots:
         try:
             file = jsonio.pretty(_document(lot.rooms, Dice(house_root)))
-            house = loader.build(msgspec.json.decode(file), lot.house)
+            house = loader.house_from_document(msgspec.json.decode(file), lot.house)
             if flaw := next((str(finding) for finding in proof.house(house) if finding.severity == "error"), ""):
                 raise HthorError(flaw)
-            plan = Plan(name=lot.suite, version=VERSION, root=tasks_root, houses=(), orders=counted(*lot.counts))
-            tasks = tuple(standard.in_house(plan, house, "new", proof.task))
-            return Part(house=lot.house, file=file, tasks=tasks)
-        except (Flaw, HthorError) as error:
+            plan = SuiteSpec(name=lot.suite, version=VERSION, root=tasks_root, houses=(), orders=by_count(*lot.counts))
+            tasks = tuple(standard.make_tasks(plan, house, "new", proof.task))
+            return HouseTasks(house=lot.house, file=file, tasks=tasks)
+        except (AttemptFailed, HthorError) as error:
             problem = str(error)
     raise HthorError(f"no house of {lot.rooms} rooms came of {len(lot.roots)} roots; of the last: {problem}")
 
 
 def _document(rooms: int, dice: Dice) -> dict[str, Any]:
     """A house file's document, which tells the generator's version and not what it was made from."""
-    return attempt.build(choose(rooms, dice, None), wants(None, dice.of("wants")), dice, {"version": generator.VERSION})
+    return attempt.build_document(
+        choose_spec(rooms, dice, None), draw_requirements(None, dice.of("wants")), dice, {"version": generator.VERSION}
+    )
 
 
 def differences(
-    folder: Path, held: Commitment, salt: Salt, proof: Proof, each: Each = map
+    folder: Path, held: Commitment, salt: Salt, proof: Proof, each: MapHouses = map
 ) -> Iterator[tuple[str, str]]:
     """What in a suite's folder is not what the salt gives: pairs of a file and a problem. Everything is made again."""
     if salt.commitment() != held.salt:
         yield COMMITMENT, f"commits to another salt: {held.salt[:10]}..., this one's is {salt.commitment()[:10]}..."
         return
-    made = files(Order(name=held.name, houses=held.houses, tasks=held.tasks), salt, proof, each)
-    digests = commitment.hashes(made)
+    made = make_files(SuiteOrder(name=held.name, houses=held.houses, tasks=held.tasks), salt, proof, each)
+    digests = commitment.hash_files(made)
     for path in sorted(digests.keys() | held.files.keys()):
         there = (folder / path).read_bytes() if (folder / path).is_file() else b""
         if path not in held.files:
@@ -194,13 +200,13 @@ def _first(there: bytes, made: bytes) -> str:
     return f": line {number} is the first that differs" if number else ""
 
 
-def _named(task: TaskSpec, order: Order, salt: Salt, number: int) -> TaskSpec:
+def _named(task: TaskSpec, order: SuiteOrder, salt: Salt, number: int) -> TaskSpec:
     """The task under an id that tells nothing, not even its kind or its place among the others."""
     word = salt.word(12, order.name, "task id", task.house, number)
     return msgspec.structs.replace(task, id=f"{order.name}/{task.house}/{word}")
 
 
-def _check(order: Order) -> None:
+def _check(order: SuiteOrder) -> None:
     if not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,40}", order.name):
         valid = "small letters, digits and hyphens, at most 41"
         raise HthorError(f"'{order.name}' cannot be a suite's name; valid: {valid}, such as official-2027a.")
@@ -209,17 +215,17 @@ def _check(order: Order) -> None:
         raise HthorError(f"a suite needs a house or more and a task or more in each; asked for: {problem}.")
 
 
-def unused(name: str) -> None:
+def check_name(name: str) -> None:
     """See that no suite of hthor's own has the name.
 
     Raises:
         HthorError: when one has.
     """
-    if name in library.suites():
+    if name in library.suite_names():
         raise HthorError(f"'{name}' is a suite of hthor's own; choose another name, such as official-2027a.")
 
 
-def beside(path: Path, folder: Path) -> None:
+def check_salt_outside(path: Path, folder: Path) -> None:
     """See that a salt does not lie in the folder that will be published.
 
     Raises:

@@ -18,7 +18,7 @@ from typing import Literal
 from hthor import houses, jsonio, plugins, seeds
 from hthor.errors import HthorError
 from hthor.tasks.generation import generate
-from hthor.tasks.generation.suite_specs import SCENES, Plan, counted
+from hthor.tasks.generation.suite_specs import SCENES, SuiteSpec, by_count
 from hthor.tasks.suite import Suite, encode_suite, in_turn, make_suite
 from hthor.tasks.suites import library
 from hthor.tasks.validate import validate
@@ -37,45 +37,45 @@ REDRAWN = {
 }
 """How many draws of a task are passed over, for ``hthor tasks check`` found that they could not be done."""
 
-PLAN = Plan(
+SPEC = SuiteSpec(
     name="standard",
     version=2,
     root=20240620,
     houses=(*SCENES, *UNSEEN),
-    orders=counted(("object_goal_navigation", 26), ("mobile_manipulation", 74)),
+    orders=by_count(("object_goal_navigation", 26), ("mobile_manipulation", 74)),
 )
 """A hundred tasks a house, of the two kinds as many as in the paper's 565 and 1583: 26 to 74 in a hundred."""
 
 
-Possible = Callable[[TaskSpec, HouseSpec], bool]
+IsPossible = Callable[[TaskSpec, HouseSpec], bool]
 """Whether a task can be done in its house."""
 
 
-def anything(_task: TaskSpec, _house: HouseSpec) -> bool:
+def accept_any(_task: TaskSpec, _house: HouseSpec) -> bool:
     """Whether a task can be done, for who takes them unproved."""
     return True
 
 
-def build() -> Suite:
+def build_suite() -> Suite:
     """The suite, validated; made by one process a CPU.
 
     Raises:
         HthorError: when a house cannot take one of its tasks.
     """
     with ProcessPoolExecutor(len(os.sched_getaffinity(0)), get_context("spawn")) as pool:
-        columns = list(pool.map(column, PLAN.houses))
-    suite = make_suite(PLAN.name, PLAN.version, tuple(in_turn(columns)))
-    validate(suite, PLAN.name)
+        columns = list(pool.map(house_tasks, SPEC.houses))
+    suite = make_suite(SPEC.name, SPEC.version, tuple(in_turn(columns)))
+    validate(suite, SPEC.name)
     return suite
 
 
-def column(name: str) -> tuple[TaskSpec, ...]:
+def house_tasks(name: str) -> tuple[TaskSpec, ...]:
     """The tasks in the house of this name."""
-    return tuple(in_house(PLAN, houses.load(name), "seen" if name in SCENES else "new"))
+    return tuple(make_tasks(SPEC, houses.load(name), "seen" if name in SCENES else "new"))
 
 
-def in_house(
-    plan: Plan, house: HouseSpec, split: Literal["seen", "new"], possible: Possible = anything
+def make_tasks(
+    plan: SuiteSpec, house: HouseSpec, split: Literal["seen", "new"], possible: IsPossible = accept_any
 ) -> Iterator[TaskSpec]:
     """One house's tasks of a plan one by one, no two of them alike; what is not ``possible`` is drawn again.
 
@@ -85,7 +85,7 @@ def in_house(
     done: list[TaskSpec] = []
     for order in plan.orders(plan, house):
         for lap in range(REDRAWN.get(order.name, 0), _LAPS):
-            made = generate.task(
+            made = generate.make_task(
                 house,
                 plugins.load("task kind", order.kind),
                 order.goal,
@@ -96,7 +96,7 @@ def in_house(
                 looks=plan.looks,
                 split=split,
             )
-            if not any(alike(made, other) for other in done) and possible(made, house):
+            if not any(are_alike(made, other) for other in done) and possible(made, house):
                 done.append(made)
                 yield made
                 break
@@ -104,7 +104,7 @@ def in_house(
             raise HthorError(f"house '{house.id}' has no room for another task like '{order.name}'; ask for fewer")
 
 
-def alike(one: TaskSpec, two: TaskSpec) -> bool:
+def are_alike(one: TaskSpec, two: TaskSpec) -> bool:
     """Whether two tasks ask for the same thing from the same place: their goals are equal, their targets are on the
     same thing of the same house, and the person's starts are less than `ALIKE_M` apart.
     """
@@ -120,9 +120,9 @@ def _target(task: TaskSpec) -> Placement:
 
 def main(arguments: Sequence[str]) -> int:
     """Write the suite."""
-    path = Path(arguments[0]) if arguments else library.path_of(PLAN.name)
+    path = Path(arguments[0]) if arguments else library.suite_path(SPEC.name)
     try:
-        jsonio.write(path, encode_suite(build()))
+        jsonio.write(path, encode_suite(build_suite()))
     except HthorError as error:
         sys.stderr.write(f"{error}\n")
         return error.exit_code

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hthor import seeds
 from hthor.houses.space.free_space import FreeSpace
 from hthor.tasks.arrangement.avatar import HEIGHT_M, START_MARGIN_M
-from hthor.tasks.arrangement.reachability import Ground, rim
+from hthor.tasks.arrangement.reachability import ReachableFloor, entry_cells
 from hthor.tasks.kind import TaskKind
 from hthor.types import Goal, HouseSpec, Placement, Pose
 
@@ -24,14 +24,14 @@ APART_M = 1.2
 _STARTS = 400
 
 
-class Begin(Struct, frozen=True, kw_only=True):
+class StartPoses(Struct, frozen=True, kw_only=True):
     """Where everybody starts, the person first, and the least time [s] from there."""
 
     least: float
     poses: tuple[Pose, ...]
 
 
-def begin(
+def draw_start_poses(
     house: HouseSpec,
     kind: TaskKind,
     goal: Goal,
@@ -41,7 +41,7 @@ def begin(
     *,
     robots: int,
     strict: bool = True,
-) -> Begin | None:
+) -> StartPoses | None:
     """The starts of the person and of ``robots`` robots, the least time as near to ``wanted`` [s] as the floor allows.
 
     The person starts on ample floor, `AWAY_M` from the target, and does not have it in view and close by.
@@ -71,7 +71,7 @@ def begin(
     if len(chosen) <= robots:
         return None
     poses = tuple(_pose(place, root, number) for number, place in enumerate(chosen))
-    return Begin(least=round(float(times[first]), 3), poses=poses)
+    return StartPoses(least=round(float(times[first]), 3), poses=poses)
 
 
 def _possible(
@@ -87,15 +87,15 @@ def _possible(
 
 def _away(house: HouseSpec, target: Placement, places: Floats) -> Floats:
     """Those of the places that are `AWAY_M` from the target: whoever gets within reach of it passes the rim."""
-    ground = Ground.of(house)
-    reach = ground.space.centres(rim(ground.touching(target), ground.space.free))
+    ground = ReachableFloor.of(house)
+    reach = ground.space.centres(entry_cells(ground.touching(target), ground.space.free))
     rest = np.hypot(reach[:, 0] - target.position[0], reach[:, 1] - target.position[1])
     far: Floats = places[ground.paths.field(reach, rest).at(places) >= AWAY_M]
     return far
 
 
 def _unseen(house: HouseSpec, target: Placement, places: Floats) -> Floats:
-    ground = Ground.of(house)
+    ground = ReachableFloor.of(house)
     seeing = ground.seeing(target)
     out: Floats = places[np.array([not seeing[ground.space.cell_of(x, y)] for x, y in places], dtype=bool)]
     return out
@@ -103,7 +103,7 @@ def _unseen(house: HouseSpec, target: Placement, places: Floats) -> Floats:
 
 def _places(house: HouseSpec, root: int) -> Floats:
     """(N, 2) [m] places to start from, in random order: ample free floor that the house's start is joined to."""
-    ground, ample = Ground.of(house), FreeSpace.of(house, START_MARGIN_M, HEIGHT_M)
+    ground, ample = ReachableFloor.of(house), FreeSpace.of(house, START_MARGIN_M, HEIGHT_M)
     joined = ground.space.component(*ground.space.nearest_free(house.start.x, house.start.y))
     cells = ample.centres(ample.free & joined & (ample.components == _largest(ample)))
     picks = [int(seeds.draw(root, "start", number) * len(cells)) for number in range(_STARTS)]

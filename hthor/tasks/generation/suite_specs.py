@@ -26,7 +26,7 @@ ROBOTS = 4
 """Starts for robots in every task, the first for the first robot."""
 
 
-class Order(Struct, frozen=True, kw_only=True):
+class TaskOrder(Struct, frozen=True, kw_only=True):
     """One task to be made. ``share`` [0, 1] says how hard it shall be, from an easy start to a hard one.
 
     ``goal`` is None where the kind draws it itself. ``fixed`` is a triplet that must hold for the target, ``level`` the
@@ -41,7 +41,7 @@ class Order(Struct, frozen=True, kw_only=True):
     level: Level | Literal[""] = ""
 
 
-class Plan(Struct, frozen=True, kw_only=True):
+class SuiteSpec(Struct, frozen=True, kw_only=True):
     """A suite to be made in ``houses``, every draw from ``root``.
 
     ``orders`` lists a house's tasks. ``robots`` is how many of them a task has starts for, ``looks`` how many
@@ -55,7 +55,7 @@ class Plan(Struct, frozen=True, kw_only=True):
     version: int
     root: int
     houses: tuple[str, ...]
-    orders: Callable[[Plan, HouseSpec], list[Order]]
+    orders: Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]
     robots: int = ROBOTS
     looks: int = 2
     serial: bool = False
@@ -63,11 +63,11 @@ class Plan(Struct, frozen=True, kw_only=True):
     redrawn: tuple[tuple[str, int], ...] = ()
 
 
-def counted(*counts: tuple[str, int]) -> Callable[[Plan, HouseSpec], list[Order]]:
+def by_count(*counts: tuple[str, int]) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
     """So many tasks of each kind in a house, the kinds spread evenly over the list."""
 
-    def orders(plan: Plan, house: HouseSpec) -> list[Order]:
-        shelves: list[tuple[float, int, Order]] = []
+    def orders(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
+        shelves: list[tuple[float, int, TaskOrder]] = []
         shift = (seeds.draw(plan.root, house.id, "shift") - 0.5) / max(count for _, count in counts)
         for rank, (name, count) in enumerate(counts):
             kind: TaskKind = plugins.load("task kind", name)
@@ -75,69 +75,69 @@ def counted(*counts: tuple[str, int]) -> Callable[[Plan, HouseSpec], list[Order]
             levels = seeds.shuffled(count, plan.root, house.id, name, "levels")
             for number, goal in enumerate(goals):
                 task = f"{plan.name}/{house.id}/{kind.short}-{number + 1:02d}"
-                order = Order(name=task, kind=name, share=(levels[number] + 0.5) / count, goal=goal)
+                order = TaskOrder(name=task, kind=name, share=(levels[number] + 0.5) / count, goal=goal)
                 shelves.append(((number + 0.5) / count + rank * shift, rank, order))
         return [order for _, _, order in sorted(shelves, key=lambda shelf: shelf[:2])]
 
     return orders
 
 
-def drawn(kind: str, count: int) -> Callable[[Plan, HouseSpec], list[Order]]:
+def by_kind(kind: str, count: int) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
     """So many tasks in a house of a kind that draws its goals with their objects."""
 
-    def orders(plan: Plan, house: HouseSpec) -> list[Order]:
+    def orders(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
         names = [f"{plan.name}/{house.id}/{number + 1:02d}" for number in range(count)]
-        return [Order(name=name, kind=kind, share=seeds.draw(plan.root, name, "share")) for name in names]
+        return [TaskOrder(name=name, kind=kind, share=seeds.draw(plan.root, name, "share")) for name in names]
 
     return orders
 
 
-def levelled(kind: str, *hands: tuple[tuple[Level, float], ...]) -> Callable[[Plan, HouseSpec], list[Order]]:
+def by_level(kind: str, *hands: tuple[tuple[Level, float], ...]) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
     """A house's tasks of one kind, each of a given stratum of difficulty, in an order of its own.
 
     Args:
         hands: strata and shares (as `Order.share`) of a house's tasks: of the first house, the second, and over again.
     """
 
-    def orders(plan: Plan, house: HouseSpec) -> list[Order]:
+    def orders(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
         made: TaskKind = plugins.load("task kind", kind)
         hand = hands[plan.houses.index(house.id) % len(hands)]
         goals = _goals(made, house, len(hand), seeds.derive(plan.root, house.id, kind))
         rows = [hand[place] for place in seeds.shuffled(len(hand), plan.root, house.id, "levels")]
         stem = f"{plan.name}/{house.id}/{made.short}"
         return [
-            Order(name=f"{stem}-{number:02d}", kind=kind, share=share, goal=goal, level=row)
+            TaskOrder(name=f"{stem}-{number:02d}", kind=kind, share=share, goal=goal, level=row)
             for number, (goal, (row, share)) in enumerate(zip(goals, rows, strict=True), 1)
         ]
 
     return orders
 
 
-def each_triplet(plan: Plan, house: HouseSpec) -> list[Order]:
+def each_triplet(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
     """A search for each target in each way in which the house can have it."""
-    kinds = scene_graph.present(house)
+    kinds = scene_graph.kinds_present(house)
     return [
-        _exact(plan, house, FIND, Goal(target=target, relation="find"), row, scene_graph.words(row))
+        _exact(plan, house, FIND, Goal(target=target, relation="find"), row, scene_graph.triplet_words(row))
         for target in catalog.TARGETS
-        for row in scene_graph.applicable(target, kinds)
+        for row in scene_graph.applicable_triplets(target, kinds)
     ]
 
 
-def each_template(plan: Plan, house: HouseSpec) -> list[Order]:
+def each_template(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
     """Each template from each place where its target can be, but for the place where it is to go."""
     kind: TaskKind = plugins.load("task kind", MOVE)
-    kinds = scene_graph.present(house)
+    kinds = scene_graph.kinds_present(house)
     return [
         _exact(plan, house, kind.name, goal, row, _delivery(goal, row))
         for goal in kind.goals(house)
-        for row in scene_graph.applicable(goal.target, kinds)
+        for row in scene_graph.applicable_triplets(goal.target, kinds)
         if (row.relation, row.reference) != (goal.relation, goal.destination)
     ]
 
 
-def _exact(plan: Plan, house: HouseSpec, kind: str, goal: Goal, row: Triplet, words: str) -> Order:
+def _exact(plan: SuiteSpec, house: HouseSpec, kind: str, goal: Goal, row: Triplet, words: str) -> TaskOrder:
     name = f"{plan.name}/{house.id}/{words}"
-    return Order(name=name, kind=kind, share=seeds.draw(plan.root, name, "share"), goal=goal, fixed=row)
+    return TaskOrder(name=name, kind=kind, share=seeds.draw(plan.root, name, "share"), goal=goal, fixed=row)
 
 
 def _delivery(goal: Goal, row: Triplet) -> str:
@@ -156,29 +156,29 @@ def _goals(kind: TaskKind, house: HouseSpec, count: int, root: int) -> list[Goal
 
 
 _EASY: tuple[tuple[Level, float], ...] = (("easy", 0.05), ("easy", 0.15))
-PLANS = {
+SUITE_SPECS = {
     plan.name: plan
     for plan in (
-        Plan(
+        SuiteSpec(
             name="smoke",
             version=4,
             root=20240608,
             houses=SCENES,
-            orders=counted((FIND, 2), (MOVE, 4)),
+            orders=by_count((FIND, 2), (MOVE, 4)),
             robots=2,
             looks=6,
             serial=True,
             told=False,
         ),
-        Plan(
+        SuiteSpec(
             name="paper",
             version=2,
             root=20240611,
             houses=SCENES,
-            orders=levelled(MOVE, (*_EASY, ("medium", 0.25)), (*_EASY, ("hard", 0.6))),
+            orders=by_level(MOVE, (*_EASY, ("medium", 0.25)), (*_EASY, ("hard", 0.6))),
             looks=6,
         ),
-        Plan(
+        SuiteSpec(
             name="navigation",
             version=2,
             root=20240609,
@@ -190,7 +190,7 @@ PLANS = {
                 ("navigation/juniper/remote_control-on-sofa", 1),
             ),
         ),
-        Plan(
+        SuiteSpec(
             name="manipulation",
             version=2,
             root=20240610,
@@ -198,10 +198,10 @@ PLANS = {
             orders=each_template,
             redrawn=(("manipulation/birch/tomato-to-fridge/near-apple", 1),),
         ),
-        Plan(name="collect", version=1, root=20240612, houses=SCENES, orders=drawn("multi_robot_collection", 2)),
-        Plan(name="rearrange", version=1, root=20240613, houses=SCENES, orders=drawn("room_rearrangement", 2)),
-        Plan(name="tidy", version=1, root=20240614, houses=SCENES, orders=drawn("tidying_up", 2)),
-        Plan(name="carry", version=1, root=20240615, houses=SCENES, orders=drawn("collaborative_carrying", 2)),
+        SuiteSpec(name="collect", version=1, root=20240612, houses=SCENES, orders=by_kind("multi_robot_collection", 2)),
+        SuiteSpec(name="rearrange", version=1, root=20240613, houses=SCENES, orders=by_kind("room_rearrangement", 2)),
+        SuiteSpec(name="tidy", version=1, root=20240614, houses=SCENES, orders=by_kind("tidying_up", 2)),
+        SuiteSpec(name="carry", version=1, root=20240615, houses=SCENES, orders=by_kind("collaborative_carrying", 2)),
     )
 }
 """The suites that are made here, by name."""

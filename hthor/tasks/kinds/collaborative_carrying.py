@@ -17,7 +17,7 @@ import math
 from hthor import catalog, seeds
 from hthor.errors import HthorError
 from hthor.geometry import plane
-from hthor.tasks.arrangement.free_spots import floor_spot, unique
+from hthor.tasks.arrangement.free_spots import find_floor_spot, unique_things
 from hthor.tasks.subgoals import JobKind, carrying_way
 from hthor.types import Goal, HouseSpec, Job, Placement, Snapshot, TaskSpec
 
@@ -46,7 +46,7 @@ class CollaborativeCarrying(JobKind):
         return f"Carry {trunk.definite} to {catalog.kind(goal.destination).definite} and put it down. It takes two."
 
     def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]:
-        marks, rooms = unique(house, BESIDE), {room.id: room for room in house.rooms}
+        marks, rooms = unique_things(house, BESIDE), {room.id: room for room in house.rooms}
         for attempt in range(_TRIES if marks else 0):
             own = seeds.derive(root, "try", attempt)
             mark = marks[seeds.choice([1.0] * len(marks), own, "mark")]
@@ -54,8 +54,8 @@ class CollaborativeCarrying(JobKind):
             room = house.rooms[seeds.choice(areas, own, "room")]
             if room.id == mark.room or mark.room not in rooms:
                 continue
-            start = floor_spot(house, TRUNK, TRUNK, room, CLEAR_M, seeds.derive(own, "start"))
-            end = floor_spot(house, TRUNK, TRUNK, rooms[mark.room], CLEAR_M, seeds.derive(own, "end"), near=mark)
+            start = find_floor_spot(house, TRUNK, TRUNK, room, CLEAR_M, seeds.derive(own, "start"))
+            end = find_floor_spot(house, TRUNK, TRUNK, rooms[mark.room], CLEAR_M, seeds.derive(own, "end"), near=mark)
             goal = _goal(mark.kind, mark.room, end) if start and end else None
             if start and goal and LEAST_M <= carrying_way(house, start, goal.jobs[0]) <= MOST_M:
                 return goal, (start,)

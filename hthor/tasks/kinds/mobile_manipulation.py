@@ -72,12 +72,12 @@ class MobileManipulation(TaskKind):
         return _kind_of(support, house) == goal.destination
 
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
-        from hthor.tasks.arrangement.reachability import Ground
+        from hthor.tasks.arrangement.reachability import ReachableFloor
 
         target = next(placement for placement in objects if placement.id == goal.target)
         opening = [_kind_of(target.support, house) if target.relation == "in" else "", goal.destination]
         doors = sum(1 for kind in opening if kind and catalog.kind(kind).hides)
-        ground = Ground.of(house)
+        ground = ReachableFloor.of(house)
         walk = ground.walk([ground.touching(target), ground.serving(goal.destination)])
         handling = (2 + doors) * rules.HANDLING_S
         return lambda starts: walk.lengths(starts) / rules.PACE_M_S + handling

@@ -23,8 +23,8 @@ from collections.abc import Iterable
 from hthor import catalog, rules, seeds
 from hthor.catalog import priors
 from hthor.errors import HthorError
-from hthor.tasks.arrangement.free_spots import room_of, spot, unique
-from hthor.tasks.arrangement.reachability import Ground
+from hthor.tasks.arrangement.free_spots import find_spot, room_of, unique_things
+from hthor.tasks.arrangement.reachability import ReachableFloor
 from hthor.tasks.subgoals import JobKind, carrying_way
 from hthor.types import Goal, HouseSpec, Job, Placement, Pose, TaskSpec, Thing
 
@@ -55,7 +55,7 @@ class MultiRobotCollection(JobKind):
     crew = ("tender", "puck")
 
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
-        return tuple(_goal(place) for place in unique(house, PLACES))
+        return tuple(_goal(place) for place in unique_things(house, PLACES))
 
     def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
         return f"Put the three apples on {catalog.kind(goal.destination).definite}."
@@ -98,7 +98,7 @@ def _apples(house: HouseSpec, place: Thing, root: int, cold: bool) -> tuple[Plac
             far = math.dist(thing.centre, place.centre)  # what is near would be thrown away for being too easy
             return max(expected.get(thing.kind, 0.0), _SOME) * far
 
-        found = spot(house, APPLES[number], "apple", weigh, seeds.derive(root, "apple", number), done)
+        found = find_spot(house, APPLES[number], "apple", weigh, seeds.derive(root, "apple", number), done)
         if found is None:
             return ()
         done.append(found)
@@ -144,7 +144,7 @@ def _round(first: list[float], carried: list[float], own: Iterable[int]) -> floa
 
 
 def _first_ways(task: TaskSpec, house: HouseSpec, start: Pose) -> list[float]:
-    ground, there = Ground.of(house), {placement.id: placement for placement in task.objects}
+    ground, there = ReachableFloor.of(house), {placement.id: placement for placement in task.objects}
     walks = [ground.walk([ground.touching(there[job.target])]) for job in task.goal.jobs]
     return [float(walk.lengths([(start.x, start.y)])[0]) for walk in walks]
 

@@ -47,10 +47,10 @@ class ObjectGoalNavigation(TaskKind):
         return False
 
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
-        from hthor.tasks.arrangement.reachability import Ground
+        from hthor.tasks.arrangement.reachability import ReachableFloor
 
         target = next(placement for placement in objects if placement.id == goal.target)
-        ground = Ground.of(house)
+        ground = ReachableFloor.of(house)
         holder = next((thing for thing in house.things if thing.id == target.support), None)
         if holder is not None and target.relation == "in" and catalog.kind(holder.kind).hides:
             stops = [ground.beside(holder), ground.seeing(target, frozenset({holder.id}))]

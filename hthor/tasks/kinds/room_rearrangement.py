@@ -20,7 +20,7 @@ import msgspec
 
 from hthor import catalog, seeds
 from hthor.errors import HthorError
-from hthor.tasks.arrangement.free_spots import at_hand, spot
+from hthor.tasks.arrangement.free_spots import find_spot, is_within_reach
 from hthor.tasks.subgoals import JobKind
 from hthor.types import Goal, HouseSpec, Job, Placement, Thing
 
@@ -56,7 +56,7 @@ class RoomRearrangement(JobKind):
             tidy = arrange(house, own)
             order = [tidy[number] for number in seeds.shuffled(len(tidy), own, "moved")]
             kinds = {thing.id: thing.kind for thing in house.things}
-            moved = [one.id for one in order if kinds[one.support] not in DEEP and at_hand(house, one)][:count]
+            moved = [one.id for one in order if kinds[one.support] not in DEEP and is_within_reach(house, one)][:count]
             objects = _shuffled(house, tidy, moved, own) if len(moved) == count else ()
             if objects:
                 return record(house, tidy, moved[0], own), objects
@@ -84,7 +84,7 @@ def _shuffled(house: HouseSpec, tidy: Sequence[Placement], moved: Sequence[str],
             return float(thing.id != home.support)
 
         others = [*tidy, *(there[other] for other in moved if there[other] not in tidy)]
-        found = spot(house, id, home.kind, weigh, seeds.derive(root, "moved", id), others)
+        found = find_spot(house, id, home.kind, weigh, seeds.derive(root, "moved", id), others)
         if found is None or math.dist(found.position[:2], home.position[:2]) < MOVED_M:
             return ()
         there[id] = found

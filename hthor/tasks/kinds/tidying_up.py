@@ -16,7 +16,7 @@ from __future__ import annotations
 from hthor import catalog, seeds
 from hthor.errors import HthorError
 from hthor.tasks.arrangement import commonsense_places
-from hthor.tasks.arrangement.free_spots import spot
+from hthor.tasks.arrangement.free_spots import find_spot
 from hthor.tasks.subgoals import JobKind
 from hthor.types import Goal, HouseSpec, Job, Placement, Thing
 
@@ -37,7 +37,7 @@ class TidyingUp(JobKind):
 
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
         present = {thing.kind for thing in house.things}
-        if not all(present.intersection(commonsense_places.homes(target)) for target in catalog.TARGETS):
+        if not all(present.intersection(commonsense_places.usual_places(target)) for target in catalog.TARGETS):
             return ()
         return tuple(_goal(house, target, 0) for target in catalog.TARGETS)
 
@@ -62,7 +62,7 @@ def _goal(house: HouseSpec, first: str, root: int) -> Goal:
     order = sorted(seeds.shuffled(len(catalog.TARGETS), root, "jobs"), key=lambda n: catalog.TARGETS[n] != first)
     jobs = []
     for target in (catalog.TARGETS[number] for number in order):
-        kinds = tuple(kind for kind in commonsense_places.homes(target) if kind in present)
+        kinds = tuple(kind for kind in commonsense_places.usual_places(target) if kind in present)
         jobs.append(Job(target=target, relation=catalog.kind(kinds[0]).relation, destinations=kinds))
     return Goal(target=first, relation=jobs[0].relation, destination=jobs[0].destinations[0], jobs=tuple(jobs))
 
@@ -74,14 +74,14 @@ def _strewn(house: HouseSpec, order: list[str], count: int, root: int) -> tuple[
 
         def weigh(thing: Thing, target: str = target, out: bool = rank < count) -> float:
             if out:
-                return float(commonsense_places.is_out(target, thing.kind))
+                return float(commonsense_places.is_misplaced(target, thing.kind))
             return (
-                commonsense_places.of(target)[thing.kind].share
-                if thing.kind in commonsense_places.homes(target)
+                commonsense_places.places_of(target)[thing.kind].share
+                if thing.kind in commonsense_places.usual_places(target)
                 else 0.0
             )
 
-        found = spot(house, target, target, weigh, seeds.derive(root, "spot", target), done)
+        found = find_spot(house, target, target, weigh, seeds.derive(root, "spot", target), done)
         if found is None:
             return ()
         done.append(found)

@@ -46,12 +46,12 @@ class Revealed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     salt: str
 
 
-def hashes(files: Mapping[str, bytes]) -> dict[str, str]:
+def hash_files(files: Mapping[str, bytes]) -> dict[str, str]:
     """The SHA-256 of each file, by path."""
     return {path: hashlib.sha256(data).hexdigest() for path, data in sorted(files.items())}
 
 
-def load(path: Path) -> Commitment:
+def load_commitment(path: Path) -> Commitment:
     """A commitment from its file.
 
     Raises:
@@ -60,7 +60,7 @@ def load(path: Path) -> Commitment:
     return documents.read(path, Commitment, TaskError, schema=_COMMITTED, hint="'hthor suite make' writes one")
 
 
-def revealed(folder: Path) -> Salt | None:
+def read_revealed_salt(folder: Path) -> Salt | None:
     """The salt that was published in a suite's folder, None when none was.
 
     Raises:
@@ -76,13 +76,13 @@ def revealed(folder: Path) -> Salt | None:
         raise TaskError(str(path), "salt", "is not ASCII text, so no suite was made from it") from None
 
 
-def reveal(folder: Path, salt: Salt) -> Path:
+def reveal_salt(folder: Path, salt: Salt) -> Path:
     """Publish the salt of the suite in a folder: write ``revealed.json``.
 
     Raises:
         TaskError: when it is not the salt that the suite's commitment is to; nothing is written then.
     """
-    held = load(folder / COMMITMENT)
+    held = load_commitment(folder / COMMITMENT)
     if salt.commitment() != held.salt:
         problem = f"commits to {held.salt[:10]}..., this salt's commitment is {salt.commitment()[:10]}..."
         raise TaskError(str(folder / COMMITMENT), "salt", f"{problem}: it is the salt of another suite")
@@ -90,7 +90,7 @@ def reveal(folder: Path, salt: Salt) -> Path:
     return folder / REVEALED
 
 
-def changes(folder: Path, held: Commitment) -> Iterator[tuple[str, str]]:
+def find_changes(folder: Path, held: Commitment) -> Iterator[tuple[str, str]]:
     """What in a suite's folder is not as it was committed to: pairs of a file and a problem."""
     for path, digest in held.files.items():
         if not (folder / path).is_file():

@@ -15,12 +15,12 @@ _FOLDER = Path(__file__).parent / "data"
 _SHOWN = 8
 
 
-def suites() -> tuple[str, ...]:
+def suite_names() -> tuple[str, ...]:
     """Names of the suites that come with hthor."""
     return tuple(sorted(path.stem for path in _FOLDER.glob("*.json")))
 
 
-def suite(name_or_path: str | Path) -> Suite:
+def load_suite(name_or_path: str | Path) -> Suite:
     """A suite by name, or from a file, verified and validated.
 
     The suites that come with hthor were validated when they were made; their hash shows that nothing has changed since.
@@ -30,7 +30,7 @@ def suite(name_or_path: str | Path) -> Suite:
         UnknownName: when no suite has that name.
         TaskError: when the file cannot be read, was changed after it was made, or holds a task that cannot be run.
     """
-    loaded = read(name_or_path)
+    loaded = read_suite(name_or_path)
     path, shown = _locate(name_or_path)
     if path.parent != _FOLDER:
         from hthor.tasks.validate import validate
@@ -39,7 +39,7 @@ def suite(name_or_path: str | Path) -> Suite:
     return loaded
 
 
-def read(name_or_path: str | Path) -> Suite:
+def read_suite(name_or_path: str | Path) -> Suite:
     """A suite by name, or from a file, verified by its hash but not validated.
 
     Raises:
@@ -54,21 +54,21 @@ def read(name_or_path: str | Path) -> Suite:
         raise TaskError(
             shown, "sha256", f"{problem}; restore it, or rebuild it with python -m hthor.tasks.generation.generate"
         )
-    folder = houses_of(path)
+    folder = houses_folder(path)
     houses = HouseLibrary(folder=folder.resolve()) if folder.is_dir() else OURS
     return Suite(name=file.name, version=file.version, sha256=file.sha256, tasks=file.tasks, houses=houses)
 
 
-def find(id: str, name_or_path: str | Path | None = None) -> tuple[Suite, TaskSpec]:
+def find_task(id: str, name_or_path: str | Path | None = None) -> tuple[Suite, TaskSpec]:
     """The task of that id, in one suite or in any that comes with hthor, and the suite it is in.
 
     Raises:
         UnknownName: when there is none; names the nearest.
     """
-    names = suites() if name_or_path is None else (name_or_path,)
+    names = suite_names() if name_or_path is None else (name_or_path,)
     ids: list[str] = []
     for name in sorted(names, key=lambda name: str(name) != id.partition("/")[0]):
-        loaded = read(name)
+        loaded = read_suite(name)
         for task in loaded.tasks:
             if task.id == id:
                 return loaded, task
@@ -77,32 +77,34 @@ def find(id: str, name_or_path: str | Path | None = None) -> tuple[Suite, TaskSp
     raise UnknownName("task", id, alike or ids, "'hthor tasks list SUITE' lists them all.")
 
 
-def own_houses(name_or_path: str | Path) -> dict[str, bytes]:
+def house_files(name_or_path: str | Path) -> dict[str, bytes]:
     """The house files that a suite brings along, by name such as ``h1c0ffee.json``; empty for a suite of hthor's own.
 
     The excerpt of an asset database that may lie beside them is included.
     """
     path, _ = _locate(name_or_path)
-    return {file.name: file.read_bytes() for file in sorted(houses_of(path).glob("*.json"))}
+    return {file.name: file.read_bytes() for file in sorted(houses_folder(path).glob("*.json"))}
 
 
-def houses_of(path: Path) -> Path:
+def houses_folder(path: Path) -> Path:
     """The folder of the houses of this suite file: ``mine.houses`` for ``mine.json``, else ``houses`` beside it."""
     own = path.with_suffix(".houses")
     return own if own.is_dir() else path.with_name("houses")
 
 
-def path_of(name: str) -> Path:
+def suite_path(name: str) -> Path:
     """Where the suite of that name lies, or would lie."""
     return _FOLDER / f"{name}.json"
 
 
 def _locate(name_or_path: str | Path) -> tuple[Path, str]:
-    if isinstance(name_or_path, str) and name_or_path in suites():
-        return path_of(name_or_path), name_or_path
+    if isinstance(name_or_path, str) and name_or_path in suite_names():
+        return suite_path(name_or_path), name_or_path
     path = Path(name_or_path)
     if path.is_dir():
         path = path / "suite.json"
     if path.suffix != ".json" and not path.exists():
-        raise UnknownName("suite", str(name_or_path), suites(), "A path to a suite's file (.json) or folder works too.")
+        raise UnknownName(
+            "suite", str(name_or_path), suite_names(), "A path to a suite's file (.json) or folder works too."
+        )
     return path, str(name_or_path)

@@ -33,7 +33,7 @@ class Salt:
     __slots__ = ("_bytes",)
 
     def __init__(self, text: str) -> None:
-        """Take a salt as it is, without judging it; `read` judges."""
+        """Take a salt as it is, without judging it; `read_salt` judges."""
         self._bytes = text.encode("ascii")
 
     def __repr__(self) -> str:
@@ -62,7 +62,7 @@ class Salt:
         return hmac.digest(self._bytes, _DRAWN + jsonio.canonical(purpose), "sha256")
 
 
-def fresh(path: Path) -> None:
+def create_salt(path: Path) -> None:
     """Write a new salt of 256 bits to a file that only its owner can read.
 
     Raises:
@@ -77,7 +77,7 @@ def fresh(path: Path) -> None:
         file.write(secrets.token_hex(32) + "\n")
 
 
-def read(path: Path) -> Salt:
+def read_salt(path: Path) -> Salt:
     """The salt in a file: its text, without the white space around it.
 
     Raises:
@@ -96,13 +96,13 @@ def read(path: Path) -> Salt:
     if len(text) < LEAST_CHARACTERS:
         problem = f"the salt has {len(text)} characters, at least {LEAST_CHARACTERS} are needed"
         raise HthorError(f"{path}: {problem}: a short one can be found by trying. {advice}")
-    if bits(text) < LEAST_BITS:
-        problem = f"the salt looks as if it held {bits(text):.0f} bits, at least {LEAST_BITS} are needed"
+    if estimate_bits(text) < LEAST_BITS:
+        problem = f"the salt looks as if it held {estimate_bits(text):.0f} bits, at least {LEAST_BITS} are needed"
         raise HthorError(f"{path}: {problem}: what repeats itself or is a simple word can be found by trying. {advice}")
     return Salt(text)
 
 
-def bits(text: str) -> float:
+def estimate_bits(text: str) -> float:
     """How much a text seems to hold [bit], by its letters' frequencies and by how far it can be packed.
 
     It finds blunders, such as one letter repeated; it cannot tell a line of a poem from a draw of lots.
@@ -113,6 +113,6 @@ def bits(text: str) -> float:
     return min(letters, packed)
 
 
-def exposed(path: Path) -> bool:
+def is_exposed(path: Path) -> bool:
     """Whether others than the owner can read the file."""
     return bool(path.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH))

@@ -22,14 +22,14 @@ SUITE = "suite.json"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,60}")
 
 
-class Source(Struct, frozen=True, kw_only=True):
+class HouseSource(Struct, frozen=True, kw_only=True):
     """A house to make tasks in: what it is loaded by, and its file where that is the user's own, else None."""
 
     given: str
     file: Path | None
 
 
-def sources(given: Sequence[str]) -> tuple[Source, ...]:
+def find_sources(given: Sequence[str]) -> tuple[HouseSource, ...]:
     """The houses that are named, each a name of ours or the path of a house file.
 
     Raises:
@@ -37,7 +37,7 @@ def sources(given: Sequence[str]) -> tuple[Source, ...]:
         HthorError: when two have one name, or a file is called like a house of hthor's own.
     """
     ours = {*houses.names(), *houses.names("unseen")}
-    found = [Source(given=one, file=None if one in ours else Path(one)) for one in given]
+    found = [HouseSource(given=one, file=None if one in ours else Path(one)) for one in given]
     names = [houses.load(one.given).id for one in found]
     for number, (one, name) in enumerate(zip(found, names, strict=True)):
         if one.file is not None and name in ours:
@@ -51,7 +51,7 @@ def sources(given: Sequence[str]) -> tuple[Source, ...]:
     return tuple(found)
 
 
-def named(name: str) -> str:
+def check_name(name: str) -> str:
     """The name, if a suite can be called so.
 
     Raises:
@@ -59,12 +59,14 @@ def named(name: str) -> str:
     """
     if not _NAME.fullmatch(name):
         raise HthorError(f"'{name}' cannot be a suite's name; valid: letters, digits, '-', '_' and '.', at most 61.")
-    if name in library.suites():
+    if name in library.suite_names():
         raise HthorError(f"'{name}' is a suite of hthor's own; choose another name, such as my-{name}.")
     return name
 
 
-def files(name: str, version: int, found: Sequence[Source], columns: Sequence[Sequence[TaskSpec]]) -> dict[str, bytes]:
+def make_files(
+    name: str, version: int, found: Sequence[HouseSource], columns: Sequence[Sequence[TaskSpec]]
+) -> dict[str, bytes]:
     """The files of a suite by their path in its folder: the suite, its houses, and what it needs of an asset database.
 
     Args:
@@ -77,7 +79,7 @@ def files(name: str, version: int, found: Sequence[Source], columns: Sequence[Se
     return {**made, **({f"houses/{DATABASE}": database} if database else {})}
 
 
-def write(out: Path, made: Mapping[str, bytes]) -> Path:
+def write_files(out: Path, made: Mapping[str, bytes]) -> Path:
     """Write a suite's files, the houses first; gives the path of the suite.
 
     Args:
@@ -91,7 +93,7 @@ def write(out: Path, made: Mapping[str, bytes]) -> Path:
     return out
 
 
-def clear(out: Path) -> None:
+def check_unused(out: Path) -> None:
     """See that nothing is where a suite is to be written.
 
     Raises:
@@ -106,7 +108,7 @@ def _excerpt(own: Sequence[Path]) -> bytes:
     """What houses of the user's own need of an asset database; each may have its own."""
     types: dict[str, dict[str, Any]] = {}
     for path in own:
-        document, _ = schema.read(path, str(path))
+        document, _ = schema.read_house_file(path, str(path))
         data = Assets(path).excerpt(_assets(document["objects"]))
         for name, rows in msgspec.json.decode(data or b"{}").items():
             for row in rows:

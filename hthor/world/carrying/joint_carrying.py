@@ -140,7 +140,7 @@ class JointCarrying:
     def _rows(self) -> Any:
         """(N, 5) what stands in the way of such a thing now, see `hthor.world.carrying.trailer_kernel`."""
         if self._fixed is None:
-            self._fixed = free_space.obstacles(self._house, _CARRY_HEIGHT_M)
+            self._fixed = free_space.obstacle_rectangles(self._house, _CARRY_HEIGHT_M)
         shut = [doorways.leaf_rectangle(leaf.opening) for leaf in self._doors if leaf.opening and not leaf.open]
         return np.concatenate((self._fixed, np.array(shut))) if shut else self._fixed
 

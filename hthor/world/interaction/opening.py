@@ -183,7 +183,8 @@ def _is_hit(item: MovableObject, ways: Sequence[Slab]) -> bool:
     reach = math.hypot(w, d) / 2
     body = Slab((x, y), (w, d), item.yaw, z - h / 2 + OVERLAP_M, z + h / 2)
     return any(
-        math.dist(way.centre, body.centre) < reach + math.hypot(*way.size) / 2 and solids.overlap(way, body) > OVERLAP_M
+        math.dist(way.centre, body.centre) < reach + math.hypot(*way.size) / 2
+        and solids.overlap_depth(way, body) > OVERLAP_M
         for way in ways
     )
 

@@ -53,7 +53,7 @@ def split_things(house: HouseSpec, objects: Iterable[tuple[str, str]]) -> Conten
         HthorError: when two things share an id, or an object's kind cannot be picked up.
         UnknownName: when a kind does not exist.
     """
-    movables = [_free(thing) for thing in laying.movable(house)]
+    movables = [_free(thing) for thing in laying.movable_objects(house)]
     taken = {movable.id for movable in movables}
     statics = tuple(thing for thing in house.things if thing.id not in taken)
     taken = {thing.id for thing in house.things}

@@ -19,8 +19,8 @@ class ObstacleFootprints:
     """The footprints of a house's walls and furniture."""
 
     def __init__(self, house: HouseSpec) -> None:
-        self._slabs = [(WALL, slab) for slab in solids.walls(house)]
-        self._slabs += [(thing.id, slab) for thing, slab in solids.furniture(house) if slab.high > STEP_M]
+        self._slabs = [(WALL, slab) for slab in solids.wall_slabs(house)]
+        self._slabs += [(thing.id, slab) for thing, slab in solids.furniture_slabs(house) if slab.high > STEP_M]
 
     def nearest(self, place: Vec2, height: float, shut: Iterable[Opening] = ()) -> str:
         """Id of the thing nearest to ``place`` [m] that stands in the way of a body ``height`` [m] tall, or "wall".

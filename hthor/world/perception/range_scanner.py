@@ -35,13 +35,15 @@ class RangeScanner:
 def _tops(house: HouseSpec, space: FreeSpace, height: float) -> np.ndarray:
     """(ny, nx) [m], the height of the tallest furniture that stops a body in each cell; infinite elsewhere."""
     tops = np.full(space.raw.shape, np.inf)
-    slabs = [slab for _, slab in solids.furniture(house) if slab.low < height]
-    walls = np.array([(*slab.centre, slab.size[0] / 2, slab.size[1] / 2, slab.yaw) for slab in solids.walls(house)])
+    slabs = [slab for _, slab in solids.furniture_slabs(house) if slab.low < height]
+    walls = np.array(
+        [(*slab.centre, slab.size[0] / 2, slab.size[1] / 2, slab.yaw) for slab in solids.wall_slabs(house)]
+    )
     everywhere, half = np.ones_like(space.raw), space.cell / 2
     for slab in sorted(slabs, key=lambda slab: slab.high):
         row = np.array([(*slab.centre, slab.size[0] / 2, slab.size[1] / 2, slab.yaw)])
-        tops[~grid_kernel.clear(everywhere, row, *space.origin, space.cell, half)] = slab.high
-    tops[~grid_kernel.clear(everywhere, walls.reshape(-1, 5), *space.origin, space.cell, half)] = np.inf
+        tops[~grid_kernel.clear_cells(everywhere, row, *space.origin, space.cell, half)] = slab.high
+    tops[~grid_kernel.clear_cells(everywhere, walls.reshape(-1, 5), *space.origin, space.cell, half)] = np.inf
     return tops
 
 

@@ -68,8 +68,8 @@ def with_obstacles(space: FreeSpace, rectangles: list[tuple[float, float, float,
     rows = np.array(rectangles, dtype=float).reshape(-1, 5)
     cut: Any = copy.copy(space)
     cut.__dict__.pop("components", None)
-    cut.free = grid_kernel.clear(space.free, rows, *space.origin, space.cell, space.radius)
-    cut.raw = grid_kernel.clear(space.raw, rows, *space.origin, space.cell, space.cell / 2)
+    cut.free = grid_kernel.clear_cells(space.free, rows, *space.origin, space.cell, space.radius)
+    cut.raw = grid_kernel.clear_cells(space.raw, rows, *space.origin, space.cell, space.cell / 2)
     cut.free.setflags(write=False)
     cut.raw.setflags(write=False)
     narrowed: FreeSpace = cut

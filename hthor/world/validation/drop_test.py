@@ -13,7 +13,7 @@ from msgspec import Struct
 
 from hthor import catalog
 from hthor.geometry.plane import to_house
-from hthor.houses.checks.findings import Finding, error, named
+from hthor.houses.checks.findings import Finding, error, readable_kind
 from hthor.houses.space import boxes
 from hthor.types import HouseSpec, Surface, Thing, Vec3
 from hthor.world.model import geoms, walls
@@ -56,13 +56,13 @@ def drop_findings(house: HouseSpec) -> tuple[Finding, ...]:
 
 
 def _problem(trial: DropTrial, strayed: float) -> str:
-    place = f"the {trial.surface.name} of the {named(trial.thing.kind)}"
+    place = f"the {trial.surface.name} of the {readable_kind(trial.thing.kind)}"
     if trial.at is None:
         width, depth = (2 * half for half in trial.surface.half)
         room = f"{width:.2f} x {depth:.2f} m, {trial.surface.clearance:.2f} m high"
-        return f"no free place for the {named(trial.target)} on {place} ({room})"
+        return f"no free place for the {readable_kind(trial.target)} on {place} ({room})"
     if strayed > STAYS_M:
-        return f"the {named(trial.target)} put on {place} strays {strayed:.3f} m within {WATCHED_S:.0f} s"
+        return f"the {readable_kind(trial.target)} put on {place} strays {strayed:.3f} m within {WATCHED_S:.0f} s"
     return ""
 
 
@@ -84,10 +84,10 @@ def _trials(house: HouseSpec) -> Iterator[DropTrial]:
 
 def _upright(house: HouseSpec) -> tuple[Any, Any]:
     """Centres and half extents (M, 3) [m] of unturned boxes around all parts of all things and walls."""
-    parts = [box for thing in house.things for _, box in boxes.of(thing)]
+    parts = [box for thing in house.things for _, box in boxes.boxes_of(thing)]
     upright = (0.0, 0.0, 1.0)
     parts += [
-        boxes.Box(panel.centre, panel.half, boxes.about(upright, panel.yaw)) for panel in walls.wall_panels(house)
+        boxes.Box(panel.centre, panel.half, boxes.rotation(upright, panel.yaw)) for panel in walls.wall_panels(house)
     ]
     centres = np.array([box.centre for box in parts]).reshape(-1, 3)
     halves = np.array([np.abs(box.turn) @ box.half for box in parts]).reshape(-1, 3)

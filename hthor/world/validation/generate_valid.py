@@ -8,7 +8,7 @@ from msgspec import Struct
 
 from hthor.errors import HthorError
 from hthor.houses import generator, loader
-from hthor.houses.checks.findings import Finding, sound
+from hthor.houses.checks.findings import Finding, is_sound
 from hthor.types import HouseSpec
 from hthor.world.validation.house_soundness import check_soundness
 
@@ -50,9 +50,9 @@ def generate_valid_home(seed: int, rooms: int) -> ValidHome:
     while attempt < ATTEMPTS:
         document = generator.generate(seed, rooms, first=attempt, tries=ATTEMPTS - attempt)
         attempt = int(document["metadata"]["generator"]["attempt"])
-        house = loader.build(document, home_name(seed, rooms))
+        house = loader.house_from_document(document, home_name(seed, rooms))
         findings = check_soundness(house, RADIUS_M)
-        if sound(findings):
+        if is_sound(findings):
             return ValidHome(
                 seed=seed,
                 rooms=rooms,

@@ -26,5 +26,5 @@ def check_soundness(house: HouseSpec, radius: float = 0.25) -> tuple[Finding, ..
 
 def _leaves(house: HouseSpec) -> Iterator[Finding]:
     for leaf in door_geometry.doorway_leaves(house):
-        for finding in thing_rules.swing(house, leaf.thing, leaf.parts, leaf.joints, "door"):
+        for finding in thing_rules.check_swing(house, leaf.thing, leaf.parts, leaf.joints, "door"):
             yield error(finding.rule, finding.where, finding.problem)

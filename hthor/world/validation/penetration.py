@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from hthor.houses.checks.findings import Finding, error, named
+from hthor.houses.checks.findings import Finding, error, readable_kind
 from hthor.types import HouseSpec
 from hthor.world.model.engine import mujoco
 from hthor.world.validation import static_model
@@ -21,8 +21,8 @@ def penetration_findings(house: HouseSpec) -> tuple[Finding, ...]:
     for (one, two), depth in sorted(penetration_depths(house).items()):
         if depth > PENETRATION_MAX_M:
             first, second = sorted((one, two), key=lambda owner: owner not in things)
-            what = f"'{second}' ({named(things[second].kind)})" if second in things else f"the {second}"
-            problem = f"the {named(things[first].kind)} is {1000 * depth:.0f} mm deep in {what}"
+            what = f"'{second}' ({readable_kind(things[second].kind)})" if second in things else f"the {second}"
+            problem = f"the {readable_kind(things[first].kind)} is {1000 * depth:.0f} mm deep in {what}"
             found.append(error("penetration", first, problem))
     return tuple(found)
 

@@ -123,7 +123,7 @@ def guests(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 def played(robots: str, count: int = 1, config: GuestConfig | None = None) -> list[TrialRecord]:
     """The first trials of one person in a small house."""
     (crew,) = robot_team.parse_teams(robots, ())
-    few = make_suite("few", 1, tuple(task for task in tasks.suite("smoke").tasks if task.house == HOUSE))
+    few = make_suite("few", 1, tuple(task for task in tasks.load_suite("smoke").tasks if task.house == HOUSE))
     whole = sessions.make_sessions(few, agent=crew, participants=1)[0]
     perform = trial_runner.make_runner(
         trial_runner.Sources(minds=crew.minds, bodies=crew.bodies, guests=config or GuestConfig())
@@ -216,7 +216,7 @@ def test_the_command_that_finishes_a_run_names_every_robot(tmp_path: Path):
 
 
 def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):
-    chosen = [task for task in tasks.suite("smoke").tasks if task.house == HOUSE][:2]
+    chosen = [task for task in tasks.load_suite("smoke").tasks if task.house == HOUSE][:2]
     suite = tmp_path / "brief.json"
     suite.write_bytes(encode_suite(make_suite("brief", 1, tuple(chosen))))
     results = []

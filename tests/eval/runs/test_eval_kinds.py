@@ -69,7 +69,7 @@ def test_what_does_not_fit_is_told(suite: str, kind: str, told: str):
 
 @pytest.mark.parametrize("name", ["navigation", "manipulation", "collect", "rearrange", "tidy", "carry"])
 def test_a_kind_with_a_suite_of_its_own_needs_no_other(name: str):
-    if name not in tasks.suites():
+    if name not in tasks.suite_names():
         pytest.skip(f"no suite '{name}' yet")
     chosen = task_selection.select_tasks("", name)
     assert chosen.kind is None, "it is all of that suite"
@@ -89,7 +89,7 @@ def test_the_example_kind_runs_as_it_is(root: Path, few: None, tmp_path: Path):
     assert [robot.robot for robot in done.plan.robots] == ["tender"], "the kind's own crew"
     assert (done.result.counts.trials, done.result.counts.faults) == (2, 0)
     assert done.result.metrics.progress.n == 2
-    suite = tasks.suite(str(tmp_path / "run" / "suite.json"))
+    suite = tasks.load_suite(str(tmp_path / "run" / "suite.json"))
     assert [task.house for task in suite.tasks] == list(HOUSES)
     assert suite.tasks[0].instruction == "Put the tomato and the lettuce in the fridge."
     assert suite.sha256 == done.plan.suite.sha256

@@ -151,8 +151,8 @@ def test_a_run_of_which_nothing_can_be_played_ends_soon(tmp_path: Path):
 
 
 def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path: Path, monkeypatch):
-    real = tasks.suite
-    monkeypatch.setattr(tasks, "suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
+    real = tasks.load_suite
+    monkeypatch.setattr(tasks, "load_suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
     monkeypatch.setattr(trial_runner, "make_runner", fakes.lonely_player)
     options = run_options.RunOptions(agents=("none", "frontier"), suite="fake", jobs=1, out=tmp_path)
     with pytest.raises(

@@ -32,7 +32,7 @@ SECRETS = {
     "a/b/c/d/e/shard-1-of-4/trials.jsonl": LINE,
     "early/trials.jsonl": LINE,
     "old.jsonl": LINE,
-    "mine/tasks.json": encode_suite(make_suite("mine", 1, tasks.suite("smoke").tasks[:1])),
+    "mine/tasks.json": encode_suite(make_suite("mine", 1, tasks.load_suite("smoke").tasks[:1])),
     "mine/houses/h1.json": HOUSE,
     "official/commitment.json": jsonio.pretty({"schema": "hthor.commitment/1", "salt": "0" * 64}),
     "official/houses/h2.json": HOUSE,
@@ -62,7 +62,7 @@ def home(tmp_path: Path) -> Path:
         path = tmp_path / "home" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
-    secret_salt.fresh(tmp_path / "home" / "season" / "word")
+    secret_salt.create_salt(tmp_path / "home" / "season" / "word")
     (tmp_path / "home" / "shortcut").symlink_to(tmp_path / "home" / "study" / "one")
     return tmp_path / "home"
 

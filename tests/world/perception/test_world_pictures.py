@@ -263,7 +263,7 @@ def trial_with_pictures() -> str:
             return 4
 
     short = task(on(TABLE, "apple"), human=Pose(x=8.0, y=1.4), robots=(Pose(x=4.0, y=2.0),))
-    kind = next(one.kind for one in tasks.suite("smoke").tasks if one.goal.relation == "find")
+    kind = next(one.kind for one in tasks.load_suite("smoke").tasks if one.goal.relation == "find")
     short = msgspec.structs.replace(short, kind=kind, time_limit=1.0)
     agent = AgentRef(name="a", source="a", sha256="0")
     hashes = dict.fromkeys(("human_sha256", "suite_sha256", "rules_sha256", "code_sha256"), "0")

@@ -29,7 +29,7 @@ class Boundary(Struct, frozen=True):
     scale: float
 
 
-def boundary(rooms: int, dice: Dice) -> Boundary | None:
+def draw_boundary(rooms: int, dice: Dice) -> Boundary | None:
     """An outline for so many rooms; None for draws that leave too little or too much floor, or fall apart."""
     mean = _SIDE[rooms]
     nx, ny = (round(dice.between(mean - _SPREAD, mean + _SPREAD, axis)) for axis in ("nx", "ny"))
@@ -38,7 +38,7 @@ def boundary(rooms: int, dice: Dice) -> Boundary | None:
         _cut(cells, dice.of("cut", number))
     scale = round(dice.between(*_SCALES, "scale") / _STEP_M) * _STEP_M
     area = float(cells.sum()) * scale**2
-    if not AREA_M2[0] <= area <= AREA_M2[1] or not connected(cells):
+    if not AREA_M2[0] <= area <= AREA_M2[1] or not is_connected(cells):
         return None
     return Boundary(cells, round(scale, 2))
 
@@ -53,7 +53,7 @@ def _cut(cells: Cells, dice: Dice) -> None:
     cells[rows, columns] = False
 
 
-def connected(cells: Cells) -> bool:
+def is_connected(cells: Cells) -> bool:
     """Whether the true cells hang together by their sides."""
     todo = np.argwhere(cells)
     if not len(todo):

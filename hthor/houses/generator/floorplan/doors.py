@@ -8,8 +8,16 @@ from msgspec import Struct
 
 from hthor.geometry.plane import inside
 from hthor.houses.generator.draws import Dice
-from hthor.houses.generator.floorplan.layout import OUTSIDE, Plan, Seam
-from hthor.houses.generator.floorplan.room_specs import BATHROOM, BEDROOM, KITCHEN, LIVING, Group, Leaf, leaves
+from hthor.houses.generator.floorplan.layout import OUTSIDE, FloorPlan, Seam
+from hthor.houses.generator.floorplan.room_specs import (
+    BATHROOM,
+    BEDROOM,
+    KITCHEN,
+    LIVING,
+    RoomGroup,
+    RoomLeaf,
+    iter_leaves,
+)
 from hthor.houses.space.solids import WALL_M
 from hthor.types import Vec2
 
@@ -44,7 +52,7 @@ class Door(Struct, frozen=True):
         return math.dist(self.a, self.b)
 
 
-def links(tree: Group, plan: Plan, dice: Dice) -> list[tuple[int, int]] | None:
+def choose_doors(tree: RoomGroup, plan: FloorPlan, dice: Dice) -> list[tuple[int, int]] | None:
     """Pairs of rooms to join so that all hang together; None when walls do not allow it.
 
     At each level the parts are joined one by one, bathrooms last and never as a way through; a bathroom within a part
@@ -54,15 +62,15 @@ def links(tree: Group, plan: Plan, dice: Dice) -> list[tuple[int, int]] | None:
     return found if _join(tree, OUTSIDE + 1, plan, dice, found) else None
 
 
-def _join(tree: Group, first: int, plan: Plan, dice: Dice, found: list[tuple[int, int]]) -> bool:
+def _join(tree: RoomGroup, first: int, plan: FloorPlan, dice: Dice, found: list[tuple[int, int]]) -> bool:
     starts = []
     for number, part in enumerate(tree.parts):
         starts.append(first)
-        if isinstance(part, Group) and not _join(part, first, plan, dice.of("part", number), found):
+        if isinstance(part, RoomGroup) and not _join(part, first, plan, dice.of("part", number), found):
             return False
-        first += sum(1 for _ in leaves(part))
+        first += sum(1 for _ in iter_leaves(part))
     rooms = [_members(part, start) for part, start in zip(tree.parts, starts, strict=True)]
-    baths = [isinstance(part, Leaf) and part.room == BATHROOM for part in tree.parts]
+    baths = [isinstance(part, RoomLeaf) and part.room == BATHROOM for part in tree.parts]
     order = sorted(dice.order(range(len(rooms)), "order"), key=lambda k: baths[k])
     joined, waiting = [order[0]], order[1:]
     while waiting:
@@ -86,18 +94,18 @@ def _join(tree: Group, first: int, plan: Plan, dice: Dice, found: list[tuple[int
     return True
 
 
-def _members(part: Leaf | Group, start: int) -> list[int]:
+def _members(part: RoomLeaf | RoomGroup, start: int) -> list[int]:
     """Rooms of a part that a door to other parts may lead into."""
-    if isinstance(part, Leaf):
+    if isinstance(part, RoomLeaf):
         return [start]
-    return [start + k for k, leaf in enumerate(leaves(part)) if leaf.room != BATHROOM]
+    return [start + k for k, leaf in enumerate(iter_leaves(part)) if leaf.room != BATHROOM]
 
 
-def _doorway(plan: Plan, one: int, two: int) -> bool:
+def _doorway(plan: FloorPlan, one: int, two: int) -> bool:
     return any(seam.length >= _WIDTH_M + 2 * _JAMB_M for seam in plan.between(one, two))
 
 
-def _wish(plan: Plan, one: int, two: int) -> float:
+def _wish(plan: FloorPlan, one: int, two: int) -> float:
     """How much a door between two rooms is wanted: people walk through living rooms, not from kitchen to bath."""
     kinds = {plan.room(one).kind, plan.room(two).kind}
     if kinds == {KITCHEN, BATHROOM}:
@@ -107,7 +115,7 @@ def _wish(plan: Plan, one: int, two: int) -> float:
     return 1.0 if kinds in ({BEDROOM}, {BEDROOM, BATHROOM}) else 0.6
 
 
-def place(pairs: list[tuple[int, int]], plan: Plan, dice: Dice) -> list[Door] | None:
+def place(pairs: list[tuple[int, int]], plan: FloorPlan, dice: Dice) -> list[Door] | None:
     """A doorway for each pair, and the front door; None when a door is in another one's way."""
     doors: list[Door] = []
     for one, two in pairs:
@@ -119,7 +127,7 @@ def place(pairs: list[tuple[int, int]], plan: Plan, dice: Dice) -> list[Door] | 
     return None if front is None else [*doors, front]
 
 
-def _inner(one: int, two: int, plan: Plan, dice: Dice, others: list[Door]) -> Door | None:
+def _inner(one: int, two: int, plan: FloorPlan, dice: Dice, others: list[Door]) -> Door | None:
     seams = [seam for seam in plan.between(one, two) if seam.length >= _WIDTH_M + 2 * _JAMB_M]
     seam = dice.weighted(seams, [seam.length for seam in seams], "seam")
     kinds = {plan.room(one).kind, plan.room(two).kind}
@@ -143,7 +151,7 @@ def _inner(one: int, two: int, plan: Plan, dice: Dice, others: list[Door]) -> Do
     return None
 
 
-def _leaves(seam: Seam, room: int, plan: Plan) -> list[Door]:
+def _leaves(seam: Seam, room: int, plan: FloorPlan) -> list[Door]:
     """The doors whose open leaf stands along a side wall of the room: one for each end of the seam in its corner."""
     beyond = seam.right if seam.left == room else seam.left
     found = []
@@ -156,7 +164,7 @@ def _leaves(seam: Seam, room: int, plan: Plan) -> list[Door]:
     return found
 
 
-def _inner_corner(corner: Vec2, room: int, plan: Plan) -> bool:
+def _inner_corner(corner: Vec2, room: int, plan: FloorPlan) -> bool:
     """Whether the room fills three of the four quarters about its corner."""
     x, y = corner
     polygon = plan.room(room).polygon
@@ -173,7 +181,7 @@ def _at(seam: Seam, sort: str, one: int, two: int, offset: float, width: float) 
     return Door(sort, one, two, seam, _along(seam.a, seam.b, offset), _along(seam.a, seam.b, offset + width))
 
 
-def _front(plan: Plan, dice: Dice, others: list[Door]) -> Door | None:
+def _front(plan: FloorPlan, dice: Dice, others: list[Door]) -> Door | None:
     kinds = [(LIVING,), (KITCHEN,)] if dice.chance(0.65, "room") else [(KITCHEN,), (LIVING,)]
     for wanted in (*kinds, (BEDROOM,)):
         seams = [

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.floorplan.boundary import Cells
-from hthor.houses.generator.floorplan.room_specs import Group, Leaf, leaves
+from hthor.houses.generator.floorplan.room_specs import RoomGroup, RoomLeaf, iter_leaves
 
 Labels = NDArray[np.int32]
 _FILL = 0.9
 """A rectangle stops growing at this share of the floor that its room is due."""
 
 
-def grow(cells: Cells, tree: Group, dice: Dice, first: int = 2) -> Labels | None:
+def grow_rooms(cells: Cells, tree: RoomGroup, dice: Dice, first: int = 2) -> Labels | None:
     """(ny, nx) numbers of rooms, counted from ``first`` in the order of the tree's leaves; 0 outdoors.
 
     None when some room found no place.
@@ -26,10 +26,10 @@ def grow(cells: Cells, tree: Group, dice: Dice, first: int = 2) -> Labels | None
     return labels if _share_out(labels, cells, tree, first, dice) else None
 
 
-def _share_out(labels: Labels, region: Cells, part: Leaf | Group, first: int, dice: Dice) -> bool:
+def _share_out(labels: Labels, region: Cells, part: RoomLeaf | RoomGroup, first: int, dice: Dice) -> bool:
     if not region.any():
         return False
-    if isinstance(part, Leaf):
+    if isinstance(part, RoomLeaf):
         labels[region] = first
         return True
     shares = _divide(region, [child.ratio for child in part.parts], dice)
@@ -38,7 +38,7 @@ def _share_out(labels: Labels, region: Cells, part: Leaf | Group, first: int, di
     for number, child in enumerate(part.parts):
         if not _share_out(labels, shares == number + 1, child, first, dice.of("part", number)):
             return False
-        first += sum(1 for _ in leaves(child))
+        first += sum(1 for _ in iter_leaves(child))
     return True
 
 

@@ -12,7 +12,7 @@ from msgspec import Struct
 
 from hthor.houses.generator.floorplan.boundary import Boundary, Cells
 from hthor.houses.generator.floorplan.growth import Labels
-from hthor.houses.generator.floorplan.room_specs import BATHROOM, BEDROOM, KITCHEN, LIVING, Group, leaves
+from hthor.houses.generator.floorplan.room_specs import BATHROOM, BEDROOM, KITCHEN, LIVING, RoomGroup, iter_leaves
 from hthor.types import Vec2
 
 OUTSIDE = 1
@@ -46,7 +46,7 @@ class Seam(Struct, frozen=True):
         return math.dist(self.a, self.b)
 
 
-class Plan(Struct, frozen=True):
+class FloorPlan(Struct, frozen=True):
     """A floor plan. ``labels`` are the rooms' numbers by cell of side ``scale`` [m], 0 outdoors."""
 
     rooms: tuple[RoomPlan, ...]
@@ -63,10 +63,10 @@ class Plan(Struct, frozen=True):
         return [seam for seam in self.seams if {seam.left, seam.right} == {one, two}]
 
 
-def plan(boundary: Boundary, labels: Labels, tree: Group) -> Plan | None:
+def plan_rooms(boundary: Boundary, labels: Labels, tree: RoomGroup) -> FloorPlan | None:
     """The plan of a division into rooms; None when a room is too small, too thin, or touches itself at a corner."""
     rooms = []
-    for number, leaf in enumerate(leaves(tree), OUTSIDE + 1):
+    for number, leaf in enumerate(iter_leaves(tree), OUTSIDE + 1):
         cells = labels == number
         area = float(cells.sum()) * boundary.scale**2
         polygon = _outline(cells, boundary.scale)
@@ -75,10 +75,10 @@ def plan(boundary: Boundary, labels: Labels, tree: Group) -> Plan | None:
         if leaf.room == BATHROOM and area > _BATH_MAX_M2:
             return None
         rooms.append(RoomPlan(number, leaf.room, polygon, area))
-    return Plan(tuple(rooms), _seams(labels, boundary.scale), labels, boundary.scale)
+    return FloorPlan(tuple(rooms), _seams(labels, boundary.scale), labels, boundary.scale)
 
 
-def quality(division: Labels, tree: Group) -> float:
+def plan_quality(division: Labels, tree: RoomGroup) -> float:
     """How well rooms fit their shares, and how far they are from rectangles: higher is better, 2 at most."""
     total, ideal = float((division > 0).sum()), _shares(tree, 1.0)
     fit, shape = 0.0, 0.0
@@ -86,16 +86,16 @@ def quality(division: Labels, tree: Group) -> float:
         cells = division == number
         actual = float(cells.sum()) / total
         fit += min(actual, share)
-        shape += actual * largest(cells) / max(float(cells.sum()), 1.0)
+        shape += actual * largest_rectangle(cells) / max(float(cells.sum()), 1.0)
     return fit + shape
 
 
-def _shares(tree: Group, share: float) -> list[float]:
+def _shares(tree: RoomGroup, share: float) -> list[float]:
     whole = sum(part.ratio for part in tree.parts)
     shares: list[float] = []
     for part in tree.parts:
         mine = share * part.ratio / whole
-        shares += _shares(part, mine) if isinstance(part, Group) else [mine]
+        shares += _shares(part, mine) if isinstance(part, RoomGroup) else [mine]
     return shares
 
 
@@ -117,7 +117,7 @@ def _runs(cells: Cells) -> list[tuple[int, int]]:
     return found
 
 
-def largest(cells: Cells) -> int:
+def largest_rectangle(cells: Cells) -> int:
     """Number of cells of the largest rectangle."""
     return max((w * d for w, d in _runs(cells)), default=0)
 

@@ -12,66 +12,78 @@ from hthor.houses.generator.draws import Dice
 KITCHEN, LIVING, BEDROOM, BATHROOM = "Kitchen", "LivingRoom", "Bedroom", "Bathroom"
 
 
-class Leaf(Struct, frozen=True):
+class RoomLeaf(Struct, frozen=True):
     """A room: its type and the share of its group's floor that it asks for. A bathroom within a group is private."""
 
     room: str
     ratio: float
 
 
-class Group(Struct, frozen=True):
+class RoomGroup(Struct, frozen=True):
     """Rooms, or groups of rooms, that belong together."""
 
     ratio: float
-    parts: tuple[Leaf | Group, ...]
+    parts: tuple[RoomLeaf | RoomGroup, ...]
 
 
-class Spec(Struct, frozen=True):
+class RoomSpec(Struct, frozen=True):
     """A programme of rooms by ``name``; ``weight`` is how often it is drawn among those of as many rooms."""
 
     name: str
     weight: float
-    tree: Group
+    tree: RoomGroup
 
 
-def leaves(part: Leaf | Group) -> Iterator[Leaf]:
+def iter_leaves(part: RoomLeaf | RoomGroup) -> Iterator[RoomLeaf]:
     """The rooms of a tree, in order."""
-    if isinstance(part, Leaf):
+    if isinstance(part, RoomLeaf):
         yield part
     else:
         for child in part.parts:
-            yield from leaves(child)
+            yield from iter_leaves(child)
 
 
-_DAY = Group(2.0, (Leaf(KITCHEN, 1.0), Leaf(LIVING, 1.1)))
-_EN_SUITE = Group(1.6, (Leaf(BEDROOM, 2.0), Leaf(BATHROOM, 1.0)))
+_DAY = RoomGroup(2.0, (RoomLeaf(KITCHEN, 1.0), RoomLeaf(LIVING, 1.1)))
+_EN_SUITE = RoomGroup(1.6, (RoomLeaf(BEDROOM, 2.0), RoomLeaf(BATHROOM, 1.0)))
 
 SPECS = (
-    Spec("4-room", 5.0, Group(1.0, (Group(2.0, (Leaf(BEDROOM, 2.0), Leaf(BATHROOM, 1.1))), _DAY))),
-    Spec("4-room-hall", 2.0, Group(1.0, (_DAY, Leaf(BEDROOM, 1.2), Leaf(BATHROOM, 0.6)))),
-    Spec("4-room-parlour", 2.0, Group(1.0, (Leaf(LIVING, 1.5), Leaf(KITCHEN, 1.1), _EN_SUITE))),
-    Spec("5-room", 2.0, Group(1.0, (_EN_SUITE, Leaf(BEDROOM, 1.0), _DAY))),
-    Spec("2-bed-1-bath", 3.0, Group(1.0, (_DAY, Leaf(BATHROOM, 0.5), Leaf(BEDROOM, 1.0), Leaf(BEDROOM, 1.0)))),
-    Spec("5-room-parlour", 1.0, Group(1.0, (_DAY, Leaf(LIVING, 1.0), _EN_SUITE))),
-    Spec("2-bed-2-bath", 3.0, Group(1.0, (_EN_SUITE, _EN_SUITE, Group(2.2, _DAY.parts)))),
-    Spec("3-bed-1-bath", 2.0, Group(1.0, (_DAY, Leaf(BATHROOM, 0.5), *(Leaf(BEDROOM, 0.9),) * 3))),
-    Spec("6-room", 1.0, Group(1.0, (_DAY, Leaf(BATHROOM, 0.45), Leaf(BEDROOM, 0.9), _EN_SUITE))),
-    Spec("7-room-3-bed", 2.0, Group(1.0, (_DAY, Leaf(LIVING, 0.8), Leaf(BATHROOM, 0.5), *(Leaf(BEDROOM, 0.85),) * 3))),
-    Spec("3-bed-2-bath", 2.0, Group(1.0, (_DAY, Leaf(BATHROOM, 0.45), _EN_SUITE, *(Leaf(BEDROOM, 0.85),) * 2))),
+    RoomSpec("4-room", 5.0, RoomGroup(1.0, (RoomGroup(2.0, (RoomLeaf(BEDROOM, 2.0), RoomLeaf(BATHROOM, 1.1))), _DAY))),
+    RoomSpec("4-room-hall", 2.0, RoomGroup(1.0, (_DAY, RoomLeaf(BEDROOM, 1.2), RoomLeaf(BATHROOM, 0.6)))),
+    RoomSpec("4-room-parlour", 2.0, RoomGroup(1.0, (RoomLeaf(LIVING, 1.5), RoomLeaf(KITCHEN, 1.1), _EN_SUITE))),
+    RoomSpec("5-room", 2.0, RoomGroup(1.0, (_EN_SUITE, RoomLeaf(BEDROOM, 1.0), _DAY))),
+    RoomSpec(
+        "2-bed-1-bath",
+        3.0,
+        RoomGroup(1.0, (_DAY, RoomLeaf(BATHROOM, 0.5), RoomLeaf(BEDROOM, 1.0), RoomLeaf(BEDROOM, 1.0))),
+    ),
+    RoomSpec("5-room-parlour", 1.0, RoomGroup(1.0, (_DAY, RoomLeaf(LIVING, 1.0), _EN_SUITE))),
+    RoomSpec("2-bed-2-bath", 3.0, RoomGroup(1.0, (_EN_SUITE, _EN_SUITE, RoomGroup(2.2, _DAY.parts)))),
+    RoomSpec("3-bed-1-bath", 2.0, RoomGroup(1.0, (_DAY, RoomLeaf(BATHROOM, 0.5), *(RoomLeaf(BEDROOM, 0.9),) * 3))),
+    RoomSpec("6-room", 1.0, RoomGroup(1.0, (_DAY, RoomLeaf(BATHROOM, 0.45), RoomLeaf(BEDROOM, 0.9), _EN_SUITE))),
+    RoomSpec(
+        "7-room-3-bed",
+        2.0,
+        RoomGroup(1.0, (_DAY, RoomLeaf(LIVING, 0.8), RoomLeaf(BATHROOM, 0.5), *(RoomLeaf(BEDROOM, 0.85),) * 3)),
+    ),
+    RoomSpec(
+        "3-bed-2-bath",
+        2.0,
+        RoomGroup(1.0, (_DAY, RoomLeaf(BATHROOM, 0.45), _EN_SUITE, *(RoomLeaf(BEDROOM, 0.85),) * 2)),
+    ),
 )
 
 
-def choose(rooms: int, dice: Dice, name: str | None) -> Spec:
+def choose_spec(rooms: int, dice: Dice, name: str | None) -> RoomSpec:
     """The spec of that name, or one drawn among those with so many rooms.
 
     Raises:
         UnknownName: when there is no spec of that name.
         HthorError: when none has so many rooms, or the one named has another number.
     """
-    counts = sorted({sum(1 for _ in leaves(spec.tree)) for spec in SPECS})
+    counts = sorted({sum(1 for _ in iter_leaves(spec.tree)) for spec in SPECS})
     if rooms not in counts:
         raise HthorError(f"a house has {counts[0]} to {counts[-1]} rooms, got {rooms}; choose a number between them")
-    fitting = [spec for spec in SPECS if sum(1 for _ in leaves(spec.tree)) == rooms]
+    fitting = [spec for spec in SPECS if sum(1 for _ in iter_leaves(spec.tree)) == rooms]
     if name is None:
         return dice.weighted(fitting, [spec.weight for spec in fitting], "spec")
     if name not in [spec.name for spec in SPECS]:

@@ -11,11 +11,19 @@ from numpy.typing import NDArray
 
 from hthor import catalog, rules
 from hthor.houses.generator.draws import Dice
-from hthor.houses.generator.furnishing.clutter_table import BATHROOM, HABITS, HOMES, MOST, SCREENS, Habit, Size
-from hthor.houses.generator.furnishing.item_styles import Maker
+from hthor.houses.generator.furnishing.clutter_table import (
+    BATHROOM,
+    CLUTTER_RULES,
+    MAX_COUNT,
+    SCREENS,
+    USUAL_PLACES,
+    ClutterRule,
+    Size,
+)
+from hthor.houses.generator.furnishing.item_styles import ItemStyler
 from hthor.houses.generator.furnishing.pieces import Piece
-from hthor.houses.generator.furnishing.requirements import Wants
-from hthor.houses.generator.furnishing.swept_areas import sweeps
+from hthor.houses.generator.furnishing.requirements import Requirements
+from hthor.houses.generator.furnishing.swept_areas import swept_boxes
 from hthor.types import Surface
 
 Floats = NDArray[np.float64]
@@ -46,13 +54,13 @@ class Table:
         self._swept: list[list[tuple[float, ...]]] = [[] for _ in self.surfaces]
 
     @property
-    def habits(self) -> tuple[Habit, ...]:
+    def habits(self) -> tuple[ClutterRule, ...]:
         """What people leave there."""
         if self.room == "Bathroom" and self.piece.kind in BATHROOM:
             return BATHROOM[self.piece.kind]
-        return HABITS.get(self.piece.kind, ())
+        return CLUTTER_RULES.get(self.piece.kind, ())
 
-    def lay(self, habit: Habit, maker: Maker, dice: Dice) -> bool:
+    def lay(self, habit: ClutterRule, maker: ItemStyler, dice: Dice) -> bool:
         """Put the thing down where it belongs, False when it finds no place."""
         for k in dice.order(range(len(self.surfaces)), "surface"):
             surface, laid = self.surfaces[k], self._laid[k]
@@ -67,7 +75,7 @@ class Table:
                 continue
             if covered > _COVER * 4 * surface.half[0] * surface.half[1] and habit.kind not in ("television", "pillow"):
                 continue
-            opens = sweeps(child.kind, child.size)
+            opens = swept_boxes(child.kind, child.size)
             if opens and quarter:
                 quarter, (w, d) = 0, child.size[:2]
             ahead = max((box[3] - d / 2 for box in opens), default=0.0)
@@ -128,7 +136,7 @@ def _spot(
     stride = max(1, len(order) // 40) if spot == "middle" else 1
     for k in order[: _TRIES * stride : stride]:
         box = (u[k] - size[0] / 2, v[k] - size[1] / 2, u[k] + size[0] / 2, v[k] + size[1] / 2, size[2])
-        if takes_all(surface, [*laid, box]):
+        if all_fit(surface, [*laid, box]):
             return (float(u[k]), float(v[k]))
     return None
 
@@ -141,7 +149,7 @@ def _clear(u: Floats, v: Floats, size: Sequence[float], laid: Sequence[Sequence[
     return free
 
 
-def takes_all(surface: Surface, laid: Sequence[Sequence[float]], *, strict: bool = False) -> bool:
+def all_fit(surface: Surface, laid: Sequence[Sequence[float]], *, strict: bool = False) -> bool:
     """Whether every target finds a place among the boxes laid on a surface.
 
     A target that even the bare surface does not take counts only when ``strict``.
@@ -162,10 +170,10 @@ def takes_all(surface: Surface, laid: Sequence[Sequence[float]], *, strict: bool
     return True
 
 
-def lay_all(tables: Sequence[Table], wants: Wants, maker: Maker, dice: Dice) -> str:
+def place_clutter(tables: Sequence[Table], wants: Requirements, maker: ItemStyler, dice: Dice) -> str:
     """Lay all tables; the first needed kind that found no place, empty when all is well."""
     count: Counter[str] = Counter()
-    for kind, homes in HOMES.items():
+    for kind, homes in USUAL_PLACES.items():
         if kind in wants.must and not _need(kind, homes, tables, maker, dice.of("need", kind)):
             return kind
         count[kind] += kind in wants.must
@@ -176,7 +184,7 @@ def lay_all(tables: Sequence[Table], wants: Wants, maker: Maker, dice: Dice) -> 
             had = sum(child.kind == habit.kind for child in table.children)
             for again in range(had, habit.most):
                 share = habit.share if habit.kind in ("pillow", "television") else habit.share * zeal
-                full = count[habit.kind] >= MOST.get(habit.kind, 99)
+                full = count[habit.kind] >= MAX_COUNT.get(habit.kind, 99)
                 if full or not wants.allows(habit.kind) or not own.chance(share * 0.75**again, "wanted", again):
                     break
                 if not table.lay(habit, maker, own.of("lay", again)):
@@ -185,10 +193,10 @@ def lay_all(tables: Sequence[Table], wants: Wants, maker: Maker, dice: Dice) -> 
     return ""
 
 
-def _need(kind: str, homes: Sequence[str], tables: Sequence[Table], maker: Maker, dice: Dice) -> bool:
+def _need(kind: str, homes: Sequence[str], tables: Sequence[Table], maker: ItemStyler, dice: Dice) -> bool:
     for home in homes:
         fitting = [table for table in tables if table.piece.kind == home]
-        habit = next(habit for habit in HABITS[home] if habit.kind == kind)
+        habit = next(habit for habit in CLUTTER_RULES[home] if habit.kind == kind)
         for number, table in enumerate(dice.order(fitting, home)):
             if table.lay(habit, maker, dice.of(home, number)):
                 return True

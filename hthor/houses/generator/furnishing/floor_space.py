@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.floorplan.doors import Door, inward, leaf, zones
-from hthor.houses.generator.floorplan.layout import Plan, RoomPlan
-from hthor.houses.generator.furnishing.pieces import Group, Piece, Rect, moved
-from hthor.houses.generator.furnishing.swept_areas import Box, of_piece
+from hthor.houses.generator.floorplan.layout import FloorPlan, RoomPlan
+from hthor.houses.generator.furnishing.pieces import Piece, PieceGroup, Rect, move_piece
+from hthor.houses.generator.furnishing.swept_areas import Box, swept_boxes_of_piece
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.solids import WALL_M
 from hthor.types import Vec2
@@ -45,7 +45,7 @@ class RoomSpace:
         doorways: what must stay free before the doors. swept: what doors and drawers of furniture take.
     """
 
-    def __init__(self, room: RoomPlan, plan: Plan, doors: Sequence[Door], space: FreeSpace) -> None:
+    def __init__(self, room: RoomPlan, plan: FloorPlan, doors: Sequence[Door], space: FreeSpace) -> None:
         self.room, self._plan, self._space = room, plan, space
         self.pieces: list[Piece] = []
         self.walls = _slabs(room)
@@ -83,7 +83,7 @@ class RoomSpace:
 
     # ------------------------------------------------------------------------------------------------------- placing
 
-    def place(self, group: Group, dice: Dice, wish: Any = None) -> bool:
+    def place(self, group: PieceGroup, dice: Dice, wish: Any = None) -> bool:
         """Put the group at a random good place, False when there is none.
 
         Args:
@@ -105,9 +105,9 @@ class RoomSpace:
                     return True
         return False
 
-    def _settle(self, group: Group, origin: Floats, quarter: int) -> bool:
+    def _settle(self, group: PieceGroup, origin: Floats, quarter: int) -> bool:
         at, yaw = (float(origin[0]), float(origin[1])), quarter * math.pi / 2
-        pieces = [moved(piece, at, yaw) for piece in group.pieces]
+        pieces = [move_piece(piece, at, yaw) for piece in group.pieces]
         free = self._free.copy()
         for piece in pieces:
             if piece.bottom < _BODY_M:
@@ -120,7 +120,7 @@ class RoomSpace:
         self.pieces += pieces
         self.solids = np.vstack([self.solids, [(*p.rect, p.bottom, p.top) for p in pieces]])
         kept = [(*_turned(rect, at, quarter), 0.0, _HIGH_M) for rect in group.free]
-        swept = [box for piece in pieces for box in of_piece(piece)]
+        swept = [box for piece in pieces for box in swept_boxes_of_piece(piece)]
         self.swept += swept
         kept += swept
         self.keeps = np.vstack([self.keeps, np.array(kept).reshape(-1, 6)])
@@ -141,7 +141,7 @@ class RoomSpace:
         if far[best] > within:
             return False
         at = (float(origins[best][0]), float(origins[best][1]))
-        self.pieces.append(moved(piece, at, int(turns[best]) * math.pi / 2))
+        self.pieces.append(move_piece(piece, at, int(turns[best]) * math.pi / 2))
         return True
 
     def hang(self, pieces: Sequence[Piece]) -> None:
@@ -151,7 +151,7 @@ class RoomSpace:
 
     # ------------------------------------------------------------------------------------------------------- candidates
 
-    def _origins(self, group: Group, anchor: str) -> tuple[Floats, NDArray[np.int64]]:
+    def _origins(self, group: PieceGroup, anchor: str) -> tuple[Floats, NDArray[np.int64]]:
         if anchor == "middle":
             return self._middles(0.2)
         x0, y0, x1, _ = group.extent
@@ -188,7 +188,7 @@ class RoomSpace:
         grid = np.array(np.meshgrid(us, vs)).reshape(2, -1).T
         return np.concatenate([grid] * 4), np.repeat(np.arange(4), len(grid))
 
-    def _suits(self, group: Group, origins: Floats, turns: NDArray[np.int64]) -> Bools:
+    def _suits(self, group: PieceGroup, origins: Floats, turns: NDArray[np.int64]) -> Bools:
         good = np.ones(len(origins), dtype=bool)
         for piece in group.pieces:
             x0, y0, x1, y1 = piece.rect
@@ -197,7 +197,7 @@ class RoomSpace:
             grown = boxes + np.array([-GAP_M, -GAP_M, GAP_M, GAP_M]) * 0.9
             good &= ~_hits(grown, self.solids, piece.bottom, piece.top)
             good &= ~_hits(boxes, self.keeps, piece.bottom, piece.top)
-            for x0, y0, x1, y1, low, high in of_piece(piece):
+            for x0, y0, x1, y1, low, high in swept_boxes_of_piece(piece):
                 good &= ~_hits(_placed((x0, y0, x1, y1), origins, turns), self.solids, low, high)
         for rect in group.free:
             boxes = _placed(rect, origins, turns)

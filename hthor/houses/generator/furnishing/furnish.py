@@ -8,9 +8,9 @@ from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.floorplan.room_specs import BATHROOM, BEDROOM, KITCHEN, LIVING
 from hthor.houses.generator.furnishing import groups
 from hthor.houses.generator.furnishing.floor_space import RoomSpace
-from hthor.houses.generator.furnishing.item_styles import Maker
-from hthor.houses.generator.furnishing.pieces import Group
-from hthor.houses.generator.furnishing.requirements import ALWAYS, Wants
+from hthor.houses.generator.furnishing.item_styles import ItemStyler
+from hthor.houses.generator.furnishing.pieces import PieceGroup
+from hthor.houses.generator.furnishing.requirements import ALWAYS, Requirements
 
 _DINING_M2 = 15.0
 """A kitchen of this size holds the dining table."""
@@ -18,7 +18,7 @@ _CORNERS = ("corner", "wall")
 _WALLS = ("wall", "corner")
 
 
-def furnish(rooms: Sequence[RoomSpace], wants: Wants, maker: Maker, dice: Dice) -> str:
+def furnish_rooms(rooms: Sequence[RoomSpace], wants: Requirements, maker: ItemStyler, dice: Dice) -> str:
     """Put furniture into all rooms; the first thing that found no place, empty when all is well."""
     by_kind = {
         kind: [room for room in rooms if room.room.kind == kind] for kind in (KITCHEN, LIVING, BEDROOM, BATHROOM)
@@ -46,12 +46,12 @@ def furnish(rooms: Sequence[RoomSpace], wants: Wants, maker: Maker, dice: Dice) 
     return next((kind for kind in (*ALWAYS, *furniture) if kind not in had), "")
 
 
-def _first(room: RoomSpace, options: Iterable[Group], dice: Dice) -> bool:
+def _first(room: RoomSpace, options: Iterable[PieceGroup], dice: Dice) -> bool:
     """Place the first of the groups that finds a place."""
     return any(room.place(group, dice.of("try", number)) for number, group in enumerate(options))
 
 
-def _cook(room: RoomSpace, maker: Maker, dice: Dice) -> None:
+def _cook(room: RoomSpace, maker: ItemStyler, dice: Dice) -> None:
     if not _first(room, groups.kitchen(maker, dice), dice):
         room.place(groups.fridge(maker), dice.of("fridge"))
         room.place(groups.washing_up(maker), dice.of("washing"))
@@ -60,7 +60,9 @@ def _cook(room: RoomSpace, maker: Maker, dice: Dice) -> None:
         room.place(groups.sized(maker, "counter_top", size, front=0.7, anchors=_CORNERS), dice.of("second"))
 
 
-def _sit(rooms: Sequence[RoomSpace], beds: Sequence[RoomSpace], wants: Wants, maker: Maker, dice: Dice) -> None:
+def _sit(
+    rooms: Sequence[RoomSpace], beds: Sequence[RoomSpace], wants: Requirements, maker: ItemStyler, dice: Dice
+) -> None:
     for number, room in enumerate(sorted(rooms, key=lambda room: -room.room.area)):
         own = dice.of(number)
         if number and own.chance(0.5, "other use"):
@@ -82,7 +84,7 @@ def _sit(rooms: Sequence[RoomSpace], beds: Sequence[RoomSpace], wants: Wants, ma
                     break
 
 
-def _scatter(rooms: Sequence[RoomSpace], maker: Maker, dice: Dice) -> None:
+def _scatter(rooms: Sequence[RoomSpace], maker: ItemStyler, dice: Dice) -> None:
     """Sofa and coffee table apart, where no room takes them together."""
     for kind in ("sofa", "coffee_table"):
         for number, room in enumerate(rooms):
@@ -100,7 +102,7 @@ def _depths(room: RoomSpace) -> list[float]:
     return sorted(depths)
 
 
-def _dine(kitchens: Sequence[RoomSpace], living: Sequence[RoomSpace], maker: Maker, dice: Dice) -> None:
+def _dine(kitchens: Sequence[RoomSpace], living: Sequence[RoomSpace], maker: ItemStyler, dice: Dice) -> None:
     small = [room for room in living if len(room.pieces) <= 2]
     roomy = [room for room in kitchens if room.room.area >= _DINING_M2]
     order = [*roomy, *small, *living, *kitchens] if dice.chance(0.75, "kitchen") else [*small, *living, *kitchens]
@@ -111,13 +113,13 @@ def _dine(kitchens: Sequence[RoomSpace], living: Sequence[RoomSpace], maker: Mak
                 return
 
 
-def _work(rooms: Sequence[RoomSpace], maker: Maker, dice: Dice) -> None:
+def _work(rooms: Sequence[RoomSpace], maker: ItemStyler, dice: Dice) -> None:
     for number, room in enumerate(rooms):
         if _first(room, groups.working(maker, dice), dice.of(number)):
             return
 
 
-def _wash(room: RoomSpace, maker: Maker, dice: Dice) -> None:
+def _wash(room: RoomSpace, maker: ItemStyler, dice: Dice) -> None:
     room.place(groups.single(maker, "toilet", front=0.5, anchors=_WALLS), dice.of("toilet"))
     room.place(groups.sized(maker, "sink", (65, 48, 105), front=0.6, anchors=_WALLS), dice.of("sink"))
     tub = dice.chance(0.5, "tub")
@@ -128,7 +130,7 @@ def _wash(room: RoomSpace, maker: Maker, dice: Dice) -> None:
         room.place(groups.bath(maker), dice.of("tub too"))
 
 
-def _store(rooms: Sequence[RoomSpace], wants: Wants, maker: Maker, dice: Dice) -> None:
+def _store(rooms: Sequence[RoomSpace], wants: Requirements, maker: ItemStyler, dice: Dice) -> None:
     """The furniture that the house must have, in the first room that takes it."""
     for kind in ("dresser", "shelf", "armchair"):
         if kind not in wants.must or any(piece.kind == kind for room in rooms for piece in room.pieces):
@@ -209,7 +211,7 @@ _BACKED = frozenset(
 _ROOMY_M2 = 20.0
 
 
-def _fill(room: RoomSpace, wants: Wants, maker: Maker, dice: Dice) -> None:
+def _fill(room: RoomSpace, wants: Requirements, maker: ItemStyler, dice: Dice) -> None:
     size = min(max((room.room.area / _ROOMY_M2) ** 0.5, 0.55), 1.25)
     for number, (kind, share) in enumerate(_MORE[room.room.kind]):
         own = dice.of(kind, number)
@@ -229,7 +231,7 @@ def _fill(room: RoomSpace, wants: Wants, maker: Maker, dice: Dice) -> None:
             room.place(groups.loose(maker, own, kind, *names, turned=turned, anchors=_CORNERS), own)
 
 
-def _carpet(room: RoomSpace, maker: Maker, dice: Dice) -> None:
+def _carpet(room: RoomSpace, maker: ItemStyler, dice: Dice) -> None:
     kinds, within, share, sizes = _RUGS.get(room.room.kind, ((), 0.0, 0.0, ()))
     marks = [next((piece.middle for piece in room.pieces if piece.kind == kind), None) for kind in kinds]
     places = [mark for mark in marks if mark is not None]
@@ -241,7 +243,7 @@ def _carpet(room: RoomSpace, maker: Maker, dice: Dice) -> None:
             return
 
 
-def _island(room: RoomSpace, maker: Maker, dice: Dice) -> None:
+def _island(room: RoomSpace, maker: ItemStyler, dice: Dice) -> None:
     for size in ((150, 80, 90), (120, 70, 90)):
         if room.place(groups.island(maker, dice, size), dice.of("island", size[0])):
             return

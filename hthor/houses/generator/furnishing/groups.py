@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import msgspec
 
 from hthor.houses.generator.draws import Dice
-from hthor.houses.generator.furnishing.item_styles import SIZES, Maker
-from hthor.houses.generator.furnishing.pieces import Group, Piece, Rect
+from hthor.houses.generator.furnishing.item_styles import SIZES, ItemStyler
+from hthor.houses.generator.furnishing.pieces import Piece, PieceGroup, Rect
 from hthor.types import Vec2
 
 TUCK_M = 0.18
@@ -32,7 +32,7 @@ _RUNS: tuple[tuple[int | str, ...], ...] = (
 door at its right end, which would hit the fridge when open."""
 
 
-def kitchen(maker: Maker, dice: Dice) -> Iterator[Group]:
+def kitchen(maker: ItemStyler, dice: Dice) -> Iterator[PieceGroup]:
     """A run of counters, sink and stove with the fridge at its right end, the longest first."""
     fridge = maker.make("fridge")
     for run in _RUNS[dice.whole(0, 1, "longest") :]:
@@ -47,10 +47,10 @@ def kitchen(maker: Maker, dice: Dice) -> Iterator[Group]:
         pieces.append(maker.make("fridge", middle=(left + w / 2, d / 2)))
         swing = (left - 0.2, d + 0.01, left + w + 0.02, d + w + 0.12)
         front = (0.0, 0.63, left - 0.01, 1.37)
-        yield Group(name="kitchen", pieces=tuple(pieces), free=(swing, front), anchors=("right", "wall"), serve=2)
+        yield PieceGroup(name="kitchen", pieces=tuple(pieces), free=(swing, front), anchors=("right", "wall"), serve=2)
 
 
-def island(maker: Maker, dice: Dice, size: tuple[int, int, int]) -> Group:
+def island(maker: ItemStyler, dice: Dice, size: tuple[int, int, int]) -> PieceGroup:
     """A counter free in the room, with stools at its back."""
     w, d = size[0] / 100, size[1] / 100
     stool = maker.make("stool")
@@ -61,26 +61,28 @@ def island(maker: Maker, dice: Dice, size: tuple[int, int, int]) -> Group:
     free = ((-w / 2, d + 0.01, w / 2, d + 0.8), (-w / 2, edge - 0.6, w / 2, edge - 0.02))
     sides = ((-w / 2 - 0.6, 0.0, -w / 2 - 0.02, d), (w / 2 + 0.02, 0.0, w / 2 + 0.6, d))
     kept = stools if dice.chance(0.7, "stools") else []
-    return Group(name="island", pieces=(counter, *kept), free=(*free, *sides), anchors=("middle",), serve=2)
+    return PieceGroup(name="island", pieces=(counter, *kept), free=(*free, *sides), anchors=("middle",), serve=2)
 
 
-def fridge(maker: Maker) -> Group:
+def fridge(maker: ItemStyler) -> PieceGroup:
     """The fridge alone, with room for its door."""
     piece = maker.against("fridge")
     w, d, _ = piece.size
     swing = (-w / 2 - 0.2, d + 0.01, w / 2 + 0.02, d + w + 0.12)
     beside = (-w / 2 - 0.25, 0.03, -w / 2 - 0.03, d)
-    return Group(name="fridge", pieces=(piece,), free=(swing, beside), anchors=("right", "wall"))
+    return PieceGroup(name="fridge", pieces=(piece,), free=(swing, beside), anchors=("right", "wall"))
 
 
-def washing_up(maker: Maker) -> Group:
+def washing_up(maker: ItemStyler) -> PieceGroup:
     """A short counter beside a sink."""
     sink = maker.make("sink", middle=(0.6 + _SEAM_M + 0.4, 0.31), size=(80, 62, 108))
     counter = maker.make("counter_top", middle=(0.0, 0.31), size=(120, 62, 90))
-    return Group(name="washing up", pieces=(counter, sink), free=((-0.6, 0.63, 1.4, 1.3),), anchors=("corner", "wall"))
+    return PieceGroup(
+        name="washing up", pieces=(counter, sink), free=((-0.6, 0.63, 1.4, 1.3),), anchors=("corner", "wall")
+    )
 
 
-def dining(maker: Maker, dice: Dice) -> Iterator[Group]:
+def dining(maker: ItemStyler, dice: Dice) -> Iterator[PieceGroup]:
     """A table with chairs: free in the room, then smaller ones, then with one long side to the wall."""
     for number, size in enumerate(((dice.pick(SIZES["dining_table"], "size")), (130, 85, 74), (110, 75, 74))):
         yield _table(maker, dice.of(number), size, wall=False)
@@ -89,7 +91,7 @@ def dining(maker: Maker, dice: Dice) -> Iterator[Group]:
     yield _table(maker, dice.of("least"), (80, 66, 74), wall=True)
 
 
-def _table(maker: Maker, dice: Dice, size: tuple[int, int, int], *, wall: bool) -> Group:
+def _table(maker: ItemStyler, dice: Dice, size: tuple[int, int, int], *, wall: bool) -> PieceGroup:
     w, d = size[0] / 100, size[1] / 100
     table = maker.make("dining_table", middle=(0.0, d / 2), size=size)
     across = 2 if w >= 1.25 else 1
@@ -99,17 +101,19 @@ def _table(maker: Maker, dice: Dice, size: tuple[int, int, int], *, wall: bool) 
     ends = [(-w / 2, d / 2, -HALF / 2), (w / 2, d / 2, HALF / 2)]
     places += ends if w >= 1.6 or wall else dice.order(ends, "ends")[: dice.whole(0, 1, "end")]
     chairs = [_chair(maker, x, y, yaw, dice.of("chair", k)) for k, (x, y, yaw) in enumerate(places)]
-    group = Group(name="dining", pieces=(table, *chairs), anchors=("wall", "corner") if wall else ("middle",))
+    group = PieceGroup(name="dining", pieces=(table, *chairs), anchors=("wall", "corner") if wall else ("middle",))
     x0, y0, x1, y1 = group.extent
     around = [(x0 - 0.5, y0, x0 - 0.03, y1), (x1 + 0.03, y0, x1 + 0.5, y1), (x0, y1 + 0.03, x1, y1 + 0.5)]
     if wall:
         around = around[2:]
     else:
         around.append((x0, y0 - 0.5, x1, y0 - 0.03))
-    return Group(name="dining", pieces=group.pieces, free=tuple(around), anchors=group.anchors, serve=1 if wall else 2)
+    return PieceGroup(
+        name="dining", pieces=group.pieces, free=tuple(around), anchors=group.anchors, serve=1 if wall else 2
+    )
 
 
-def _chair(maker: Maker, x: float, y: float, yaw: float, dice: Dice) -> Piece:
+def _chair(maker: ItemStyler, x: float, y: float, yaw: float, dice: Dice) -> Piece:
     """A chair at the point (x, y) of a table's edge; at yaw 0 it stands below the edge and faces up."""
     chair = maker.make("chair")
     away = chair.size[1] / 2 - TUCK_M + dice.between(0.0, 0.1, "out")
@@ -118,7 +122,7 @@ def _chair(maker: Maker, x: float, y: float, yaw: float, dice: Dice) -> Piece:
     return maker.make("chair", middle=(x - fx * away, y - fy * away), yaw=yaw + turn)
 
 
-def seating(maker: Maker, dice: Dice, depths: list[float], extras: tuple[str, ...]) -> Iterator[Group]:
+def seating(maker: ItemStyler, dice: Dice, depths: list[float], extras: tuple[str, ...]) -> Iterator[PieceGroup]:
     """TV stand against a wall, the sofa facing it over a coffee table; ``extras`` stand beside the sofa.
 
     ``depths`` are the room's widths [m]: a sofa stands with its back to the opposite wall, or free in the room.
@@ -134,19 +138,19 @@ def seating(maker: Maker, dice: Dice, depths: list[float], extras: tuple[str, ..
     yield _seating(maker, dice, 1.6, (), wall=False, small=True)
 
 
-def resting(maker: Maker) -> Iterator[Group]:
+def resting(maker: ItemStyler) -> Iterator[PieceGroup]:
     """A sofa with its back to the wall and a coffee table before it, without a television."""
     for wide in (180, 155):
         sofa, low = maker.against("sofa", size=(wide, 88, 80)), maker.make("coffee_table", size=(90, 50, 40))
         table = maker.make("coffee_table", middle=(0.0, 0.88 + 0.38 + low.size[1] / 2), size=(90, 50, 40))
         half = wide / 200
         free = ((-half, 0.9, half, 1.24), (-half, 1.78, half, 2.2), (half - 0.5, 0.9, half, 1.8))
-        yield Group(name="resting", pieces=(sofa, table), free=free, anchors=("wall",), serve=1)
+        yield PieceGroup(name="resting", pieces=(sofa, table), free=free, anchors=("wall",), serve=1)
 
 
 def _seating(
-    maker: Maker, dice: Dice, gap: float, extras: tuple[str, ...], *, wall: bool, small: bool = False
-) -> Group:
+    maker: ItemStyler, dice: Dice, gap: float, extras: tuple[str, ...], *, wall: bool, small: bool = False
+) -> PieceGroup:
     sizes: dict[str, tuple[int, int, int]] = {}
     if small:
         sizes = {"tv_stand": (130, 42, 52), "sofa": (155, 86, 80), "coffee_table": (90, 50, 40)}
@@ -177,10 +181,10 @@ def _seating(
     backs = ((edges[0], back + 0.03, edges[1], back + 0.3),) if wall else ()
     if not wall:
         free.append((edges[0], back + 0.03, edges[1], back + 0.7))
-    return Group(name="seating", pieces=tuple(pieces), free=tuple(free), backs=backs, serve=1)
+    return PieceGroup(name="seating", pieces=tuple(pieces), free=tuple(free), backs=backs, serve=1)
 
 
-def sleeping(maker: Maker, dice: Dice, *, double: bool) -> Iterator[Group]:
+def sleeping(maker: ItemStyler, dice: Dice, *, double: bool) -> Iterator[PieceGroup]:
     """A bed with its head to the wall and side tables, then with fewer, then a narrow one in a corner."""
     sizes = [dice.pick(SIZES["bed"], "size"), (140, 208, 92)] if double else [(120, 206, 90)]
     for size in (*sizes, (100, 204, 88)):
@@ -188,7 +192,7 @@ def sleeping(maker: Maker, dice: Dice, *, double: bool) -> Iterator[Group]:
             yield _bed(maker, dice, size, tables)
 
 
-def _bed(maker: Maker, dice: Dice, size: tuple[int, int, int], tables: int) -> Group:
+def _bed(maker: ItemStyler, dice: Dice, size: tuple[int, int, int], tables: int) -> PieceGroup:
     bed = maker.against("bed", size=size)
     w, d = bed.size[0] / 2, bed.size[1]
     table = maker.make("side_table")
@@ -202,10 +206,12 @@ def _bed(maker: Maker, dice: Dice, size: tuple[int, int, int], tables: int) -> G
     free += [(x0, 1.2, x1, d) for x0, x1 in flanks]
     free.append((-w, d + 0.02, w, d + 0.5))
     anchors = ("wall",) if tables == 2 else ("corner", "wall")
-    return Group(name="sleeping", pieces=(bed, *stands), free=tuple(free), anchors=anchors, serve=max(len(sides), 1))
+    return PieceGroup(
+        name="sleeping", pieces=(bed, *stands), free=tuple(free), anchors=anchors, serve=max(len(sides), 1)
+    )
 
 
-def working(maker: Maker, dice: Dice) -> Iterator[Group]:
+def working(maker: ItemStyler, dice: Dice) -> Iterator[PieceGroup]:
     """A desk against the wall with its chair, clear of the chest of drawers at its right."""
     for size in (dice.pick(SIZES["desk"], "size"), (120, 60, 74)):
         desk = maker.against("desk", size=size)
@@ -213,7 +219,7 @@ def working(maker: Maker, dice: Dice) -> Iterator[Group]:
         knees = (-w / 2 + 0.04 + w / 2 - min(0.4, 0.35 * w)) / 2
         chair = _chair(maker, knees, d, HALF, dice.of("chair"))
         free = ((-w / 2, d + 0.45, w / 2, d + 0.95), (w / 2 - 0.42, d + 0.01, w / 2, d + 0.5))
-        yield Group(name="working", pieces=(desk, chair), free=free, anchors=("wall", "corner"), serve=1)
+        yield PieceGroup(name="working", pieces=(desk, chair), free=free, anchors=("wall", "corner"), serve=1)
 
 
 def _put(piece: Piece, middle: Vec2, yaw: float = 0.0) -> Piece:
@@ -221,23 +227,25 @@ def _put(piece: Piece, middle: Vec2, yaw: float = 0.0) -> Piece:
 
 
 def single(
-    maker: Maker, kind: str, *names: str | int, front: float = 0.6, anchors: tuple[str, ...] = ("wall",)
-) -> Group:
+    maker: ItemStyler, kind: str, *names: str | int, front: float = 0.6, anchors: tuple[str, ...] = ("wall",)
+) -> PieceGroup:
     """One thing with its back to the wall and so much free floor [m] before it."""
     piece = maker.against(kind, *names)
     w, d, _ = piece.size
     free = ((-w / 2, d + 0.01, w / 2, d + front),) if front > 0.0 else ()
-    return Group(name=kind, pieces=(piece,), free=free, anchors=anchors, serve=len(free))
+    return PieceGroup(name=kind, pieces=(piece,), free=free, anchors=anchors, serve=len(free))
 
 
-def sized(maker: Maker, kind: str, size: tuple[int, int, int], *, front: float, anchors: tuple[str, ...]) -> Group:
+def sized(
+    maker: ItemStyler, kind: str, size: tuple[int, int, int], *, front: float, anchors: tuple[str, ...]
+) -> PieceGroup:
     """As `single`, of this size [cm]."""
     piece = maker.against(kind, size=size)
     w, d, _ = piece.size
-    return Group(name=kind, pieces=(piece,), free=((-w / 2, d + 0.01, w / 2, d + front),), anchors=anchors)
+    return PieceGroup(name=kind, pieces=(piece,), free=((-w / 2, d + 0.01, w / 2, d + front),), anchors=anchors)
 
 
-def reading(maker: Maker, *, lamp: bool) -> Group:
+def reading(maker: ItemStyler, *, lamp: bool) -> PieceGroup:
     """An armchair in a corner with a lamp beside it."""
     chair = maker.make("armchair")
     wide, deep, _ = chair.size
@@ -245,24 +253,24 @@ def reading(maker: Maker, *, lamp: bool) -> Group:
     lamps = [maker.make("floor_lamp")] if lamp else []
     stands = [maker.make("floor_lamp", middle=(wide + 0.03 + piece.size[0] / 2, piece.size[1] / 2)) for piece in lamps]
     free = ((0.0, deep + 0.02, wide, deep + 0.5),)
-    return Group(name="reading", pieces=(chair, *stands), free=free, anchors=("left", "wall"))
+    return PieceGroup(name="reading", pieces=(chair, *stands), free=free, anchors=("left", "wall"))
 
 
-def bath(maker: Maker) -> Group:
+def bath(maker: ItemStyler) -> PieceGroup:
     """A bathtub with a long side to the wall."""
     tub = maker.make("bathtub")
     w, d, _ = tub.size
     piece = maker.make("bathtub", middle=(0.0, w / 2), yaw=HALF / 2)
-    return Group(
+    return PieceGroup(
         name="bathtub", pieces=(piece,), free=((-d / 2, w + 0.01, d / 2, w + 0.55),), anchors=("corner", "wall")
     )
 
 
 def loose(
-    maker: Maker, dice: Dice, kind: str, *names: str | int, turned: bool = True, anchors: tuple[str, ...]
-) -> Group:
+    maker: ItemStyler, dice: Dice, kind: str, *names: str | int, turned: bool = True, anchors: tuple[str, ...]
+) -> PieceGroup:
     """A thing that stands about, turned at will."""
     yaw = dice.between(-HALF, HALF, *names, "yaw") if turned else 0.0
     piece = maker.make(kind, *names, yaw=yaw)
     piece = maker.make(kind, *names, yaw=yaw, middle=(0.0, -piece.rect[1]))
-    return Group(name=kind, pieces=(piece,), anchors=anchors, serve=0)
+    return PieceGroup(name=kind, pieces=(piece,), anchors=anchors, serve=0)

@@ -55,7 +55,7 @@ _MATCHES = {"kitchen_cabinet": "counter_top", "side_table": "dresser", "wardrobe
 """Kinds that take the finish of another one."""
 
 
-class Maker:
+class ItemStyler:
     """Makes the things of one house: every sofa of it has the same finish, every chair is of one make."""
 
     def __init__(self, dice: Dice) -> None:

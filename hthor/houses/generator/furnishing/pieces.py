@@ -51,7 +51,7 @@ class Piece(Struct, frozen=True, kw_only=True):
         return (self.middle[0] - hx, self.middle[1] - hy, self.middle[0] + hx, self.middle[1] + hy)
 
 
-class Group(Struct, frozen=True, kw_only=True):
+class PieceGroup(Struct, frozen=True, kw_only=True):
     """Things that are placed together.
 
     ``free`` are rectangles before and beside them that must stay free of furniture but may be shared; ``backs`` are
@@ -75,7 +75,7 @@ class Group(Struct, frozen=True, kw_only=True):
         return (min(x0s), min(y0s), max(x1s), max(y1s))
 
 
-def moved(piece: Piece, origin: Vec2, yaw: float) -> Piece:
+def move_piece(piece: Piece, origin: Vec2, yaw: float) -> Piece:
     """The piece of a group whose frame stands at ``origin`` [m], turned by ``yaw``."""
     x, y = turn(piece.middle, yaw)
     return Piece(

@@ -29,7 +29,7 @@ _SHARE = {
 }
 
 
-class Wants(Struct, frozen=True):
+class Requirements(Struct, frozen=True):
     """``must``: optional kinds that the house has; all other optional kinds it has not."""
 
     must: frozenset[str]
@@ -39,18 +39,18 @@ class Wants(Struct, frozen=True):
         return kind in self.must or (kind not in OPTIONAL and kind not in catalog.TARGETS)
 
 
-def wants(needs: Iterable[str] | None, dice: Dice) -> Wants:
+def draw_requirements(needs: Iterable[str] | None, dice: Dice) -> Requirements:
     """What is asked for, or a draw of it when nothing is.
 
     Raises:
         UnknownName: for a need that is none of the optional kinds.
     """
     if needs is None:
-        return Wants(frozenset(kind for kind in OPTIONAL if dice.chance(_SHARE.get(kind, 0.6), kind)))
+        return Requirements(frozenset(kind for kind in OPTIONAL if dice.chance(_SHARE.get(kind, 0.6), kind)))
     given = frozenset(needs)
     if isinstance(needs, str):
         raise HthorError(f"needs must be several kinds, got the text {needs!r}; give a set such as {{'pillow'}}")
     for kind in sorted(given):
         if kind not in OPTIONAL:
             raise UnknownName("optional kind", kind, OPTIONAL, f"Every house has {', '.join(ALWAYS)} anyway.")
-    return Wants(given)
+    return Requirements(given)

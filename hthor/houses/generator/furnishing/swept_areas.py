@@ -16,7 +16,7 @@ Box = tuple[float, float, float, float, float, float]
 
 
 @lru_cache(maxsize=512)
-def sweeps(kind: str, size: Vec3) -> tuple[Box, ...]:
+def swept_boxes(kind: str, size: Vec3) -> tuple[Box, ...]:
     """For each door or drawer, the box around all its places, from the thing's middle on the plan and the floor up."""
     row = catalog.kind(kind)
     if not row.joints(size):
@@ -24,9 +24,9 @@ def sweeps(kind: str, size: Vec3) -> tuple[Box, ...]:
     thing = Thing(id=kind, kind=kind, asset="", centre=(0.0, 0.0, size[2] / 2), size=size, yaw=0.0)
     found: dict[str, Box] = {}
     for step in range(1, _STEPS + 1):
-        for part, box in boxes.of(thing, step / _STEPS):
+        for part, box in boxes.boxes_of(thing, step / _STEPS):
             if part.moves:
-                slab = boxes.slab(box)
+                slab = boxes.bounding_slab(box)
                 cos, sin = abs(math.cos(slab.yaw)), abs(math.sin(slab.yaw))
                 hx = (cos * slab.size[0] + sin * slab.size[1]) / 2
                 hy = (sin * slab.size[0] + cos * slab.size[1]) / 2
@@ -44,11 +44,11 @@ def sweeps(kind: str, size: Vec3) -> tuple[Box, ...]:
     return tuple(found.values())
 
 
-def of_piece(piece: Piece) -> list[Box]:
+def swept_boxes_of_piece(piece: Piece) -> list[Box]:
     """The same for a piece where it stands; its yaw must be whole quarter turns."""
     cos, sin = round(math.cos(piece.yaw)), round(math.sin(piece.yaw))
     placed = []
-    for x0, y0, x1, y1, z0, z1 in sweeps(piece.kind, piece.size):
+    for x0, y0, x1, y1, z0, z1 in swept_boxes(piece.kind, piece.size):
         xs = (cos * x0 - sin * y0, cos * x1 - sin * y1, cos * x0 - sin * y1, cos * x1 - sin * y0)
         ys = (sin * x0 + cos * y0, sin * x1 + cos * y1, sin * x0 + cos * y1, sin * x1 + cos * y0)
         x, y = piece.middle

@@ -11,10 +11,10 @@ from msgspec import Struct
 from hthor.houses.checks.polygons import distance_to_outline
 from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.floorplan.doors import Door, inward
-from hthor.houses.generator.floorplan.layout import OUTSIDE, Plan, Seam
+from hthor.houses.generator.floorplan.layout import OUTSIDE, FloorPlan, Seam
 from hthor.houses.generator.floorplan.room_specs import BATHROOM, BEDROOM, KITCHEN, LIVING
 from hthor.houses.generator.furnishing.floor_space import GAP_M, RoomSpace
-from hthor.houses.generator.furnishing.item_styles import Maker
+from hthor.houses.generator.furnishing.item_styles import ItemStyler
 from hthor.houses.generator.furnishing.pieces import Piece, Rect
 from hthor.houses.space.solids import WALL_M
 from hthor.types import Vec2
@@ -68,10 +68,12 @@ class _Face(Struct, frozen=True):
         )
 
 
-class Wallwork:
+class WallDecorator:
     """The walls of one room while things are hung on them. ``windows`` are those of the room."""
 
-    def __init__(self, space: RoomSpace, plan: Plan, doors: Sequence[Door], maker: Maker, height: float) -> None:
+    def __init__(
+        self, space: RoomSpace, plan: FloorPlan, doors: Sequence[Door], maker: ItemStyler, height: float
+    ) -> None:
         self._space, self._plan, self._maker, self._height = space, plan, maker, height
         self._doors = [door for door in doors if space.room.number in (door.room0, door.room1)]
         self.windows: list[Window] = []

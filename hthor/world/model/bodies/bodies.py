@@ -59,7 +59,7 @@ def look(spec: BodySpec) -> tuple[Part, ...]:
 def pieces(spec: BodySpec) -> tuple[Piece, ...]:
     """The body's meshes in its own frame, for pictures for people: its file's own, or its solids'."""
     draw = getattr(_module(spec), "pieces", None)
-    return tuple(plain.pieces(look(spec)) if draw is None else draw())
+    return tuple(plain.plain_pieces(look(spec)) if draw is None else draw())
 
 
 def neck(spec: BodySpec) -> Vec3:
