@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from hthor import houses
 from hthor.errors import HthorError
 from hthor.geometry.plane import distance_to_rectangle, signed_area
-from hthor.houses.checks.house_checks import check, sound
+from hthor.houses.checks.findings import is_sound
+from hthor.houses.checks.house_checks import check
 from hthor.houses.space import solids
 from hthor.houses.space.free_space import FreeSpace, obstacle_rectangles
 from hthor.houses.space.geodesic import Geodesics
@@ -345,13 +346,13 @@ def rules_of(findings):
 
 def test_a_sound_house_has_no_findings():
     assert check(two_rooms(), 0.2) == ()
-    assert sound(())
+    assert is_sound(())
 
 
 def test_a_closed_door_makes_a_room_unreachable():
     findings = check(two_rooms(passable=False), 0.2)
     assert rules_of(findings) == [("error", "room-reachable")]
-    assert not sound(findings)
+    assert not is_sound(findings)
     assert "right" in str(findings[0])
 
 
@@ -393,15 +394,15 @@ def test_a_wall_with_two_faces_is_one_wall_cut_at_its_doorway():
 @pytest.mark.parametrize("name", houses.names())
 def test_our_own_houses_are_sound(name):
     spec = houses.load(name)
-    assert sound(check(spec, 0.20))
+    assert is_sound(check(spec, 0.20))
     assert all(signed_area(part.polygon) > 0 for part in spec.rooms)
-    assert sound(check(spec, 0.25))
+    assert is_sound(check(spec, 0.25))
 
 
 def test_every_room_of_the_sample_houses_can_be_reached(samples):
     for file in samples:
         findings = check(houses.load(file), 0.20)
-        assert sound(findings), [str(finding) for finding in findings]
+        assert is_sound(findings), [str(finding) for finding in findings]
 
 
 def test_shortest_paths_of_the_sample_houses_are_no_longer_than_over_the_grid(samples):

@@ -18,7 +18,8 @@ from hthor import catalog, houses, jsonio
 from hthor.errors import HthorError, UnknownName
 from hthor.geometry.plane import signed_area
 from hthor.houses import generator, loader
-from hthor.houses.checks.house_checks import check, sound
+from hthor.houses.checks.findings import is_sound
+from hthor.houses.checks.house_checks import check
 from hthor.houses.generator import document, scenes, validity
 from hthor.houses.generator.attempt import AttemptFailed
 from hthor.houses.generator.draws import Dice
@@ -45,7 +46,7 @@ def made(seed: int, rooms: int, needs: frozenset[str] | None = None) -> HouseSpe
 def test_a_generated_house_is_sound(seed: int, rooms: int) -> None:
     house = made(seed, rooms)
     assert len(house.rooms) == rooms
-    assert sound(check(house, 0.25, strict=True))
+    assert is_sound(check(house, 0.25, strict=True))
     space, free = validity.floor(house)
     assert list(validity.find_faults(house, space, validity.reached(free))) == []
     kinds = {thing.kind for thing in house.things}

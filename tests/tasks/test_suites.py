@@ -11,8 +11,8 @@ import pytest
 
 from hthor import catalog, houses, jsonio, tasks
 from hthor.catalog import priors
+from hthor.houses import names
 from hthor.houses.generator import scenes, unseen
-from hthor.houses.loader import names
 from hthor.tasks.generation import standard
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
 from hthor.tasks.suite import encode_suite

@@ -21,7 +21,7 @@ from hthor.tasks.arrangement.occlusion import LinesOfSight
 from hthor.tasks.arrangement.placement import SupportSurfaces, distance_to_thing
 from hthor.tasks.arrangement.reachability import ReachableFloor
 from hthor.tasks.arrangement.target_arrangement import NEAR_M, arrange
-from hthor.tasks.generation import generate
+from hthor.tasks.generation import generate, suite_specs
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
 from hthor.tasks.suite import encode_suite
 from hthor.tasks.suites import library
@@ -317,7 +317,7 @@ def test_an_empty_hall_has_no_place_for_anything():
 
 
 def test_a_rebuild_gives_the_same_bytes(tmp_path):
-    plan = generate.PLANS["smoke"]
+    plan = suite_specs.SUITE_SPECS["smoke"]
     rebuilt = generate.house_tasks(plan, HOUSES["juniper"])
     assert [jsonio.canonical(task) for task in rebuilt] == [
         jsonio.canonical(task) for task in SMOKE.tasks if task.house == "juniper"
