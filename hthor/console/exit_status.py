@@ -1,4 +1,4 @@
-"""How a command ends: its exit code, and its error in words or as a document."""
+"""How a command ends: its exit code, and its error as a message or a JSON document."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ CODES = {
 
 
 def words() -> str:
-    """The exit codes in a sentence."""
+    """The exit codes as one sentence."""
     return f"Exit codes: {'; '.join(f'{code} {meaning}' for code, meaning in CODES.items())}."
 
 
 def conclude(command: Callable[..., Any]) -> None:
-    """Run the command line to its end, and turn the user's errors into one clear line.
+    """Run the command line to its end, and turn user errors into one clear line.
 
     With ``--json`` an error is also a document on standard output, unless the command wrote its own before it failed.
     """
@@ -65,13 +65,13 @@ def _perform(command: Callable[[], Any]) -> Any:
     except BrokenPipeError:
         _unread()
     except SystemExit as error:
-        if isinstance(error.__context__, BrokenPipeError):  # the libraries that parse and print exit with 1 then
+        if isinstance(error.__context__, BrokenPipeError):  # typer and rich exit with 1 in this case
             _unread()
         _blame(error)
         raise
     except OSError as error:
         _blame(error)
-        # A place that cannot be read or written, a full disk: the user's to mend, like any wrong input.
+        # An unreadable or unwritable path, a full disk: for the user to fix, like wrong input.
         place = f"{error.filename}: " if error.filename else ""
         _fail(f"{place}{error.strerror or error}.", USAGE)
     except Exception as error:
@@ -85,7 +85,7 @@ def _blame(error: BaseException) -> None:
 
 
 def _unread() -> NoReturn:
-    """Whoever read our output has gone, as `head` does. Python would complain once more at its end."""
+    """The reader of our output has gone, as `head` does. Without this Python would complain again at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     sys.exit(0)
 
@@ -99,7 +99,7 @@ def _fail(words: str, code: int, *, told: bool = False) -> NoReturn:
 
 
 def _usage(error: Exception) -> str | None:
-    """What was wrong with the command line; None for any other error. (The parser's classes have no public home.)"""
+    """The message of a usage error; None for other errors. (The parser's exception classes are not public.)"""
     if not hasattr(error, "format_message"):
         return None
     text = str(error.format_message()).rstrip(".") + "."

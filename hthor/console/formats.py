@@ -1,7 +1,7 @@
 """Tables in the formats that `--format` names.
 
-Markdown and LaTeX show what the terminal shows. CSV and JSON are for programs: where a table shows numbers that were
-rounded or joined for people, its command gives these formats the numbers themselves.
+Markdown and LaTeX have the content of the terminal table. CSV and JSON are for programs: their commands provide numbers
+with full precision.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Row = Sequence[object]
 
 
 class Format(enum.StrEnum):
-    """How a table is written to standard output."""
+    """The format of a table on standard output."""
 
     TABLE = "table"
     CSV = "csv"
@@ -42,10 +42,10 @@ Shape = Annotated[
 
 
 def asks_json(json: bool, shape: Format) -> bool:
-    """Whether the document is wanted: --json and --format json are the same.
+    """Whether JSON was requested; --json and --format json mean the same.
 
     Raises:
-        BadParameter: when one asks for JSON and the other for something else.
+        BadParameter: if the two options contradict each other.
     """
     if json and shape not in (Format.TABLE, Format.JSON):
         raise typer.BadParameter(f"--json and --format {shape} exclude each other", param_hint="--format")
@@ -71,7 +71,7 @@ def render(headings: Sequence[str], rows: Iterable[Row], shape: Format, title: s
 
 
 def tables(shown: RenderableType) -> Iterator[tuple[str, list[str], list[list[str]]]]:
-    """Title, headings and cells of every table in something that rich can print, as text."""
+    """Title, headings and cells of every table in a rich renderable, as text."""
     from rich.console import Group
     from rich.table import Table
 
@@ -85,8 +85,7 @@ def tables(shown: RenderableType) -> Iterator[tuple[str, list[str], list[list[st
 
 
 def flat(record: object, prefix: str = "") -> dict[str, object]:
-    """A record's numbers and words by name, for a row of CSV: records within it as ``outer_inner``, an interval
-    ``ci95`` as ``ci95_low`` and ``ci95_high``."""
+    """A record as one CSV row: nested fields become ``outer_inner``, an interval ``ci95`` becomes two columns."""
     import msgspec
 
     document = msgspec.to_builtins(record) if isinstance(record, msgspec.Struct) else record
@@ -134,7 +133,7 @@ def _csv(headings: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
 
 
 def _guarded(cell: Any) -> Any:
-    """A cell that no spreadsheet takes for a formula: names of agents and files are other people's."""
+    """A cell that no spreadsheet reads as a formula, since names of agents and files are untrusted."""
     return f"'{cell}" if isinstance(cell, str) and cell[:1] in ("=", "@", "\t", "\r") else cell
 
 
@@ -178,7 +177,7 @@ _BREAK = r" \\ "
 
 
 def tex(text: str) -> str:
-    """Text as LaTeX prints it; a line break becomes a stack of lines."""
+    """Text escaped for LaTeX; line breaks become stacked lines."""
     lines = ["".join(_TEX.get(letter, letter) for letter in part.strip()) for part in text.splitlines()]
     return rf"\shortstack[r]{{{_BREAK.join(lines)}}}" if len(lines) > 1 else "".join(lines)
 

@@ -1,6 +1,4 @@
-"""Tables on narrow screens: no number and no name is broken; columns give way, and at last rows become lists. Imported
-when something is printed, as it needs rich.
-"""
+"""Tables on narrow screens: no number or name is split; columns are dropped, and at last rows become lists."""
 
 from __future__ import annotations
 
@@ -17,21 +15,21 @@ from rich.text import Text
 
 _NUMBER = re.compile(r"[*<>±]*\s*[-+−]?\d[\d,]*(\.\d+)?(\s*(%|s|m|points|bytes?|…|±|to)\s*[-+−]?(\d[\d.,]*)?)*")
 _SPARE = ("could have seen", "trials")
-"""Headings of columns that give way first, in this order; documents and wide screens have them."""
+"""Headings of columns that are dropped first, in this order."""
 _WIDEST = 10_000
 _INDENT = "  "
 
 
 class FittingConsole(Console):
-    """A console on which tables are fitted to the width before they are printed."""
+    """A console that fits tables to its width before it prints them."""
 
     def print(self, *objects: Any, **how: Any) -> None:
-        """Print as rich does, tables as `fitted` has them."""
+        """Print as rich does, with tables fitted to the width."""
         super().print(*(fitted(one, self) if isinstance(one, (Table, Group)) else one for one in objects), **how)
 
 
 def fitted(shown: RenderableType, console: Console) -> RenderableType:
-    """The same for the console's width: as it is, with columns at their least, with fewer of them, or as lists."""
+    """A renderable that fits the console: unchanged, with narrower columns, with fewer columns, or as lists."""
     if isinstance(shown, Group):
         return Group(*(fitted(one, console) for one in shown.renderables))
     if not isinstance(shown, Table) or _width(shown, console) <= console.width:
@@ -46,7 +44,7 @@ def fitted(shown: RenderableType, console: Console) -> RenderableType:
 
 
 def _narrowed(shown: Table, console: Console, dropped: list[str]) -> Table | None:
-    """The table without some columns, the others as narrow as need be; None where that is not enough."""
+    """The table without some columns and with the others narrowed; None if it still does not fit."""
     table = copy.copy(shown)
     table.columns = [copy.copy(one) for one in shown.columns if _heading(one) not in dropped]
     for place, column in enumerate(table.columns):
@@ -65,7 +63,7 @@ def _narrowed(shown: Table, console: Console, dropped: list[str]) -> Table | Non
 
 
 def _stacked(shown: Table, width: int) -> RenderableType:
-    """A paragraph a row: its name, and below it a line for each other cell, or two where one is too long."""
+    """One paragraph per row: its name, then one line for each other cell, or two if one is too long."""
     names = list(_headings(shown))
     wide = max((cell_len(name) for name in names[1:]), default=0)
     parts: list[RenderableType] = [Text(str(shown.title), style="italic"), Text()] if shown.title else []
@@ -80,7 +78,7 @@ def _stacked(shown: Table, width: int) -> RenderableType:
 
 
 def _headings(shown: Table) -> Iterator[str]:
-    """Headings in one line; where several columns share their first line, each with it."""
+    """Headings on one line each; a first line that several columns share is repeated for each."""
     above = ""
     for column in shown.columns:
         lines = str(column.header).split("\n")
@@ -98,13 +96,13 @@ def _width(table: Table, console: Console) -> int:
 
 
 def _most(column: Any) -> int:
-    """The width that the column's longest line takes."""
+    """Width of the longest line in a column."""
     cells = (_heading(column), *map(str, column.cells))
     return max((cell_len(line) for cell in cells for line in cell.split("\n")), default=0)
 
 
 def _least(column: Any) -> int:
-    """The width of the longest piece that must not be broken: a number with its unit, an interval, a word."""
+    """Width of the longest unbreakable piece: a number with its unit, an interval, a word."""
     found = [cell_len(word) for word in _heading(column).split()]
     for cell in map(str, column.cells):
         for line in cell.split("\n"):

@@ -1,7 +1,7 @@
-"""Tells the user that a command is still at work, whenever it has shown nothing for a while; for every command.
+"""Tells the user that a command is still working when it has printed nothing for a while.
 
-On a terminal that is a line which is redrawn and goes; in a pipe or a log it is a plain line now and then. A command
-that shows its progress itself is left alone.
+On a terminal this is a line that is redrawn and removed; in a pipe or a log it is an occasional plain line. Commands
+that show their own progress are left alone.
 """
 
 from __future__ import annotations
@@ -19,36 +19,36 @@ from hthor.console import output
 LIVE_AFTER_S, PLAIN_AFTER_S = 2.0, 30.0
 _BEAT_S = 0.25
 _BAR_RESTS_S = 10.0
-"""A progress bar that is not redrawn for so long is taken to be over."""
+"""A progress bar that has not been redrawn for this long counts as finished."""
 _SIGNS = "⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏"
 _WIPE = "\r\x1b[K"
 
 
 @contextmanager
 def shown(arguments: Sequence[str], groups: Collection[str] = ()) -> Iterator[None]:
-    """Within the block, tell the user that the command with these arguments is at work.
+    """Within the block, tell the user now and then that the command is still working.
 
     Args:
-        groups: first words after which the second one belongs to the command's name too.
+        groups: names of command groups, whose commands have two words.
     """
     if "--quiet" in arguments or "serve" in arguments[:2] or not arguments:
         yield
         return
     words = arguments[: 2 if arguments[0] in groups else 1]
-    patience = _Patience(" ".join(words), live=output.live())
+    notice = _Notice(" ".join(words), live=output.live())
     before = sys.stdout, sys.stderr
-    sys.stdout, sys.stderr = _Stream(before[0], patience), _Stream(before[1], patience)
-    patience.start(before[1])
+    sys.stdout, sys.stderr = _Stream(before[0], notice), _Stream(before[1], notice)
+    notice.start(before[1])
     try:
-        with activity.heard_by(patience.hear):
+        with activity.heard_by(notice.hear):
             yield
     finally:
-        patience.stop()
+        notice.stop()
         sys.stdout, sys.stderr = before
 
 
-class _Patience:
-    """Watches what is written, and writes itself when that is nothing."""
+class _Notice:
+    """Watches what is written, and writes a notice when nothing is."""
 
     def __init__(self, name: str, *, live: bool) -> None:
         self._name, self._live = name, live
@@ -69,11 +69,11 @@ class _Patience:
             self._wipe()
 
     def hear(self, step: str) -> None:
-        """What the command does now."""
+        """Note what the command is doing now."""
         self._step = step
 
     def write(self, stream: Any, text: str) -> Any:
-        """Let the command write."""
+        """Write for the command, and note the time."""
         with self._lock:
             self._wipe()
             bar = "\r" in text or "\x1b[2K" in text
@@ -98,7 +98,7 @@ class _Patience:
         try:
             self._stream.write(text)
             self._stream.flush()
-        except (OSError, ValueError):  # nobody reads it any more
+        except (OSError, ValueError):  # the reader has gone
             self._over.set()
 
     def _wipe(self) -> None:
@@ -112,10 +112,10 @@ class _Patience:
 
 
 class _Stream:
-    """A stream of which somebody knows when it was last written to."""
+    """A stream that reports its writes."""
 
-    def __init__(self, stream: Any, patience: _Patience) -> None:
-        self._stream, self._patience = stream, patience
+    def __init__(self, stream: Any, notice: _Notice) -> None:
+        self._stream, self._notice = stream, notice
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
@@ -124,7 +124,7 @@ class _Stream:
         return iter(self._stream)
 
     def write(self, text: str) -> Any:
-        return self._patience.write(self._stream, text)
+        return self._notice.write(self._stream, text)
 
     def writelines(self, lines: Any) -> None:
         for line in lines:
