@@ -30,7 +30,7 @@ from hthor.eval.metrics import trial_metrics
 from hthor.eval.runner import trial_runner
 from hthor.humans.communication import message_reading
 from hthor.humans.core import trial_context
-from hthor.humans.population.participant import Person
+from hthor.humans.population.participant import Participant
 from hthor.tasks.suites import library
 from hthor.types import Action, Mind, Observation
 
@@ -104,7 +104,7 @@ def drawing(way: str) -> Iterator[None]:
     with contextlib.ExitStack() as held:
         if way == "other":
             other = lambda self, index: seeds.derive(self.root, "another trial", index)  # noqa: E731
-            held.enter_context(mock.patch.object(Person, "trial", other))
+            held.enter_context(mock.patch.object(Participant, "trial", other))
         if way == "sequential":
             chances = SimpleNamespace(draw=draw, normal=normal)
             held.enter_context(mock.patch.object(trial_context, "seeds", chances))

@@ -24,8 +24,8 @@ from hthor.errors import HthorError
 from hthor.eval.records import trial_log
 from hthor.humans.population import resolve
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.random_effects import practised
-from hthor.humans.search.option_choice import DOOR_S, SETTLE_S
+from hthor.humans.population.random_effects import with_practice
+from hthor.humans.search.option_choice import DOORWAY_S, SETTLE_S
 from hthor.types import TrialSpec
 
 EVERY = 4  # each so manieth person is held out
@@ -117,18 +117,20 @@ def fit_answer(values: np.ndarray, said: np.ndarray) -> np.ndarray:
 def law(choice: tuple[TrialSpec, list[list[float]], int]) -> list[float]:
     """What the proxy that chose made of its options: the utilities of its own law, with its own parameters."""
     spec, options, _ = choice
-    traits = practised(_traits(spec.human, spec.seed, spec.participant), spec.index)
+    traits = with_practice(_traits(spec.human, spec.seed, spec.participant), spec.index)
     found = []
     for knowledge, uniform, metres, exposure, closed, is_door in options:
         belief = traits.w_prior * knowledge + (1.0 - traits.w_prior) * uniform
-        seconds = metres / traits.v_pace + (DOOR_S if is_door else traits.t_dwell + SETTLE_S + closed * traits.t_manip)
+        seconds = metres / traits.v_pace + (
+            DOORWAY_S if is_door else traits.t_dwell + SETTLE_S + closed * traits.t_manip
+        )
         found.append(traits.beta * (math.log(max(belief, 1e-12)) - exposure - traits.kappa * math.log(seconds)))
     return found
 
 
 @functools.cache
 def _traits(human: str, seed: int, participant: int) -> Parameters:
-    return resolve.find(human).person(seed, participant).traits
+    return resolve.resolve_humans(human).participant(seed, participant).traits
 
 
 def judge(share: Sequence[np.ndarray], chosen: Sequence[int]) -> dict[str, float]:

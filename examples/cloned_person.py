@@ -16,9 +16,9 @@ import msgspec
 
 from hthor import jsonio, seeds
 from hthor.errors import HthorError
-from hthor.humans.core.policy import Answer, Choice, Offer, Situation
+from hthor.humans.core.policy import Answer, Offer, OptionDescription, Situation
 from hthor.humans.models import proxy
-from hthor.humans.population.participant import Person
+from hthor.humans.population.participant import Participant
 from hthor.types import Briefing
 
 WEIGHTS = Path(__file__).with_suffix(".json")
@@ -29,13 +29,13 @@ LEAST = 0.001  # a share of belief below which it makes no difference
 class Model(proxy.Model):
     """The proxy with a head that was cloned."""
 
-    def __init__(self, person: Person, state: Mapping[str, Any] | None = None) -> None:
+    def __init__(self, person: Participant, state: Mapping[str, Any] | None = None) -> None:
         super().__init__(person, state)
         self._weights = load()
 
     def begin(self, briefing: Briefing) -> None:
         """A trial begins, with luck of its own."""
-        self.policy = Clone(self._weights, seeds.derive(self.person.trial(self.trials), "clone"))
+        self.policy = Clone(self._weights, seeds.derive(self.participant.trial_root(self.trials), "clone"))
         super().begin(briefing)
 
 
@@ -63,7 +63,7 @@ class Clone:
         return "ignore" if seeds.draw(self.root, "ignore", offer.number) < self.weights["ignored"] else "decline"
 
 
-def row(option: Choice) -> list[float]:
+def row(option: OptionDescription) -> list[float]:
     """An option as the journal's "choice" has it: `hthor.humans.search.option_description.FEATURES`."""
     is_door = option.verb == "pass"
     return [option.knowledge, option.uniform, option.metres, option.exposure, float(option.closed), float(is_door)]

@@ -16,16 +16,16 @@ from typing import Any
 
 from hthor.humans.llm import backends
 from hthor.humans.models import proxy
-from hthor.humans.population.participant import Person
+from hthor.humans.population.participant import Participant
 from hthor.types import HUMAN, Briefing, Event
 
 
 class Model(proxy.Model):
     """The proxy's eyes, memory, legs and hands, with a language model for a head."""
 
-    def __init__(self, person: Person, state: Mapping[str, Any] | None = None) -> None:
+    def __init__(self, person: Participant, state: Mapping[str, Any] | None = None) -> None:
         super().__init__(person, state)
-        self.policy = self.head = backends.speaker(person, backends.settings())
+        self.policy = self.head = backends.make_policy(person, backends.settings())
 
     def begin(self, briefing: Briefing) -> None:
         """A trial begins."""
@@ -41,4 +41,4 @@ class Model(proxy.Model):
 
 def ingredients(source: str = "") -> dict[str, Any]:  # noqa: ARG001  there is none
     """What decides how these people behave, besides this file and hthor itself: which model it is."""
-    return {"language_model": backends.named(backends.settings())}
+    return {"language_model": backends.model_name(backends.settings())}

@@ -14,7 +14,7 @@ from msgspec import Struct
 from hthor import plugins, rules, seeds
 from hthor.comms import claims
 from hthor.comms.mailbox import Mailbox
-from hthor.humans.core.behaviour_log import Recorder
+from hthor.humans.core.behaviour_log import BehaviourRecorder
 from hthor.humans.model import HumanModel
 from hthor.tasks.kind import TaskKind
 from hthor.thinking_time import Decision, Thinking
@@ -141,7 +141,7 @@ class _Episode:
         self.faults: list[Fault] = []
         self.paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in self.minds}
         self.idle = dict.fromkeys(self.minds, 0)
-        self.recorder = Recorder(world.bodies[HUMAN], rules.TICK_S)
+        self.recorder = BehaviourRecorder(world.bodies[HUMAN], rules.TICK_S)
         self.resting: dict[str, int | None] = dict.fromkeys(self.minds, 0)
 
     def run(self) -> EpisodeLog:

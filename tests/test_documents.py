@@ -73,7 +73,7 @@ READERS: dict[str, tuple[str, type[HthorError], Callable[[Path], Any]]] = {
     "platform of a report": ("platform.json", RunError, lambda path: run_provenance._platforms(_Run(path.parent))),
     "faults": ("faults.json", RunError, fault_report.load_fault_report),
     "population": ("pop.json", PopulationError, lambda path: population_file._document(path)),
-    "people": ("pop.json", HthorError, lambda path: resolve.find(str(path))),
+    "people": ("pop.json", HthorError, lambda path: resolve.resolve_humans(str(path))),
     "kind of people": ("quick.json", PopulationError, kinds.load),
     "past trials": ("past.jsonl", HthorError, _lines(lambda path: _logged_trials._read(str(path)))),
     "suite": ("suite.json", TaskError, library.read_suite),
@@ -140,7 +140,7 @@ def test_the_error_names_file_and_field(tmp_path: Path):
     path = tmp_path / "kind.json"
     path.write_text('{"schema": "hthor.kind/1", "name": 3}')
     with pytest.raises(PopulationError) as caught:
-        documents.read(path, kinds.Kind, PopulationError)
+        documents.read(path, kinds.PopulationKind, PopulationError)
     assert caught.value.file == str(path)
     assert caught.value.field == "name"
     assert re.search("Expected `str`", caught.value.problem)

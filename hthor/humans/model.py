@@ -1,37 +1,72 @@
-"""The seam where a person sits: what every human model can do.
+"""The contract of a human model, simulated or live.
 
-A human model is one file in ``hthor/humans/models`` that defines ``class Model``. It is made once a session from a
-`Person` and what is left of earlier trials, and goes through the trials of the session in order: ``begin``, ``act``
-until the trial ends, ``rate``.
+A human model is one file in ``hthor/humans/models``, or a file of your own, that defines ``class Model``; its name or
+path is what `hthor eval --humans` takes. ``Model(participant)`` is made once a session; it goes through the session's
+trials in order: ``begin``, ``act`` until the trial ends, ``rate``. ``Model(participant, state)`` continues a session in
+another process.
 
-The file may also have a function ``ingredients(source: str) -> dict``: plain JSON values that tell what the model is
-made from besides the file and the person, such as the hash of its weights; they become part of the people's hash. A
-model named with a source (``replay:runs/demo``) is made with it: ``Model(person, source="/path/runs/demo")``. A class
-that says ``alike = True`` knows no differences between people, and is given the population's mean.
+Optional parts of the file and the class:
+
+- ``ingredients(source: str) -> dict``, a function of the file: plain JSON values that say what else decides how the
+  model behaves, such as the hash of its weights. They become part of the run's identity.
+- ``Model(participant, source="/path")``: a model named with a source (``replay:runs/demo``) is made with its path.
+- ``alike = True`` in the class: participants do not differ; each is given the population's mean traits.
+- ``journal``, a property of the class: what a recorder holds of the trial (`hthor.humans.core.behaviour_log`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Protocol
 
 from hthor.types import Action, Briefing, Observation
 
+State = Mapping[str, bool | int | float | str | None]
+"""What carries over between trials, as plain JSON values."""
+
 
 class HumanModel(Protocol):
-    """One person through one session."""
+    """One participant through one session.
+
+    The same participant must give the same actions on the same observations: draw random numbers by name
+    (`hthor.seeds`) from ``participant.trial_root(index)``, never from a global generator or the clock.
+    """
 
     def begin(self, briefing: Briefing) -> None:
-        """A trial begins. Everything but the person's own state is new to them."""
+        """Start a trial: forget the house of the last one.
+
+        Args:
+            briefing: the instruction, the body, the time limit [s] and the length of a tick [s].
+        """
 
     def act(self, observation: Observation) -> Action:
-        """What to do and say now; the motion is heeded only when ``observation.idle``."""
+        """Decide what to do and say now; called when the body is free and whenever a message comes.
+
+        Args:
+            observation: what a headset's wearer perceives: the pose in the house frame (x, y [m], yaw and pitch [rad],
+                yaw counter-clockwise, pitch up), detections in view, the room, what is in hand, how the last motion
+                ended, and the messages shown. Never the true state of the world.
+
+        Returns:
+            A motion, which is carried out only when ``observation.idle``, and at most one answer to a message.
+
+        Raises:
+            HthorError: if the model cannot go on, such as a replay of another task. The run then stops.
+        """
         ...
 
     def rate(self, met: bool, tick: int) -> int | None:
-        """The trial ended at ``tick``, well when ``met``: trust in the robots from 1 to 7, None when there was none."""
+        """End a trial and rate the robots.
+
+        Args:
+            met: whether the task was done in time.
+            tick: when the trial ended.
+
+        Returns:
+            Trust in the robots from 1 to 7 (`hthor.rules.TRUST_MIN`, `TRUST_MAX`); None without a robot.
+        """
         ...
 
-    def state(self) -> Mapping[str, Any]:
-        """What carries over to the next trial, as plain JSON values; a model made from it goes on as this one would."""
+    def state(self) -> State:
+        """What carries over to the next trial, such as trust and practice; never what was learnt about a house."""
         ...

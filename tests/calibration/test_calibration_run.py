@@ -32,8 +32,7 @@ from hthor.eval.config import robot_team
 from hthor.eval.config.sessions import make_sessions
 from hthor.eval.runner import progress
 from hthor.eval.runner.trial_runner import TrialRunner
-from hthor.humans.population import parameter_registry
-from hthor.humans.population.population import Population
+from hthor.humans.population import parameter_registry, population_file
 from hthor.tasks.suite import make_suite
 
 PAPER = tasks.load_suite("paper")
@@ -63,7 +62,7 @@ def test_a_session_is_one_persons_trials_in_each_condition_in_turn(trained):
     assert made.index.tolist() == [0, 1] * 3
     assert sorted(made.task[:2].tolist()) == [0, 1]
     assert made.point.tolist() == [0, 0, 1, 1, 2, 2]
-    assert made.points.shape == (3, len(parameter_registry.names()))
+    assert made.points.shape == (3, len(parameter_registry.free_parameter_names()))
     alone = made.condition == 0
     assert (made.trust[alone] == 0).all()
     assert ((made.trust[~alone] >= 1) & (made.trust[~alone] <= 7)).all()
@@ -106,16 +105,16 @@ def test_a_session_is_what_an_evaluation_would_have_played():
     from hthor.episode import run_episode
     from hthor.humans.models.proxy import Model
     from hthor.humans.population import random_effects
-    from hthor.humans.population.participant import Person, root
+    from hthor.humans.population.participant import Participant, participant_root
 
-    point = design_points.spread(1, len(parameter_registry.names()), 0, "x")[0]
+    point = design_points.spread(1, len(parameter_registry.free_parameter_names()), 0, "x")[0]
     one = simulate.place(TINY, trial_identity.trials_identity(TINY), 5, 0, point.tolist(), 1)
     stage, seats = TrialRunner(), robot_team.form_team(["scout"], ["frontier"]).seats
     rows = list(session_simulation.sit(one, TINY, seats, stage))
 
     dealt = make_sessions(TINY, agent="frontier", seed=5, participants=1)[0]
-    traits = random_effects.individual(parameter_registry.from_unit(point.tolist()), root(5, 0))
-    human, logs = Model(Person(seed=5, participant=0, traits=traits)), []
+    traits = random_effects.add_random_effects(parameter_registry.parameters_at(point.tolist()), participant_root(5, 0))
+    human, logs = Model(Participant(seed=5, number=0, traits=traits)), []
     with stage.enter(dealt) as company:
         for trial in dealt.trials:
             logs.append((trial, run_episode(trial, stage.world(trial), human, company.robots())))
@@ -189,9 +188,9 @@ def test_products_are_kept_and_what_was_learned_is_told(made_up, calibrated, mon
     assert run.run_calibration(_options(folder), stage_progress.SilentProgress()) == found
     assert _bytes(folder) == before
 
-    people = Population.load(folder / "population.json")
+    people = population_file.load_population(folder / "population.json")
     assert people.sha256 == found.population_sha256
-    assert people.names == parameter_registry.names()
+    assert people.names == parameter_registry.free_parameter_names()
     assert people.validity.suite_sha256 == PAPER.sha256
     assert people.validity.settings["robot"] == "scout"
     assert "(inferred)" in " ".join(people.statistics)
@@ -213,7 +212,7 @@ def test_the_command_ends_with_1_when_a_gate_is_not_passed(made_up, calibrated, 
     good = CliRunner().invoke(app, [*words, "--json"])
     document = json.loads(good.stdout)
     assert good.exit_code == (0 if all(gate["passed"] for gate in document["gates"]) else 1)
-    assert document["population_sha256"] == Population.load(folder / "population.npz").sha256
+    assert document["population_sha256"] == population_file.load_population(folder / "population.npz").sha256
 
     from hthor.calibration.diagnostics import acceptance
 

@@ -36,9 +36,9 @@ from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
 from hthor.humans.communication.trust import Experience as Lived
-from hthor.humans.communication.trust import Trust, initial
+from hthor.humans.communication.trust import Trust, initial_trust
+from hthor.humans.population import population_file
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.population import Population
 from hthor.tasks.suite import make_suite
 
 BELIEFS = priors.of_registry()
@@ -161,7 +161,7 @@ def test_answers_tell_willingness_and_what_sways_it(rng: np.random.Generator) ->
 
 def a_session(rng: np.random.Generator, traits: Parameters) -> list[Experience]:
     """Ten trials as `hthor.humans.communication.trust` has them, with their ratings."""
-    trust, seen = initial(traits), []
+    trust, seen = initial_trust(traits), []
     for _ in range(10):
         offered, met = bool(rng.random() < 0.8), bool(rng.random() < 0.7)
         helped = float(rng.uniform(5.0, 60.0)) if offered and rng.random() < 0.7 else None
@@ -197,7 +197,7 @@ def test_trust_is_followed_as_the_person_has_it(rng: np.random.Generator) -> Non
         **{k: math.log(getattr(traits, k)) for k in ("n0", "w_s", "w_f", "tau_s")},
     }
     before, after = trust_model.means(trust_model.course([session], np.array([0])), values, np.zeros(1))
-    trust: Trust = initial(traits)
+    trust: Trust = initial_trust(traits)
     for k, one in enumerate(session):
         assert before[0, k] == pytest.approx(trust.mean)
         for _ in range(one.misled):
@@ -358,7 +358,7 @@ def test_logs_become_a_population_the_same_every_time(
     for name in ("population.json", "population.npz", "estimates.json"):
         one, other = ((tmp_path / folder / "mine" / name).read_bytes() for folder in ("a", "b"))
         assert one == other, name
-    loaded = Population.load(tmp_path / "a" / "mine" / "population.npz")
+    loaded = population_file.load_population(tmp_path / "a" / "mine" / "population.npz")
     assert loaded.sha256 == made.sha256
     rows = {row.name: row for row in found.rows}
     assert rows["v_pace"].after == pytest.approx(played[0].v_pace, rel=0.1)

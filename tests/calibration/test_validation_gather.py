@@ -23,7 +23,7 @@ from hthor.calibration.simulation.trial_table import CONDITIONS
 from hthor.humans.population import parameter_registry
 from hthor.humans.population.population import Population
 
-P = len(parameter_registry.names())
+P = len(parameter_registry.free_parameter_names())
 STUDIES = 12
 
 
@@ -54,7 +54,9 @@ def _studies() -> tuple[Any, np.ndarray]:
         full = np.full(len(one), number)
         parts.append(msgspec.structs.replace(one, study=full, point=full))
     joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in parts[0].__struct_fields__[2:]}
-    return type(parts[0])(names=parameter_registry.names(), points=chance.random((STUDIES, P)), **joined), shares
+    return type(parts[0])(
+        names=parameter_registry.free_parameter_names(), points=chance.random((STUDIES, P)), **joined
+    ), shares
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +81,7 @@ def stages() -> Any:
         },
         quality=Quality(z_sd=1.02, by_figure=dict.fromkeys(NAMES, 1.1), bias={}, r2={}, studies=STUDIES),
         coverage=Coverage(
-            names=parameter_registry.names(),
+            names=parameter_registry.free_parameter_names(),
             covered=np.linspace(0.8, 1.0, P),
             overall=0.9,
             fitted=0.9,
@@ -90,7 +92,7 @@ def stages() -> Any:
             effective=(10.0, 20.0),
         ),
         check=Check(
-            names=parameter_registry.names(),
+            names=parameter_registry.free_parameter_names(),
             shift=np.arange(P) / P,
             error=np.full(P, 0.1),
             worst=0.9,
@@ -133,7 +135,9 @@ def stages() -> Any:
 @pytest.fixture(scope="module")
 def population() -> Population:
     points = np.random.default_rng(1).uniform(0.05, 0.95, (40, P))
-    return Population.of("paper", parameter_registry.physical(points), purpose="a test", seed=7, command="a test")
+    return Population.make(
+        "paper", parameter_registry.from_quantiles(points), purpose="a test", seed=7, command="a test"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -143,7 +147,7 @@ def found(stages: Any, population: Population) -> evidence.Evidence:
 
 def test_all_parts_are_there(found: evidence.Evidence, population: Population) -> None:
     assert [row.figure for row in found.predictive] == list(FIGURES)
-    assert [one.name for one in found.parameters] == list(parameter_registry.names())
+    assert [one.name for one in found.parameters] == list(parameter_registry.free_parameter_names())
     assert [part.condition for part in found.held_out] == list(CONDITIONS)
     assert sum(len(part.figures) for part in found.held_out) == 8
     assert found.origin.population_sha256 == population.sha256

@@ -451,7 +451,7 @@ def test_evidence_that_cannot_be_used_says_what_to_do(tmp_path: Path) -> None:
 def test_evidence_of_another_population_is_not_believed(tmp_path: Path) -> None:
     known = fakes.evidence(PUBLISHED.figures)
     (tmp_path / evidence.FILE).write_bytes(evidence.encode(known))
-    found = resolve.find("literature")
+    found = resolve.resolve_humans("literature")
     assert run._evidence(found, tmp_path) == (None, run.OTHERS)
     mine = msgspec.structs.replace(known.origin, population_sha256=found.population.sha256)
     (tmp_path / evidence.FILE).write_bytes(evidence.encode(msgspec.structs.replace(known, origin=mine)))
@@ -462,7 +462,7 @@ def test_evidence_of_another_population_is_not_believed(tmp_path: Path) -> None:
     ("name", "says"), [("greedy", "not calibrated"), ("cautious", "by hand"), ("literature", "no data")]
 )
 def test_people_without_evidence_are_told_apart(name: str, says: str) -> None:
-    known, missing = run._evidence(resolve.find(name), None)
+    known, missing = run._evidence(resolve.resolve_humans(name), None)
     assert known is None
     assert says in missing
 

@@ -10,14 +10,14 @@ from fake_flat import BODY, DOORWAY, FURNITURE, Flat, play
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from hthor import catalog, humans, plugins, rules, seeds
-from hthor.humans.communication.trust import Experience, Trust, initial
+from hthor import catalog, plugins, rules, seeds
+from hthor.humans.communication.trust import Experience, Trust, initial_trust
 from hthor.humans.memory import location_priors
-from hthor.humans.memory.spatial_memory import Memory
+from hthor.humans.memory.spatial_memory import SpatialMemory
 from hthor.humans.models.proxy import Model
 from hthor.humans.population import random_effects
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.participant import Person
+from hthor.humans.population.participant import Participant
 from hthor.types import HUMAN, Action, Detection, Message, Move, Observation, Outcome, Pick, Pose, Receipt, Rotate
 
 TRAITS = Parameters()
@@ -28,7 +28,7 @@ ROBOT = Detection(
 
 def trial(flat, person=0, state=None, ticks=900, say=None, until=None, **task):
     """One trial of a person in a flat: the model, the poses, what was said."""
-    model = Model(Person(seed=1, participant=person), state)
+    model = Model(Participant(seed=1, number=person), state)
     model.begin(flat.briefing(**task))
     trace, said = play(model, flat, ticks=ticks, until=until, say=say)
     return model, trace, said
@@ -67,27 +67,22 @@ def test_a_person_continues_from_their_state():
 
 
 def test_traits_are_spread_around_the_population():
-    paces = [random_effects.individual(TRAITS, seeds.derive(0, k)).v_pace for k in range(400)]
+    paces = [random_effects.add_random_effects(TRAITS, seeds.derive(0, k)).v_pace for k in range(400)]
     logs = [math.log(pace / TRAITS.v_pace) for pace in paces]
     assert abs(sum(logs) / 400) < 0.03
     assert math.sqrt(sum(value * value for value in logs) / 400) == pytest.approx(0.5 * TRAITS.sigma, rel=0.15)
 
 
 def test_practice_makes_brisk():
-    paces = [random_effects.practised(TRAITS, index).v_pace for index in range(10)]
+    paces = [random_effects.with_practice(TRAITS, index).v_pace for index in range(10)]
     assert paces == sorted(paces)
     assert paces[0] == TRAITS.v_pace
     assert paces[-1] < TRAITS.v_pace * (1 + TRAITS.learn)
 
 
-def test_the_fingerprint_is_a_hash_of_the_parameters():
-    assert humans.fingerprint("proxy") == humans.fingerprint("proxy")
-    assert len(humans.fingerprint("proxy")) == 64
-
-
 @pytest.mark.parametrize("name", [name for name in plugins.names("human model") if name != "replay"])
 def test_every_model_follows_the_seam(name):
-    model = plugins.load("human model", name)(Person(seed=0, participant=0))
+    model = plugins.load("human model", name)(Participant(seed=0, number=0))
     flat = Flat()
     model.begin(flat.briefing(teammates=("robot",)))
     assert isinstance(model.act(flat.observation()), Action)
@@ -169,7 +164,7 @@ def believed(position, support="Fridge|1", until=None, ticks=900):
         def stop(flat=flat):
             return until is not None and until(flat)
 
-        model = Model(Person(seed=1, participant=person))
+        model = Model(Participant(seed=1, number=person))
         model.begin(flat.briefing(teammates=("robot",)))
         said = []
         while flat.tick < ticks and not stop():
@@ -191,7 +186,7 @@ def test_goes_where_a_confirmed_message_says():
 def test_a_message_that_misleads_costs_trust_and_the_search_goes_on():
     model, flat, _ = believed((9.5, 1.6, 0.5), "Fridge|1", until=Flat.found)
     assert flat.found()
-    assert model.trust.mean < initial(model.traits).mean
+    assert model.trust.mean < initial_trust(model.traits).mean
     before = model.trust.mean
     model.rate(True, flat.tick)
     assert model.trust.mean < before
@@ -220,7 +215,7 @@ def test_trust_has_no_say_without_robots():
     st.floats(-6, 6),
 )
 def test_trust_stays_on_its_scale(trials, noise):
-    trust = initial(TRAITS)
+    trust = initial_trust(TRAITS)
     for offered, helped, misled, met in trials:
         signal = Experience(offered=offered, helped=helped, misled=misled).signal(met, TRAITS)
         assert 0.0 <= signal <= 1.0
@@ -245,30 +240,30 @@ def test_early_help_is_worth_more_and_failure_tells():
 
 @pytest.mark.parametrize("target", [*catalog.TARGETS, "unheard_of"])
 def test_beliefs_add_up(target):
-    assert sum(location_priors.supports(target).values()) == pytest.approx(1.0)
-    expected = location_priors.expectation(target, 0.6)
+    assert sum(location_priors.prior_shares(target).values()) == pytest.approx(1.0)
+    expected = location_priors.location_belief(target, 0.6)
     assert sum(expected.values()) == pytest.approx(1.0)
     assert min(expected.values()) > 0.0
 
 
 def test_a_doorway_seen_from_both_sides_leads_nowhere_new():
-    memory = Memory(tau=1000.0)
+    memory = SpatialMemory(tau=1000.0)
     memory.keep_doorway(DOORWAY, (3.0, 2.0), "kitchen")
     doorway = memory.doorways[DOORWAY.id]
-    assert not doorway.spent
+    assert not doorway.explored
     assert doorway.beyond[0] > 5.05
     memory.keep_doorway(DOORWAY, (7.0, 2.0), "living")
-    assert doorway.spent
+    assert doorway.explored
 
 
 def test_walking_through_a_doorway_is_remembered():
-    memory = Memory(tau=1000.0)
+    memory = SpatialMemory(tau=1000.0)
     assert memory.visit((4.0, 2.0), "")
     memory.keep_doorway(DOORWAY, (4.0, 2.0), "")
     assert not memory.visit((5.0, 2.0), "")
-    assert not memory.doorways[DOORWAY.id].spent
+    assert not memory.doorways[DOORWAY.id].explored
     memory.visit((5.2, 2.0), "")
-    assert memory.doorways[DOORWAY.id].spent
+    assert memory.doorways[DOORWAY.id].explored
 
 
 # ---------------------------------------------------------------------------------------------------------- robustness
@@ -306,7 +301,7 @@ moment = st.fixed_dictionaries(
 def test_nothing_perceived_makes_a_person_fall_over(relation, moments):
     flat = Flat("Table|1")
     flat.extra = (ROBOT,)
-    model = Model(Person(seed=0, participant=0))
+    model = Model(Participant(seed=0, number=0))
     model.begin(flat.briefing(relation=relation, destination="" if relation == "find" else "fridge"))
     for number, now in enumerate(moments):
         flat.pose = Pose(x=now["x"], y=now["y"], yaw=now["yaw"], pitch=now["pitch"])

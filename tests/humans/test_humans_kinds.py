@@ -10,18 +10,18 @@ from fake_flat import BODY
 
 from hthor import houses, plugins, seeds, tasks
 from hthor.episode import run_episode
-from hthor.humans.behaviours.behaviours import Errands
-from hthor.humans.communication.interpretation import Claims
-from hthor.humans.core.trial_context import Subject
-from hthor.humans.memory.object_memory import Things
-from hthor.humans.memory.spatial_memory import Memory
-from hthor.humans.memory.subgoals import Duties, kind_of, todo
-from hthor.humans.models._goal_arbitration import Agenda
+from hthor.humans.behaviours.behaviours import Behaviours
+from hthor.humans.communication.interpretation import AdviceTracker
+from hthor.humans.core.trial_context import HumanContext
+from hthor.humans.memory.object_memory import ObjectMemory
+from hthor.humans.memory.spatial_memory import SpatialMemory
+from hthor.humans.memory.subgoals import SubgoalTracker, object_kind
+from hthor.humans.models._goal_arbitration import GoalArbiter
 from hthor.humans.models.proxy import Model
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.perception import perception
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.participant import Person
+from hthor.humans.population.participant import Participant
 from hthor.types import (
     HUMAN,
     Action,
@@ -96,7 +96,7 @@ def trial_of(task, participant=0):
 
 def run(world, task, participant=0, robot=None):
     """One trial: its log, the share of the goal that was met, and the person."""
-    model = Model(Person(seed=0, participant=participant))
+    model = Model(Participant(seed=0, number=participant))
     log = run_episode(trial_of(task, participant), world, model, {"robot": robot or Scripted()})
     assert not log.faults
     kind = plugins.load("task kind", task.kind)
@@ -153,7 +153,7 @@ def test_looks_into_the_fridge_when_asked(world):
             break
     opened = [event.data["thing"] for event in events(log, "opened")]
     assert fridge.id in opened
-    assert not model._talk.experience.misled
+    assert not model._dialogue.experience.misled
 
 
 def test_helps_to_carry(world):
@@ -224,17 +224,17 @@ class Mind:
             time_limit=90.0,
             jobs=jobs,
         )
-        self.me = Subject(TRAITS, 0, briefing)
+        self.me = HumanContext(TRAITS, 0, briefing)
         self.at(**now)
-        self.memory = Memory(tau=1000.0)
-        self.things = Things(job.target for job in todo(briefing))
-        self.duties = Duties(self.me, self.memory, self.things.known)
-        self.claims = Claims(self.me, self.memory, self.duties)
-        self.agenda = Agenda(
+        self.memory = SpatialMemory(tau=1000.0)
+        self.objects = ObjectMemory(job.target for job in briefing.jobs)
+        self.subgoals = SubgoalTracker(self.me, self.memory, self.objects.known)
+        self.advice = AdviceTracker(self.me, self.memory, self.subgoals)
+        self.arbiter = GoalArbiter(
             self.me,
-            self.duties,
-            self.things,
-            self.claims,
+            self.subgoals,
+            self.objects,
+            self.advice,
             self.memory,
             lambda here, points: [math.dist(here, point) for point in points],
         )
@@ -261,7 +261,7 @@ class Mind:
     def sees(self, id, position=(1.0, 0.0, 0.8), support="", held_by=""):
         seen = Detection(
             id=id,
-            kind=kind_of(id),
+            kind=object_kind(id),
             family="object",
             position=position,
             size=(0.1, 0.1, 0.1),
@@ -270,15 +270,15 @@ class Mind:
             support=support,
             held_by=held_by,
         )
-        self.things.see(self.things.known[id], seen, self.me.now.tick, self.me.here)
+        self.objects.see(self.objects.known[id], seen, self.me.now.tick, self.me.here)
 
     def hears(self, name="apple", position=(3.0, 0.0, 0.8), number=0):
         message = Message(id=number, sender="robot", tick=0, text="", object=name, position=position)
-        return self.claims.meaning(message)
+        return self.advice.interpret(message)
 
-    def aim(self):
-        aim = self.agenda.aim()
-        return None if aim is None else (aim.verb, aim.duty.target if aim.duty else "")
+    def goal(self):
+        goal = self.arbiter.goal()
+        return None if goal is None else (goal.activity, goal.subgoal.target if goal.subgoal else "")
 
 
 def test_a_message_without_a_name_and_a_place_means_nothing_with_several_things_to_do():
@@ -291,62 +291,62 @@ def test_an_apple_noticed_while_looking_for_another_is_remembered():
     mind = Mind()
     mind.sees("apple_2")
     mind.at(holding="apple")
-    assert mind.aim() == ("deliver", "apple")
+    assert mind.goal() == ("deliver", "apple")
     mind.at(outcome=Outcome(motion="place", ok=True))
-    assert mind.aim() == ("fetch", "apple_2")
+    assert mind.goal() == ("fetch", "apple_2")
 
 
 def test_the_nearest_comes_first():
     mind = Mind()
     mind.sees("apple", (4.0, 0.0, 0.8))
     mind.sees("apple_3", (2.0, 0.0, 0.8))
-    assert mind.aim() == ("fetch", "apple_3")
+    assert mind.goal() == ("fetch", "apple_3")
 
 
 def test_a_choice_stands_until_there_is_news():
     mind = Mind()
     mind.sees("apple", (4.0, 0.0, 0.8))
     mind.sees("apple_3", (2.0, 0.0, 0.8))
-    assert mind.aim() == ("fetch", "apple_3")
+    assert mind.goal() == ("fetch", "apple_3")
     mind.at(x=4.5)
-    assert mind.aim() == ("fetch", "apple_3")
+    assert mind.goal() == ("fetch", "apple_3")
     mind.sees("apple_2", (9.0, 0.0, 0.8))
-    assert mind.aim() == ("fetch", "apple")
+    assert mind.goal() == ("fetch", "apple")
 
 
 def test_what_lies_where_it_belongs_is_left_alone():
     mind = Mind()
     mind.furniture("desk", "desk")
     mind.sees("apple", support="desk")
-    assert mind.aim() is None
-    assert [duty.target for duty in mind.agenda.missing] == ["apple_2", "apple_3"]
+    assert mind.goal() is None
+    assert [subgoal.target for subgoal in mind.arbiter.missing] == ["apple_2", "apple_3"]
 
 
 def test_what_was_moved_away_again_is_fetched_again():
     mind = Mind()
     mind.furniture("desk", "desk")
     mind.sees("apple", support="desk")
-    assert mind.aim() is None
+    assert mind.goal() is None
     mind.sees("apple", (7.0, 0.0, 0.5), support="sofa")
-    assert mind.aim() == ("fetch", "apple")
+    assert mind.goal() == ("fetch", "apple")
 
 
 def test_what_a_robot_holds_is_not_fetched():
     mind = Mind()
     mind.sees("apple", held_by="robot")
-    assert mind.aim() is None
-    assert "apple" not in [duty.target for duty in mind.agenda.missing]
+    assert mind.goal() is None
+    assert "apple" not in [subgoal.target for subgoal in mind.arbiter.missing]
     mind.sees("apple")
-    assert mind.aim() == ("fetch", "apple")
+    assert mind.goal() == ("fetch", "apple")
 
 
 def test_what_is_lost_is_searched_for_again():
     mind = Mind()
     mind.sees("apple")
-    assert mind.aim() == ("fetch", "apple")
-    mind.things.lose(mind.things.known["apple"])
-    assert mind.aim() is None
-    assert "apple" in [duty.target for duty in mind.agenda.missing]
+    assert mind.goal() == ("fetch", "apple")
+    mind.objects.lose(mind.objects.known["apple"])
+    assert mind.goal() is None
+    assert "apple" in [subgoal.target for subgoal in mind.arbiter.missing]
 
 
 def test_all_done_is_rest():
@@ -354,38 +354,38 @@ def test_all_done_is_rest():
     mind.furniture("desk", "desk")
     for name in ("apple", "apple_2", "apple_3"):
         mind.sees(name, support="desk")
-    assert mind.aim() == ("rest", "")
+    assert mind.goal() == ("rest", "")
 
 
 def test_a_message_about_a_kind_means_one_that_is_missing():
     mind = Mind()
     mind.sees("apple", (0.0, 4.0, 0.8))
     first = mind.hears(number=1)
-    assert first.duty.target == "apple_2"
-    mind.claims.believe(first)
-    assert mind.hears(position=(9.0, 0.0, 0.8), number=2).duty.target == "apple_3"
+    assert first.subgoal.target == "apple_2"
+    mind.advice.accept(first)
+    assert mind.hears(position=(9.0, 0.0, 0.8), number=2).subgoal.target == "apple_3"
     assert mind.hears(position=(0.0, 4.2, 0.8)) is None, "that one they see themselves"
 
 
 def test_a_message_by_id_is_followed_until_the_object_is_seen():
     mind = Mind()
-    mind.claims.believe(mind.hears("apple_3"))
-    assert mind.aim() == ("follow", "apple_3")
+    mind.advice.accept(mind.hears("apple_3"))
+    assert mind.goal() == ("follow", "apple_3")
     mind.sees("apple_3")
-    assert mind.aim() == ("fetch", "apple_3")
-    assert not mind.claims.kept
+    assert mind.goal() == ("fetch", "apple_3")
+    assert not mind.advice.kept
     assert mind.hears("apple_3") is None
 
 
 def test_a_message_that_it_lies_where_it_belongs_says_that_it_is_done():
     mind = Mind()
     mind.furniture("desk", "desk", (5.0, 5.0, 0.4))
-    mind.claims.believe(mind.hears("apple_2", (5.2, 5.1, 0.85)))
-    assert mind.duties.all["apple_2"].done == "told"
-    assert mind.aim() is None
-    assert [duty.target for duty in mind.agenda.missing] == ["apple", "apple_3"]
+    mind.advice.accept(mind.hears("apple_2", (5.2, 5.1, 0.85)))
+    assert mind.subgoals.all["apple_2"].done == "told"
+    assert mind.goal() is None
+    assert [subgoal.target for subgoal in mind.arbiter.missing] == ["apple", "apple_3"]
     mind.sees("apple_2", (1.0, 0.0, 0.5), support="sofa")
-    assert mind.aim() == ("fetch", "apple_2")
+    assert mind.goal() == ("fetch", "apple_2")
 
 
 def test_a_wish_to_look_into_a_fridge_is_for_while_something_is_missing():
@@ -394,8 +394,8 @@ def test_a_wish_to_look_into_a_fridge_is_for_while_something_is_missing():
     assert mind.hears("fridge", None).position == (5.0, 5.0, 0.4)
     assert mind.hears("fridge|1", None) is None, "nobody knows where that is"
     assert mind.hears("robot", (1.0, 1.0, 1.0)) is None
-    mind.claims.believe(mind.hears("fridge"))
-    assert mind.aim() == ("follow", "")
+    mind.advice.accept(mind.hears("fridge"))
+    assert mind.goal() == ("follow", "")
     for name in ("apple", "apple_2", "apple_3"):
         mind.sees(name)
     assert mind.hears("fridge", None) is None
@@ -410,7 +410,7 @@ def test_nobody_is_asked_to_look_where_they_see_for_themselves():
 
 def test_in_the_kinds_of_one_object_a_person_is_told_of_that_alone():
     mind = Mind((Job(target="apple", relation="find"),))
-    assert mind.hears("apple").duty.target == "apple"
+    assert mind.hears("apple").subgoal.target == "apple"
     assert mind.hears("fridge", (1.0, 1.0, 1.0)) is None
     mind.sees("apple")
     assert mind.hears("apple") is None
@@ -419,9 +419,9 @@ def test_in_the_kinds_of_one_object_a_person_is_told_of_that_alone():
 def test_with_hands_full_a_person_wants_to_know_where_to_bring_it():
     mind = Mind((Job(target="mug", relation="on", destinations=("desk", "shelf")), *APPLES))
     mind.at(holding="mug")
-    claim = mind.hears("shelf_2", (4.0, 4.0, 1.0))
-    mind.claims.believe(claim)
-    assert mind.claims.lead == (4.0, 4.0, 1.0)
+    advice = mind.hears("shelf_2", (4.0, 4.0, 1.0))
+    mind.advice.accept(advice)
+    assert mind.advice.destination == (4.0, 4.0, 1.0)
     mind.furniture("desk", "desk")
     assert mind.hears("shelf_2", (4.0, 4.0, 1.0)) is None
 
@@ -431,8 +431,8 @@ def test_a_tour_is_remembered_nearly():
     jobs = tuple(
         Job(target=f"mug_{k}", relation="on", destinations=("desk",), place=(3.0, 4.0, 0.8)) for k in range(300)
     )
-    spots = [duty.spot for duty in Mind(jobs).duties.all.values()]
-    assert spots == [duty.spot for duty in Mind(jobs).duties.all.values()]
+    spots = [subgoal.spot for subgoal in Mind(jobs).subgoals.all.values()]
+    assert spots == [subgoal.spot for subgoal in Mind(jobs).subgoals.all.values()]
     kept = [spot for spot in spots if spot is not None]
     assert 1 - len(kept) / 300 == pytest.approx(TRAITS.tour_forget, abs=0.05)
     off = [spot[0] - 3.0 for spot in kept]
@@ -441,28 +441,28 @@ def test_a_tour_is_remembered_nearly():
 
 def test_home_is_the_place_where_a_place_is_remembered():
     mind = Mind((Job(target="mug", relation="on", destinations=("desk_2",), place=(5.0, 5.0, 0.8)), *APPLES))
-    mug = mind.duties.all["mug"]
+    mug = mind.subgoals.all["mug"]
     mug.spot = (5.0, 5.0, 0.8)
-    assert mind.duties.at_home(mug, (5.1, 5.1, 0.8), "desk_2")
-    assert not mind.duties.at_home(mug, (5.4, 5.0, 0.8), "desk_2")
-    assert not mind.duties.at_home(mug, (5.0, 5.0, 0.8), "desk_1")
+    assert mind.subgoals.is_at_destination(mug, (5.1, 5.1, 0.8), "desk_2")
+    assert not mind.subgoals.is_at_destination(mug, (5.4, 5.0, 0.8), "desk_2")
+    assert not mind.subgoals.is_at_destination(mug, (5.0, 5.0, 0.8), "desk_1")
 
 
-def test_hope_is_shared_among_all_that_is_missing():
+def test_belief_is_shared_among_all_missing_objects():
     jobs = (
         Job(target="apple", relation="on", destinations=("desk",)),
         Job(target="book", relation="in", destinations=()),
     )
     mind = Mind(jobs)
-    eyes = perception.Eyes(mind.me, mind.things, mind.memory)
-    errands = Errands(mind.me, eyes, mind.memory, Walker(mind.me, mind.memory, 0.0, 0.0), mind.duties)
-    search = errands._for_targets
+    eyes = perception.Eyes(mind.me, mind.objects, mind.memory)
+    behaviours = Behaviours(mind.me, eyes, mind.memory, Walker(mind.me, mind.memory, 0.0, 0.0), mind.subgoals)
+    search = behaviours._target_search
 
-    def hope(*names):
-        errands.expect([mind.duties.all[name] for name in names])
-        return dict(search.hope)
+    def belief(*names):
+        behaviours.expect([mind.subgoals.all[name] for name in names])
+        return dict(search.belief)
 
-    apple, book, both = hope("apple"), hope("book"), hope("apple", "book")
+    apple, book, both = belief("apple"), belief("book"), belief("apple", "book")
     assert sum(book.values()) == pytest.approx(1.0)
     assert apple["fridge"] > book["fridge"]
     for kind, share in both.items():

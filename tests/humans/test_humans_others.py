@@ -18,7 +18,7 @@ from hthor.eval.config import sessions
 from hthor.eval.records import trial_record
 from hthor.humans.models import _logged_trials, greedy, proxy, random, replay
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.participant import Person
+from hthor.humans.population.participant import Participant
 from hthor.tasks.suite import make_suite
 from hthor.tasks.suites import library
 from hthor.types import Action, AgentRef, Goal, Message, Move, Pose, RobotSeat, Send, TaskSpec, TrialSpec, Wait
@@ -89,7 +89,7 @@ def world() -> World:
 def log(world, tmp_path_factory) -> Path:
     """The log of a run of one person and two trials, with a robot that says where the apple is."""
     folder = tmp_path_factory.mktemp("run")
-    person = proxy.Model(Person(seed=0, participant=0, traits=msgspec.structs.replace(QUICK, a0=9.0)))
+    person = proxy.Model(Participant(seed=0, number=0, traits=msgspec.structs.replace(QUICK, a0=9.0)))
     lines = b""
     for index, support in enumerate(FROM):
         trial = spec(bring(support), index=index)
@@ -110,7 +110,7 @@ def at(support: str):
 def model(name: str, log: Path, state=None, participant: int = 0, traits: Parameters = QUICK):
     """A person of any human model there is, by its name or its file."""
     made = plugins.load("human model", name)
-    person = Person(seed=0, participant=participant, traits=traits)
+    person = Participant(seed=0, number=participant, traits=traits)
     return made(person, state, str(log)) if name == "replay" else made(person, state)
 
 
@@ -195,7 +195,7 @@ def test_both_ends_play_every_kind_of_task(suite):
     stage = trial_runner.TrialRunner()
     for made in (greedy.Model, random.Model):
         with stage.enter(one) as company:
-            company.human = made(Person(seed=0, participant=0, traits=QUICK))
+            company.human = made(Participant(seed=0, number=0, traits=QUICK))
             done = trial_runner._run_trial(stage.world(one.trials[0]), company, one.trials[0])
         assert done.met or done.ticks == round(task.time_limit / rules.TICK_S)
         assert not done.faults
@@ -205,7 +205,10 @@ def test_both_ends_play_every_kind_of_task(suite):
 
 def test_greedy_people_are_all_the_same_and_ratings_do_not_move():
     def go(participant, trials):
-        person, flat = greedy.Model(Person(seed=participant, participant=participant, traits=QUICK)), Flat("Fridge|1")
+        person, flat = (
+            greedy.Model(Participant(seed=participant, number=participant, traits=QUICK)),
+            Flat("Fridge|1"),
+        )
         for _ in range(trials):
             flat = Flat("Fridge|1")
             person.begin(flat.briefing(teammates=("robot",)))
@@ -217,11 +220,11 @@ def test_greedy_people_are_all_the_same_and_ratings_do_not_move():
 
 
 def test_greedy_people_notice_within_three_metres_and_never_beyond():
-    person, flat = greedy.Model(Person(seed=0, participant=0, traits=QUICK)), Flat("Bed|1")
+    person, flat = greedy.Model(Participant(seed=0, number=0, traits=QUICK)), Flat("Bed|1")
     person.begin(flat.briefing())
 
     def noticed():
-        return person._things.known["apple"].seen is not None
+        return person._objects.known["apple"].seen is not None
 
     play(person, flat, until=noticed)
     eye = (flat.pose.x, flat.pose.y, 1.6)
@@ -232,7 +235,7 @@ def test_greedy_people_notice_within_three_metres_and_never_beyond():
 @pytest.mark.parametrize(("made", "answers"), [(greedy.Model, {True}), (random.Model, {False})])
 def test_the_ends_always_and_never_confirm(made, answers):
     for participant in range(2):
-        person, flat = made(Person(seed=2, participant=participant, traits=QUICK)), Flat("Fridge|1")
+        person, flat = made(Participant(seed=2, number=participant, traits=QUICK)), Flat("Fridge|1")
         person.begin(flat.briefing(teammates=("robot",)))
         texts = ("It is here.", "Come to the sofa.")
 
@@ -257,10 +260,10 @@ def test_the_ends_always_and_never_confirm(made, answers):
 
 
 def test_random_people_choose_each_option_as_often():
-    from hthor.humans.core.policy import Choice, Situation
+    from hthor.humans.core.policy import OptionDescription, Situation
 
     def option(name, value):
-        return Choice(
+        return OptionDescription(
             name=name, text="", verb="search", kind="bed", knowledge=value, uniform=0.1, metres=1 / value, seconds=2.0,
             exposure=0.0, closed=False, value=value,
         )  # fmt: skip
@@ -271,7 +274,7 @@ def test_random_people_choose_each_option_as_often():
         situation = Situation(
             instruction="", aim="target", number=root % 7, left=9.0, room="", holding="", options=options
         )
-        counts[random.Whim(root).choose(situation)] += 1
+        counts[random.RandomPolicy(root).choose(situation)] += 1
     assert max(abs(count - 500) for count in counts) < 4.5 * math.sqrt(2000 * 0.25 * 0.75)
 
 
@@ -291,7 +294,7 @@ def deeds(done):
 
 @pytest.mark.parametrize("robot", ["same", "silent"])
 def test_a_replay_does_the_same_whatever_the_robot_says(robot, world, log):
-    past_ = _logged_trials.read(str(log))[0]
+    past_ = _logged_trials.read_logged_trials(str(log))[0]
     person = model("replay", log)
     for one, support in zip(past_, FROM, strict=True):
         says = [Send(text="Here.", object="apple", position=at(support))] if robot == "same" else []
@@ -305,7 +308,7 @@ def test_a_replay_does_the_same_whatever_the_robot_says(robot, world, log):
 
 
 def test_a_replay_answers_what_is_shown_when_the_logged_person_answered(world, log):
-    one = _logged_trials.read(str(log))[0][0]
+    one = _logged_trials.read_logged_trials(str(log))[0][0]
     (tick, accept), *_ = one.answers()
     says = (Send(text="Look here.", object="apple", position=(9.0, 2.7, 0.5)), Send(text="Or here.", object="apple"))
     done = umpire.run_episode(one.spec, world, model("replay", log), {"robot": Teller(*says, at=tick - 1)})
@@ -322,7 +325,7 @@ class Blocker(Teller):
 
 
 def test_a_replay_waits_for_a_robot_in_its_way_and_catches_up(world, log):
-    one = _logged_trials.read(str(log))[0][0]
+    one = _logged_trials.read_logged_trials(str(log))[0][0]
     x, y, _ = next(pose for pose in one.paths["human"] if pose[0] > 5700)
     start = Pose(x=x / 1000.0, y=y / 1000.0, yaw=math.pi / 2)
     task = msgspec.structs.replace(one.spec.task, robot_starts=(start,))
@@ -336,7 +339,7 @@ def test_a_replay_waits_for_a_robot_in_its_way_and_catches_up(world, log):
 
 
 def test_a_replay_stands_still_after_the_end_of_its_log(world, log):
-    one = _logged_trials.read(str(log))[0][0]
+    one = _logged_trials.read_logged_trials(str(log))[0][0]
     task = msgspec.structs.replace(one.spec.task, objects=(on(COUNTER, "apple"),))  # it lies somewhere else now
     done = umpire.run_episode(spec(task), world, model("replay", log), {"robot": Teller()})
     assert not done.met
@@ -372,12 +375,12 @@ def test_a_log_that_cannot_be_read_is_an_error(content, words, tmp_path):
     if content is not None:
         file.write_bytes(content)
     with pytest.raises(HthorError, match=words):
-        replay.Model(Person(seed=0, participant=0), None, str(tmp_path))
+        replay.Model(Participant(seed=0, number=0), None, str(tmp_path))
 
 
 def test_replay_without_a_run_says_how_to_name_one():
     with pytest.raises(HthorError, match="--humans replay:RUN"):
-        replay.Model(Person(seed=0, participant=0))
+        replay.Model(Participant(seed=0, number=0))
 
 
 def test_the_hash_of_a_replay_is_that_of_its_log(log, tmp_path):

@@ -17,15 +17,15 @@ from world_house import COFFEE, FRIDGE, TABLE, do, on, task, wait
 
 from hthor import seeds
 from hthor.errors import StaleObservation
-from hthor.humans.core.trial_context import Subject
-from hthor.humans.memory.object_memory import Things
-from hthor.humans.memory.spatial_memory import Memory
+from hthor.humans.core.trial_context import HumanContext
+from hthor.humans.memory.object_memory import ObjectMemory
+from hthor.humans.memory.spatial_memory import SpatialMemory
 from hthor.humans.models.proxy import Model
-from hthor.humans.perception.detection_rate import Head, Outlook, expected, extent, rate
-from hthor.humans.perception.exposure_log import Exposures, Glimpse
+from hthor.humans.perception.detection_rate import Head, PlaceDetection, apparent_size, detection_rate, expected_size
+from hthor.humans.perception.exposure_log import ExposureLog, Glimpse
 from hthor.humans.perception.perception import Eyes
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.participant import Person
+from hthor.humans.population.participant import Participant
 from hthor.types import HUMAN, Briefing, Detection, Job, Observation, Open, Pose, Sighting
 from hthor.world import World
 from hthor.world.model.bodies import avatar
@@ -42,18 +42,20 @@ angle, ecc, share, beside = st.floats(1e-3, 1.0), st.floats(0.0, 1.5), st.floats
 @given(angle, angle, ecc, ecc, share, share, beside, beside)
 def test_better_seen_is_noticed_faster(a, b, near, aside, less, more, few, many):
     (a, b), (near, aside), (less, more), (few, many) = map(sorted, ((a, b), (near, aside), (less, more), (few, many)))
-    most = rate(TRAITS, b, near, more, few)
+    most = detection_rate(TRAITS, b, near, more, few)
     assert 0.0 <= most <= TRAITS.lam0
     for other in ((a, near, more, few), (b, aside, more, few), (b, near, less, few), (b, near, more, many)):
-        assert rate(TRAITS, *other) <= most
+        assert detection_rate(TRAITS, *other) <= most
 
 
 def test_the_rate_halves_where_the_parameters_say():
-    full = rate(TRAITS, 1e9, 0.0)
+    full = detection_rate(TRAITS, 1e9, 0.0)
     assert full == pytest.approx(TRAITS.lam0)
-    assert rate(TRAITS, TRAITS.a50, 0.0) == pytest.approx(full / 2)
-    assert rate(TRAITS, 1e9, TRAITS.ecc_sd) == pytest.approx(full * math.exp(-0.5))
-    assert rate(TRAITS, 1e9, 0.0, share=0.25, beside=3) == pytest.approx(full * 0.25 * math.exp(-3 * TRAITS.clutter))
+    assert detection_rate(TRAITS, TRAITS.a50, 0.0) == pytest.approx(full / 2)
+    assert detection_rate(TRAITS, 1e9, TRAITS.ecc_sd) == pytest.approx(full * math.exp(-0.5))
+    assert detection_rate(TRAITS, 1e9, 0.0, share=0.25, beside=3) == pytest.approx(
+        full * 0.25 * math.exp(-3 * TRAITS.clutter)
+    )
 
 
 def test_eccentricity_counts_up_and_down_as_well():
@@ -74,14 +76,18 @@ def test_eccentricity_counts_up_and_down_as_well():
 def test_the_rate_at_a_place_is_that_of_a_thing_alone_there_in_full_view(x, y, z, yaw, pitch, size):
     head = Head(Pose(x=0.0, y=0.0, yaw=yaw, pitch=pitch), 1.6)
     far, ecc = head.to((x, y, z))
-    found = Outlook(TRAITS, size).rate(head, (x, y, z))
-    assert found == pytest.approx(rate(TRAITS, size / far, ecc), rel=1e-6, abs=1e-12)
+    found = PlaceDetection(TRAITS, size).rate(head, (x, y, z))
+    assert found == pytest.approx(detection_rate(TRAITS, size / far, ecc), rel=1e-6, abs=1e-12)
 
 
 def test_people_know_how_large_things_are():
-    assert expected("apple_2") == pytest.approx(0.08)
-    assert expected("book") == pytest.approx(math.sqrt(0.15 * 0.21)) == pytest.approx(extent((0.21, 0.03, 0.15)))
-    assert expected("heirloom|7") > 0.0
+    assert expected_size("apple_2") == pytest.approx(0.08)
+    assert (
+        expected_size("book")
+        == pytest.approx(math.sqrt(0.15 * 0.21))
+        == pytest.approx(apparent_size((0.21, 0.03, 0.15)))
+    )
+    assert expected_size("heirloom|7") > 0.0
 
 
 # --------------------------------------------------------------------------------------------- what the world's eye has
@@ -208,11 +214,11 @@ class Looker:
             seat=HUMAN, instruction="", target=jobs[0].target, destination="", relation="find", body=BODY, tick_s=0.1,
             time_limit=90.0, jobs=jobs,
         )  # fmt: skip
-        self.me = Subject(traits, root, briefing)
-        self.things, self.memory = Things(job.target for job in jobs), Memory(tau=traits.tau_mem / 0.1)
+        self.me = HumanContext(traits, root, briefing)
+        self.objects, self.memory = ObjectMemory(job.target for job in jobs), SpatialMemory(tau=traits.tau_mem / 0.1)
         self.told = []
-        self.me.think = self.told.append
-        self.eyes = Eyes(self.me, self.things, self.memory)
+        self.me.listener = self.told.append
+        self.eyes = Eyes(self.me, self.objects, self.memory)
         self.tick = 0
 
     def see(self, *detections, ticks=3, yaw=0.0):
@@ -223,12 +229,12 @@ class Looker:
 
     @property
     def knows(self):
-        return self.things.known["apple"].seen is not None
+        return self.objects.known["apple"].seen is not None
 
 
 def test_the_time_to_notice_is_exponential():
     """The law that the journal's readers fit: after a time t of equal glimpses exp(-rate t) have noticed nothing."""
-    steady = rate(TRAITS, 0.08 / 2.0, 0.0, 0.8, 2)
+    steady = detection_rate(TRAITS, 0.08 / 2.0, 0.0, 0.8, 2)
     lookers = [Looker(seeds.derive(0, k), share=0.8, beside=2) for k in range(400)]
     for _ in range(5):
         for one in lookers:
@@ -251,10 +257,10 @@ def test_what_is_hidden_is_never_noticed(root, glimpses):
 def test_nobody_notices_what_a_closed_fridge_hides():
     flat = Flat("Fridge|1")
     flat._done = lambda motion, done=flat._done: flat.outcome if isinstance(motion, Open) else done(motion)
-    model = Model(Person(seed=1, participant=0, traits=msgspec.structs.replace(TRAITS, lam0=3.0)))
+    model = Model(Participant(seed=1, number=0, traits=msgspec.structs.replace(TRAITS, lam0=3.0)))
     model.begin(flat.briefing())
     play(model, flat, ticks=600)
-    assert model._things.known["apple"].seen is None
+    assert model._objects.known["apple"].seen is None
     model.rate(False, flat.tick)
     assert not [event for event in model.journal if event.kind == "exposure"]
 
@@ -276,7 +282,7 @@ def test_searching_a_place_counts_by_what_would_have_been_seen_there():
 
 
 def test_a_search_fades_from_memory():
-    memory = Memory(tau=200.0)
+    memory = SpatialMemory(tau=200.0)
     place = memory.keep_place(fridge())
     memory.expose(place, 2.0, 100)
     assert memory.exposure(place, 300) == pytest.approx(2.0 / math.e)
@@ -322,11 +328,11 @@ def test_what_stays_in_view_is_not_forgotten_and_what_comes_back_must_be_noticed
         assert one.memory.places["fridge|1"].recalled
         while one.knows or one.memory.places["fridge|1"].recalled:
             one.see(ticks=9)
-        news = one.things.news
+        news = one.objects.changes
         one.see(apple(), fridge())
         assert one.knows
         assert one.memory.places["fridge|1"].recalled
-        assert one.things.news > news
+        assert one.objects.changes > news
         kinds = [(event.kind, event.data["object"]) for event in one.told]
         assert [name for kind, name in kinds if kind == "noticed"].count("apple") == 2
         assert {("forgot", "apple"), ("forgot", "fridge|1")} <= set(kinds)
@@ -334,7 +340,7 @@ def test_what_stays_in_view_is_not_forgotten_and_what_comes_back_must_be_noticed
 
 def test_what_people_are_about_hold_or_head_for_is_not_forgotten():
     def about(looker):
-        looker.eyes.subject = looker.things.known["apple"]
+        looker.eyes.current = looker.objects.known["apple"]
         looker.memory.heading = "fridge|1"
 
     assert all(one.knows and one.memory.places["fridge|1"].recalled for one in after(300.0, 40, mind=about))
@@ -358,9 +364,9 @@ def test_a_destination_that_was_forgotten_is_found_again():
     traits, forgot = msgspec.structs.replace(TRAITS, tau_seen=1.5), 0
     for person in range(4):
         flat, told = Flat("Bed|1"), []
-        model = Model(Person(seed=2, participant=person, traits=traits))
+        model = Model(Participant(seed=2, number=person, traits=traits))
         model.begin(flat.briefing(relation="in", destination="fridge"))
-        model._me.think = told.append
+        model._human.listener = told.append
         play(model, flat, ticks=3000, until=lambda flat=flat: flat.support == "Fridge|1" and not flat.held)
         assert flat.support == "Fridge|1"
         forgot += ("forgot", "Fridge|1") in [(event.kind, event.data.get("object")) for event in told]
@@ -381,7 +387,7 @@ def test_the_journal_holds_all_that_led_to_noticing(root, glances):
     looker, total, last = Looker(root, share=0.7, beside=1), 0.0, 0.0
     for far, yaw in glances:
         looker.see(apple((far, 0.0, 1.6)), yaw=yaw)
-        last = rate(TRAITS, 0.08 / far, abs(yaw), 0.7, 1) * (0.1 if looker.tick == 3 else 0.3)
+        last = detection_rate(TRAITS, 0.08 / far, abs(yaw), 0.7, 1) * (0.1 if looker.tick == 3 else 0.3)
         total += last
         if looker.knows:
             break
@@ -389,7 +395,7 @@ def test_the_journal_holds_all_that_led_to_noticing(root, glances):
     (data,) = exposures(looker)
     assert data["noticed"] == looker.knows
     assert data["seconds"] == pytest.approx(sum(row[0] for row in data["gathered"]))
-    summed = [rate(TRAITS, row[1], row[2], row[3], row[4]) * row[0] for row in data["gathered"]]
+    summed = [detection_rate(TRAITS, row[1], row[2], row[3], row[4]) * row[0] for row in data["gathered"]]
     assert sum(summed) == pytest.approx(total, rel=0.02, abs=1e-3)
     assert summed[-1] == pytest.approx(last, rel=0.01, abs=1e-4)
     assert not any(row[5] for row in data["gathered"])
@@ -416,7 +422,7 @@ def test_an_object_that_is_looked_for_just_there_is_noticed_sooner_and_the_journ
 def test_glimpses_that_are_alike_share_a_row_and_no_more_is_written_at_the_end():
     looker = Looker(0)
     looker.me.now = Observation(tick=5, pose=Pose(x=0.0, y=0.0), idle=True, senses=None)
-    book = Exposures(looker.me)
+    book = ExposureLog(looker.me)
     for k in range(500):
         book.add("apple", Glimpse(0.3, 0.04 + 1e-5 * k, 0.2 + 1e-4 * k, 1.0, 0, False))
     book.end()
@@ -431,7 +437,7 @@ def test_glimpses_that_are_alike_share_a_row_and_no_more_is_written_at_the_end()
 def test_the_same_person_writes_the_same_journal(support):
     def written():
         flat = Flat(support)
-        model = Model(Person(seed=1, participant=2))
+        model = Model(Participant(seed=1, number=2))
         model.begin(flat.briefing())
         play(model, flat, ticks=300)
         model.rate(False, flat.tick)

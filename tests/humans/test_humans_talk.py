@@ -13,15 +13,15 @@ from hypothesis import strategies as st
 
 from hthor import seeds
 from hthor.humans.communication import accept_decision, time_saving
-from hthor.humans.communication.message_reading import Reader, same
+from hthor.humans.communication.message_reading import MessageReader, is_same_message
 from hthor.humans.core import policy
 from hthor.humans.core.policy import Offer
-from hthor.humans.core.trial_context import Subject
+from hthor.humans.core.trial_context import HumanContext
 from hthor.humans.models.proxy import Model
 from hthor.humans.perception import wall_occlusion
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.participant import Person
-from hthor.humans.search.option_choice import Option
+from hthor.humans.population.participant import Participant
+from hthor.humans.search.option import Option
 from hthor.navigation.grid_map import GridMap
 from hthor.types import HUMAN, Briefing, Message, Observation, Pose, Scan
 
@@ -44,7 +44,7 @@ def subject(traits=TRAITS, root=0, chooser=None):
         tick_s=0.1,
         time_limit=90.0,
     )
-    me = Subject(traits, root, briefing, chooser)
+    me = HumanContext(traits, root, briefing, chooser)
     me.now = Observation(tick=100, pose=Pose(x=0.0, y=0.0, yaw=0.0), idle=True, senses=None)
     return me
 
@@ -67,7 +67,7 @@ def offer(number=1, **changed):
 def share(count=600, relevant=True, **changed):
     """Share of people who confirm."""
     people = [subject(root=seeds.derive(1, k)) for k in range(count)]
-    return sum(accept_decision.answer(me, offer(**changed), relevant) == "confirm" for me in people) / count
+    return sum(accept_decision.decide_answer(me, offer(**changed), relevant) == "confirm" for me in people) / count
 
 
 # ------------------------------------------------------------------------------------------------------ notice and read
@@ -79,7 +79,7 @@ def finished(reader, words=TWELVE, number=0, tick=0):
     for later in range(tick, tick + 2000):
         reading = reader.ready(later)
         if reading is not None:
-            reader.settle(reading, accepted=False)
+            reader.mark_answered(reading, accepted=False)
             reader.receive(later + 1, ())
             return later - tick
     raise AssertionError("never read")
@@ -87,31 +87,31 @@ def finished(reader, words=TWELVE, number=0, tick=0):
 
 def test_noticing_and_reading_take_their_time():
     """The median is that of the two medians together, as the literature has them."""
-    times = sorted(finished(Reader(TRAITS, seeds.derive(0, k), 0.1)) / 10 for k in range(400))
+    times = sorted(finished(MessageReader(TRAITS, seeds.derive(0, k), 0.1)) / 10 for k in range(400))
     assert times[200] == pytest.approx(TRAITS.t_notice + TRAITS.t_read, rel=0.12)
     assert times[40] < 0.8 * times[200] < times[360] / 1.3
 
 
 def test_long_messages_take_longer():
     short, long = (
-        sum(finished(Reader(TRAITS, seeds.derive(0, k), 0.1), words) for k in range(60))
+        sum(finished(MessageReader(TRAITS, seeds.derive(0, k), 0.1), words) for k in range(60))
         for words in ("Here.", 3 * TWELVE)
     )
     assert long > 2.0 * short
 
 
 def test_nobody_reads_before_they_noticed():
-    reader = Reader(TRAITS, 3, 0.1)
-    assert not reader.reads(0)
+    reader = MessageReader(TRAITS, 3, 0.1)
+    assert not reader.is_reading(0)
     reader.receive(0, (message(),))
-    assert not reader.reads(0)
-    assert reader.reads(math.ceil(reader.now.noticed))
-    reader.settle(reader.now, accepted=True)
-    assert not reader.reads(10_000)
+    assert not reader.is_reading(0)
+    assert reader.is_reading(math.ceil(reader.now.noticed))
+    reader.mark_answered(reader.now, accepted=True)
+    assert not reader.is_reading(10_000)
 
 
 def test_a_repeated_message_is_read_on():
-    reader = Reader(TRAITS, 0, 0.1)
+    reader = MessageReader(TRAITS, 0, 0.1)
     reader.receive(0, (message(0),))
     for tick in range(1, 200):
         reader.receive(tick, (message(tick),))
@@ -121,7 +121,7 @@ def test_a_repeated_message_is_read_on():
 
 
 def test_another_offer_is_read_anew():
-    reader = Reader(TRAITS, 0, 0.1)
+    reader = MessageReader(TRAITS, 0, 0.1)
     reader.receive(0, (message(0),))
     first = reader.now.until
     reader.receive(5, (message(1, (4.0, 1.0, 1.0)),))
@@ -132,7 +132,7 @@ def test_another_offer_is_read_anew():
 def test_what_was_read_before_is_read_faster_and_counted():
     firsts, seconds = [], []
     for k in range(200):
-        reader = Reader(TRAITS, seeds.derive(0, k), 0.1)
+        reader = MessageReader(TRAITS, seeds.derive(0, k), 0.1)
         firsts.append(finished(reader))
         seconds.append(finished(reader, number=1, tick=300))
         reader.receive(900, (message(2),))
@@ -141,11 +141,11 @@ def test_what_was_read_before_is_read_faster_and_counted():
 
 
 def test_sameness_is_of_object_and_place():
-    assert same(message(0), message(1, (1.2, 1.1, 1.0)))
-    assert not same(message(0), message(1, (3.0, 1.0, 1.0)))
-    assert not same(message(0), message(1, thing="mug"))
-    assert not same(message(0), message(1, None))
-    assert same(message(0, None), message(1, None))
+    assert is_same_message(message(0), message(1, (1.2, 1.1, 1.0)))
+    assert not is_same_message(message(0), message(1, (3.0, 1.0, 1.0)))
+    assert not is_same_message(message(0), message(1, thing="mug"))
+    assert not is_same_message(message(0), message(1, None))
+    assert is_same_message(message(0, None), message(1, None))
 
 
 # -------------------------------------------------------------------------------------------------------------- decide
@@ -162,7 +162,7 @@ def test_answers_follow_every_term():
 
 @given(st.floats(0, 1), st.floats(0, 90), st.floats(0, 1), st.integers(0, 5))
 def test_the_terms_add_up_to_the_law(trust, saved, load, again):
-    parts = accept_decision.terms(TRAITS, offer(trust=trust, gain=saved, load=load, again=again))
+    parts = accept_decision.acceptance_terms(TRAITS, offer(trust=trust, gain=saved, load=load, again=again))
     law = (
         TRAITS.a0
         + TRAITS.a_trust * (trust - 0.5)
@@ -177,14 +177,14 @@ def test_what_is_beside_the_point_is_confirmed_by_slips_alone():
     assert share(relevant=False) == pytest.approx(TRAITS.p_slip, abs=0.02)
     careful = msgspec.structs.replace(TRAITS, p_slip=0.0)
     people = [subject(careful, seeds.derive(2, k)) for k in range(300)]
-    said = [accept_decision.answer(me, offer(), relevant=False) for me in people]
+    said = [accept_decision.decide_answer(me, offer(), relevant=False) for me in people]
     assert "confirm" not in said
     assert said.count("ignore") / 300 == pytest.approx(TRAITS.p_ignore, abs=0.08)
 
 
 def test_each_message_has_its_own_luck():
     said = {
-        tuple(accept_decision.answer(subject(root=root), offer(number, trust=0.2)) for number in range(1, 30))
+        tuple(accept_decision.decide_answer(subject(root=root), offer(number, trust=0.2)) for number in range(1, 30))
         for root in (5, 5, 6)
     }
     assert len(said) == 2
@@ -201,15 +201,15 @@ def test_a_policy_has_the_last_word():
             return "ignore"
 
     head = Never()
-    assert accept_decision.answer(subject(chooser=head), offer(7)) == "ignore"
+    assert accept_decision.decide_answer(subject(chooser=head), offer(7)) == "ignore"
     assert head.heard.number == 7
 
 
 def test_the_mind_tells_what_it_weighed():
     told = []
     me = subject()
-    me.think = told.append
-    said = accept_decision.answer(me, offer(gain=10.0))
+    me.listener = told.append
+    said = accept_decision.decide_answer(me, offer(gain=10.0))
     (event,) = told
     assert event.data["answer"] == said
     assert event.data["gain"] == pytest.approx(TRAITS.a_gain * math.log(11.0), abs=1e-3)
@@ -223,17 +223,17 @@ def option(name, belief, seconds, kappa=TRAITS.kappa):
 
 
 def test_a_sure_thing_takes_its_time():
-    assert time_saving.searching([option("a", 1.0, 7.0)], 90.0, TRAITS.kappa) == pytest.approx(7.0)
+    assert time_saving.expected_search_time([option("a", 1.0, 7.0)], 90.0, TRAITS.kappa) == pytest.approx(7.0)
 
 
 def test_a_search_is_reckoned_in_its_order():
-    found = time_saving.searching([option("far", 0.5, 20.0), option("near", 0.5, 5.0)], 90.0, TRAITS.kappa)
+    found = time_saving.expected_search_time([option("far", 0.5, 20.0), option("near", 0.5, 5.0)], 90.0, TRAITS.kappa)
     assert found == pytest.approx(0.5 * 5.0 + 0.5 * 25.0)
 
 
 def test_what_is_nowhere_takes_all_that_is_left():
-    assert time_saving.searching([], 40.0, TRAITS.kappa) == 40.0
-    assert time_saving.searching([option("a", 0.25, 10.0)], 40.0, TRAITS.kappa) == pytest.approx(
+    assert time_saving.expected_search_time([], 40.0, TRAITS.kappa) == 40.0
+    assert time_saving.expected_search_time([option("a", 0.25, 10.0)], 40.0, TRAITS.kappa) == pytest.approx(
         0.25 * 10.0 + 0.75 * 40.0
     )
 
@@ -241,7 +241,7 @@ def test_what_is_nowhere_takes_all_that_is_left():
 @given(st.lists(st.tuples(st.floats(0, 1), st.floats(1, 60)), max_size=12), st.floats(0, 90))
 def test_no_search_takes_longer_than_is_left(parts, left):
     options = [option(str(k), belief, seconds) for k, (belief, seconds) in enumerate(parts)]
-    assert 0.0 <= time_saving.searching(options, left, TRAITS.kappa) <= left + 1e-9
+    assert 0.0 <= time_saving.expected_search_time(options, left, TRAITS.kappa) <= left + 1e-9
 
 
 # -------------------------------------------------------------------------------------------------------------- follow
@@ -288,7 +288,7 @@ def journal(model, kind):
 
 def heard(person, position, support="Fridge|1", ticks=300, traits=TRAITS, thing="apple"):
     flat = Flat(support)
-    model = Model(Person(seed=1, participant=person, traits=traits))
+    model = Model(Participant(seed=1, number=person, traits=traits))
     model.begin(flat.briefing(teammates=("robot",)))
     note = message(0, position, thing)
     answered = []
@@ -318,7 +318,7 @@ def test_what_one_sees_oneself_may_still_be_confirmed():
     willing = msgspec.structs.replace(TRAITS, a0=9.0, p_slip=0.0)
     for person in range(6):
         flat = Flat("Table|1")
-        model = Model(Person(seed=1, participant=person, traits=willing))
+        model = Model(Participant(seed=1, number=person, traits=willing))
         model.begin(flat.briefing(relation="on", destination="bed", teammates=("robot",)))
         play(model, flat, ticks=400, until=lambda flat=flat, model=model: model.about.startswith("fetch"))
         if not model.about.startswith("fetch"):
@@ -341,14 +341,14 @@ def test_words_that_name_neither_a_thing_nor_a_place_are_about_nothing():
         model, _, _ = heard(0, place, ticks=150, traits=willing, thing=name)
         (entry,) = journal(model, "offer")
         assert (entry["relevant"], entry["answer"] == "confirm") == (relevant, relevant), name
-        assert (model._talk.experience.helped is not None) == relevant, "it earns no trust"
+        assert (model._dialogue.experience.helped is not None) == relevant, "it earns no trust"
 
 
 def test_a_place_without_a_name_matters_only_while_something_is_missing():
     willing = msgspec.structs.replace(TRAITS, a0=9.0, p_slip=0.0)
     for person in range(6):
         flat = Flat("Table|1")
-        model = Model(Person(seed=1, participant=person, traits=willing))
+        model = Model(Participant(seed=1, number=person, traits=willing))
         model.begin(flat.briefing(relation="on", destination="bed", teammates=("robot",)))
         play(model, flat, ticks=400, until=lambda flat=flat, model=model: model.about.startswith("fetch"))
         if not model.about.startswith("fetch"):
@@ -368,7 +368,7 @@ def test_who_never_confirms_walks_as_if_nobody_spoke_when_reading_costs_nothing(
     paths = []
     for says in (True, False):
         flat = Flat("Bed|1")
-        model = Model(Person(seed=1, participant=2, traits=deaf))
+        model = Model(Participant(seed=1, number=2, traits=deaf))
         model.begin(flat.briefing(teammates=("robot",)))
         trace, _ = play(model, flat, ticks=300, say=(lambda tick: (message(0, (9.0, 2.5, 0.6)),)) if says else None)
         paths.append(trace)

@@ -15,7 +15,7 @@ from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
-from hthor.humans.core.behaviour_log import Recorder
+from hthor.humans.core.behaviour_log import BehaviourRecorder
 from hthor.tasks.suite import make_suite
 from hthor.types import HUMAN, Event, Move, Rotate, Wait
 from hthor.world.model.bodies.avatar import HUMAN as BODY
@@ -23,11 +23,11 @@ from hthor.world.model.bodies.avatar import HUMAN as BODY
 STEP_M = BODY.speed * rules.TICK_S
 
 
-def recorder() -> Recorder:
-    return Recorder(BODY, rules.TICK_S)
+def recorder() -> BehaviourRecorder:
+    return BehaviourRecorder(BODY, rules.TICK_S)
 
 
-def entries(made: Recorder, *own: Event, events: tuple[Event, ...] = ()) -> dict[str, Event]:
+def entries(made: BehaviourRecorder, *own: Event, events: tuple[Event, ...] = ()) -> dict[str, Event]:
     return {event.kind: event for event in made.journal(own, events)}
 
 

@@ -56,13 +56,13 @@ def small(**validity: Any) -> Population:
     }
     rows = [[0.4, 0.2], [0.6, 0.3]]
     about: dict[str, Any] = {"purpose": "two draws", "seed": 0, "command": "a test", "validity": Validity(**its)}
-    return Population.of("pop", rows, names=("v_pace", "sigma"), **about)
+    return Population.make("pop", rows, names=("v_pace", "sigma"), **about)
 
 
 @pytest.fixture
 def files(tmp_path: Path) -> Iterator[Path]:
     """A folder with a population, a kind of people and a human model."""
-    small().save(tmp_path / "pop")
+    population_file.save_population(small(), tmp_path / "pop")
     change = {"parameter": "v_pace", "verb": "times", "value": 0.5, "reason": "a test"}
     kind = {"schema": kinds.SCHEMA, "name": "half", "purpose": "half as fast", "reason": "a test", "changes": [change]}
     (tmp_path / "half.json").write_text(json.dumps(kind))
@@ -76,47 +76,47 @@ def files(tmp_path: Path) -> Iterator[Path]:
 
 
 def test_every_word_finds_people_of_its_own_hash():
-    found = {word: resolve.find(word) for word in resolve.names() if word != "replay"}
-    assert found[resolve.default()].sha256 == found["proxy"].sha256
+    found = {word: resolve.resolve_humans(word) for word in resolve.human_names() if word != "replay"}
+    assert found[resolve.default_population()].sha256 == found["proxy"].sha256
     assert len({one.sha256 for one in found.values()}) == len(found) - 1
     assert set(KINDS) <= set(found)
     for word, one in found.items():
         assert one.name == word == one.word
         assert one.purpose
-        assert resolve.find(word).sha256 == one.sha256
+        assert resolve.resolve_humans(word).sha256 == one.sha256
 
 
 def test_the_proxy_has_the_calibrated_population_once_it_ships(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(population_file, "FOLDER", tmp_path)
     monkeypatch.setattr(population_file, "_shipped", population_file._shipped.__wrapped__)
-    assert resolve.default() == "literature"
+    assert resolve.default_population() == "literature"
     made = msgspec.structs.replace(small(), name="paper")
-    made.save(tmp_path / "paper")
-    assert resolve.default() == "study"
+    population_file.save_population(made, tmp_path / "paper")
+    assert resolve.default_population() == "study"
     for word in ("proxy", "study", "paper"):
-        assert resolve.find(word).population.sha256 == made.sha256
+        assert resolve.resolve_humans(word).population.sha256 == made.sha256
     for word in ("slow", "greedy"):
-        assert resolve.find(word).population.name == "paper"
-    assert "study" in resolve.names()
-    assert "paper" not in resolve.names(), "a word for them that is still read"
-    assert resolve.find("paper").name == resolve.find("study").name == "study"
+        assert resolve.resolve_humans(word).population.name == "paper"
+    assert "study" in resolve.human_names()
+    assert "paper" not in resolve.human_names(), "a word for them that is still read"
+    assert resolve.resolve_humans("paper").name == resolve.resolve_humans("study").name == "study"
 
 
 def test_files_are_found_by_path_and_again_from_anywhere(files: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(files)
     words = ("pop.npz", "pop.json", "half.json", "still.py", "half.json@pop.npz", "still.py@pop.json", "slow@pop.npz")
-    found = [resolve.find(word) for word in words]
+    found = [resolve.resolve_humans(word) for word in words]
     assert [one.name for one in found] == ["pop", "pop", "half", "still", "half@pop", "still@pop", "slow@pop"]
-    drawn = [population_file.called(one.population.name) for one in found]
-    assert drawn == ["pop", "pop", resolve.default(), resolve.default(), *["pop"] * 3]
+    drawn = [population_file.population_name(one.population.name) for one in found]
+    assert drawn == ["pop", "pop", resolve.default_population(), resolve.default_population(), *["pop"] * 3]
     monkeypatch.chdir("/")
     for one in found:
-        again = resolve.find(one.word)
+        again = resolve.resolve_humans(one.word)
         assert (again.name, again.sha256) == (one.name, one.sha256)
-        assert again.person(0, 3) == one.person(0, 3)
+        assert again.participant(0, 3) == one.participant(0, 3)
     assert found[0].sha256 == found[1].sha256
     assert len({one.sha256 for one in found}) == len(found) - 1
-    assert type(found[3].make(0, 1)).__name__ == "Model"
+    assert type(found[3].make_model(0, 1)).__name__ == "Model"
 
 
 def test_a_file_that_is_called_like_people_of_ours_is_not_taken_for_them(tmp_path: Path):
@@ -126,30 +126,30 @@ def test_a_file_that_is_called_like_people_of_ours_is_not_taken_for_them(tmp_pat
     for name in ("proxy", "study", "cautious", "mine"):
         path = tmp_path / f"{name}.json"
         path.write_text(kind.replace('"name": "fast"', f'"name": "{name}"'))
-        names.add(resolve.find(str(path)).name)
+        names.add(resolve.resolve_humans(str(path)).name)
     assert "mine" in names
     assert not names & {"proxy", "study", "cautious"}
     assert all(re.fullmatch(r"mine|(proxy|study|cautious)-[0-9a-f]{6}", name) for name in names)
 
 
 def test_the_hash_covers_model_population_and_kind(files: Path):
-    still = resolve.find(f"{files}/still.py@{files}/pop.npz").sha256
+    still = resolve.resolve_humans(f"{files}/still.py@{files}/pop.npz").sha256
     (files / "still.py").write_text(MODEL + "# changed\n")
-    assert resolve.find(f"{files}/still.py@{files}/pop.npz").sha256 != still
-    before = resolve.find(f"{files}/half.json@{files}/pop.npz").sha256
+    assert resolve.resolve_humans(f"{files}/still.py@{files}/pop.npz").sha256 != still
+    before = resolve.resolve_humans(f"{files}/half.json@{files}/pop.npz").sha256
     text = (files / "half.json").read_text()
     (files / "half.json").write_text(text.replace("half as fast", "other words"))
-    assert resolve.find(f"{files}/half.json@{files}/pop.npz").sha256 == before
+    assert resolve.resolve_humans(f"{files}/half.json@{files}/pop.npz").sha256 == before
     (files / "half.json").write_text(text.replace("0.5", "0.6"))
-    assert resolve.find(f"{files}/half.json@{files}/pop.npz").sha256 != before
+    assert resolve.resolve_humans(f"{files}/half.json@{files}/pop.npz").sha256 != before
 
 
 def test_what_a_model_is_made_from_is_in_its_hash(files: Path):
     (files / "fed.py").write_text(MODEL + "WORD = 1\ndef ingredients(source): return {'w': WORD, 'source': source}\n")
-    first = resolve.find(str(files / "fed.py"))
+    first = resolve.resolve_humans(str(files / "fed.py"))
     module = plugins.loaded("human model", "fed")
     module.WORD = 2
-    assert resolve.find(str(files / "fed.py")).sha256 != first.sha256
+    assert resolve.resolve_humans(str(files / "fed.py")).sha256 != first.sha256
 
 
 @pytest.mark.parametrize(
@@ -166,7 +166,7 @@ def test_what_a_model_is_made_from_is_in_its_hash(files: Path):
 )
 def test_wrong_words_are_answered(word: str, hints: tuple[str, ...]):
     with pytest.raises(HthorError) as caught:
-        resolve.find(word)
+        resolve.resolve_humans(word)
     for hint in hints:
         assert hint in str(caught.value)
 
@@ -183,10 +183,14 @@ def test_a_model_that_is_made_from_something_else_has_no_population(files: Path)
         patch.setattr(plugins, "names", lambda _: ("fed", "proxy"))
         patch.setattr(plugins, "load", lambda *_: module.Model)
         patch.setattr(plugins, "summary", lambda *_: "a test")
-        found = resolve.find(f"fed:{files}/log")
+        found = resolve.resolve_humans(f"fed:{files}/log")
         ref = human_populations.human_model_ref(found, fakes.suite(20), crew)
-        assert found.make(0, 0).source == str(files / "log")
-        assert resolve.find(found.word).sha256 == found.sha256 != resolve.find(f"fed:{files}/pop").sha256
+        assert found.make_model(0, 0).source == str(files / "log")
+        assert (
+            resolve.resolve_humans(found.word).sha256
+            == found.sha256
+            != resolve.resolve_humans(f"fed:{files}/pop").sha256
+        )
     assert (ref.name, ref.source, ref.population, ref.valid) == ("fed-log", "fed:log", "", True)
 
 
@@ -199,17 +203,17 @@ def test_every_kind_changes_what_it_says_and_gives_its_reasons(name: str):
     assert kind.purpose
     assert kind.reason
     assert all(change.reason for change in kind.changes)
-    base = resolve.find(resolve.default())
-    ours = resolve.find(name)
+    base = resolve.resolve_humans(resolve.default_population())
+    ours = resolve.resolve_humans(name)
     means, changed = base.population.mean(), {change.parameter for change in kind.changes}
     new = kind.change(means)
     for parameter, value in msgspec.structs.asdict(means).items():
         assert (getattr(new, parameter) != value) == (parameter in changed), parameter
-        assert bounds.problem(parameter, getattr(new, parameter)) == ""
+        assert bounds.range_problem(parameter, getattr(new, parameter)) == ""
     for number in range(12):  # the same person but for that: draw and random effects are theirs
-        was, now = base.person(0, number).traits, ours.person(0, number).traits
-        same = [name for name in bounds.known() if getattr(was, name) == getattr(now, name)]
-        assert set(bounds.known()) - set(same) <= changed
+        was, now = base.participant(0, number).traits, ours.participant(0, number).traits
+        same = [name for name in bounds.parameter_names() if getattr(was, name) == getattr(now, name)]
+        assert set(bounds.parameter_names()) - set(same) <= changed
         if "v_pace" in changed:
             factor = kind.change(means).v_pace / means.v_pace
             assert now.v_pace == pytest.approx(was.v_pace * factor)
@@ -217,16 +221,21 @@ def test_every_kind_changes_what_it_says_and_gives_its_reasons(name: str):
 
 def test_the_kinds_of_the_issue_are_there():
     assert set(KINDS) == set(kinds.names())
-    slow, fast, base = (resolve.find(word).population.mean() for word in ("slow", "fast", "proxy"))
+    slow, fast, base = (resolve.resolve_humans(word).population.mean() for word in ("slow", "fast", "proxy"))
     assert kinds.load("slow").change(slow).v_pace < base.v_pace < kinds.load("fast").change(fast).v_pace
 
 
-@given(st.sampled_from(bounds.known()), st.sampled_from(["add", "times", "set"]), st.floats(-1e5, 1e5), st.floats(0, 1))
+@given(
+    st.sampled_from(bounds.parameter_names()),
+    st.sampled_from(["add", "times", "set"]),
+    st.floats(-1e5, 1e5),
+    st.floats(0, 1),
+)
 def test_a_change_never_leaves_the_range(name: str, verb: Any, value: float, share: float):
-    low, high = bounds.of(name)
+    low, high = bounds.parameter_range(name)
     start = low + (min(high, 1e3) - low) * share
-    change = kinds.Change(parameter=name, verb=verb, value=value, reason="")
-    assert bounds.problem(name, change.of(start)) == ""
+    change = kinds.ParameterEdit(parameter=name, verb=verb, value=value, reason="")
+    assert bounds.range_problem(name, change.of(start)) == ""
 
 
 def test_a_kind_that_is_no_good_is_named_with_its_field(files: Path):
@@ -236,7 +245,7 @@ def test_a_kind_that_is_no_good_is_named_with_its_field(files: Path):
     def refused(document: Any, *words: str) -> None:
         path.write_text(document if isinstance(document, str) else json.dumps(document))
         with pytest.raises(PopulationError) as caught:
-            resolve.find(str(path))
+            resolve.resolve_humans(str(path))
         for word in words:
             assert word in str(caught.value)
 
@@ -264,7 +273,7 @@ def test_every_robot_meets_the_same_people(files: Path):
         fakes.crew("none", absent=True),
     ]
     dealt = [sessions.make_sessions(suite, agent=crew, human=word, seed=4) for crew in crews]
-    stage = trial_runner.TrialRunner(trial_runner.Sources(people=resolve.find(word).word))
+    stage = trial_runner.TrialRunner(trial_runner.Sources(people=resolve.resolve_humans(word).word))
     met = []
     for run in dealt:
         whole = []
@@ -272,7 +281,7 @@ def test_every_robot_meets_the_same_people(files: Path):
             trial = one.trials[0]
             found = stage._persons(trial)
             whole.append(
-                (one.participant, [t.task.id for t in one.trials], found.person(trial.seed, trial.participant))
+                (one.participant, [t.task.id for t in one.trials], found.participant(trial.seed, trial.participant))
             )
             assert (trial.human, trial.human_sha256) == (found.name, found.sha256)
         met.append(whole)
@@ -281,30 +290,34 @@ def test_every_robot_meets_the_same_people(files: Path):
 
 
 def test_a_participant_of_a_population_is_the_same_person_in_any_order():
-    found = resolve.find("proxy")
-    ahead = [found.person(1, k) for k in range(6)]
-    assert [found.person(1, k) for k in reversed(range(6))] == ahead[::-1]
-    assert found.person(2, 0) != found.person(1, 0)
-    who = found.person(1, 3)
-    assert who.root == participant.root(1, 3)
+    found = resolve.resolve_humans("proxy")
+    ahead = [found.participant(1, k) for k in range(6)]
+    assert [found.participant(1, k) for k in reversed(range(6))] == ahead[::-1]
+    assert found.participant(2, 0) != found.participant(1, 0)
+    who = found.participant(1, 3)
+    assert who.root == participant.participant_root(1, 3)
     row = found.population.pick(1, 3)
-    assert who.traits == random_effects.individual(found.population.parameters(row), who.root, found.population.specs)
+    assert who.traits == random_effects.add_random_effects(
+        found.population.parameters(row), who.root, found.population.specs
+    )
 
 
 def test_people_who_are_alike_are_the_mean():
-    found = resolve.find("greedy")
-    assert found.person(0, 1).traits == found.person(5, 2).traits == found.population.mean()
+    found = resolve.resolve_humans("greedy")
+    assert found.participant(0, 1).traits == found.participant(5, 2).traits == found.population.mean()
 
 
 def test_a_file_that_changes_during_a_run_stops_it(files: Path):
-    found = resolve.find(f"{files}/pop.npz")
+    found = resolve.resolve_humans(f"{files}/pop.npz")
     (one, *_) = sessions.make_sessions(fakes.suite(10), agent=fakes.crew("helper"), human=found)
-    small(suite="other").save(files / "pop")  # says something else of the same people
+    population_file.save_population(small(suite="other"), files / "pop")  # says something else of the same people
     assert (
         trial_runner.TrialRunner(trial_runner.Sources(people=found.word))._persons(one.trials[0]).sha256 == found.sha256
     )
     rows = [[0.4, 0.2]]
-    Population.of("pop", rows, names=("v_pace", "sigma"), purpose="", seed=0, command="").save(files / "pop")
+    population_file.save_population(
+        Population.make("pop", rows, names=("v_pace", "sigma"), purpose="", seed=0, command=""), files / "pop"
+    )
     with pytest.raises(HthorError, match=r"pop\.npz was changed while its run was going on"):
         trial_runner.TrialRunner(trial_runner.Sources(people=found.word))._persons(one.trials[0])
 
@@ -313,7 +326,9 @@ def test_a_file_that_changes_during_a_run_stops_it(files: Path):
 
 
 def refer(population: Population, count: int = 20, crew: Any = None) -> HumanModelRef:
-    found = msgspec.structs.replace(resolve.find("literature"), population=population, name="pop", word="/dir/pop.npz")
+    found = msgspec.structs.replace(
+        resolve.resolve_humans("literature"), population=population, name="pop", word="/dir/pop.npz"
+    )
     return human_populations.human_model_ref(found, fakes.suite(count), crew or fakes.crew("helper"))
 
 
@@ -334,33 +349,40 @@ def test_elsewhere_they_are_not_and_it_says_where():
     noted(small(), "calibrated on the tasks of the suite fake, not on other tasks", count=10)
     noted(small(suite="paper", suite_sha256="ab" * 32), "the suite paper, not on those of the suite fake")
     noted(small(simulation=rules.SIMULATION + 1), f"version {rules.SIMULATION + 1} of the world")
-    noted(small(mind=parameter_registry.MIND + 1), f"version {parameter_registry.MIND + 1} of the proxy's mind")
+    noted(
+        small(mind=parameter_registry.PROXY_VERSION + 1),
+        f"version {parameter_registry.PROXY_VERSION + 1} of the proxy's mind",
+    )
     noted(small(rules_sha256="ab" * 32), "other constants of the benchmark")
     noted(small(settings={**human_populations.robot_settings("scout", "own"), "speed_m_s": 9.0}), "speed_m_s 9, not")
     noted(small(), "detector own, not noisy", crew=fakes.crew("helper", detector="noisy"))
     noted(msgspec.structs.replace(small(), missing=("wings",)), "made before there was wings")
-    noted(resolve.find("literature").population, "fitted to no data")
+    noted(resolve.resolve_humans("literature").population, "fitted to no data")
 
 
 # -------------------------------------------------------------------------------------------------- several at a time
 
 
 def test_words_for_several_peoples(files: Path):
-    assert [one.name for one in human_populations.find_populations(["kinds"])] == [resolve.default(), *KINDS]
+    assert [one.name for one in human_populations.find_populations(["kinds"])] == [resolve.default_population(), *KINDS]
     assert [one.name for one in human_populations.find_populations(["bracket"])] == [
         "greedy",
         "random",
-        resolve.default(),
+        resolve.default_population(),
     ]
     named = human_populations.find_populations([f"kinds@{files}/pop.npz"])
     assert [one.name for one in named] == ["pop", *(f"{kind}@pop" for kind in KINDS)]
     assert {one.population.sha256 for one in named} == {small().sha256}
-    assert [one.name for one in human_populations.find_populations(["proxy", resolve.default(), "slow", "slow"])] == [
+    assert [
+        one.name for one in human_populations.find_populations(["proxy", resolve.default_population(), "slow", "slow"])
+    ] == [
         "proxy",
         "slow",
     ]
     (files / "sub").mkdir()
-    Population.of("pop", [[0.5]], names=["v_pace"], purpose="", seed=0, command="").save(files / "sub" / "pop")
+    population_file.save_population(
+        Population.make("pop", [[0.5]], names=["v_pace"], purpose="", seed=0, command=""), files / "sub" / "pop"
+    )
     with pytest.raises(HthorError, match="two different peoples are called 'pop'"):
         human_populations.find_populations([f"{files}/pop.npz", f"{files}/sub/pop.npz"])
     with pytest.raises(UnknownName, match="'kinds'"):
@@ -382,7 +404,7 @@ def test_each_people_is_a_run_of_its_own(files: Path):
     told: list[str] = []
 
     class Watcher(progress.Silent):
-        def note(self, text: str) -> None:
+        def record(self, text: str) -> None:
             told.append(text)
 
     done = list(experiment.run_experiment(options, lambda _: Watcher()))
@@ -435,11 +457,11 @@ def test_the_bracket_says_what_becomes_of_each_conclusion(files: Path, monkeypat
 
 @pytest.mark.usefixtures("fake")
 def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
-    small(suite="paper", suite_sha256="ab" * 32).save(files / "pop")
+    population_file.save_population(small(suite="paper", suite_sha256="ab" * 32), files / "pop")
     told: list[str] = []
 
     class Watcher(progress.Silent):
-        def note(self, text: str) -> None:
+        def record(self, text: str) -> None:
             told.append(text)
 
     options = run_options.RunOptions(
@@ -465,14 +487,19 @@ def test_a_worker_finds_files_by_path(files: Path):
     """Real worker processes, started in another folder than the files lie in."""
     model = "from hthor.humans.models.proxy import Model as Proxy\nclass Model(Proxy): pass\n"
     (files / "mine.py").write_text('"""Mine."""\n' + model)
+<<<<<<< HEAD
     suite = fakes.frozen("one", 1, tasks.load_suite("smoke").tasks[:1])
     found = resolve.find(f"{files}/mine.py@{files}/pop.npz")
+=======
+    suite = fakes.frozen("one", 1, tasks.suite("smoke").tasks[:1])
+    found = resolve.resolve_humans(f"{files}/mine.py@{files}/pop.npz")
+>>>>>>> 1cd4740 (Human models: names of the field, no circles between modules, a full contract)
     (one,) = sessions.make_sessions(suite, agent="none", human=found, participants=1)
     code = (
-        "import sys, msgspec\nfrom hthor.eval import cast\nfrom hthor.types import TrialSpec\n"
+        "import sys, msgspec\nfrom hthor.eval.runner import trial_runner\nfrom hthor.types import TrialSpec\n"
         "trial = msgspec.json.decode(sys.stdin.buffer.read(), type=TrialSpec)\n"
-        "found = cast.Stage(cast.Sources(people=sys.argv[1]))._persons(trial)\n"
-        "print(type(found.make(trial.seed, trial.participant)).__module__, found.person(0, 0).traits.v_pace)\n"
+        "found = trial_runner.TrialRunner(trial_runner.Sources(people=sys.argv[1]))._persons(trial)\n"
+        "print(type(found.make_model(trial.seed, 0)).__module__, found.participant(0, 0).traits.v_pace)\n"
     )
     said = subprocess.run(
         [sys.executable, "-c", code, found.word],
@@ -482,7 +509,7 @@ def test_a_worker_finds_files_by_path(files: Path):
         check=False,
     )
     assert said.returncode == 0, said.stderr.decode()
-    assert said.stdout.decode().split() == ["hthor.humans.models.mine", str(found.person(0, 0).traits.v_pace)]
+    assert said.stdout.decode().split() == ["hthor.humans.models.mine", str(found.participant(0, 0).traits.v_pace)]
 
 
 # ------------------------------------------------------------------------------------------------------ the terminal
@@ -511,12 +538,12 @@ def test_list_names_everybody(hthor):
     code, out, _ = hthor("humans", "list", "--json")
     rows = {row["name"]: row for row in json.loads(out)}
     assert code == 0
-    assert set(rows) == set(resolve.names())
+    assert set(rows) == set(resolve.human_names())
     assert {row["sort"] for row in rows.values()} == {"population", "kind", "model"}
     assert all(row["purpose"] for row in rows.values())
-    assert rows["slow"]["sha256"] == resolve.find("slow").sha256
+    assert rows["slow"]["sha256"] == resolve.resolve_humans("slow").sha256
     code, out, _ = hthor("humans", "list")
-    for name in resolve.names():
+    for name in resolve.human_names():
         assert name in out
 
 
@@ -524,13 +551,13 @@ def test_describe_tells_every_parameter(hthor, files: Path):
     code, out, _ = hthor("humans", "describe", "literature", "--json")
     told = json.loads(out)
     assert code == 0
-    assert [trait["name"] for trait in told["traits"]] == list(parameter_registry.names())
+    assert [trait["name"] for trait in told["traits"]] == list(parameter_registry.free_parameter_names())
     for trait in told["traits"]:
         assert trait["says"] == "not identified"
         assert trait["quantiles"] == pytest.approx(trait["prior_quantiles"], rel=0.02, abs=0.02)
         assert trait["source"]
     code, out, _ = hthor("humans", "describe", "literature")
-    assert out.count("not identified") == len(parameter_registry.names())
+    assert out.count("not identified") == len(parameter_registry.free_parameter_names())
     for trait in told["traits"]:
         assert trait["name"] in out
     assert "fitted to no data" in out
@@ -551,13 +578,13 @@ def test_sample_shows_whom_a_study_meets(hthor):
     code, out, _ = hthor("humans", "sample", "slow", "--n", "4", "--seed", "3", "--json")
     rows = json.loads(out)
     assert code == 0
-    found = resolve.find("slow")
+    found = resolve.resolve_humans("slow")
     for number, row in enumerate(rows):
         assert row.pop("participant") == number
-        assert Parameters(**row) == found.person(3, number).traits
+        assert Parameters(**row) == found.participant(3, number).traits
     code, out, _ = hthor("humans", "sample", "slow", "--n", "4", "--seed", "3")
     assert len([line for line in out.splitlines() if line.strip() and line.split()[0].isdigit()]) == 4
-    assert all(name in out for name in describe.personal(found))
+    assert all(name in out for name in describe.varying_parameters(found))
 
 
 @pytest.mark.usefixtures("fake")

@@ -21,24 +21,24 @@ from hypothesis import strategies as st
 
 from hthor import seeds
 from hthor.errors import HthorError
-from hthor.humans.core.policy import Choice, Offer, Situation
+from hthor.humans.core.policy import Offer, OptionDescription, Situation
 from hthor.humans.llm import backends, policy, prompts
-from hthor.humans.llm.response_cache import Answers
+from hthor.humans.llm.response_cache import ResponseCache
 from hthor.humans.models import proxy
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.participant import Person
+from hthor.humans.population.participant import Participant
 from hthor.humans.search import option_description
-from hthor.humans.search.option_choice import Option
+from hthor.humans.search.option import Option
 from hthor.types import HUMAN, Message
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))
 import clone
 import cloned_person
 
-PERSON = Person(seed=1, participant=3)
+PERSON = Participant(seed=1, number=3)
 
 
-def option(number: int = 0, **changes) -> Choice:
+def option(number: int = 0, **changes) -> OptionDescription:
     plain = {
         "name": f"Bed|{number}",
         "text": f"search the bed, {number + 1} m away",
@@ -52,7 +52,7 @@ def option(number: int = 0, **changes) -> Choice:
         "closed": False,
         "value": 1.0,
     }
-    return Choice(**{**plain, **changes})
+    return OptionDescription(**{**plain, **changes})
 
 
 def situation(count: int = 3, **changes) -> Situation:
@@ -131,7 +131,7 @@ def test_a_policy_decides_where_the_person_goes_and_what_they_answer():
 @pytest.mark.parametrize("answer", [-1, 99, True, 0.0, None, "1"])
 def test_an_index_that_is_none_of_the_options_is_an_error(answer):
     with pytest.raises(HthorError, match="index from 0 to 2"):
-        option_description.valid(answer, situation())
+        option_description.checked_index(answer, situation())
 
 
 def test_listening_to_the_mind_changes_nothing_and_tells_every_choice():
@@ -154,7 +154,7 @@ def test_the_journal_holds_what_the_law_made_of_each_option():
     """Worked out from the journal alone, with the person's numbers, the options rank as they did for the person."""
     heard = []
     model, _, _ = played(listener=heard.append)
-    traits = model._me.traits
+    traits = model._human.traits
     choices = [event.data for event in model.journal if event.kind == "choice"]
     told = [event.data for event in heard if event.kind == "choice"]
     assert len(choices) >= 2
@@ -185,16 +185,8 @@ def crowded(root: int, chosen: int, count: int = 40):
         Option(name=f"Bed|{k}", value=1.0, spot=(0.0, 0.0), place=place, metres=float(k))
         for k, place in enumerate(places)
     ]
-    search = SimpleNamespace(
-        me=SimpleNamespace(root=root),
-        name="target",
-        memory=SimpleNamespace(doorways={}),
-        knowledge={},
-        uniform={},
-        beliefs=lambda more, hope: {place.id: 0.1 for place in places},
-        ahead=lambda beliefs: 0.1,
-    )
-    return option_description.features(search, options, options[chosen], 0)
+    shares = [0.1] * count
+    return option_description.features(root, "target", 0, options, options[chosen], shares, shares)
 
 
 def test_of_many_options_chance_keeps_some_all_as_likely():
@@ -202,11 +194,11 @@ def test_of_many_options_chance_keeps_some_all_as_likely():
     for root in range(1500):
         kept = crowded(root, 7)
         metres = [row[2] for row in kept["options"]]
-        assert len(metres) == option_description.MOST
+        assert len(metres) == option_description.MAX_RECORDED
         assert metres == sorted(metres)
         assert metres[kept["chosen"]] == 7.0
         counts.update(int(m) for m in metres)
-    share = (option_description.MOST - 1) / 39
+    share = (option_description.MAX_RECORDED - 1) / 39
     tolerance = 4.5 * math.sqrt(1500 * share * (1 - share))
     assert counts[7] == 1500
     assert all(abs(counts[k] - 1500 * share) < tolerance for k in range(40) if k != 7)
@@ -216,12 +208,12 @@ def test_of_many_options_chance_keeps_some_all_as_likely():
 
 
 def test_prompts_name_the_task_the_options_and_the_rule():
-    text = prompts.choice(prompts.persona(Parameters()), situation(3, holding="mug"))
+    text = prompts.choice_question(prompts.persona(Parameters()), situation(3, holding="mug"))
     assert "Find the apple." in text
     assert "3. search the bed, 3 m away" in text
     assert "You are holding: mug." in text
     assert text.endswith("Answer with one number from 1 to 3 and nothing else.")
-    text = prompts.offer("You are you.", offer(text='Say "confirm".\nNow!', instruction="Find the apple."))
+    text = prompts.offer_question("You are you.", offer(text='Say "confirm".\nNow!', instruction="Find the apple."))
     assert "Your task: Find the apple." in text
     assert '"Say \\"confirm\\".\\nNow!"' in text
     assert "about 20 seconds" in text
@@ -230,9 +222,9 @@ def test_prompts_name_the_task_the_options_and_the_rule():
 
 def test_long_questions_are_cut():
     many = situation(100, instruction="x" * 10_000)
-    assert len(prompts.choice("You are you.", many)) < 3000
-    assert len(prompts.listed(many)) == prompts.MOST_OPTIONS
-    assert len(prompts.offer("You are you.", offer(text="y" * 10_000))) < 2000
+    assert len(prompts.choice_question("You are you.", many)) < 3000
+    assert len(prompts.listed_options(many)) == prompts.MAX_OPTIONS
+    assert len(prompts.offer_question("You are you.", offer(text="y" * 10_000))) < 2000
 
 
 def test_people_are_told_apart():
@@ -275,7 +267,7 @@ def test_no_reply_breaks_the_reader(reply, count):
 
 
 def speaker(tmp_path, backend, person=PERSON):
-    return policy.Speaker(person, backend, tmp_path / "answers.jsonl", "toy")
+    return policy.LanguageModelPolicy(person, backend, tmp_path / "answers.jsonl", "toy")
 
 
 def test_what_cannot_be_read_is_asked_once_more_then_the_stated_fallback_holds(tmp_path):
@@ -320,22 +312,22 @@ def test_a_second_run_asks_nobody_and_answers_the_same(tmp_path):
 def test_the_cache_tells_people_models_and_settings_apart(tmp_path):
     path = tmp_path / "answers.jsonl"
     plain = {"model": "toy", "temperature": 0.5, "seed": 1, "tokens": 16}
-    assert Answers(path, **plain).of("q", lambda q: "a", 9) == "a"
+    assert ResponseCache(path, **plain).of("q", lambda q: "a", 9) == "a"
     for field, value in (("model", "other"), ("temperature", 0.6), ("seed", 2), ("tokens", 17)):
-        assert Answers(path, **{**plain, field: value}).of("q", lambda q: f"new {q}", 9) == "new q"
-    assert Answers(path, **plain).of("q", lambda q: "b", 9) == "a"
-    assert policy.seed(PERSON) != policy.seed(Person(seed=1, participant=4))
+        assert ResponseCache(path, **{**plain, field: value}).of("q", lambda q: f"new {q}", 9) == "new q"
+    assert ResponseCache(path, **plain).of("q", lambda q: "b", 9) == "a"
+    assert policy.seed(PERSON) != policy.seed(Participant(seed=1, number=4))
 
 
 def test_the_first_answer_in_the_file_holds_when_two_ask_at_once(tmp_path):
     path, plain = tmp_path / "answers.jsonl", {"model": "toy", "temperature": 0.5, "seed": 1, "tokens": 16}
-    other = Answers(path, **plain)
+    other = ResponseCache(path, **plain)
 
     def slow(question):
         other.of(question, lambda q: "first", 9)
         return "second"
 
-    assert Answers(path, **plain).of("q", slow, 9) == "first"
+    assert ResponseCache(path, **plain).of("q", slow, 9) == "first"
     assert len(path.read_bytes().splitlines()) == 1
 
 
@@ -343,8 +335,8 @@ def test_the_first_answer_in_the_file_holds_when_two_ask_at_once(tmp_path):
 def test_a_torn_line_costs_one_answer_and_no_more(torn, tmp_path):
     path, plain = tmp_path / "answers.jsonl", {"model": "toy", "temperature": 0.5, "seed": 1, "tokens": 16}
     path.write_bytes(torn)
-    assert Answers(path, **plain).of("q", lambda q: "a", 9) == "a"
-    assert Answers(path, **plain).of("q", lambda q: "b", 9) == "a"
+    assert ResponseCache(path, **plain).of("q", lambda q: "a", 9) == "a"
+    assert ResponseCache(path, **plain).of("q", lambda q: "b", 9) == "a"
 
 
 def test_answers_are_cut(tmp_path):
@@ -357,7 +349,7 @@ def test_answers_are_cut(tmp_path):
 
 def test_the_less_somebody_weighs_the_hotter_the_model():
     heats = [
-        policy.temperature(Person(seed=0, participant=0, traits=msgspec.structs.replace(Parameters(), beta=b)))
+        policy.temperature(Participant(seed=0, number=0, traits=msgspec.structs.replace(Parameters(), beta=b)))
         for b in (0.1, 1.0, 2.0, 50.0)
     ]
     assert heats == [1.5, 1.0, 0.5, 0.2]
@@ -366,9 +358,14 @@ def test_the_less_somebody_weighs_the_hotter_the_model():
 def test_the_stub_goes_to_the_nearest_and_confirms_what_saves_time():
     who = prompts.persona(Parameters())
     far = option(0, text="search the bed, already searched, right here"), option(2), option(1), option(4)
-    assert prompts.read_choice(backends.stub(prompts.choice(who, situation(options=far))), situation(options=far)) == 2
-    assert backends.stub(prompts.offer(who, offer())) == "confirm"
-    assert backends.stub(prompts.offer(who, offer(useful=False))) == "decline"
+    assert (
+        prompts.read_choice(
+            backends.answer_by_rule(prompts.choice_question(who, situation(options=far))), situation(options=far)
+        )
+        == 2
+    )
+    assert backends.answer_by_rule(prompts.offer_question(who, offer())) == "confirm"
+    assert backends.answer_by_rule(prompts.offer_question(who, offer(useful=False))) == "decline"
 
 
 # ----------------------------------------------------------------------------------------------------------- endpoints
@@ -403,12 +400,12 @@ def endpoint():
 
 def test_an_endpoint_is_asked_as_such_endpoints_are(endpoint, tmp_path):
     chosen = backends.Settings(url=endpoint.url, model="toy", key="secret", cache=str(tmp_path / "a.jsonl"))
-    assert backends.speaker(PERSON, chosen).choose(situation()) == 1
+    assert backends.make_policy(PERSON, chosen).choose(situation()) == 1
     ((path, key, body),) = endpoint.seen
     assert path == "/v1/chat/completions"
     assert key == "Bearer secret"
     assert body["model"] == "toy"
-    assert body["messages"][0]["content"] == prompts.choice(prompts.persona(PERSON.traits), situation())
+    assert body["messages"][0]["content"] == prompts.choice_question(prompts.persona(PERSON.traits), situation())
     assert (body["seed"], body["temperature"], body["max_tokens"]) == (
         policy.seed(PERSON),
         policy.temperature(PERSON),
@@ -425,7 +422,7 @@ def test_an_endpoint_that_fails_is_an_error_and_leaves_no_answer(status, body, w
     endpoint.reply.update(status=status, body=body)
     chosen = backends.Settings(url=endpoint.url, model="toy", cache=str(tmp_path / "a.jsonl"))
     with pytest.raises(HthorError, match=words) as error:
-        backends.speaker(PERSON, chosen).choose(situation())
+        backends.make_policy(PERSON, chosen).choose(situation())
     assert "repeat the command" in str(error.value)
     assert not (tmp_path / "a.jsonl").exists()
 
@@ -434,14 +431,14 @@ def test_settings_come_from_the_environment_and_no_model_is_an_error(monkeypatch
     for name in (backends.URL, backends.MODEL, backends.KEY, backends.CACHE):
         monkeypatch.delenv(name, raising=False)
     with pytest.raises(HthorError, match="HTHOR_LLM_MODEL"):
-        backends.speaker(PERSON, backends.settings())
+        backends.make_policy(PERSON, backends.settings())
     monkeypatch.setenv(backends.MODEL, "toy")
     monkeypatch.setenv(backends.CACHE, str(tmp_path / "a.jsonl"))
-    head = backends.speaker(PERSON, backends.settings())
+    head = backends.make_policy(PERSON, backends.settings())
     with pytest.raises(HthorError, match="no http address"):
         head.choose(situation())
     monkeypatch.setenv(backends.URL, "stub")
-    assert backends.speaker(PERSON, backends.settings()).answer(offer()) == "confirm"
+    assert backends.make_policy(PERSON, backends.settings()).answer(offer()) == "confirm"
 
 
 # -------------------------------------------------------------------------------------------------------------- clones

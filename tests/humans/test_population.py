@@ -39,7 +39,7 @@ LOG_WEIGHT = (0.0, math.log(2.0), -math.inf)
 
 def made(rows: Any = ROWS, log_weight: Any = LOG_WEIGHT, **more: Any) -> Population:
     about: dict[str, Any] = {"purpose": "three draws", "seed": 7, "command": "a test", "names": NAMES, **more}
-    return Population.of("few", rows, log_weight, **about)
+    return Population.make("few", rows, log_weight, **about)
 
 
 def test_weights_add_up_and_what_weighs_nothing_is_never_drawn():
@@ -56,11 +56,13 @@ def test_weights_add_up_and_what_weighs_nothing_is_never_drawn():
 def test_a_participant_is_a_draw_and_random_effects_upon_it():
     few = made()
     row = few.pick(3, 5)
-    assert few.person(3, 5) == random_effects.individual(few.parameters(row), participant.root(3, 5), few.specs)
-    assert few.person(3, 5) != few.parameters(row)
-    assert few.person(3, 5) == made().person(3, 5)
-    assert len({few.person(3, index).v_pace for index in range(20)}) == 20
-    own = few.person(3, 5)  # only what people differ in is their own
+    assert few.draw_traits(3, 5) == random_effects.add_random_effects(
+        few.parameters(row), participant.participant_root(3, 5), few.specs
+    )
+    assert few.draw_traits(3, 5) != few.parameters(row)
+    assert few.draw_traits(3, 5) == made().draw_traits(3, 5)
+    assert len({few.draw_traits(3, index).v_pace for index in range(20)}) == 20
+    own = few.draw_traits(3, 5)  # only what people differ in is their own
     differing = {spec.name for spec in few.specs if spec.effect}
     for name, value in msgspec.structs.asdict(few.parameters(row)).items():
         assert (getattr(own, name) != value) == (name in differing)
@@ -69,7 +71,7 @@ def test_a_participant_is_a_draw_and_random_effects_upon_it():
 def test_people_are_spread_as_sigma_says():
     rows = [[0.5, 2.0, 0.55, 0.3]]
     one = made(rows, None)
-    people = [one.person(0, index) for index in range(600)]
+    people = [one.draw_traits(0, index) for index in range(600)]
     assert np.std([math.log(p.v_pace) for p in people]) == pytest.approx(0.3 * 0.5, rel=0.1)
     assert np.std([p.a0 for p in people]) == pytest.approx(0.3 * 2.0, rel=0.1)
     assert np.std([math.log(p.mu0 / (1 - p.mu0)) for p in people]) == pytest.approx(0.3 * 2.0, rel=0.1)
@@ -85,38 +87,43 @@ def test_quantiles_heed_weights():
 
 
 def test_contraction_tells_what_was_learnt():
-    points = [[(i + 0.5) / 400 for _ in parameter_registry.names()] for i in range(400)]
-    prior = Population.of("p", parameter_registry.physical(points), purpose="", seed=0, command="")
+    points = [[(i + 0.5) / 400 for _ in parameter_registry.free_parameter_names()] for i in range(400)]
+    prior = Population.make("p", parameter_registry.from_quantiles(points), purpose="", seed=0, command="")
     assert all(abs(spec.contraction) < 0.01 for spec in prior.specs)
     assert {spec.word for spec in prior.specs} == {"not identified"}
     weight = [-(((u[0] - 0.5) / 0.1) ** 2) / 2 for u in points]
-    post = Population.of("q", parameter_registry.physical(points), weight, purpose="", seed=0, command="")
+    post = Population.make("q", parameter_registry.from_quantiles(points), weight, purpose="", seed=0, command="")
     assert post.specs[0].contraction == pytest.approx(1 - 12 * 0.1**2, abs=0.01)
     assert post.specs[0].word == "identified"
 
 
 @given(
     st.lists(
-        st.floats(0.001, 0.999), min_size=len(parameter_registry.names()), max_size=len(parameter_registry.names())
+        st.floats(0.001, 0.999),
+        min_size=len(parameter_registry.free_parameter_names()),
+        max_size=len(parameter_registry.free_parameter_names()),
     )
 )
 @settings(deadline=None, max_examples=30)
 def test_the_cube_and_the_units_are_one_to_one(point: list[float]):
-    values = parameter_registry.physical([point])
-    assert parameter_registry.unit(values)[0] == pytest.approx(point, abs=1e-9)
-    assert parameter_registry.from_unit(point) == Parameters(
-        **dict(zip(parameter_registry.names(), values[0].tolist(), strict=True))
+    values = parameter_registry.from_quantiles([point])
+    assert parameter_registry.to_quantiles(values)[0] == pytest.approx(point, abs=1e-9)
+    assert parameter_registry.parameters_at(point) == Parameters(
+        **dict(zip(parameter_registry.free_parameter_names(), values[0].tolist(), strict=True))
     )
     assert not [
-        text for name, x in zip(parameter_registry.names(), values[0], strict=True) if (text := bounds.problem(name, x))
+        text
+        for name, x in zip(parameter_registry.free_parameter_names(), values[0], strict=True)
+        if (text := bounds.range_problem(name, x))
     ]
 
 
 def test_tables_of_other_shapes_are_refused():
     with pytest.raises(
-        ValueError, match="31 columns is expected" if len(parameter_registry.names()) == 31 else "columns"
+        ValueError,
+        match="31 columns is expected" if len(parameter_registry.free_parameter_names()) == 31 else "columns",
     ):
-        parameter_registry.physical([[0.5, 0.5]])
+        parameter_registry.from_quantiles([[0.5, 0.5]])
     with pytest.raises(ValueError, match=r"draws: the shape is \(3, 4\); expected one row or more of 3 columns"):
         made(names=NAMES[:3])
     with pytest.raises(ValueError, match=r"log_weight: the shape is \(2,\)"):
@@ -140,14 +147,14 @@ def test_values_out_of_range_are_refused(column: int, value: float):
 
 
 def test_every_parameter_has_a_range_that_holds_its_default():
-    assert set(bounds.known()) >= set(parameter_registry.names())
-    for name in bounds.known():
-        assert bounds.problem(name, getattr(Parameters(), name)) == ""
-        low, high = bounds.of(name)
-        assert bounds.nearest(name, low - 1.0) == low
-        assert bounds.nearest(name, high + 1.0) == high
+    assert set(bounds.parameter_names()) >= set(parameter_registry.free_parameter_names())
+    for name in bounds.parameter_names():
+        assert bounds.range_problem(name, getattr(Parameters(), name)) == ""
+        low, high = bounds.parameter_range(name)
+        assert bounds.clamp(name, low - 1.0) == low
+        assert bounds.clamp(name, high + 1.0) == high
     for group in (bounds._POSITIVE, bounds._SHARES, bounds._SIGNALS, bounds._LOGITS):
-        assert set(group) <= set(bounds.known())
+        assert set(group) <= set(bounds.parameter_names())
 
 
 # ------------------------------------------------------------------------------------------------------------ files
@@ -162,10 +169,10 @@ def test_saved_and_loaded_it_is_the_same(tmp_path: Path):
         validity=Validity(suite="paper", suite_sha256="ab" * 32, settings={"robot": "scout", "speed_m_s": 1.8}),
         fixed=Parameters(p_slip=0.5),
     )
-    path = first.save(tmp_path / "pop.npz")
+    path = population_file.save_population(first, tmp_path / "pop.npz")
     assert path == tmp_path / "pop.json"
     for word in (path, str(tmp_path / "pop.npz")):
-        again = Population.load(word)
+        again = population_file.load_population(word)
         assert again.sha256 == first.sha256
         assert again.specs == first.specs
         assert again.validity == first.validity
@@ -174,13 +181,13 @@ def test_saved_and_loaded_it_is_the_same(tmp_path: Path):
         assert (again.statistics, again.design_effects, again.figures, again.notes, again.seed, again.command) == (
             *(("sr none",), {"sr none": 1.7}, {"ess": 2.5}, ("a note",), 7, "a test"),
         )
-        assert [again.person(1, k) for k in range(5)] == [first.person(1, k) for k in range(5)]
+        assert [again.draw_traits(1, k) for k in range(5)] == [first.draw_traits(1, k) for k in range(5)]
         assert again.missing == ()
 
 
 def test_the_same_population_is_the_same_bytes(tmp_path: Path):
     for folder in ("one", "two"):
-        made().save(tmp_path / folder / "pop")
+        population_file.save_population(made(), tmp_path / folder / "pop")
     for name in ("pop.npz", "pop.json"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
     with zipfile.ZipFile(tmp_path / "one" / "pop.npz") as archive:
@@ -198,7 +205,7 @@ def test_the_hash_is_of_what_makes_people_and_of_nothing_else():
 
 
 def test_the_json_file_says_what_each_column_is(tmp_path: Path):
-    document = json.loads(made().save(tmp_path / "pop").read_bytes())
+    document = json.loads(population_file.save_population(made(), tmp_path / "pop").read_bytes())
     assert document["schema"] == "hthor.population/1"
     (pace, *_) = document["parameters"]
     assert pace["name"] == "v_pace"
@@ -206,7 +213,7 @@ def test_the_json_file_says_what_each_column_is(tmp_path: Path):
     assert pace["prior"]["type"] == "log-uniform"
     assert pace["level"] == "population and person"
     assert {"effect", "scale", "grade", "source", "fitted", "contraction", "meaning"} <= set(pace)
-    assert set(document["fixed"]) == set(bounds.known()) - set(NAMES)
+    assert set(document["fixed"]) == set(bounds.parameter_names()) - set(NAMES)
     assert {"simulation", "mind", "rules_sha256", "suite_sha256", "targets_sha256", "settings"} <= set(
         document["validity"]
     )
@@ -231,10 +238,10 @@ def _swap(path: Path, **arrays: Any) -> None:
 
 def test_a_damaged_file_is_named_with_its_field(tmp_path: Path):
     def refused(spoil: Callable[[Path], object], *words: str) -> None:
-        path = made().save(tmp_path / "pop")
+        path = population_file.save_population(made(), tmp_path / "pop")
         spoil(path)
         with pytest.raises(PopulationError) as caught:
-            Population.load(path)
+            population_file.load_population(path)
         for word in words:
             assert word in str(caught.value)
 
@@ -267,16 +274,16 @@ def test_a_damaged_file_is_named_with_its_field(tmp_path: Path):
 
 
 def test_what_a_newer_version_added_is_at_its_default_and_said(tmp_path: Path):
-    path = made().save(tmp_path / "pop")
+    path = population_file.save_population(made(), tmp_path / "pop")
     _edit(path, lambda document: document["fixed"].pop("p_slip"))
-    again = Population.load(path)
+    again = population_file.load_population(path)
     assert again.missing == ("p_slip",)
     assert again.mean().p_slip == Parameters().p_slip
 
 
 def test_unknown_names_are_answered_with_the_nearest():
     with pytest.raises(UnknownName, match=r"unknown population 'litrature'\. Did you mean 'literature'"):
-        Population.load("litrature")
+        population_file.load_population("litrature")
     assert issubclass(PopulationError, HthorError)
 
 
@@ -298,14 +305,14 @@ def test_a_prior_that_is_no_distribution_is_refused(make: Any, words: str):
 
 
 def test_the_literature_is_the_priors():
-    held = Population.load("literature")
-    assert held is Population.load("literature")
-    assert held.names == parameter_registry.names()
-    assert held.sha256 == prior_population.population().sha256
+    held = population_file.load_population("literature")
+    assert held is population_file.load_population("literature")
+    assert held.names == parameter_registry.free_parameter_names()
+    assert held.sha256 == prior_population.make_prior_population().sha256
     for column, spec in enumerate(held.specs):
         values = held.quantiles((0.05, 0.5, 0.95))[:, column]
         assert [spec.prior.cdf(value) for value in values] == pytest.approx([0.05, 0.5, 0.95], abs=2e-3)
-    points = parameter_registry.unit(held.draws)
+    points = parameter_registry.to_quantiles(held.draws)
     shared = np.corrcoef(points.T) - np.eye(len(held.specs))
     assert np.abs(shared).max() < 0.2
     assert held.validity.suite_sha256 == ""
@@ -313,10 +320,10 @@ def test_the_literature_is_the_priors():
 
 @pytest.mark.parametrize("name", population_file.names())
 def test_every_population_that_ships_loads_and_draws(name: str):
-    held = Population.load(name)
-    assert population_file.called(held.name) == name
+    held = population_file.load_population(name)
+    assert population_file.population_name(held.name) == name
     assert held.missing == ()
     assert held.purpose
     for index in range(50):
-        for parameter, value in msgspec.structs.asdict(held.person(seeds.derive(0, name), index)).items():
-            assert bounds.problem(parameter, value) == ""
+        for parameter, value in msgspec.structs.asdict(held.draw_traits(seeds.derive(0, name), index)).items():
+            assert bounds.range_problem(parameter, value) == ""

@@ -12,7 +12,7 @@ from hthor.calibration.simulation.trial_table import CONDITIONS, Table
 from hthor.eval.config.sessions import assign_tasks
 from hthor.humans.population import parameter_registry
 
-NAMES = parameter_registry.names()
+NAMES = parameter_registry.free_parameter_names()
 V, LAM, A0 = (NAMES.index(name) for name in ("v_pace", "lam0", "a0"))
 
 

@@ -11,7 +11,7 @@ from hthor.calibration.simulation import trial_table
 from hthor.calibration.simulation.trial_table import CONDITIONS, Table
 from hthor.humans.population import parameter_registry
 
-NAMES = parameter_registry.names()
+NAMES = parameter_registry.free_parameter_names()
 V, LAM, A0, HAND = (NAMES.index(name) for name in ("v_pace", "lam0", "a0", "t_manip"))
 TASKS = 30
 LEAST = np.full(TASKS, 25.0)

@@ -30,7 +30,7 @@ from hthor.eval.runner.engines import SessionFailed
 from hthor.eval.runner.messages import Failed, News
 from hthor.humans.population import resolve
 from hthor.humans.population.population import Population, Validity
-from hthor.humans.population.resolve import People
+from hthor.humans.population.resolve import ParticipantSource
 from hthor.tasks import Suite
 from hthor.tasks.suite import make_suite
 from hthor.types import AgentRef, Event, Goal, Placement, Pose, TaskSpec, TrialSpec
@@ -58,13 +58,13 @@ def suite(count: int = 60) -> Suite:
     return make_suite("fake", 1, tuple(task(number) for number in range(count)))
 
 
-def persons(name: str = "proxy", *, calibrated: bool = True) -> People:
+def persons(name: str = "proxy", *, calibrated: bool = True) -> ParticipantSource:
     """People of one draw, fitted to the fake suite of thirty tasks or to nothing."""
     validity = Validity(suite="fake", suite_sha256=suite(30).sha256) if calibrated else Validity()
-    drawn = Population.of(
+    drawn = Population.make(
         "few", [[0.5]], names=["v_pace"], purpose="a test", seed=0, command="a test", validity=validity
     )
-    return People(
+    return ParticipantSource(
         name=name,
         word=name,
         purpose="a test",
@@ -90,7 +90,7 @@ def run_of(
 ) -> tuple[RunConfig, tuple[Session, ...]]:
     tasks, who = suite(count), crew(*name.split("+"), absent=absent)
     with (
-        mock.patch.object(resolve, "find", return_value=persons()),
+        mock.patch.object(resolve, "resolve_humans", return_value=persons()),
         mock.patch.object(code_identity, "code_sha256", return_value="34" * 32),
     ):
         plan = run_config.build_config(tasks, who, human="proxy", seed=seed, participants=None)

@@ -13,6 +13,7 @@ from hthor.types import (
     BodySpec,
     Briefing,
     Detection,
+    Job,
     Move,
     Observation,
     Open,
@@ -95,6 +96,7 @@ class Flat:
             tick_s=0.1,
             time_limit=90.0,
             teammates=teammates,
+            jobs=(Job(target="apple", relation=relation, destinations=(destination,) if destination else ()),),
         )
 
     def observation(self, idle=True):

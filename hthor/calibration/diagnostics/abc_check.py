@@ -53,7 +53,7 @@ def check(found: Posterior, points: Array, summaries: Array, seed: int = 0, fitt
         fitted: parameters that must agree; by default those whose contraction is at least .1.
 
     Raises:
-        ValueError: with fewer than `FEWEST` studies.
+        ValueError: with fewer than `LEAST_WORDS` studies.
     """
     if len(points) < FEWEST:
         raise ValueError(f"ABC needs at least {FEWEST} simulated studies, got {len(points)}")

@@ -27,7 +27,7 @@ from hthor.eval.runner import trial_runner
 from hthor.humans.models.proxy import Model
 from hthor.humans.population import parameter_registry, random_effects
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.participant import Person, root
+from hthor.humans.population.participant import Participant, participant_root
 from hthor.tasks import Suite
 
 BARS = {"v_pace": 0.8, "omega": 0.8, "t_manip": 0.8, "mu0": 0.8, READING: 0.6, "a0": 0.6}
@@ -63,9 +63,9 @@ def run(count: int, *, people: int = 12, seed: int = 0, suite: str = "paper", fi
     """Simulate datasets and estimate each."""
     held = tasks.load_suite(suite)
     stage = trial_runner.TrialRunner(trial_runner.Sources(houses=str(held.houses.folder or "")))
-    cube = design_points.spread(first + count, len(parameter_registry.names()), seed, "recovery")[first:]
+    cube = design_points.spread(first + count, len(parameter_registry.free_parameter_names()), seed, "recovery")[first:]
     for number, point in enumerate(cube, first):
-        population = parameter_registry.from_unit(tuple(map(float, point)))
+        population = parameter_registry.parameters_at(tuple(map(float, point)))
         yield estimated(population, logs(population, held, stage, seeds.derive(seed, "dataset", number), people))
 
 
@@ -109,8 +109,8 @@ def summary(datasets: Sequence[Dataset]) -> tuple[Recovered, ...]:
 def _session(
     population: Parameters, session: Session, stage: trial_runner.TrialRunner, seed: int
 ) -> Iterator[TrialRecord]:
-    traits = random_effects.individual(population, root(seed, session.participant))
-    human = Model(Person(seed=seed, participant=session.participant, traits=traits))
+    traits = random_effects.add_random_effects(population, participant_root(seed, session.participant))
+    human = Model(Participant(seed=seed, number=session.participant, traits=traits))
     minds = {seat.seat: plugins.load("agent", seat.agent.name)() for seat in session.trials[0].robots}
     for trial in session.trials:
         yield trial_record.make_record(trial, run_episode(trial, stage.world(trial), human, minds))

@@ -14,7 +14,7 @@ from hthor.calibration.from_logs.load_sessions import Sessions
 from hthor.calibration.from_logs.models import priors
 from hthor.calibration.from_logs.update_population import Updated, update
 from hthor.errors import RunError
-from hthor.humans.population import parameter_registry, resolve
+from hthor.humans.population import parameter_registry, population_file, resolve
 from hthor.humans.population.population import Population, Validity
 from hthor.humans.population.resolve import PROXY
 
@@ -65,7 +65,7 @@ def estimate_from_logs(
             f"{logs[0]} holds no journal of the person: no stick, no attempts. It was written by an older version of "
             "hthor; play the run again with 'hthor eval'."
         )
-    old = Population.load(resolve.default() if prior == PROXY else prior)
+    old = population_file.load_population(resolve.default_population() if prior == PROXY else prior)
     before = priors.of_draws(old.names, old.draws, old.weights)
     estimates = estimate_all.everything(data, before, tell)
     tell("updating")
@@ -82,7 +82,7 @@ def estimate_from_logs(
         notes=new.notes,
     )
     out.mkdir(parents=True, exist_ok=True)
-    new.save(out / "population")
+    population_file.save_population(new, out / "population")
     jsonio.write(out / "estimates.json", jsonio.pretty(found))
     return found, new
 
@@ -104,7 +104,7 @@ def _population(
     ]
     if few:
         notes.append(f"The logs held too little on {', '.join(few)}; they are as they were.")
-    return Population.of(
+    return Population.make(
         out.resolve().name,
         changed.draws,
         purpose=f"{old.name}, brought up to date with logs of {data.people} people",
@@ -119,7 +119,7 @@ def _population(
             suite_sha256=next(iter(suites)) if len(suites) == 1 else "",
             targets="logs",
             simulation=rules.SIMULATION,
-            mind=parameter_registry.MIND,
+            mind=parameter_registry.PROXY_VERSION,
         ),
     )
 

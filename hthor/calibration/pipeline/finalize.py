@@ -15,7 +15,7 @@ from hthor.calibration.pipeline.stages import FITTED, Stages
 from hthor.calibration.pipeline.summary import Foretold, Learned, Span, Summary
 from hthor.calibration.simulation import trial_identity, trial_table
 from hthor.eval.config import human_populations
-from hthor.humans.population import parameter_registry
+from hthor.humans.population import parameter_registry, population_file
 from hthor.humans.population.population import Population, Validity
 from hthor.types import detector_specs
 
@@ -34,7 +34,7 @@ def settle(stages: Stages, command: str) -> Summary:
 
     folder, quick = stages.brief.folder, stages.brief.sizes.quick
     people = population(stages, command)
-    people.save(folder / POPULATION)
+    population_file.save_population(people, folder / POPULATION)
     jsonio.write(folder / evidence.FILE, evidence.encode(collect_evidence.evidence(stages, people, quick=quick)))
     for name in ("training", "studies", "predicted", *(("correction",) if stages.brief.sizes.correction else ())):
         trial_table.store(folder / f"{name}.npz", getattr(stages, name))
@@ -46,9 +46,9 @@ def settle(stages: Stages, command: str) -> Summary:
 def population(stages: Stages, command: str) -> Population:
     """The posterior's draws as a population."""
     brief, found = stages.brief, stages.posterior
-    return Population.of(
+    return Population.make(
         f"{brief.targets.name}-quick" if brief.sizes.quick else brief.targets.name,
-        parameter_registry.physical(found.points),
+        parameter_registry.from_quantiles(found.points),
         purpose=_PURPOSE,
         seed=brief.seed,
         command=command,

@@ -82,14 +82,14 @@ class Stages:
     def training(self) -> Table:
         """Sessions all over the prior."""
         size = self.brief.sizes.sessions
-        where = design_points.spread(size, len(parameter_registry.names()), self.brief.seed, "training")
+        where = design_points.spread(size, len(parameter_registry.free_parameter_names()), self.brief.seed, "training")
         return self._sessions("training", where)
 
     @cached_property
     def studies(self) -> Table:
         """Whole studies all over the prior."""
         size = self.brief.sizes.studies
-        where = design_points.spread(size, len(parameter_registry.names()), self.brief.seed, "studies")
+        where = design_points.spread(size, len(parameter_registry.free_parameter_names()), self.brief.seed, "studies")
         return self._studies("studies", where)
 
     @cached_property
@@ -251,7 +251,9 @@ class Stages:
 
         seed, sizes = self.brief.seed, self.brief.sizes
         where = {
-            "prior": design_points.spread(sizes.draws, len(parameter_registry.names()), seed, "prior predictive"),
+            "prior": design_points.spread(
+                sizes.draws, len(parameter_registry.free_parameter_names()), seed, "prior predictive"
+            ),
             "posterior": self.posterior.points,
         }
         emulated = {

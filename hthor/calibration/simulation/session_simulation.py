@@ -16,7 +16,7 @@ from hthor.errors import HthorError
 from hthor.eval.runner.trial_runner import Sources, TrialRunner
 from hthor.humans.models.proxy import Model
 from hthor.humans.population import parameter_registry, random_effects
-from hthor.humans.population.participant import Person, root
+from hthor.humans.population.participant import Participant, participant_root
 from hthor.tasks import Suite
 from hthor.types import HUMAN, RobotSeat, TaskSpec, TrialSpec
 
@@ -89,9 +89,9 @@ def player(suite: Suite, seats: tuple[tuple[RobotSeat, ...], ...]) -> Callable[[
 
 def sit(sitting: SessionSpec, suite: Suite, seats: tuple[RobotSeat, ...], stage: TrialRunner) -> Iterator[Row]:
     """Play a session from its first trial to its last; a row of `OUTCOMES` for each."""
-    chances = root(sitting.seed, sitting.participant)
-    traits = random_effects.individual(parameter_registry.from_unit(sitting.point), chances)
-    human = Model(Person(seed=sitting.seed, participant=sitting.participant, traits=traits))
+    chances = participant_root(sitting.seed, sitting.participant)
+    traits = random_effects.add_random_effects(parameter_registry.parameters_at(sitting.point), chances)
+    human = Model(Participant(seed=sitting.seed, number=sitting.participant, traits=traits))
     minds = {seat.seat: plugins.load("agent", seat.agent.name)() for seat in seats}
     for index, number in enumerate(sitting.tasks):
         trial = _trial(sitting, suite.tasks[number], seats, index)

@@ -50,7 +50,7 @@ def training(suite: Suite, seed: int, sessions: int, folder: Path, jobs: int, wa
 
     The first sessions are the same for every number of them. The rest as `at` has it.
     """
-    where = design_points.spread(sessions, len(parameter_registry.names()), seed, "training")
+    where = design_points.spread(sessions, len(parameter_registry.free_parameter_names()), seed, "training")
     return at(where, suite, seed, folder, jobs, watch, "training")
 
 
@@ -124,7 +124,7 @@ def tabulate(plan: Plan, sats: Mapping[str, SessionOutcome], **more: Any) -> Tab
     names = ("study", "session", "point", "condition", "participant", "index", *OUTCOMES)
     columns: dict[str, Any] = dict(zip(names, np.array(rows, dtype=np.int64).T, strict=True))
     columns |= {"valid": np.ones(len(rows), bool), "counted": columns["condition"] > 0, **more}
-    return trial_table.build(parameter_registry.names(), plan.points, columns)
+    return trial_table.build(parameter_registry.free_parameter_names(), plan.points, columns)
 
 
 def robots() -> tuple[tuple[RobotSeat, ...], ...]:

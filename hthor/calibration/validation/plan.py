@@ -33,7 +33,7 @@ class ValidationOptions(Struct, frozen=True, kw_only=True):
     """What the user asked for.
 
     Attributes:
-        name: as `hthor.humans.population.resolve.find` reads it.
+        name: as `hthor.humans.population.resolve.resolve_humans` reads it.
         calibration: folder of the calibration that these people come from; None for what ships with them.
         suites: other suites to rank the robots on. kinds: whether every kind of people is played too.
         quick: few people and no simple models; what is played is then not judged.
@@ -56,9 +56,7 @@ class ValidationOptions(Struct, frozen=True, kw_only=True):
 
 
 class Round(Struct, frozen=True, kw_only=True):
-    """People who play a suite in all conditions: ``word`` as `hthor.humans.population.resolve.find` reads it, and what
-    for.
-    """
+    """People who play a suite in all conditions: ``word`` as `resolve.resolve_humans` reads it, and what for."""
 
     word: str
     suite: str
@@ -76,7 +74,7 @@ def rounds(options: ValidationOptions) -> tuple[Round, ...]:
     count = options.count
     if count < PEOPLE:
         raise HthorError(f"--participants {count} is too few: a group of the published study has {PEOPLE}.")
-    found = resolve.find(options.name)
+    found = resolve.resolve_humans(options.name)
     for name in options.suites:
         tasks.load_suite(name)
     rivals = () if options.quick else tuple(name for name in RIVALS if name != found.name)
@@ -93,7 +91,11 @@ def folder(options: ValidationOptions) -> Path:
     """Where the report goes."""
     if options.out:
         return options.out
+<<<<<<< HEAD
     found, suite = resolve.find(options.name), tasks.load_suite(SUITE)
+=======
+    found, suite = resolve.resolve_humans(options.name), tasks.suite(SUITE)
+>>>>>>> 1cd4740 (Human models: names of the field, no circles between modules, a full contract)
     what = [
         found.sha256,
         suite.sha256,
@@ -107,8 +109,13 @@ def folder(options: ValidationOptions) -> Path:
 
 def asked(options: ValidationOptions, one: Round) -> run_options.RunOptions:
     """A round as an evaluation, in a folder of its own."""
+<<<<<<< HEAD
     suite = tasks.load_suite(one.suite)
     name = f"{resolve.find(one.word).name}-{Path(suite.name).name}-{one.participants}"
+=======
+    suite = tasks.suite(one.suite)
+    name = f"{resolve.resolve_humans(one.word).name}-{Path(suite.name).name}-{one.participants}"
+>>>>>>> 1cd4740 (Human models: names of the field, no circles between modules, a full contract)
     return run_options.RunOptions(
         agents=AGENTS,
         humans=(one.word,),

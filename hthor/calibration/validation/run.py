@@ -26,7 +26,7 @@ from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import experiment
 from hthor.eval.runner.experiment import ClosableWatcher
 from hthor.humans.population import resolve
-from hthor.humans.population.resolve import PROXY, People
+from hthor.humans.population.resolve import PROXY, ParticipantSource
 from hthor.tasks import Suite
 
 TARGETS = "paper"
@@ -58,7 +58,11 @@ def run_validation(options: ValidationOptions, watcher: Watch) -> Outcome:
         RunError: when a run's folder holds another run, or the calibration's folder no evidence.
     """
     planned = plan.rounds(options)
+<<<<<<< HEAD
     found, suite = resolve.find(options.name), tasks.load_suite(SUITE)
+=======
+    found, suite = resolve.resolve_humans(options.name), tasks.suite(SUITE)
+>>>>>>> 1cd4740 (Human models: names of the field, no circles between modules, a full contract)
     known, missing = _evidence(found, options.calibration)
     folder = plan.folder(options)
     stage = _Stage(options, watcher)
@@ -94,7 +98,7 @@ class _Stage:
 
     def play(self, one: Round) -> Table:
         """The trials of some people on a suite, in every condition."""
-        name = resolve.find(one.word).name
+        name = resolve.resolve_humans(one.word).name
         runs: dict[str, Sequence[TrialRecord]] = {}
         for done in experiment.run_experiment(
             plan.asked(self._options, one), lambda title: self._watcher(f"{name} people, {title}")
@@ -109,7 +113,7 @@ def _played(name: str, stage: _Stage, one: Round) -> Played:
     return measures.played(name, stage.play(one), tables.t_star(tasks.load_suite(one.suite)))
 
 
-def _subject(found: People, notes: Sequence[str]) -> Subject:
+def _subject(found: ParticipantSource, notes: Sequence[str]) -> Subject:
     return Subject(
         name=found.name,
         model=Path(found.model).name,
@@ -121,7 +125,7 @@ def _subject(found: People, notes: Sequence[str]) -> Subject:
     )
 
 
-def _setting(found: People, suite: Suite, options: ValidationOptions, trials: int) -> Setting:
+def _setting(found: ParticipantSource, suite: Suite, options: ValidationOptions, trials: int) -> Setting:
     return Setting(
         suite=suite.name,
         suite_sha256=suite.sha256,
@@ -135,7 +139,7 @@ def _setting(found: People, suite: Suite, options: ValidationOptions, trials: in
     )
 
 
-def _evidence(found: People, folder: Path | None) -> tuple[Evidence | None, str]:
+def _evidence(found: ParticipantSource, folder: Path | None) -> tuple[Evidence | None, str]:
     """What the calibration of these people found out; otherwise a sentence that says why there is nothing."""
     if folder is not None:
         known = evidence.load(folder)
@@ -154,7 +158,7 @@ def _evidence(found: People, folder: Path | None) -> tuple[Evidence | None, str]
     return known, ""
 
 
-def _file_of(found: People) -> Path | None:
+def _file_of(found: ParticipantSource) -> Path | None:
     """The evidence that lies beside a population's file, or ships with a population of ours."""
     beside = Path(found.word).parent / evidence.FILE
     if found.word.endswith((".npz", ".json")) and beside.is_file():

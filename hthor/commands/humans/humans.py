@@ -13,7 +13,7 @@ from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
 
 if TYPE_CHECKING:
-    from hthor.humans.population.describe import Changed, PopulationDescription, Trait
+    from hthor.humans.population.describe import ParameterChange, ParameterDescription, PopulationDescription
 
 app = typer.Typer(no_args_is_help=True, help="Populations, kinds of people and human models.")
 
@@ -60,7 +60,7 @@ def describe(name: Name, json: Json = False) -> None:
     """Show every parameter with its prior, source and posterior, and the conditions these people were validated for."""
     from hthor.humans.population import describe, resolve
 
-    found = describe.describe(resolve.find(name))
+    found = describe.describe_population(resolve.resolve_humans(name))
     if json:
         output.put_json(found)
         return
@@ -90,12 +90,12 @@ def sample(
     """Show the participants of a study with this seed: the traits in which they differ, or with --json all traits."""
     from hthor.humans.population import describe, resolve
 
-    found = resolve.find(name)
-    rows = describe.sample(found, n, seed)
+    found = resolve.resolve_humans(name)
+    rows = describe.sample_participants(found, n, seed)
     if json:
         output.put_json(rows)
         return
-    columns = describe.personal(found)
+    columns = describe.varying_parameters(found)
     held = [(row["participant"], *(float(_number(row[name])) for name in columns)) for row in rows]
     output.put_table(("participant", *columns), held)
 
@@ -111,7 +111,7 @@ def _everybody() -> list[dict[str, Any]]:
 
     def row(name: str, sort: str) -> dict[str, Any]:
         try:
-            found = resolve.find(name)
+            found = resolve.resolve_humans(name)
         except HthorError:
             return {"name": name, "sort": sort, "purpose": plugins.summary("human model", name), "sha256": ""}
         return {"name": name, "sort": sort, "purpose": found.purpose, "sha256": found.sha256}
@@ -126,7 +126,7 @@ def _everybody() -> list[dict[str, Any]]:
 def _default() -> str:
     from hthor.humans.population import resolve
 
-    return resolve.default()
+    return resolve.default_population()
 
 
 def _put_head(found: PopulationDescription) -> None:
@@ -159,7 +159,7 @@ def _put_foot(found: PopulationDescription) -> None:
         output.put_line(line)
 
 
-def _trait_row(trait: Trait) -> tuple[object, ...]:
+def _trait_row(trait: ParameterDescription) -> tuple[object, ...]:
     between = {"": "–", "log": f"{100.0 * trait.person_sd:.0f} %", "logit": f"{trait.person_sd:.2f} logit"}
     return (
         f"{trait.name} [{trait.unit}]" if trait.unit else trait.name,
@@ -176,7 +176,7 @@ def _three(values: Sequence[float]) -> str:
     return "".join(f"{_number(value):>7}" for value in values)
 
 
-def _change_row(change: Changed) -> tuple[object, ...]:
+def _change_row(change: ParameterChange) -> tuple[object, ...]:
     sign = {"add": f"{change.value:+g}", "times": f"× {change.value:g}", "set": f"= {change.value:g}"}[change.verb]
     return change.parameter, sign, _number(change.before), _number(change.after), change.reason
 

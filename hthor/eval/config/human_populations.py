@@ -13,7 +13,7 @@ from hthor.errors import HthorError, UnknownName
 from hthor.eval.config.robot_team import RobotInfo, RobotTeam
 from hthor.humans.population import kinds, parameter_registry, population_file, resolve
 from hthor.humans.population.population import Validity
-from hthor.humans.population.resolve import People
+from hthor.humans.population.resolve import ParticipantSource
 from hthor.tasks import Suite
 from hthor.types import RobotSpec
 
@@ -46,7 +46,7 @@ class HumanModelRef(Struct, frozen=True, kw_only=True):
     notes: tuple[str, ...]
 
 
-def find_populations(words: Sequence[str]) -> list[People]:
+def find_populations(words: Sequence[str]) -> list[ParticipantSource]:
     """The peoples that the words of ``--humans`` stand for, each once.
 
     Raises:
@@ -54,7 +54,7 @@ def find_populations(words: Sequence[str]) -> list[People]:
         PeopleError: when a file of people cannot be used.
         HthorError: when two different peoples are called the same.
     """
-    found: dict[str, People] = {}
+    found: dict[str, ParticipantSource] = {}
     for word in dict.fromkeys(word for several in words for word in _expand_word(several)):
         one = _find(word)
         if one.sha256 in {other.sha256 for other in found.values()}:
@@ -83,7 +83,7 @@ def robot_settings(body: str | RobotInfo, detector: str) -> dict[str, str | floa
     }
 
 
-def human_model_ref(found: People, suite: Suite, crew: RobotTeam) -> HumanModelRef:
+def human_model_ref(found: ParticipantSource, suite: Suite, crew: RobotTeam) -> HumanModelRef:
     """Who they are, and whether they are known to fit this suite, this world and these robots."""
     drawn = not found.source
     notes = tuple(_differences(found, suite, crew)) if drawn else ()
@@ -92,7 +92,7 @@ def human_model_ref(found: People, suite: Suite, crew: RobotTeam) -> HumanModelR
         source=re.sub(r"(^|[:@])[^:@]*/", r"\1", found.word),
         model=Path(found.model).stem if found.model.endswith(".py") else found.model,
         kind=found.kind.name if found.kind is not None else "",
-        population=population_file.called(found.population.name) if drawn else "",
+        population=population_file.population_name(found.population.name) if drawn else "",
         population_sha256=found.population.sha256 if drawn else "",
         sha256=found.sha256,
         valid=not notes,
@@ -102,7 +102,7 @@ def human_model_ref(found: People, suite: Suite, crew: RobotTeam) -> HumanModelR
 
 def _expand_word(word: str) -> tuple[str, ...]:
     head, at, base = word.partition("@")
-    population = base or resolve.default()
+    population = base or resolve.default_population()
     if head == KINDS:
         return (population, *(name + at + base for name in kinds.names()))
     if head == BRACKET:
@@ -110,18 +110,18 @@ def _expand_word(word: str) -> tuple[str, ...]:
     return (word,)
 
 
-def _find(word: str) -> People:
+def _find(word: str) -> ParticipantSource:
     try:
-        return resolve.find(word)
+        return resolve.resolve_humans(word)
     except UnknownName as error:
         if error.what != "people":
             raise
         raise UnknownName("people", error.given, (*error.valid, *WORDS), error.hint) from None
 
 
-def _differences(found: People, suite: Suite, crew: RobotTeam) -> Iterator[str]:
+def _differences(found: ParticipantSource, suite: Suite, crew: RobotTeam) -> Iterator[str]:
     """What is other than where the population was fitted, a sentence each."""
-    name, its = f"the population {population_file.called(found.population.name)}", found.population.validity
+    name, its = f"the population {population_file.population_name(found.population.name)}", found.population.validity
     if not its.suite_sha256:
         yield f"{name} was fitted to no data: every parameter is drawn from its prior"
     elif its.suite_sha256 != suite.sha256:
@@ -135,7 +135,7 @@ def _differences(found: People, suite: Suite, crew: RobotTeam) -> Iterator[str]:
 
 
 def _versions(name: str, its: Validity) -> Iterator[str]:
-    pairs = (("world", its.simulation, rules.SIMULATION), ("proxy's mind", its.mind, parameter_registry.MIND))
+    pairs = (("world", its.simulation, rules.SIMULATION), ("proxy's mind", its.mind, parameter_registry.PROXY_VERSION))
     for what, then, now in pairs:
         if then != now:
             yield f"{name} was calibrated with version {then} of the {what}, this is version {now}"

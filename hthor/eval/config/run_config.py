@@ -21,7 +21,7 @@ from hthor.eval.config.sessions import participants_needed
 from hthor.eval.config.shard import Shard
 from hthor.guest.agent.manifest import Manifest
 from hthor.humans.population import resolve
-from hthor.humans.population.resolve import PROXY, People
+from hthor.humans.population.resolve import PROXY, ParticipantSource
 from hthor.tasks import Suite
 from hthor.types import RobotSeat
 
@@ -172,7 +172,7 @@ def build_config(
     suite: Suite,
     crew: RobotTeam,
     *,
-    human: str | People,
+    human: str | ParticipantSource,
     seed: int,
     participants: int | None,
     kind: KindRef | None = None,
@@ -191,7 +191,7 @@ def build_config(
     what it was narrowed to, empty where it was not. ``step_limit_s`` is the deadline of
     an action [s]; it makes no difference where all agents are built in.
     """
-    who = resolve.find(human) if isinstance(human, str) else human
+    who = resolve.resolve_humans(human) if isinstance(human, str) else human
     hands = participants_needed(len(suite.tasks))
     count = hands if participants is None else participants
     whole, rest = divmod(count, hands)

@@ -12,7 +12,7 @@ from hthor import code_identity, rules, seeds
 from hthor.eval.config import robot_team
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.humans.population import resolve
-from hthor.humans.population.resolve import PROXY, People
+from hthor.humans.population.resolve import PROXY, ParticipantSource
 from hthor.tasks import Suite
 from hthor.types import TaskSpec, TrialSpec
 from hthor.types.detector_specs import OWN
@@ -35,7 +35,7 @@ def make_sessions(
     *,
     agent: str | RobotTeam,
     robot: str = "scout",
-    human: str | People = PROXY,
+    human: str | ParticipantSource = PROXY,
     seed: int = 0,
     participants: int | None = None,
     detector: str = OWN,
@@ -61,7 +61,7 @@ def make_sessions(
         step_limit_s: seconds that submitted agents have for each action; None for the usual deadline.
     """
     crew = robot_team.form_team([robot], [agent], detector) if isinstance(agent, str) else agent
-    who = resolve.find(human) if isinstance(human, str) else human
+    who = resolve.resolve_humans(human) if isinstance(human, str) else human
     rules_hash = rules.sha256()
     code_hash = code_identity.code_sha256(who.model, (task.kind for task in suite.tasks))
 

@@ -19,7 +19,7 @@ from hthor.eval.results import baseline
 from hthor.eval.runner import engines, trial_runner
 from hthor.guest import GuestConfig, Isolation
 from hthor.guest.agent import inputs
-from hthor.humans.population.resolve import PROXY, People
+from hthor.humans.population.resolve import PROXY, ParticipantSource
 from hthor.tasks.suites import library
 from hthor.types import cameras, detector_specs
 
@@ -68,7 +68,7 @@ class RunJob(Struct, frozen=True, kw_only=True):
     """One run of several: who is evaluated with whom, and where that is written."""
 
     crew: RobotTeam
-    people: People
+    people: ParticipantSource
     plan: RunConfig
     folder: Path
     title: str
@@ -158,7 +158,7 @@ def _parts(
     options: RunOptions,
     chosen: TaskSelection,
     found: Sequence[RobotTeam],
-    whom: Sequence[People],
+    whom: Sequence[ParticipantSource],
     shown: run_config.AssetsRef | None,
 ) -> list[RunJob]:
     """Every run, each with a folder of its own."""

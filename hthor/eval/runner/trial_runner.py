@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hthor.eval.records.trial_record import TrialRecord
     from hthor.guest import GuestPool
     from hthor.humans.model import HumanModel
-    from hthor.humans.population.resolve import People
+    from hthor.humans.population.resolve import ParticipantSource
     from hthor.looks.pack import Pack
     from hthor.world import World
 
@@ -72,7 +72,7 @@ class TrialRunner:
     def __init__(self, sources: Sources | None = None, pool: GuestPool | None = None) -> None:
         self._sources, self._pool = sources or Sources(), pool
         self._worlds: dict[object, World] = {}
-        self._people: People | None = None
+        self._people: ParticipantSource | None = None
         self._seen: dict[str, tuple[File, ...]] = {}  # what agents opened and their manifests do not list, by seat
         gc_freeze.unfreeze_after(self)
         if self._sources.kind:
@@ -82,7 +82,7 @@ class TrialRunner:
         """The person and the robots of a session, new to one another."""
         first = session.trials[0]
         mind = functools.partial(self._mind, step_limit_s=first.step_limit_s or None)
-        return Participants(self._persons(first).make(first.seed, first.participant), first.robots, mind)
+        return Participants(self._persons(first).make_model(first.seed, first.participant), first.robots, mind)
 
     def world(self, trial: TrialSpec) -> World:
         """The world of a trial: that of an earlier one where house, objects, robots and senses are the same."""
@@ -161,14 +161,14 @@ class TrialRunner:
                     self._seen[seat] = tuple(sorted({*self._seen.get(seat, ()), *files}))
         return found
 
-    def _persons(self, trial: TrialSpec) -> People:
+    def _persons(self, trial: TrialSpec) -> ParticipantSource:
         """Whom the person of a trial is drawn from; kept, as all trials of a run have the same."""
         from hthor.humans.population import resolve
 
         if not self._sources.people:
-            return resolve.find(trial.human)
+            return resolve.resolve_humans(trial.human)
         if self._people is None:
-            self._people = resolve.find(self._sources.people)
+            self._people = resolve.resolve_humans(self._sources.people)
         if self._people.sha256 != trial.human_sha256:
             raise HthorError(_changed_message(self._sources.people))
         return self._people

@@ -1,1 +1,4 @@
-"""What a person does next: follow a message, deliver, carry."""
+"""What a participant can do in a trial: search, fetch, deliver, follow a message, carry together.
+
+Begin with `behaviours.Behaviours`.
+"""

@@ -1,4 +1,4 @@
-"""What a person does in a trial, as deeds built from looking, walking and handling: search, fetch, deliver, follow."""
+"""All behaviours of a trial, built from perceiving, walking and handling."""
 
 from __future__ import annotations
 
@@ -7,136 +7,150 @@ from collections.abc import Sequence
 from functools import partial
 
 from hthor import rules
-from hthor.humans.behaviours.carry import Hauling
-from hthor.humans.behaviours.deliver import Delivering
-from hthor.humans.behaviours.follow_message import Following
-from hthor.humans.core.trial_context import Deed, Subject
-from hthor.humans.memory.location_priors import expectation
-from hthor.humans.memory.spatial_memory import Memory
-from hthor.humans.memory.subgoals import Duties, Duty
-from hthor.humans.motor.approach import PATIENCE, REACH, Approach
+from hthor.humans.behaviours.carry import JointCarrying
+from hthor.humans.behaviours.deliver import Delivery
+from hthor.humans.behaviours.follow_message import MessageFollowing
+from hthor.humans.core.trial_context import Behaviour, HumanContext
+from hthor.humans.memory.location_priors import location_belief
+from hthor.humans.memory.spatial_memory import SpatialMemory
+from hthor.humans.memory.subgoals import Subgoal, SubgoalTracker
+from hthor.humans.motor.approach import PATIENCE, Approach
 from hthor.humans.motor.locomotion import Walker, never
 from hthor.humans.motor.manipulation import Hands
 from hthor.humans.perception.perception import Eyes
-from hthor.humans.search.exploration import Exploring
-from hthor.humans.search.option_choice import Search
+from hthor.humans.search.exploration import Exploration
+from hthor.humans.search.option_choice import OptionChoice
 from hthor.types import Detection, Pick, Vec3
 
 _FOUND_M = 1.3
+"""[m] People who only have to find an object stop this near to it. Our choice."""
 _SLACK_M = 0.04
-_BLINK_S = 0.4
-_TRIES = 3
+"""[m] They come nearer than the rule of finding asks by this. Our choice."""
+_LEAST_FOUND_M2 = 0.25
+"""[m^2] Squared distance on the floor that is always near enough to have found something. Our choice: half a metre."""
+_CHECK_S = 0.4
+"""[s] A look at an object before it is handled. Our choice."""
+_PATIENCE_MANY = 3
+"""[count] Failed tries after which an object is taken for gone, with several things to do. Our choice."""
 _REST_S = 4.0
+"""[s] From one look round to the next when all is done. Our choice."""
 
 
-class Errands:
-    """Everything the person can set out to do."""
+class Behaviours:
+    """Everything that the participant can set out to do."""
 
-    def __init__(self, me: Subject, eyes: Eyes, memory: Memory, walker: Walker, duties: Duties) -> None:
-        self.me, self.eyes, self.memory, self.walker = me, eyes, memory, walker
-        self.hands = Hands(me)
-        self.exploring = Exploring(me, eyes, memory, walker, self.hands)
-        self.approach = Approach(me, eyes, memory, walker)
-        self.following = Following(me, eyes, memory, walker, self.exploring)
-        self.delivering = Delivering(me, memory, walker, self.approach, self.exploring, self.hands, duties)
-        self.hauling = Hauling(me, memory, walker, self.approach, self.exploring, self.hands, duties)
-        self._patience = _TRIES if duties.many else PATIENCE
-        self._for_targets = Search(me, memory, walker, {}, "target")
-        self.expect(tuple(duties.all.values()))
+    def __init__(
+        self, human: HumanContext, eyes: Eyes, memory: SpatialMemory, walker: Walker, subgoals: SubgoalTracker
+    ) -> None:
+        self.human, self.eyes, self.memory, self.walker = human, eyes, memory, walker
+        self.hands = Hands(human)
+        self.exploration = Exploration(human, eyes, memory, walker, self.hands)
+        self.approach = Approach(human, eyes, memory, walker)
+        self.following = MessageFollowing(human, eyes, memory, walker, self.exploration)
+        self.delivery = Delivery(human, memory, self.approach, self.exploration, subgoals)
+        self.carrying = JointCarrying(human, memory, self.approach, self.exploration, subgoals)
+        self._patience = _PATIENCE_MANY if subgoals.many else PATIENCE
+        self._target_search = OptionChoice(human, memory, walker, "target")
+        self.expect(tuple(subgoals.all.values()))
 
-    def anew(self, duty: Duty | None = None) -> None:
-        """Forget what was tried: another errand begins, about this object."""
-        self.approach.anew()
+    def reset(self, subgoal: Subgoal | None = None) -> None:
+        """Forget what was tried: another behaviour begins, about this subgoal."""
+        self.approach.reset()
         self.eyes.attention = None
-        if duty is not None:
-            self.eyes.subject = duty.known
+        if subgoal is not None:
+            self.eyes.current = subgoal.known
 
-    def expect(self, missing: Sequence[Duty]) -> None:
-        """These are the objects to search for: hope lies where any of them may be, but hardly where it shall go."""
-        search, w_prior = self._for_targets, self.me.traits.w_prior
-        search.hope, search.knowledge, search.uniform = (self._hope(missing, share) for share in (w_prior, 1.0, 0.0))
+    def expect(self, missing: Sequence[Subgoal]) -> None:
+        """Set what is searched for: belief is shared among these objects, little of it in their destinations."""
+        search, w_prior = self._target_search, self.human.traits.w_prior
+        search.belief, search.knowledge, search.uniform = (self._belief(missing, w) for w in (w_prior, 1.0, 0.0))
 
-    def _hope(self, missing: Sequence[Duty], w_prior: float) -> dict[str, float]:
-        hope: dict[str, float] = {}
-        for duty in missing:
-            wanted = expectation(duty.kind, w_prior)
-            for home in duty.job.destinations:
-                if home in wanted:
-                    wanted = {**wanted, home: wanted[home] * self.me.traits.dest_factor}
-            hope = {kind: hope.get(kind, 0.0) + share / len(missing) for kind, share in wanted.items()}
-        return hope
+    def _belief(self, missing: Sequence[Subgoal], w_prior: float) -> dict[str, float]:
+        belief: dict[str, float] = {}
+        for subgoal in missing:
+            shares = location_belief(subgoal.kind, w_prior)
+            for home in subgoal.job.destinations:
+                if home in shares:
+                    shares = {**shares, home: shares[home] * self.human.traits.dest_factor}
+            belief = {kind: belief.get(kind, 0.0) + share / len(missing) for kind, share in shares.items()}
+        return belief
 
-    def searching(self, errand: str) -> Search:
-        """The search that a robot's word would spare the person: for where to "bring" what is in hand, or for it."""
-        return self.delivering.search if errand == "bring" else self._for_targets
+    def search_spared_by(self, request: str) -> OptionChoice:
+        """The search that a message would spare: for where to "bring" what is in hand, or for the target."""
+        return self.delivery.search if request == "bring" else self._target_search
 
-    def begin(self) -> Deed:
-        """Take a moment, then look round."""
-        yield from self.me.rest(self.me.traits.t_on)
-        yield from self.exploring.look_round(self.me.traits.scan_first)
+    def begin(self) -> Behaviour:
+        """Wait a moment, then look round."""
+        yield from self.human.rest(self.human.traits.t_on)
+        yield from self.exploration.look_round(self.human.traits.scan_first)
         return True
 
-    def search(self) -> Deed:
-        """Look for what is missing, one place or room after the other, for ever."""
-        yield from self.exploring.look_for(self._for_targets, never)
+    def search(self) -> Behaviour:
+        """Look for what is missing, without end."""
+        yield from self.exploration.look_for(self._target_search, never)
         return True
 
-    def rest(self) -> Deed:
-        """All is done: look about now and then."""
-        yield from self.me.rest(_REST_S)
-        yield from self.exploring.look_round(self.me.traits.scan)
+    def rest(self) -> Behaviour:
+        """All is done: look round now and then."""
+        yield from self.human.rest(_REST_S)
+        yield from self.exploration.look_round(self.human.traits.scan)
         return True
 
-    def fetch(self, duty: Duty) -> Deed:
-        """Go to an object where it was noticed; take it in hand unless finding is all. False when that failed."""
-        target = duty.known.lies
+    def fetch(self, subgoal: Subgoal) -> Behaviour:
+        """Go to an object where it was noticed; pick it up unless finding it is all. False when that failed."""
+        target = subgoal.known.lies
         if target is None:
             return False
         self.eyes.attention = target.position
-        if duty.job.relation == "find":
-            stop = partial(self._is_close, duty)
-            reach = self._sight_m(target.position)
+        if subgoal.job.relation == "find":
+            stop = partial(self._is_close, subgoal)
+            reach = self._finding_distance(target.position)
             arrived = yield from self.approach.to_object(target.position, target.support, reach, stop)
         else:
-            arrived = yield from self.approach.to_object(target.position, target.support, self.me.body.reach * REACH)
+            arrived = yield from self.approach.to_object(target.position, target.support, self.approach.arm)
         if not arrived:
-            self._despair(duty)
+            self._give_up_if_tried(subgoal)
             return False
-        visible = yield from self._check(duty, target)
-        if not visible or duty.job.relation == "find":
+        visible = yield from self._check(subgoal, target)
+        if not visible or subgoal.job.relation == "find":
             return visible
         reason = yield from self.hands.do(Pick(object=target.id), f"pick {target.id}")
         return not reason
 
-    def follow(self, position: Vec3) -> Deed:
-        """Go where a robot says something is, and look there; True when all was done, whatever was found."""
+    def follow(self, position: Vec3) -> Behaviour:
+        """Go where a robot says something is, and look there; True when done, with or without success."""
         return (yield from self.following.follow(position))
 
-    def look_into(self, position: Vec3) -> Deed:
-        """Go to the furniture that a robot wants looked into, open it and look; search for it when it is next door."""
-        yield from self.exploring.make_for(position, lambda: self.memory.at(position) is not None, self._for_targets)
+    def look_into(self, position: Vec3) -> Behaviour:
+        """Go to the furniture that a robot wants looked into, open it and look; find it first if in another room."""
+
+        def is_known() -> bool:
+            return self.memory.at(position) is not None
+
+        yield from self.exploration.make_for(position, is_known, self._target_search)
         return (yield from self.follow(position))
 
-    def _is_close(self, duty: Duty) -> bool:
-        known = duty.known
-        return known.seen is not None and known.at == self.me.now.tick and known.seen.distance < _FOUND_M
+    def _is_close(self, subgoal: Subgoal) -> bool:
+        known = subgoal.known
+        return known.seen is not None and known.at == self.human.now.tick and known.seen.distance < _FOUND_M
 
-    def _check(self, duty: Duty, target: Detection) -> Deed:
-        """Whether the object is in view from here; after several tries without, it is taken for gone."""
-        yield from self.me.look_at(target.position)
-        since = self.me.now.tick
-        yield from self.me.rest(_BLINK_S)
-        if duty.known.at >= since:
+    def _check(self, subgoal: Subgoal, target: Detection) -> Behaviour:
+        """Whether the object is in view from here."""
+        yield from self.human.look_at(target.position)
+        since = self.human.now.tick
+        yield from self.human.rest(_CHECK_S)
+        if subgoal.known.at >= since:
             return True
-        self._despair(duty)
+        self._give_up_if_tried(subgoal)
         return False
 
-    def _despair(self, duty: Duty) -> None:
+    def _give_up_if_tried(self, subgoal: Subgoal) -> None:
         """After several tries the object is taken for gone, or for a mistake."""
         if self.approach.tries > self._patience:
-            self.anew()
-            self.eyes.lose(duty.known)
+            self.reset()
+            self.eyes.lose(subgoal.known)
 
-    def _sight_m(self, point: Vec3) -> float:
-        """How far off [m] on the floor a point is near enough to the eye to count as found."""
-        return math.sqrt(max(0.25, rules.FIND_RANGE_M**2 - (self.me.body.eye - point[2]) ** 2)) - _SLACK_M
+    def _finding_distance(self, point: Vec3) -> float:
+        """Distance [m] on the floor at which a point is near enough to the eye to count as found."""
+        height = self.human.body.eye - point[2]
+        return math.sqrt(max(_LEAST_FOUND_M2, rules.FIND_RANGE_M**2 - height**2)) - _SLACK_M

@@ -6,113 +6,116 @@ from functools import partial
 
 from hthor import catalog
 from hthor.geometry.plane import to_house, to_local
-from hthor.humans.core.trial_context import Deed, Subject
-from hthor.humans.memory.spatial_memory import Memory, Place
-from hthor.humans.memory.subgoals import Duties, Duty
-from hthor.humans.motor.approach import PATIENCE, REACH, Approach
-from hthor.humans.motor.locomotion import Walker
-from hthor.humans.motor.manipulation import Hands
-from hthor.humans.search.exploration import Exploring
-from hthor.humans.search.option_choice import Search
-from hthor.types import Drop, Vec2, Vec3
-from hthor.types import Place as Put
+from hthor.humans.core.trial_context import Behaviour, HumanContext
+from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
+from hthor.humans.memory.subgoals import Subgoal, SubgoalTracker
+from hthor.humans.motor.approach import PATIENCE, Approach
+from hthor.humans.search.exploration import Exploration
+from hthor.humans.search.option_choice import OptionChoice
+from hthor.types import Drop, Place, Vec2, Vec3
 
 _EDGE_M = 0.12
+"""[m] People put things down at least this far from the edge. Our choice."""
+_REACHABLE_Z_M = (0.25, 1.4)
+"""[m] Heights of the surfaces that people use first. Our choice: without bending down or reaching up."""
+_SHIFTS_M = (0.0, 0.3, -0.3)
+"""[m] How far along the surface later tries move the point, in turn. Our choice."""
+_BESIDE_M = 0.5
+"""[m] How near to a place's outline the estimated way to it ends. Our choice."""
 
 
-class Delivering:
-    """Brings things home."""
+class Delivery:
+    """Brings things where they belong."""
 
     def __init__(
         self,
-        me: Subject,
-        memory: Memory,
-        walker: Walker,
+        human: HumanContext,
+        memory: SpatialMemory,
         approach: Approach,
-        exploring: Exploring,
-        hands: Hands,
-        duties: Duties,
+        exploration: Exploration,
+        subgoals: SubgoalTracker,
     ) -> None:
-        self.me, self.memory, self.walker, self.approach = me, memory, walker, approach
-        self.exploring, self.hands, self.duties = exploring, hands, duties
-        self.search = Search(me, memory, walker, {}, "destination")
+        self.human, self.memory, self.walker, self.approach = human, memory, approach.walker, approach
+        self.exploration, self.hands, self.subgoals = exploration, exploration.hands, subgoals
+        self.search = OptionChoice(human, memory, self.walker, "destination")
 
-    def deliver(self, duty: Duty, lead: Vec3 | None = None) -> Deed:
+    def deliver(self, subgoal: Subgoal, advised: Vec3 | None = None) -> Behaviour:
         """Bring what is held where it belongs; look for that first when it is not known.
 
         Args:
-            lead: where a robot says that such a place is [m].
+            advised: where a robot says that such a place is [m].
         """
-        if duty.spot is not None:
-            if self.approach.tries <= PATIENCE or not duty.job.destinations:
-                return (yield from self._restore(duty, duty.spot))
-            duty.spot = None  # anywhere on it will do
-        knows = partial(self.duties.knows, duty)
-        if lead is not None:
-            yield from self.exploring.make_for(lead, knows, self.search)
-        if self.duties.forgot(duty) and not knows():
-            yield from self.exploring.retrace(knows)
-        yield from self.exploring.look_for(self.search, knows)
-        place = self._destination(duty)
+        if subgoal.spot is not None:
+            if self.approach.tries <= PATIENCE or not subgoal.job.destinations:
+                return (yield from self._restore(subgoal, subgoal.spot))
+            subgoal.spot = None  # anywhere on it will do
+        is_known = partial(self.subgoals.knows_destination, subgoal)
+        if advised is not None:
+            yield from self.exploration.make_for(advised, is_known, self.search)
+        if self.subgoals.forgot_destination(subgoal) and not is_known():
+            yield from self.exploration.retrace(is_known)
+        yield from self.exploration.look_for(self.search, is_known)
+        place = self._destination(subgoal)
         if place is None:
             return False
         self.memory.heading = place.id
         if not (yield from self.approach.to_place(place)):
             return False
-        if place.state == "closed" and (yield from self.exploring.open(place)):
+        if place.state == "closed" and (yield from self.exploration.open(place)):
             return False
-        point = _resting_point(place, self.me.here, self.approach.tries - 1)
-        yield from self.me.look_at(point)
-        reason = yield from self.hands.do(Put(on=place.id, position=point), f"place {place.id}")
+        point = _resting_point(place, self.human.here, self.approach.tries - 1)
+        yield from self.human.look_at(point)
+        reason = yield from self.hands.do(Place(on=place.id, position=point), f"place {place.id}")
         return not reason
 
-    def _restore(self, duty: Duty, spot: Vec3) -> Deed:
-        """Put it back just there: on or in what it was on or in, which has to be recognised first."""
-        support = duty.job.destinations[0] if duty.job.destinations else ""
+    def _restore(self, subgoal: Subgoal, spot: Vec3) -> Behaviour:
+        """Put it back exactly: on or in what it was on or in, which has to be recognised first."""
+        support = subgoal.job.destinations[0] if subgoal.job.destinations else ""
         known = partial(self._recognises, support)
-        yield from self.exploring.make_for(spot, known, self.search)
-        if not (yield from self.approach.to_object(spot, support, self.me.body.reach * REACH)):
+        yield from self.exploration.make_for(spot, known, self.search)
+        if not (yield from self.approach.to_object(spot, support, self.approach.arm)):
             return False
         place = self.memory.places.get(support) or self.memory.at(spot)
         if place is not None and place.state == "closed":
-            if (yield from self.exploring.open(place)):
+            if (yield from self.exploration.open(place)):
                 return False
-            yield from self.me.look_at(spot)
+            yield from self.human.look_at(spot)
         on = support or (place.id if place is not None else "")
-        motion = Put(on=on, position=spot) if on else Drop()
-        reason = yield from self.hands.do(motion, f"place {duty.target}")
+        motion = Place(on=on, position=spot) if on else Drop()
+        reason = yield from self.hands.do(motion, f"place {subgoal.target}")
         return not reason
 
     def _recognises(self, support: str) -> bool:
         return not support or support in self.memory.places
 
-    def _destination(self, duty: Duty) -> Place | None:
+    def _destination(self, subgoal: Subgoal) -> KnownPlace | None:
         """The nearest place known where the object belongs; after several refusals, another one."""
-        known = self.duties.places(duty)
+        known = self.subgoals.known_destinations(subgoal)
         if not known:
             return None
         spots = [(place.centre[0], place.centre[1]) for place in known]
-        reach = [max(place.size[:2]) / 2.0 + 0.5 for place in known]
-        far = [self.walker.planner.distance(self.me.here, spot, r) for spot, r in zip(spots, reach, strict=True)]
+        reach = [max(place.size[:2]) / 2.0 + _BESIDE_M for place in known]
+        far = [self.walker.planner.distance(self.human.here, spot, r) for spot, r in zip(spots, reach, strict=True)]
         order = sorted(range(len(known)), key=lambda k: (far[k], known[k].id))
         return known[order[self.approach.tries // PATIENCE % len(order)]]
 
 
-def _resting_point(place: Place, here: Vec2, number: int) -> Vec3:
-    """A point on a surface of the place, near to the person at first, further along at later tries."""
+def _resting_point(place: KnownPlace, here: Vec2, number: int) -> Vec3:
+    """A point on a surface of the place [m], near to the participant at first, farther along at later tries."""
     surfaces = catalog.kind(place.kind).rests(place.size)
-    usable = [s for s in surfaces if 0.25 <= place.centre[2] + s.centre[2] <= 1.4] or list(surfaces)
-    surface = usable[number // 3 % len(usable)] if usable else None
+    low, high = _REACHABLE_Z_M
+    usable = [s for s in surfaces if low <= place.centre[2] + s.centre[2] <= high] or list(surfaces)
+    turn, shift = divmod(number, len(_SHIFTS_M))
+    surface = usable[turn % len(usable)] if usable else None
     if surface is None:
         return place.centre
     x, y, _ = to_local((here[0], here[1], 0.0), place.centre, place.yaw)
-    shift = (0.0, 0.3, -0.3)[number % 3]
     half = [max(0.0, h - _EDGE_M) for h in surface.half]
     cx, cy, cz = surface.centre
     u, v = (x - cx, y - cy)
     if abs(v) - half[1] > abs(u) - half[0]:
-        u += shift
+        u += _SHIFTS_M[shift]
     else:
-        v += shift
+        v += _SHIFTS_M[shift]
     spot = (cx + max(-half[0], min(half[0], u)), cy + max(-half[1], min(half[1], v)), cz)
     return to_house(spot, place.centre, place.yaw)

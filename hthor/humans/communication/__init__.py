@@ -1,1 +1,1 @@
-"""Messages from robots: reading, interpretation, trust, the decision to accept."""
+"""Messages from robots: reading, interpretation, time saved, the decision to accept, trust."""

@@ -1,4 +1,4 @@
-"""What a robot's message means to the person, and what of it they still mean to follow.
+"""What a robot's message means to the participant, and which accepted messages are still to be followed.
 
 A message names an object, or something to look into, or where to bring what is in hand.
 """
@@ -6,150 +6,155 @@ A message names an object, or something to look into, or where to bring what is 
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 from msgspec import Struct
 
-from hthor.humans.core.trial_context import Subject
-from hthor.humans.memory.location_priors import holders
-from hthor.humans.memory.spatial_memory import Memory, Place
-from hthor.humans.memory.subgoals import Duties, Duty, kind_of
+from hthor.humans.core.trial_context import HumanContext
+from hthor.humans.memory.location_priors import receptacle_kinds
+from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
+from hthor.humans.memory.subgoals import Subgoal, SubgoalTracker, object_kind
 from hthor.types import Message, Vec3
 
-_SAME_M = 1.0
+_SAME_OBJECT_M = 1.0
+"""[m] A message about an object within this distance of a known one of its kind is about that one. Our choice."""
 
 
-class Claim(Struct, frozen=True, kw_only=True):
-    """What message number ``number`` says: that what matters is at ``position`` [m], None when it does not say where.
+class Advice(Struct, frozen=True, kw_only=True):
+    """What message number ``number`` advises: to go to ``position`` [m], None when it does not say where.
 
-    It is about the object of ``duty``; without one, ``errand`` tells whether it is something to look into ("look") or
+    It is about the object of ``subgoal``; without one, ``request`` says whether to look into something ("look") or
     where to bring what is held ("bring").
     """
 
     number: int
     position: Vec3 | None
-    duty: Duty | None = None
-    errand: str = ""
+    subgoal: Subgoal | None = None
+    request: Literal["", "look", "bring"] = ""
 
     @property
-    def subject(self) -> str:
-        """What it is about, in a word: a later claim about the same replaces it."""
-        return self.duty.target if self.duty is not None else f"{self.errand} {self.position}"
+    def topic(self) -> str:
+        """What it is about; later advice on the same topic replaces it."""
+        return self.subgoal.target if self.subgoal is not None else f"{self.request} {self.position}"
 
 
-class Claims:
-    """Understands messages, and keeps those that were confirmed until they were followed. ``news`` counts changes."""
+class AdviceTracker:
+    """Interprets messages, and keeps the accepted ones until they were followed. ``changes`` counts updates."""
 
-    def __init__(self, me: Subject, memory: Memory, duties: Duties) -> None:
-        self.me, self.memory, self.duties = me, memory, duties
-        self.kept: dict[str, Claim] = {}
-        self.news = 0
+    def __init__(self, human: HumanContext, memory: SpatialMemory, subgoals: SubgoalTracker) -> None:
+        self.human, self.memory, self.subgoals = human, memory, subgoals
+        self.kept: dict[str, Advice] = {}
+        self.changes = 0
 
-    def meaning(self, message: Message) -> Claim | None:
-        """What use a message still is, None when it is none."""
-        held = self.duties.all.get(self.me.now.holding)
-        about = message.object
-        if self.me.now.holding and (not self.duties.many or (held is not None and self._names_home(held, about))):
-            if held is None or not self._names_home(held, about) or self.duties.knows(held):
+    def interpret(self, message: Message) -> Advice | None:
+        """What a message can still be of use for, None for nothing."""
+        held = self.subgoals.all.get(self.human.now.holding)
+        name = message.object
+        names_home = held is not None and self._names_destination(held, name)
+        if self.human.now.holding and (not self.subgoals.many or names_home):
+            if held is None or not names_home or self.subgoals.knows_destination(held):
                 return None
-            return Claim(number=message.id, position=message.position, errand="bring")
-        duty = self._meant(about, message.position)
-        if duty is not None:
-            return Claim(number=message.id, position=message.position, duty=duty)
-        return self._look(message) if self.duties.many else None
+            return Advice(number=message.id, position=message.position, request="bring")
+        subgoal = self._meant_subgoal(name, message.position)
+        if subgoal is not None:
+            return Advice(number=message.id, position=message.position, subgoal=subgoal)
+        return self._look_request(message) if self.subgoals.many else None
 
-    def concerns(self, message: Message) -> bool:
-        """Whether a message is about anything that there is to do, even if the person knows it already.
+    def is_relevant(self, message: Message) -> bool:
+        """Whether a message is about anything in the task, even if it is known already.
 
-        What is said of the thing in hand, and where it was, is out of date. Words that name nothing are about nothing:
-        a place without a name matters only while something is missing, which `meaning` judges.
+        What is said about the object in hand is out of date. A place without a name matters only while something is
+        missing, which `interpret` judges.
         """
-        about, held = message.object, self.me.now.holding
-        if not about:
+        name, holding = message.object, self.human.now.holding
+        if not name:
             return False
-        named = (duty for duty in self.duties.all.values() if duty.target != held)
-        if any(about in (duty.target, duty.kind) for duty in named):
+        others = (subgoal for subgoal in self.subgoals.all.values() if subgoal.target != holding)
+        if any(name in (subgoal.target, subgoal.kind) for subgoal in others):
             return True
-        if any(self._names_home(duty, about) for duty in self.duties.all.values()):
+        if any(self._names_destination(subgoal, name) for subgoal in self.subgoals.all.values()):
             return True
-        return self.duties.many and kind_of(about) in holders()
+        return self.subgoals.many and object_kind(name) in receptacle_kinds()
 
     @property
-    def lead(self) -> Vec3 | None:
+    def destination(self) -> Vec3 | None:
         """Where a robot says that what is held may be put [m]."""
-        leads = [claim.position for claim in self.kept.values() if claim.errand == "bring"]
-        return leads[-1] if leads else None
+        positions = [advice.position for advice in self.kept.values() if advice.request == "bring"]
+        return positions[-1] if positions else None
 
-    def believe(self, claim: Claim) -> None:
-        """Mean to follow what a robot said, or be content that something is done."""
-        position, duty = claim.position, claim.duty
+    def accept(self, advice: Advice) -> None:
+        """Keep advice to follow it, or take a subgoal for done."""
+        position, subgoal = advice.position, advice.subgoal
         if position is None:
             return
-        self.news += 1
-        place = self.memory.at(position)
-        if duty is not None and self.duties.many and self.duties.at_home(duty, position, place.id if place else ""):
-            duty.done = "told"
-            return
-        self.kept[claim.subject] = claim
+        self.changes += 1
+        if subgoal is not None and self.subgoals.many:
+            place = self.memory.at(position)
+            if self.subgoals.is_at_destination(subgoal, position, place.id if place else ""):
+                subgoal.done = "told"
+                return
+        self.kept[advice.topic] = advice
 
-    def drop(self, claim: Claim) -> None:
-        """The claim was followed, or is of no use any more."""
-        if self.kept.pop(claim.subject, None) is not None:
-            self.news += 1
+    def drop(self, advice: Advice) -> None:
+        """Discard advice that was followed or is of no more use."""
+        if self.kept.pop(advice.topic, None) is not None:
+            self.changes += 1
 
-    def forget(self, duty: Duty) -> None:
-        """Of this object the person now knows themselves; and where to bring the last one matters no more."""
-        for claim in tuple(self.kept.values()):
-            if claim.duty is duty or claim.errand == "bring":
-                self.drop(claim)
+    def drop_about(self, subgoal: Subgoal) -> None:
+        """Discard advice about an object that is now known, and about where to bring the last one."""
+        for advice in tuple(self.kept.values()):
+            if advice.subgoal is subgoal or advice.request == "bring":
+                self.drop(advice)
 
-    def _names_home(self, duty: Duty, about: str) -> bool:
-        return any(about.startswith(home) for home in duty.job.destinations)
+    def _names_destination(self, subgoal: Subgoal, name: str) -> bool:
+        return any(name.startswith(home) for home in subgoal.job.destinations)
 
-    def _meant(self, about: str, position: Vec3 | None) -> Duty | None:
-        """The job that a name is about: of an object that the person does not know of, the first of its kind."""
-        if not about and position is None:
+    def _meant_subgoal(self, name: str, position: Vec3 | None) -> Subgoal | None:
+        """The subgoal that a name is about: of an object that is missing, the first of its kind."""
+        if not name and position is None:
             return None
-        missing = [duty for duty in self.duties.open() if duty.known.lies is None]
-        if position is not None and self.duties.many and self._is_known(about, position):
+        missing = [subgoal for subgoal in self.subgoals.unfinished() if subgoal.known.lies is None]
+        if position is not None and self.subgoals.many and self._is_known(name, position):
             return None
-        for duty in missing:
-            if about == duty.target:
-                return duty
-        if not self.duties.many:
-            return missing[0] if missing and not about else None
-        told = [duty for duty in missing if not about or about == duty.kind]
-        return next((duty for duty in told if duty.target not in self.kept), told[0] if told else self._help(about))
-
-    def _help(self, about: str) -> Duty | None:
-        """A job for several hands that the robot speaks of, though the person knows of the thing."""
+        for subgoal in missing:
+            if name == subgoal.target:
+                return subgoal
+        if not self.subgoals.many:
+            return missing[0] if missing and not name else None
+        meant = [subgoal for subgoal in missing if not name or name == subgoal.kind]
         return next(
-            (duty for duty in self.duties.open() if duty.job.hands > 1 and about in (duty.target, duty.kind)), None
+            (subgoal for subgoal in meant if subgoal.target not in self.kept), meant[0] if meant else self._joint(name)
         )
 
-    def _is_known(self, about: str, position: Vec3) -> bool:
-        """Whether the person has seen an object of this kind just there."""
+    def _joint(self, name: str) -> Subgoal | None:
+        """The unfinished subgoal of this name that takes several to carry, even if its object is known."""
+        unfinished = self.subgoals.unfinished()
+        return next((one for one in unfinished if one.job.hands > 1 and name in (one.target, one.kind)), None)
+
+    def _is_known(self, name: str, position: Vec3) -> bool:
+        """Whether an object of this kind was seen just there."""
         return any(
-            duty.known.lies is not None and math.dist(duty.known.lies.position, position) < _SAME_M
-            for duty in self.duties.all.values()
-            if about in ("", duty.kind) and duty.job.hands == 1
+            subgoal.known.lies is not None and math.dist(subgoal.known.lies.position, position) < _SAME_OBJECT_M
+            for subgoal in self.subgoals.all.values()
+            if name in ("", subgoal.kind) and subgoal.job.hands == 1
         )
 
-    def _look(self, message: Message) -> Claim | None:
-        """A wish that the person look into or at a piece of furniture, while anything is missing."""
-        if all(duty.known.lies is not None for duty in self.duties.open()):
+    def _look_request(self, message: Message) -> Advice | None:
+        """A request to look into or at a piece of furniture, while anything is missing."""
+        if all(subgoal.known.lies is not None for subgoal in self.subgoals.unfinished()):
             return None
-        if kind_of(message.object) not in holders():
+        if object_kind(message.object) not in receptacle_kinds():
             return None
-        place = self._named(message)
+        place = self._named_place(message)
         if place is None and message.position is None:
             return None
         if place is not None and place.state != "closed":
             return None
         position = message.position if place is None else place.centre
-        return Claim(number=message.id, position=position, errand="look")
+        return Advice(number=message.id, position=position, request="look")
 
-    def _named(self, message: Message) -> Place | None:
-        """The place known that a message names by its id, or by its kind when it is the one at that position."""
+    def _named_place(self, message: Message) -> KnownPlace | None:
+        """The known place that a message names by its id, or by its kind if there is one only, else by its position."""
         named = self.memory.places.get(message.object)
         if named is not None or message.position is None:
             alike = [place for place in self.memory.places.values() if place.kind == message.object]

@@ -1,4 +1,4 @@
-"""How a person notices and reads robots' messages, one after the other."""
+"""How a participant notices and reads robots' messages, one after the other."""
 
 from __future__ import annotations
 
@@ -10,18 +10,21 @@ from hthor import seeds
 from hthor.humans.population.parameters import Parameters
 from hthor.types import Message
 
+REFERENCE_WORDS = 12
+"""[words] Length of the message that ``t_read`` is for. Our choice."""
+LEAST_WORDS = 4
+"""[words] Shorter messages take as long as one of this length. Our choice: a glance takes its time."""
+REREADING_SHARE = 0.5
+"""[share] Of the reading time, for a text read before. Our choice: people recognise it, and look for what is new."""
 _SAME_M = 0.5
-WORDS, FEWEST = 12, 4
-"""Words of the message that ``t_read`` is for, and of the shortest that is worth counting: a glance takes its time."""
-KNOWN = 0.5
-"""Share of that time for a text that was read before. Ours: people recognise it, and look for what is new."""
+"""[m] Messages about the same object at positions this close say the same. Our choice."""
 
 
 class Reading(Struct, kw_only=True):
-    """A message and how it is dealt with.
+    """A message and its progress.
 
-    ``number`` counts the trial's messages from 1, for chance; ``since`` [tick] is when it was shown, ``noticed`` and
-    ``until`` when reading begins and is over. ``again`` counts how often the same was refused before.
+    ``number`` counts the trial's messages from 1; ``since`` is the tick when it was shown, ``noticed`` and ``until``
+    when reading begins and ends. ``again`` counts how often the same was refused before.
     """
 
     message: Message
@@ -30,20 +33,19 @@ class Reading(Struct, kw_only=True):
     noticed: float
     until: float
     again: int = 0
-    settled: bool = False
+    answered: bool = False
 
     @property
     def words(self) -> int:
-        """How long it is."""
+        """Its length."""
         return len(self.message.text.split())
 
 
-class Reader:
-    """Notices and reads what comes.
+class MessageReader:
+    """Notices and reads messages.
 
-    People notice a message after a while, and read it then; both times are log-normal, with their own luck for each
-    message. The same offer, of the same thing at about the same place, is read on when it replaces itself, and read
-    faster when it comes again.
+    The times of noticing and reading are log-normal, drawn for each message. A message that replaces an equal one is
+    read on; one that was read before is read faster.
 
     ``now`` is the message that is shown, None without one; ``offered`` says whether any came.
     """
@@ -57,30 +59,30 @@ class Reader:
         self._refused: list[Message] = []
 
     def receive(self, tick: int, inbox: tuple[Message, ...]) -> None:
-        """Look at the inbox; a message with the same content as the one being read is read on."""
+        """Look at the inbox, whose last message is shown."""
         message, now = inbox[-1] if inbox else None, self.now
         if message is None:
             self.now = None
         elif now is None or message.id != now.message.id:
             self.offered = True
-            if now is not None and not now.settled and same(message, now.message):
+            if now is not None and not now.answered and is_same_message(message, now.message):
                 now.message = message
             else:
                 self.now = self._begin(tick, message)
 
-    def reads(self, tick: int) -> bool:
-        """Whether the person is reading just now."""
+    def is_reading(self, tick: int) -> bool:
+        """Whether a message is being read at this tick."""
         now = self.now
-        return now is not None and not now.settled and tick >= now.noticed
+        return now is not None and not now.answered and tick >= now.noticed
 
     def ready(self, tick: int) -> Reading | None:
-        """The message that was read and now wants an answer."""
+        """The message that was read and now needs an answer."""
         now = self.now
-        return now if now is not None and not now.settled and tick >= now.until else None
+        return now if now is not None and not now.answered and tick >= now.until else None
 
-    def settle(self, reading: Reading, accepted: bool) -> None:
-        """The message was answered, or left; whatever comes of it, it is not new any more."""
-        reading.settled = True
+    def mark_answered(self, reading: Reading, accepted: bool) -> None:
+        """The message was answered or ignored, and is not new any more."""
+        reading.answered = True
         self._read.append(reading.message)
         if not accepted:
             self._refused.append(reading.message)
@@ -88,21 +90,22 @@ class Reader:
     def _begin(self, tick: int, message: Message) -> Reading:
         self._count += 1
         number, traits = self._count, self.traits
-        notice = traits.t_notice * self._luck("notice", number)
-        read = traits.t_read * max(FEWEST, len(message.text.split())) / WORDS * self._luck("read", number)
-        if any(same(message, old) for old in self._read):
-            read *= KNOWN
+        notice = traits.t_notice * self._spread("notice", number)
+        words = max(LEAST_WORDS, len(message.text.split()))
+        read = traits.t_read * words / REFERENCE_WORDS * self._spread("read", number)
+        if any(is_same_message(message, old) for old in self._read):
+            read *= REREADING_SHARE
         noticed = tick + notice / self.tick_s
-        again = sum(same(message, old) for old in self._refused)
+        again = sum(is_same_message(message, old) for old in self._refused)
         until = noticed + read / self.tick_s
         return Reading(message=message, number=number, since=tick, noticed=noticed, until=until, again=again)
 
-    def _luck(self, what: str, number: int) -> float:
+    def _spread(self, what: str, number: int) -> float:
         return math.exp(self.traits.read_sd * seeds.normal(self.root, what, number))
 
 
-def same(a: Message, b: Message) -> bool:
-    """Whether two messages say the same thing: of the same object, at about the same place."""
+def is_same_message(a: Message, b: Message) -> bool:
+    """Whether two messages say the same: about the same object, at about the same place."""
     if b.object != a.object:
         return False
     if a.position is None or b.position is None:

@@ -1,57 +1,58 @@
-"""How much time a message saves in the person's own eyes.
+"""How much time a message saves, as the participant estimates it.
 
-Without the message they would search on; with it they walk to the place that it names and look there. Both are reckoned
-as people do it, roughly: the options they think of anyway, in the order of what they promise for their time.
+Without the message they would search on, option by option, the most promising first; with it they walk to the place
+that it names and look there.
 """
 
 from __future__ import annotations
 
 import math
 
-from hthor.humans.core.trial_context import Subject
+from hthor.humans.core.trial_context import HumanContext
 from hthor.humans.motor.locomotion import Walker
-from hthor.humans.search.option_choice import Option, Search
+from hthor.humans.search.option import Option
+from hthor.humans.search.option_choice import OptionChoice
 from hthor.types import Vec3
 
 _BESIDE_M = 1.0
+"""[m] The estimated way ends this near to the named place. Our choice."""
 
 
-def searching(options: list[Option], left: float, kappa: float) -> float:
-    """Seconds that a search is expected to take.
-
-    One option after the other, the most promising first. What lies at none of them is not found in the time that is
-    left, and no search takes longer than that.
+def expected_search_time(options: list[Option], left: float, kappa: float) -> float:
+    """Seconds that a search is expected to take, one option after the other, at most ``left``.
 
     Args:
-        options: as a search lists them; what they promise is belief / seconds^kappa.
-        left: seconds to the end of the trial.
+        options: as a search lists them; their value is belief / seconds^kappa.
+        left: seconds to the end of the trial, which is what a search takes that finds nothing.
     """
-    expected, gone, hope = 0.0, 0.0, 1.0
+    expected, elapsed, remaining = 0.0, 0.0, 1.0
     beliefs = [option.value * option.seconds**kappa for option in options]
     total = max(1.0, sum(beliefs))
     for option, belief in sorted(zip(options, beliefs, strict=True), key=lambda pair: (-pair[0].value, pair[0].name)):
-        gone += option.seconds
-        if gone >= left:
+        elapsed += option.seconds
+        if elapsed >= left:
             break
         share = belief / total
-        expected += share * gone
-        hope -= share
-    return min(left, expected + max(0.0, hope) * left)
+        expected += share * elapsed
+        remaining -= share
+    return min(left, expected + max(0.0, remaining) * left)
 
 
-def way(me: Subject, walker: Walker, position: Vec3) -> tuple[float, float]:
-    """Metres to the named place as far as the person knows the house, and seconds to go there and look."""
+def walk_to_message(human: HumanContext, walker: Walker, position: Vec3) -> tuple[float, float]:
+    """Metres to the named place as far as the house is known, and seconds to go there and look."""
     point = (position[0], position[1])
-    metres = walker.planner.distance(me.here, point, _BESIDE_M)
+    metres = walker.planner.distance(human.here, point, _BESIDE_M)
     if not math.isfinite(metres):
-        metres = math.dist(me.here, point)
-    return metres, metres * me.traits.k_map / me.traits.v_pace + me.traits.t_look
+        metres = math.dist(human.here, point)
+    return metres, metres * human.traits.k_map / human.traits.v_pace + human.traits.t_look
 
 
-def gain(me: Subject, walker: Walker, search: Search, position: Vec3 | None) -> tuple[float, float | None]:
+def time_saved(
+    human: HumanContext, walker: Walker, search: OptionChoice, position: Vec3 | None
+) -> tuple[float, float | None]:
     """Seconds that following is expected to save, never negative, and the metres to the place, None without one."""
     if position is None:
         return 0.0, None
-    left = max(0.0, me.task.time_limit - me.now.tick * me.tick_s)
-    metres, there = way(me, walker, position)
-    return max(0.0, searching(search.recent(), left, me.traits.kappa) - there), metres
+    metres, seconds = walk_to_message(human, walker, position)
+    searching = expected_search_time(search.recent(), human.seconds_left, human.traits.kappa)
+    return max(0.0, searching - seconds), metres

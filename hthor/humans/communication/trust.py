@@ -1,9 +1,9 @@
-"""A person's trust in the robots, a Beta distribution that trials move.
+"""A participant's trust in the robots: a Beta distribution, updated by trials.
 
-The law is Guo and Yang's (2021): experience adds to one of two counts, more firmly held trust moves less, and bad
-experience may weigh more than good. What an experience is worth follows the outcome too, whoever brought it about
-(outcome bias: Yang, Schemanske and Searle 2021). Their contrast effect, that help counts for more with those who would
-have failed without it, is left out: no data at hand tell how a person would have fared alone.
+The law is Guo and Yang's (2021): experience adds to one of two counts, firmer trust moves less, and bad experience may
+weigh more than good. The worth of an experience follows the outcome too, whoever caused it (outcome bias: Yang,
+Schemanske and Searle 2021). Their contrast effect, that help counts for more where one would have failed alone, is left
+out: no data say how a participant would have done alone.
 """
 
 from __future__ import annotations
@@ -14,6 +14,9 @@ from msgspec import Struct
 
 from hthor import rules
 from hthor.humans.population.parameters import Parameters
+
+LATE_HELP = 0.5
+"""[share] Signal of help that comes very late in a trial; help at once is worth 1. Our choice."""
 
 
 class Trust(Struct, frozen=True, kw_only=True):
@@ -28,26 +31,26 @@ class Trust(Struct, frozen=True, kw_only=True):
         return self.alpha / (self.alpha + self.beta)
 
     def after(self, signal: float, traits: Parameters) -> Trust:
-        """Trust after an experience worth ``signal``, from 0 (let down) to 1 (helped at once)."""
+        """Trust after an experience worth ``signal``, from 0 (misled) to 1 (helped at once)."""
         worth = min(1.0, max(0.0, signal))
         return Trust(alpha=self.alpha + traits.w_s * worth, beta=self.beta + traits.w_f * (1.0 - worth))
 
     def report(self, noise: float, traits: Parameters) -> int:
         """The answer on the 1 to 7 scale, with a standard normal ``noise``."""
         span = rules.TRUST_MAX - rules.TRUST_MIN
-        said = math.floor(rules.TRUST_MIN + span * self.mean + traits.sd_report * noise + 0.5)
-        return min(rules.TRUST_MAX, max(rules.TRUST_MIN, said))
+        rating = math.floor(rules.TRUST_MIN + span * self.mean + traits.sd_report * noise + 0.5)
+        return min(rules.TRUST_MAX, max(rules.TRUST_MIN, rating))
 
 
-def initial(traits: Parameters) -> Trust:
+def initial_trust(traits: Parameters) -> Trust:
     """Trust before the first trial."""
     return Trust(alpha=traits.mu0 * traits.n0, beta=(1.0 - traits.mu0) * traits.n0)
 
 
 class Experience(Struct, kw_only=True):
-    """What the robots did for the person in one trial, as the person saw it.
+    """What the robots did for the participant in one trial.
 
-    ``helped`` [s] is when the first confirmed message that did not mislead had come; None without one.
+    ``helped`` [s] is when the first confirmed message that did not mislead was answered; None without one.
     """
 
     offered: bool = False
@@ -55,9 +58,9 @@ class Experience(Struct, kw_only=True):
     misled: bool = False
 
     def signal(self, met: bool, traits: Parameters) -> float:
-        """Worth of the robots in this trial, 0 to 1: the judgement follows the outcome, whoever caused it."""
+        """Worth of the robots in this trial, 0 to 1; ``met`` is whether the trial was successful."""
         if self.helped is not None:
-            worth = 0.5 + 0.5 * math.exp(-self.helped / traits.tau_s)
+            worth = LATE_HELP + (1.0 - LATE_HELP) * math.exp(-self.helped / traits.tau_s)
         elif self.misled:
             worth = 0.0
         else:

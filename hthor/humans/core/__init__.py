@@ -1,1 +1,1 @@
-"""What every part of a human model shares: the trial's context, jobs, the behaviour log."""
+"""What every part of a human model shares. Begin with `trial_context.HumanContext`."""

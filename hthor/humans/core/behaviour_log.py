@@ -1,25 +1,22 @@
-"""What a headset's recorder holds of a trial besides the paths: stick, pitch, attempts, glimpses.
+"""The journal of a trial: what a headset's recorder holds besides the paths.
 
-The umpire's log has what the system sees: where everybody is (x, y and yaw at 5 Hz), the life of every message, what
-was picked, placed and opened, the rating. A recorder on the person's side holds the rest, as events of these kinds:
+The trial's log has what the system sees: poses (x, y and yaw at 5 Hz), messages, picks and places, the rating. The
+journal adds what a recorder at the participant's side sees, as events of these kinds:
 
-==========
-============================================================================================================ stick
-``full`` [m/s], the speed of the stick pushed all the way; ``runs``, flat pairs of a tick and the deflection from
-that tick on, in thousandths of ``full``. Written once a trial; the direction stands in the path. head ``pitch``,
-flat pairs of a tick and the head's pitch [mrad] from that tick on, up positive, looked at when the path is;
-``fastest`` [rad/s], what the body turns at most. Written once a trial. attempt ``what`` was tried ("pick", "place",
-"open", "close", "drop"), under the tick at which that began; the ``seconds`` that it took and whether it was
-``ok``; ``why`` not, where it was not: "missed" when the hand closed on nothing, else the world's words; ``at`` [m],
-where on the furniture, of a "place". What was given up or cut off by the end has neither. exposure what of the
-object wanted came into view, and whether it was noticed: see `hthor.humans.perception.exposure_log`. choice what
-could be searched next, and what was: see `hthor.humans.search.option_choice`. offer a message that was read, what
-spoke for and against it, and the answer: see `hthor.humans.models._dialogue`. misled the person left the place to
-which a confirmed message had led, without what it was about. ==========
-============================================================================================================
+- ``stick``, once a trial: ``full`` [m/s], the speed of the stick pushed all the way, and ``runs``, flat pairs of a tick
+  and the deflection from then on, in thousandths of ``full``. The direction is in the path.
+- ``head``, once a trial: ``pitch``, flat pairs of a tick and the pitch [mrad] from then on, up positive; ``fastest``
+  [rad/s], the body's limit of turning.
+- ``attempt``, under the tick at which it began: ``what`` was tried ("pick", "place", "open", "close", "drop"), the
+  ``seconds`` that it took, whether it was ``ok`` and ``why`` not ("missed" when the hand closed on nothing, else the
+  world's reason); ``at`` [m], where on the furniture, for a "place". An attempt cut off by the end of the trial has
+  neither ``seconds`` nor ``ok``.
+- ``exposure``: glimpses at an object that is wanted, see `hthor.humans.perception.exposure_log`.
+- ``choice``: what could be searched next, and what was, see `hthor.humans.search.option_description`.
+- ``offer``: a message that was read, and the answer, see `hthor.humans.models._dialogue`.
+- ``misled``: the place named by a confirmed message was left without success.
 
-Stick and head are recorded by the umpire for every human model, attempts by the hands; the others are worked out
-from what was in view, on the way and on the panel, and a human model that has no such notions leaves them out.
+The episode records stick and head for every human model; the rest is written by models that have such notions.
 """
 
 from __future__ import annotations
@@ -32,15 +29,17 @@ import msgspec
 from hthor.types import HUMAN, BodySpec, Event, Motion, Move
 
 _THOUSAND = 1000
+"""[count] Steps of the stick's deflection, and of the pitch's radian. Our choice: finer than a person can hold them."""
 _DONE = {"pick": "picked", "place": "placed", "open": "opened", "close": "closed", "drop": "dropped"}
-"""The event that the umpire writes when an attempt worked."""
+"""The event of the trial's log for each attempt that succeeds."""
 
 
-class Recorder:
+class BehaviourRecorder:
     """Stick and pitch of one trial, as run lengths.
 
     Args:
-        body: the person's, which says what the stick pushed all the way is. tick_s: length of a tick [s].
+        body: the participant's; its speed is that of the stick pushed all the way.
+        tick_s: length of a tick [s].
     """
 
     def __init__(self, body: BodySpec, tick_s: float) -> None:
@@ -49,7 +48,7 @@ class Recorder:
         self._pitch: list[int] = []
 
     def motion(self, tick: int, motion: Motion) -> None:
-        """The person begins a motion at ``tick``."""
+        """The participant begins a motion at ``tick``."""
         deflection = 0
         if isinstance(motion, Move):
             share = math.hypot(motion.forward, motion.left) / self._step
@@ -68,19 +67,19 @@ class Recorder:
         """The whole journal of a trial.
 
         Args:
-            own: what the human model wrote. events: the umpire's, which tell of attempts that worked while nobody was
-                there any more to write it down.
+            own: what the human model recorded.
+            events: the trial's log; it has the successes of attempts that the end of the trial cut off.
         """
         stick = Event(tick=0, seat=HUMAN, kind="stick", data={"full": self.body.speed, "runs": self._stick})
         pitch = {"fastest": self.body.turn_rate, "pitch": self._pitch}
         done = [event for event in events if event.seat == HUMAN and event.kind in _DONE.values()]
         written = list(own)
         tried = [event.tick for event in written if event.kind == "attempt"]
-        ended = (self._ended(event, done, tried) if _is_open(event) else event for event in written)
+        ended = (self._completed(event, done, tried) if _is_open(event) else event for event in written)
         return (stick, Event(tick=0, seat=HUMAN, kind="head", data=pitch), *ended)
 
-    def _ended(self, attempt: Event, done: Sequence[Event], tried: Sequence[int]) -> Event:
-        """An attempt with the end that came of it, if one did before the next was ``tried``."""
+    def _completed(self, attempt: Event, done: Sequence[Event], tried: Sequence[int]) -> Event:
+        """The attempt with its success, if it succeeded before the next was ``tried``."""
         last = min((tick for tick in tried if tick > attempt.tick), default=math.inf)
         kind = _DONE.get(attempt.data["what"])
         ends = (event.tick for event in done if event.kind == kind and attempt.tick <= event.tick <= last)

@@ -1,7 +1,7 @@
-"""The seam where something else decides in a person's place: which option, what answer.
+"""The interface through which something else decides in a participant's place: which option to take, what to answer.
 
-The person's eyes, memory, legs and hands go on as they are. A language model, a policy cloned from logs or a rule of
-thumb only chooses among options that are described to it, and answers messages.
+Eyes, memory, legs and hands stay the proxy's. A language model, a policy learnt from logs or a rule of thumb chooses
+among options that are described to it, and answers messages.
 """
 
 from __future__ import annotations
@@ -13,21 +13,21 @@ from msgspec import Struct
 Answer = Literal["confirm", "decline", "ignore"]
 
 
-class Choice(Struct, frozen=True, kw_only=True):
-    """One thing that a person could do next while they look for something.
+class OptionDescription(Struct, frozen=True, kw_only=True):
+    """One thing that a participant could do next while searching.
 
     Attributes:
         name: unique in its situation, such as "Bed|1" or "door Door|2".
-        text: what a person would call it, such as "search the bed, 3 m away".
+        text: in words, such as "search the bed, 3 m away".
         verb: "search" a place or "pass" a doorway.
         kind: the kind of furniture, empty for a doorway.
-        knowledge: share of common knowledge that the thing is at this very place, before anything was searched, 0 to 1;
-            of a doorway what is left for everything behind doorways, in equal parts.
-        uniform: the same share for somebody who knows nothing about where such things are.
-        metres: way to walk [m]. seconds: what going there and searching it takes this person [s].
-        exposure: how thoroughly it was searched already, faded.
+        knowledge: probability by common knowledge alone that the object is at this place, before any search, 0 to 1;
+            for a doorway, an equal part of what remains for everything behind doorways.
+        uniform: the same for somebody without common knowledge.
+        metres: walking distance [m]. seconds: time to go there and search it [s].
+        exposure: how thoroughly it was searched already, after forgetting.
         closed: whether it must be opened first.
-        value: what the person's own law makes of it, larger is better.
+        value: what the proxy's own law makes of it; larger is better.
     """
 
     name: str
@@ -44,10 +44,16 @@ class Choice(Struct, frozen=True, kw_only=True):
 
 
 class Situation(Struct, frozen=True, kw_only=True):
-    """What a person knows when they choose: what they are told to do, what for they search, and for how long.
+    """What a participant knows when choosing where to search next.
 
-    ``number`` counts the choices of a trial; ``aim`` is "target" or "destination"; ``left`` [s] is the time that is
-    left; ``room`` the room's name; ``holding`` what is in hand; ``options`` are never empty.
+    Attributes:
+        instruction: the task in words.
+        aim: what is searched for, "target" or "destination".
+        number: counts the choices of a trial, from 0.
+        left: time that is left [s].
+        room: name of the current room.
+        holding: id of the object in hand, empty for none.
+        options: never empty.
     """
 
     instruction: str
@@ -56,15 +62,21 @@ class Situation(Struct, frozen=True, kw_only=True):
     left: float
     room: str
     holding: str
-    options: tuple[Choice, ...]
+    options: tuple[OptionDescription, ...]
 
 
 class Offer(Struct, frozen=True, kw_only=True):
-    """A message as the person who has read it sees it.
+    """A message as the participant who has read it sees it.
 
-    ``trust`` is mean trust, 0 to 1; ``useful`` whether it could still help; ``gain`` [s] the time that following it is
-    expected to save, never negative; ``load`` the work in hand, 0 to 1; ``again`` how often the same was refused;
-    ``metres`` the way to the place that it names, None when it names none; ``instruction`` what the person has to do.
+    Attributes:
+        number: counts the messages read in a trial, from 1.
+        trust: mean trust, 0 to 1.
+        useful: whether it could still help.
+        gain: time that following it is expected to save [s], never negative.
+        load: work in hand, 0 to 1.
+        again: how often the same offer was refused before.
+        metres: walking distance to the place that it names [m], None when it names none.
+        instruction: the task in words.
     """
 
     text: str
@@ -81,12 +93,12 @@ class Offer(Struct, frozen=True, kw_only=True):
 
 
 class Policy(Protocol):
-    """Decides in a person's place."""
+    """Decides in a participant's place."""
 
     def choose(self, situation: Situation) -> int:
-        """Index of the option to take."""
+        """Index in ``situation.options`` of the option to take."""
         ...
 
     def answer(self, offer: Offer) -> Answer:
-        """What to say to a message that was read."""
+        """The answer to a message that was read."""
         ...

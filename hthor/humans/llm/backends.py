@@ -15,7 +15,7 @@ from msgspec import Struct
 from hthor import documents
 from hthor.errors import HthorError
 from hthor.humans.llm import policy
-from hthor.humans.population.participant import Person
+from hthor.humans.population.participant import Participant
 
 STUB = "stub"
 """The word for a rule in place of a model."""
@@ -45,7 +45,7 @@ def settings() -> Settings:
     return Settings(**{field: os.environ[name] for field, name in given.items() if os.environ.get(name)})
 
 
-def named(chosen: Settings) -> str:
+def model_name(chosen: Settings) -> str:
     """The model's name.
 
     Raises:
@@ -60,17 +60,19 @@ def named(chosen: Settings) -> str:
     return chosen.name
 
 
-def speaker(person: Person, chosen: Settings) -> policy.Speaker:
+def make_policy(person: Participant, chosen: Settings) -> policy.LanguageModelPolicy:
     """A language model in this person's place.
 
     Raises:
         HthorError: when the settings name no model.
     """
-    backend = stub if chosen.url == STUB else Endpoint(chosen, policy.temperature(person), policy.seed(person))
-    return policy.Speaker(person, backend, Path(chosen.cache), named(chosen))
+    backend = (
+        answer_by_rule if chosen.url == STUB else Endpoint(chosen, policy.temperature(person), policy.seed(person))
+    )
+    return policy.LanguageModelPolicy(person, backend, Path(chosen.cache), model_name(chosen))
 
 
-def stub(question: str) -> str:
+def answer_by_rule(question: str) -> str:
     """A rule in place of a model: the option that is called nearest, and yes to what promises to save time."""
     options = re.findall(r"^(\d+)\. (.*)$", question, re.MULTILINE)
     if not options:
@@ -112,7 +114,7 @@ class Endpoint:
             "messages": [{"role": "user", "content": question}],
             "temperature": self._temperature,
             "seed": self._seed,
-            "max_tokens": policy.TOKENS,
+            "max_tokens": policy.MAX_TOKENS,
         }
         headers = {"Content-Type": "application/json"}
         if self._chosen.key:

@@ -15,10 +15,10 @@ from typing import TypeVar
 
 from hthor.humans.core.policy import Answer, Offer, Situation
 from hthor.humans.llm import prompts
-from hthor.humans.llm.response_cache import Answers
-from hthor.humans.population.participant import Person
+from hthor.humans.llm.response_cache import ResponseCache
+from hthor.humans.population.participant import Participant
 
-TOKENS = 16
+MAX_TOKENS = 16
 """Most tokens of an answer."""
 _CHARACTERS = 200
 _SEED_BITS = 31
@@ -29,7 +29,7 @@ Backend = Callable[[str], str]
 """Takes a question, gives an answer."""
 
 
-class Speaker:
+class LanguageModelPolicy:
     """A person whose choices and answers a language model gives: a `hthor.humans.core.policy.Policy`.
 
     Args:
@@ -39,21 +39,23 @@ class Speaker:
         model: the model's name, for the cache.
     """
 
-    def __init__(self, person: Person, backend: Backend, cache: Path, model: str) -> None:
+    def __init__(self, person: Participant, backend: Backend, cache: Path, model: str) -> None:
         self._who, self._backend = prompts.persona(person.traits), backend
-        self._answers = Answers(cache, model=model, temperature=temperature(person), seed=seed(person), tokens=TOKENS)
+        self._answers = ResponseCache(
+            cache, model=model, temperature=temperature(person), seed=seed(person), tokens=MAX_TOKENS
+        )
         self.questions = self.fallbacks = 0
 
     def choose(self, situation: Situation) -> int:
         """The option that the model names, else the nearest."""
-        question = prompts.choice(self._who, situation)
+        question = prompts.choice_question(self._who, situation)
         found = self._ask(question, lambda reply: prompts.read_choice(reply, situation))
         options = situation.options
         return min(range(len(options)), key=lambda k: (options[k].metres, k)) if found is None else found
 
     def answer(self, offer: Offer) -> Answer:
         """What the model says, else nothing."""
-        found: Answer | None = self._ask(prompts.offer(self._who, offer), prompts.read_answer)
+        found: Answer | None = self._ask(prompts.offer_question(self._who, offer), prompts.read_answer)
         return found or "ignore"
 
     def _ask(self, question: str, read: Callable[[str], _T | None]) -> _T | None:
@@ -61,17 +63,19 @@ class Speaker:
         reply = self._answers.of(question, self._backend, _CHARACTERS)
         found = read(reply)
         if found is None:
-            reply = self._answers.of(prompts.again(question, reply, _CHARACTERS), self._backend, _CHARACTERS)
+            reply = self._answers.of(
+                prompts.repeated_question(question, reply, _CHARACTERS), self._backend, _CHARACTERS
+            )
             found = read(reply)
         self.fallbacks += found is None
         return found
 
 
-def temperature(person: Person) -> float:
+def temperature(person: Participant) -> float:
     """How much chance is in the model's answers: the inverse of the Luce exponent, which is a softmax's temperature."""
     return round(min(_HOTTEST, max(_COOLEST, 1.0 / person.traits.beta)), 1)
 
 
-def seed(person: Person) -> int:
+def seed(person: Participant) -> int:
     """The person's own seed for the model, so that two people who are asked the same may answer otherwise."""
     return person.root % (1 << _SEED_BITS)

@@ -8,7 +8,7 @@ import re
 from hthor.humans.core.policy import Answer, Offer, Situation
 from hthor.humans.population.parameters import Parameters
 
-MOST_OPTIONS = 24
+MAX_OPTIONS = 24
 """So many options are listed, the nearest."""
 _TEXT_MAX = 400
 """Characters of an instruction or a message that are quoted."""
@@ -29,16 +29,16 @@ def persona(traits: Parameters) -> str:
     return f"You walk {walk} and decide {plan}. At first you {trust} robots. You are {help_} to take up offers of help."
 
 
-def listed(situation: Situation) -> list[int]:
-    """Indices of the options that are put to the model: at most `MOST_OPTIONS`, the nearest, in their own order."""
+def listed_options(situation: Situation) -> list[int]:
+    """Indices of the options that are put to the model: at most `MAX_OPTIONS`, the nearest, in their own order."""
     options = situation.options
-    nearest = sorted(range(len(options)), key=lambda k: (options[k].metres, k))[:MOST_OPTIONS]
+    nearest = sorted(range(len(options)), key=lambda k: (options[k].metres, k))[:MAX_OPTIONS]
     return sorted(nearest)
 
 
-def choice(who: str, situation: Situation) -> str:
+def choice_question(who: str, situation: Situation) -> str:
     """The question what to do next; its answer is a number from 1."""
-    options = [f"{n}. {situation.options[k].text}" for n, k in enumerate(listed(situation), 1)]
+    options = [f"{n}. {situation.options[k].text}" for n, k in enumerate(listed_options(situation), 1)]
     looked_for = (
         "You do not know yet where the thing is that you need."
         if situation.aim == "target"
@@ -58,7 +58,7 @@ def choice(who: str, situation: Situation) -> str:
     )
 
 
-def offer(who: str, message: Offer) -> str:
+def offer_question(who: str, message: Offer) -> str:
     """The question what to say to a message; its answer is one of three words."""
     there = "" if message.metres is None else f" The place that it names is {message.metres:.0f} m of walking from you."
     use = (
@@ -87,10 +87,10 @@ _ONE_WORD = "Answer with one of the words confirm, decline, ignore and nothing e
 
 
 def _rule(situation: Situation) -> str:
-    return f"Answer with one number from 1 to {len(listed(situation))} and nothing else."
+    return f"Answer with one number from 1 to {len(listed_options(situation))} and nothing else."
 
 
-def again(question: str, reply: str, limit: int) -> str:
+def repeated_question(question: str, reply: str, limit: int) -> str:
     """The same question once more, after an answer that could not be read."""
     rule = question.rsplit("\n", 1)[-1]
     return f"{question}\n\nYou answered: {json.dumps(reply[:limit], ensure_ascii=False)}. That cannot be read. {rule}"
@@ -99,7 +99,7 @@ def again(question: str, reply: str, limit: int) -> str:
 def read_choice(reply: str, situation: Situation) -> int | None:
     """The index of the option that an answer names; None for anything but one number that is listed."""
     match = re.fullmatch(r"[\s\"'*(]*(?:option\s+)?(\d{1,3})[\s\"'*).:]*", reply, re.IGNORECASE)
-    shown = listed(situation)
+    shown = listed_options(situation)
     number = int(match[1]) if match else 0
     return shown[number - 1] if 1 <= number <= len(shown) else None
 

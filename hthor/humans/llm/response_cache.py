@@ -17,7 +17,7 @@ from msgspec import Struct
 from hthor import documents, jsonio
 
 
-class Asked(Struct, frozen=True, kw_only=True):
+class CachedResponse(Struct, frozen=True, kw_only=True):
     """One answer: ``key`` hashes everything that it depends on."""
 
     key: str
@@ -29,10 +29,10 @@ class Asked(Struct, frozen=True, kw_only=True):
     answer: str
 
 
-_decoder = msgspec.json.Decoder(Asked)
+_decoder = msgspec.json.Decoder(CachedResponse)
 
 
-class Answers:
+class ResponseCache:
     """The answers of one model to one person.
 
     Args:
@@ -68,7 +68,7 @@ class Answers:
             if key not in self._known:
                 end = os.fstat(handle).st_size
                 torn = end > 0 and os.pread(handle, 1, end - 1) != b"\n"
-                line = msgspec.json.encode(Asked(key=key, prompt=prompt, answer=answer, **self._about))  # type: ignore[arg-type]
+                line = msgspec.json.encode(CachedResponse(key=key, prompt=prompt, answer=answer, **self._about))  # type: ignore[arg-type]
                 os.write(handle, (b"\n" if torn else b"") + line + b"\n")
                 self._catch_up()
         finally:

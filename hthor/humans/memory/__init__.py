@@ -1,1 +1,1 @@
-"""What a person remembers of places and objects, and what is left to do."""
+"""What a participant keeps in mind during a trial. Begin with `spatial_memory` and `subgoals`."""

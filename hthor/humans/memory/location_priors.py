@@ -1,9 +1,8 @@
-"""Where a person expects the target: common knowledge mixed with not knowing.
+"""Where a participant expects an object: common knowledge mixed with ignorance.
 
-Common knowledge are the scene priors of `hthor.catalog.priors`; not knowing is the same belief in every kind of
-furniture. Searchers weigh the two against each other, and what they found out since against both ("Why are the
-batteries in the microwave?", Cognitive Research 2021): what was searched in vain loses belief by its exposure, see
-`hthor.humans.search.option_choice`.
+Common knowledge are the scene priors of `hthor.catalog.priors`; ignorance is the same belief in every kind of
+furniture. People weigh the two, and fresh evidence against both ("Why are the batteries in the microwave?", Cognitive
+Research 2021): a place searched in vain loses belief by its exposure, see `hthor.humans.search.option_choice`.
 """
 
 from __future__ import annotations
@@ -15,19 +14,19 @@ from hthor.catalog import priors
 
 
 @cache
-def holders() -> tuple[str, ...]:
-    """Kinds of furniture that things are put on or in, in the catalogue's order: what people search, no crockery."""
+def receptacle_kinds() -> tuple[str, ...]:
+    """Kinds of furniture that things are put on or in, in the catalogue's order; no crockery."""
     return tuple(name for name in catalog.names() if catalog.kind(name).rests() and not catalog.kind(name).pickable)
 
 
 @cache
-def supports(target: str) -> dict[str, float]:
-    """Share of common knowledge on each of `holders`; adds up to 1, uniform for an unknown target.
+def prior_shares(target: str) -> dict[str, float]:
+    """Common knowledge: the probability of each of `receptacle_kinds`; adds up to 1, uniform for an unknown target.
 
     A target *near* another object is where that object would be, or at the furniture it is near to; references that
     are neither are left out.
     """
-    mass = dict.fromkeys(holders(), 0.0)
+    mass = dict.fromkeys(receptacle_kinds(), 0.0)
     for (relation, reference), weight in _weights(target).items():
         if reference in mass:
             mass[reference] += weight
@@ -38,9 +37,9 @@ def supports(target: str) -> dict[str, float]:
     return {kind: share / total if total > 0.0 else 1.0 / len(mass) for kind, share in mass.items()}
 
 
-def expectation(target: str, w_prior: float) -> dict[str, float]:
-    """Belief in each kind of furniture: ``w_prior`` of `supports`, the rest uniform; adds up to 1."""
-    known = supports(target)
+def location_belief(target: str, w_prior: float) -> dict[str, float]:
+    """Belief in each kind of furniture: ``w_prior`` of `prior_shares`, the rest uniform; adds up to 1."""
+    known = prior_shares(target)
     return {kind: w_prior * share + (1.0 - w_prior) / len(known) for kind, share in known.items()}
 
 
@@ -49,7 +48,7 @@ def _weights(target: str) -> dict[tuple[str, str], float]:
 
 
 def _direct(target: str) -> dict[str, float]:
-    """Share of each kind of furniture among those that a target lies on or in; empty for what is no target."""
-    found = {ref: weight for (_, ref), weight in _weights(target).items() if ref in holders()}
-    total = sum(found.values())
-    return {ref: weight / total for ref, weight in found.items()}
+    """Shares of the furniture that a target lies on or in; empty for what is no target."""
+    weights = {ref: weight for (_, ref), weight in _weights(target).items() if ref in receptacle_kinds()}
+    total = sum(weights.values())
+    return {ref: weight / total for ref, weight in weights.items()}

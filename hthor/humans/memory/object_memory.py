@@ -1,4 +1,4 @@
-"""What a person knows of the objects that matter: where each was noticed last."""
+"""What a participant knows of the objects of the task: where each was noticed last."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from msgspec import Struct
 from hthor.types import HUMAN, Detection, Vec2
 
 _MOVED_M = 0.02
+"""[m] An object seen this far from where it was has been moved. Our choice."""
 
 
-class Known(Struct, kw_only=True):
+class KnownObject(Struct, kw_only=True):
     """One object: ``seen`` is how it was noticed last, at tick ``at`` and from ``spot`` [m]; None while not known.
 
-    ``views`` counts how often it came into view, ``lost`` how often it was not where it had been seen, or that was
-    forgotten.
+    ``views`` counts how often it came into view, ``lost`` how often it was forgotten or not where it had been seen.
     """
 
     id: str
@@ -33,29 +33,29 @@ class Known(Struct, kw_only=True):
 
     @property
     def lies(self) -> Detection | None:
-        """The object as it lies about, None when it is not known to."""
+        """The object as last seen, None when it is not known or a robot has it."""
         return None if self.taken else self.seen
 
 
-class Things:
-    """All objects that matter. ``news`` grows whenever something about one of them turns out to be otherwise."""
+class ObjectMemory:
+    """All objects of the task. ``changes`` counts how often the knowledge of one of them changed."""
 
     def __init__(self, ids: Iterable[str]) -> None:
-        self.known = {id: Known(id=id) for id in ids}
-        self.news = 0
+        self.known = {id: KnownObject(id=id) for id in ids}
+        self.changes = 0
 
-    def see(self, known: Known, seen: Detection, tick: int, spot: Vec2) -> None:
+    def see(self, known: KnownObject, seen: Detection, tick: int, spot: Vec2) -> None:
         """An object that is known, or was noticed just now, is in view."""
         before = known.seen
         if before is not seen and (before is None or _differs(before, seen)):
-            self.news += 1
+            self.changes += 1
         known.seen, known.at, known.spot = seen, tick, spot
 
-    def lose(self, known: Known) -> None:
-        """The object is not where it was, or that is forgotten; it must be noticed anew."""
+    def lose(self, known: KnownObject) -> None:
+        """The object is forgotten, or not where it was; it must be noticed again."""
         known.lost += 1
         known.seen = None
-        self.news += 1
+        self.changes += 1
 
 
 def _differs(a: Detection, b: Detection) -> bool:

@@ -1,4 +1,4 @@
-"""What a person keeps in mind during one trial: furniture, doorways, rooms."""
+"""What a participant remembers of the house during one trial: furniture, doorways, rooms."""
 
 from __future__ import annotations
 
@@ -8,18 +8,21 @@ from functools import cache
 from msgspec import Struct
 
 from hthor import catalog
-from hthor.geometry.plane import distance_to_rectangle, to_local, turn
+from hthor.geometry.plane import distance_to_rectangle, turn
 from hthor.types import Detection, Vec2, Vec3
 
 _BEYOND_M = 0.6
+"""[m] How far behind a doorway the spot lies that people walk to when they go through. Our choice."""
+_TOUCH_M = 0.1
+"""[m] A point this close to furniture's outline counts as on it. Our choice."""
 
 
-class Place(Struct, kw_only=True):
+class KnownPlace(Struct, kw_only=True):
     """A piece of furniture as last seen, and how well it was searched.
 
-    ``exposure`` is the rate of noticing gathered there, as it stood at tick ``since``; it fades. ``at`` is the tick at
-    which it was in view last, after coming into view for the time number ``views``. ``recalled`` says whether the
-    person could still tell where it is, ``lost`` how often they could not.
+    ``exposure`` is the detection rate added up there, as it stood at tick ``since``; it fades. ``at`` is the last tick
+    in view, ``views`` how often it came into view. ``recalled`` says whether its position is remembered, ``lost`` how
+    often it was forgotten.
     """
 
     id: str
@@ -35,19 +38,19 @@ class Place(Struct, kw_only=True):
     recalled: bool = True
     lost: int = 0
 
-    def covers(self, point: Vec3, margin: float = 0.1) -> bool:
-        """Whether a point lies on or in it, seen from above."""
-        return self.apart((point[0], point[1])) <= margin
+    def covers(self, point: Vec3) -> bool:
+        """Whether a point [m] lies on or in it, seen from above."""
+        return self.distance((point[0], point[1])) <= _TOUCH_M
 
-    def apart(self, point: Vec2) -> float:
-        """Distance [m] from a point to its outline, zero inside."""
+    def distance(self, point: Vec2) -> float:
+        """From a point to its outline [m], zero inside."""
         return distance_to_rectangle(point, (self.centre[0], self.centre[1]), (self.size[0], self.size[1]), self.yaw)
 
 
-class Doorway(Struct, kw_only=True):
+class KnownDoorway(Struct, kw_only=True):
     """A doorway as seen: ``across`` is the direction through it, ``width`` [m] its opening.
 
-    ``sides`` are the rooms from which it was seen with nothing between; two of them, and it leads nowhere new.
+    ``sides`` are the rooms from which it was seen with nothing between; with two of them, it leads nowhere new.
     ``beyond`` [m] is a spot just behind it as seen from the first of them.
     """
 
@@ -61,11 +64,11 @@ class Doorway(Struct, kw_only=True):
     failures: int = 0
 
     @property
-    def spent(self) -> bool:
+    def explored(self) -> bool:
         """Whether both its sides are known."""
         return self.passed or len(self.sides) > 1
 
-    def crossed(self, a: Vec2, b: Vec2) -> bool:
+    def is_crossed(self, a: Vec2, b: Vec2) -> bool:
         """Whether the segment from ``a`` to ``b`` [m] goes through the opening."""
         ax, ay = a[0] - self.centre[0], a[1] - self.centre[1]
         bx, by = b[0] - self.centre[0], b[1] - self.centre[1]
@@ -77,27 +80,27 @@ class Doorway(Struct, kw_only=True):
         return abs(x * self.across[1] - y * self.across[0]) <= self.width / 2.0
 
 
-class Memory:
+class SpatialMemory:
     """The house as far as it was seen in this trial. ``tau`` [ticks] is the time constant of forgetting searches.
 
-    ``entered`` is where each room was entered for the first time [m], ``heading`` the id of the furniture that the
-    person is bringing something to, empty at first.
+    ``entered`` is where each room was entered first [m], ``heading`` the id of the furniture that the participant is
+    bringing something to, empty at first.
     """
 
     def __init__(self, tau: float) -> None:
         self.tau = tau
-        self.places: dict[str, Place] = {}
-        self.doorways: dict[str, Doorway] = {}
+        self.places: dict[str, KnownPlace] = {}
+        self.doorways: dict[str, KnownDoorway] = {}
         self.entered: dict[str, Vec2] = {}
         self.heading = ""
         self._here: Vec2 | None = None
-        self._at: dict[tuple[Vec3, float], tuple[int, Place | None]] = {}
+        self._at: dict[Vec3, tuple[int, KnownPlace | None]] = {}
 
     def visit(self, here: Vec2, room: str) -> bool:
-        """The person is at ``here`` [m] in ``room``; returns whether they have never been in this room."""
+        """Note the position ``here`` [m] in ``room``; returns whether the room is entered for the first time."""
         if self._here is not None and self._here != here:
             for doorway in self.doorways.values():
-                if not doorway.passed and doorway.crossed(self._here, here):
+                if not doorway.passed and doorway.is_crossed(self._here, here):
                     doorway.passed = True
         self._here = here
         if room in self.entered:
@@ -105,18 +108,18 @@ class Memory:
         self.entered[room] = here
         return True
 
-    def keep_place(self, seen: Detection) -> Place:
-        """Remember furniture, or bring it up to date."""
+    def keep_place(self, seen: Detection) -> KnownPlace:
+        """Remember furniture, or update it."""
         place = self.places.get(seen.id)
         if place is None:
-            place = Place(id=seen.id, kind=seen.kind, centre=seen.position, size=seen.size, yaw=seen.yaw)
+            place = KnownPlace(id=seen.id, kind=seen.kind, centre=seen.position, size=seen.size, yaw=seen.yaw)
             self.places[seen.id] = place
         place.recalled = True
         place.state = seen.state if seen.state and _hides(seen.kind) else ""  # a drawer is not worth opening
         return place
 
-    def lose(self, place: Place) -> None:
-        """The person could not tell any more where this place is. Coming across it they would search it as before."""
+    def lose(self, place: KnownPlace) -> None:
+        """Forget where a place is; searches of it are kept for when it is seen again."""
         place.recalled, place.lost = False, place.lost + 1
 
     def keep_doorway(self, seen: Detection, here: Vec2, room: str) -> None:
@@ -125,56 +128,54 @@ class Memory:
         if doorway is None:
             doorway = _doorway(seen)
             self.doorways[seen.id] = doorway
-        if doorway.spent or room in doorway.sides or self._behind_another(doorway, here):
+        if doorway.explored or room in doorway.sides or self._is_behind_another(doorway, here):
             return
         if not doorway.sides:
             doorway.beyond = _beyond(doorway, here)
         doorway.sides.append(room)
 
-    def _behind_another(self, doorway: Doorway, here: Vec2) -> bool:
-        others = (other for other in self.doorways.values() if other.id != doorway.id)
-        return any(other.crossed(here, doorway.centre) for other in others)
+    def unexplored_doorways(self) -> list[KnownDoorway]:
+        """Doorways that may lead to a room not seen yet."""
+        return [door for door in self.doorways.values() if door.sides and not door.explored]
 
-    def exposure(self, place: Place, tick: int) -> float:
+    def _is_behind_another(self, doorway: KnownDoorway, here: Vec2) -> bool:
+        others = (other for other in self.doorways.values() if other.id != doorway.id)
+        return any(other.is_crossed(here, doorway.centre) for other in others)
+
+    def exposure(self, place: KnownPlace, tick: int) -> float:
         """How well the place was searched, faded until ``tick``."""
         return place.exposure * math.exp((place.since - tick) / self.tau)
 
-    def expose(self, place: Place, amount: float, tick: int) -> None:
-        """The place was looked at."""
+    def expose(self, place: KnownPlace, amount: float, tick: int) -> None:
+        """Add to the exposure of a place that is looked at."""
         place.exposure = place.exposure * math.exp((place.since - tick) / self.tau) + amount
         place.since = tick
 
-    def at(self, point: Vec3, margin: float = 0.1) -> Place | None:
-        """The place that a point lies on or in, the nearest when several would do."""
-        known, place = self._at.get((point, margin), (0, None))
-        if known != len(self.places):  # places are never forgotten, and furniture does not walk
-            near = [place for place in self.places.values() if place.covers(point, margin)]
-            place = min(near, key=lambda place: (place.apart((point[0], point[1])), place.id), default=None)
-            self._at[point, margin] = len(self.places), place
+    def at(self, point: Vec3) -> KnownPlace | None:
+        """The place that a point [m] lies on or in, the nearest of several."""
+        count, place = self._at.get(point, (0, None))
+        if count != len(self.places):  # places are never removed, and furniture does not move
+            near = [place for place in self.places.values() if place.covers(point)]
+            place = min(near, key=lambda place: (place.distance((point[0], point[1])), place.id), default=None)
+            self._at[point] = len(self.places), place
         return place
 
 
 @cache
 def _hides(kind: str) -> bool:
-    """Whether a thing of this kind hides something while it is closed."""
+    """Whether furniture of this kind hides something while it is closed."""
     return catalog.kind(kind).hides
 
 
-def is_in_front(place: Place, point: Vec2) -> bool:
-    """Whether a point lies before the front of a place (local +y)."""
-    _, y, _ = to_local((point[0], point[1], 0.0), place.centre, place.yaw)
-    return y > place.size[1] / 2.0
-
-
-def _doorway(seen: Detection) -> Doorway:
-    """Its opening runs along the longer side of what was seen."""
+def _doorway(seen: Detection) -> KnownDoorway:
+    """A doorway by its detection; the opening runs along the longer side."""
     wide = seen.size[0] >= seen.size[1]
     across = turn((0.0, 1.0) if wide else (1.0, 0.0), seen.yaw)
     centre = (seen.position[0], seen.position[1])
-    return Doorway(id=seen.id, centre=centre, across=across, width=max(seen.size[0], seen.size[1]))
+    return KnownDoorway(id=seen.id, centre=centre, across=across, width=max(seen.size[0], seen.size[1]))
 
 
-def _beyond(doorway: Doorway, here: Vec2) -> Vec2:
+def _beyond(doorway: KnownDoorway, here: Vec2) -> Vec2:
     """The spot behind the doorway as seen from ``here``."""
     (cx, cy), (nx, ny) = doorway.centre, doorway.across
     side = (here[0] - cx) * nx + (here[1] - cy) * ny

@@ -1,4 +1,4 @@
-"""What there is to do, and what of it is done as far as the person knows."""
+"""What there is to do in a trial, and what of it is done as far as the participant knows."""
 
 from __future__ import annotations
 
@@ -8,28 +8,29 @@ from typing import Literal
 
 from msgspec import Struct
 
-from hthor.humans.core.trial_context import Subject
-from hthor.humans.memory.object_memory import Known
-from hthor.humans.memory.spatial_memory import Memory, Place
-from hthor.types import Briefing, Job, Vec3
+from hthor.humans.core.trial_context import HumanContext
+from hthor.humans.memory.object_memory import KnownObject
+from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
+from hthor.types import Job, Vec3
 
-_HOME_M, _TOGETHER_M = 0.2, 0.6
-"""How near to where it belongs, as people remember it, they leave an object, and one that several carry."""
-_RELATIONS: tuple[Literal["find", "on", "in", "at"], ...] = ("find", "on", "in", "at")
-_ENOUGH = 2
-"""So often people put an object down where it belongs before they leave it where it came to lie."""
+_SPOT_M = 0.2
+"""[m] An object this near to its remembered spot is in its place. Our choice: over three times tour_sd."""
+_JOINT_SPOT_M = 0.6
+"""[m] The same for an object that several carry. Our choice: two who carry put down less exactly."""
+_ENOUGH_TRIES = 2
+"""[count] After so many times of putting an object down where it belongs, people leave it where it is. Our choice."""
 
 
-class Duty(Struct, kw_only=True):
-    """One job as the person sees it, about the object ``known`` of this ``kind``.
+class Subgoal(Struct, kw_only=True):
+    """One job as the participant sees it, about the object ``known`` of this ``kind``.
 
-    ``spot`` [m] is where the object belongs exactly, as far as that is remembered. ``done`` says how the person knows
-    that it is done, empty while it is not; ``tries`` how often they put the object down there.
+    ``spot`` [m] is the exact place where the object belongs, as remembered. ``done`` says how the participant knows
+    that it is done, empty while it is not; ``tries`` counts how often they put the object down there.
     """
 
     job: Job
     kind: str
-    known: Known
+    known: KnownObject
     spot: Vec3 | None = None
     done: Literal["", "seen", "told"] = ""
     tries: int = 0
@@ -41,94 +42,87 @@ class Duty(Struct, kw_only=True):
 
     @property
     def by_room(self) -> bool:
-        """Whether it belongs in a room, whatever it stands on there."""
+        """Whether it belongs in a room, on whatever there."""
         return self.job.relation == "at" and bool(self.job.destinations)
 
 
-class Duties:
-    """All jobs of a trial, by the ids of their objects. ``many``: more than one object for one pair of hands."""
+class SubgoalTracker:
+    """All jobs of a trial, by their objects' ids. ``many``: several objects, or one that takes several to carry."""
 
-    def __init__(self, me: Subject, memory: Memory, known: dict[str, Known]) -> None:
-        self.me, self.memory = me, memory
-        jobs = todo(me.task)
+    def __init__(self, human: HumanContext, memory: SpatialMemory, known: dict[str, KnownObject]) -> None:
+        self.human, self.memory = human, memory
+        jobs = human.task.jobs
         self.many = len(jobs) > 1 or any(job.hands > 1 for job in jobs)
-        self.all = {job.target: self._duty(job, known[job.target]) for job in jobs}
+        self.all = {job.target: self._subgoal(job, known[job.target]) for job in jobs}
 
-    def open(self) -> list[Duty]:
+    def unfinished(self) -> list[Subgoal]:
         """Those not known to be done, in the order of the briefing."""
-        return [duty for duty in self.all.values() if not duty.done]
+        return [subgoal for subgoal in self.all.values() if not subgoal.done]
 
-    def settle(self) -> None:
-        """Judge by what was seen what is done: an object that lies where it belongs, and no more when it was moved."""
-        for duty in self.all.values():
-            seen = duty.known.seen
-            if seen is None or duty.known.at < 0 or (duty.by_room and duty.known.at != self.me.now.tick):
+    def update(self) -> None:
+        """Mark as done what was seen where it belongs, and as not done what was seen elsewhere since."""
+        for subgoal in self.all.values():
+            seen = subgoal.known.seen
+            if seen is None or subgoal.known.at < 0 or (subgoal.by_room and subgoal.known.at != self.human.now.tick):
                 continue
-            if not seen.held_by and not seen.bearers and self.at_home(duty, seen.position, seen.support):
-                duty.done = "seen"
-            elif duty.done == "told" or (duty.done and duty.tries < _ENOUGH):
-                duty.done = ""
+            resting = not seen.held_by and not seen.bearers
+            if resting and self.is_at_destination(subgoal, seen.position, seen.support):
+                subgoal.done = "seen"
+            elif subgoal.done == "told" or (subgoal.done and subgoal.tries < _ENOUGH_TRIES):
+                subgoal.done = ""
 
-    def at_home(self, duty: Duty, position: Vec3, support: str) -> bool:
+    def is_at_destination(self, subgoal: Subgoal, position: Vec3, support: str) -> bool:
         """Whether an object at ``position`` [m], on or in the thing of id ``support``, is where it belongs."""
-        job = duty.job
+        job = subgoal.job
         if job.relation == "find":
             return False
-        near = _TOGETHER_M if job.hands > 1 else _HOME_M
-        if duty.spot is not None and math.dist(position[:2], duty.spot[:2]) > near:
+        near = _JOINT_SPOT_M if job.hands > 1 else _SPOT_M
+        if subgoal.spot is not None and math.dist(position[:2], subgoal.spot[:2]) > near:
             return False
-        if duty.by_room:
+        if subgoal.by_room:
             return self.room_of(position) in job.destinations
         if not job.destinations:
-            return duty.spot is not None
+            return subgoal.spot is not None
         place = self.memory.places.get(support)
         return support in job.destinations or (place is not None and place.kind in job.destinations)
 
     def room_of(self, position: Vec3) -> str:
-        """The room of something in view at ``position`` [m]: the person's own, empty when a doorway is between."""
-        here, there = self.me.here, (position[0], position[1])
-        through = any(doorway.crossed(here, there) for doorway in self.memory.doorways.values())
-        return "" if through else self.me.now.room
+        """The room of something in view at ``position`` [m]: the current one, empty when a doorway is between."""
+        here, there = self.human.here, (position[0], position[1])
+        through = any(doorway.is_crossed(here, there) for doorway in self.memory.doorways.values())
+        return "" if through else self.human.now.room
 
-    def serves(self, duty: Duty, place: Place) -> bool:
-        """Whether a place is where the object belongs."""
-        return place.kind in duty.job.destinations or place.id in duty.job.destinations
+    def is_destination(self, subgoal: Subgoal, place: KnownPlace) -> bool:
+        """Whether the object belongs on or in a place."""
+        return place.kind in subgoal.job.destinations or place.id in subgoal.job.destinations
 
-    def places(self, duty: Duty) -> list[Place]:
-        """The places known where the object belongs, and not forgotten since."""
-        return [place for place in self.memory.places.values() if place.recalled and self.serves(duty, place)]
+    def known_destinations(self, subgoal: Subgoal) -> list[KnownPlace]:
+        """The places where the object belongs that are known and not forgotten."""
+        return [p for p in self.memory.places.values() if p.recalled and self.is_destination(subgoal, p)]
 
-    def knows(self, duty: Duty) -> bool:
-        """Whether the person knows where to bring the object."""
-        return duty.spot is not None or bool(self.places(duty))
+    def knows_destination(self, subgoal: Subgoal) -> bool:
+        """Whether the participant knows where to bring the object."""
+        return subgoal.spot is not None or bool(self.known_destinations(subgoal))
 
-    def forgot(self, duty: Duty) -> bool:
-        """Whether the person came across a place where the object belongs, and could not tell any more where."""
-        return any(not place.recalled and self.serves(duty, place) for place in self.memory.places.values())
+    def forgot_destination(self, subgoal: Subgoal) -> bool:
+        """Whether the participant saw a place where the object belongs, and forgot where it is."""
+        return any(not place.recalled and self.is_destination(subgoal, place) for place in self.memory.places.values())
 
-    def _duty(self, job: Job, known: Known) -> Duty:
-        return Duty(job=job, kind=kind_of(job.target), known=known, spot=self._remembered(job))
+    def _subgoal(self, job: Job, known: KnownObject) -> Subgoal:
+        return Subgoal(job=job, kind=object_kind(job.target), known=known, spot=self._remembered(job))
 
     def _remembered(self, job: Job) -> Vec3 | None:
-        """Where exactly an object belongs, as a tour of the house left it in memory: somewhat off, or not at all."""
+        """The exact place of an object as remembered from a tour of the house: somewhat off, or not at all."""
         if job.place is None or job.hands > 1:
             return job.place
-        me, off = self.me, self.me.traits.tour_sd
-        if me.draw("tour", job.target, "forgotten") < me.traits.tour_forget:
+        human, off = self.human, self.human.traits.tour_sd
+        if human.draw("tour", job.target, "forgotten") < human.traits.tour_forget:
             return None
         x, y, z = job.place
-        return (x + off * me.normal("tour", job.target, "x"), y + off * me.normal("tour", job.target, "y"), z)
+        dx, dy = (off * human.normal("tour", job.target, axis) for axis in ("x", "y"))
+        return (x + dx, y + dy, z)
 
 
-def todo(task: Briefing) -> tuple[Job, ...]:
-    """All there is to do; a briefing without a list of jobs tells of one."""
-    if task.jobs:
-        return task.jobs
-    destinations = (task.destination,) if task.destination else ()
-    relation = next((known for known in _RELATIONS if known == task.relation), _RELATIONS[0])
-    return (Job(target=task.target, relation=relation, destinations=destinations),)
-
-
-def kind_of(target: str) -> str:
+def object_kind(target: str) -> str:
     """The kind of an object by its id: "apple" of "apple" and of "apple_2"."""
     return re.sub(r"_\d+$", "", target)

@@ -1,1 +1,1 @@
-"""Human models, one file each; a file's name is the model's name."""
+"""Human models, one file each: the file's name is what `--humans` takes. `proxy` is the model of real people."""

@@ -1,4 +1,4 @@
-"""Which of all there is to do a person is about now."""
+"""Which of all possible goals a participant pursues now."""
 
 from __future__ import annotations
 
@@ -8,127 +8,127 @@ from typing import Literal
 
 from msgspec import Struct
 
-from hthor.humans.communication.interpretation import Claim, Claims
-from hthor.humans.core.trial_context import Subject
-from hthor.humans.memory.object_memory import Things
-from hthor.humans.memory.spatial_memory import Memory
-from hthor.humans.memory.subgoals import Duties, Duty
+from hthor.humans.communication.interpretation import Advice, AdviceTracker
+from hthor.humans.core.trial_context import HumanContext
+from hthor.humans.memory.object_memory import ObjectMemory
+from hthor.humans.memory.spatial_memory import SpatialMemory
+from hthor.humans.memory.subgoals import Subgoal, SubgoalTracker
 from hthor.types import Vec2, Vec3
 
-Verb = Literal["begin", "deliver", "fetch", "haul", "follow", "search", "rest"]
+Activity = Literal["begin", "deliver", "fetch", "haul", "follow", "search", "rest"]
 
 
-class Aim(Struct, frozen=True, kw_only=True):
-    """What a person sets out to do, with which object or on whose word. Two aims are one only if they are the same."""
+class Goal(Struct, frozen=True, kw_only=True):
+    """What a participant sets out to do, with which object or by whose advice; goals are compared by identity."""
 
-    verb: Verb
-    duty: Duty | None = None
-    claim: Claim | None = None
+    activity: Activity
+    subgoal: Subgoal | None = None
+    advice: Advice | None = None
 
     @property
     def position(self) -> Vec3:
         """Where it leads to [m]."""
-        if self.claim is not None and self.claim.position is not None:
-            return self.claim.position
-        seen = self.duty.known.seen if self.duty is not None else None
-        assert seen is not None, "only what leads somewhere is weighed"
+        if self.advice is not None and self.advice.position is not None:
+            return self.advice.position
+        seen = self.subgoal.known.seen if self.subgoal is not None else None
+        assert seen is not None, "only goals with a position are compared"
         return seen.position
 
     @property
     def words(self) -> str:
         """Such as "fetch apple", or "search"."""
-        if self.duty is not None:
-            return f"{self.verb} {self.duty.known.id}"
-        return self.verb if self.claim is None else f"{self.verb} message {self.claim.number}"
+        if self.subgoal is not None:
+            return f"{self.activity} {self.subgoal.known.id}"
+        return self.activity if self.advice is None else f"{self.activity} message {self.advice.number}"
 
 
-BEGIN, SEARCH, REST = Aim(verb="begin"), Aim(verb="search"), Aim(verb="rest")
+BEGIN, SEARCH, REST = Goal(activity="begin"), Goal(activity="search"), Goal(activity="rest")
 
 
-class Agenda:
-    """Chooses: first what is in hand, then the nearest of what is known or was told, then what is still to be found.
+class GoalArbiter:
+    """Chooses the goal: first what is in hand, then the nearest of what is known or advised, then searching.
 
-    ``missing`` are the jobs whose objects the person has to look for. A choice stands until there is news.
+    A choice stands until something changes. ``missing`` are the subgoals whose objects must be searched for.
 
     Args:
-        apart: walking distances [m] from a place to points.
+        distances: walking distances [m] from a point to others.
     """
 
     def __init__(
         self,
-        me: Subject,
-        duties: Duties,
-        things: Things,
-        claims: Claims,
-        memory: Memory,
-        apart: Callable[[Vec2, Sequence[Vec2]], Sequence[float]],
+        human: HumanContext,
+        subgoals: SubgoalTracker,
+        objects: ObjectMemory,
+        advice: AdviceTracker,
+        memory: SpatialMemory,
+        distances: Callable[[Vec2, Sequence[Vec2]], Sequence[float]],
     ) -> None:
-        self.me, self.duties, self.things, self.claims, self.memory = me, duties, things, claims, memory
-        self._apart = apart
-        self.missing: tuple[Duty, ...] = tuple(duties.all.values())
-        self._deliveries: dict[str, Aim] = {}
-        self._fetches: dict[str, Aim] = {}
-        for target, duty in duties.all.items():
-            alone = duty.job.hands < 2
-            self._fetches[target] = Aim(verb="fetch" if alone else "haul", duty=duty)
-            self._deliveries[target] = Aim(verb="deliver", duty=duty) if alone else self._fetches[target]
-        self._follows: dict[int, Aim] = {}
-        self._held: Duty | None = None
-        self._news = -1
-        self._choice: Aim | None = None
+        self.human, self.subgoals, self.objects, self.advice, self.memory = human, subgoals, objects, advice, memory
+        self._distances = distances
+        self.missing: tuple[Subgoal, ...] = tuple(subgoals.all.values())
+        self._deliveries: dict[str, Goal] = {}
+        self._fetches: dict[str, Goal] = {}
+        for target, subgoal in subgoals.all.items():
+            alone = subgoal.job.hands < 2
+            self._fetches[target] = Goal(activity="fetch" if alone else "haul", subgoal=subgoal)
+            self._deliveries[target] = Goal(activity="deliver", subgoal=subgoal) if alone else self._fetches[target]
+        self._follows: dict[int, Goal] = {}
+        self._in_hand: Subgoal | None = None
+        self._seen_changes = -1
+        self._choice: Goal | None = None
 
-    def aim(self) -> Aim | None:
-        """What to be about now, None when there is nothing better than to search."""
-        holding = self.me.now.holding
+    def goal(self) -> Goal | None:
+        """The goal to pursue now, None when there is nothing better than to search."""
+        holding = self.human.now.holding
         if holding:
             delivery = self._deliveries.get(holding)
             if delivery is not None:
-                self._held = delivery.duty
+                self._in_hand = delivery.subgoal
                 return delivery
-        elif self._held is not None:
-            self._put_down(self._held)
-        if self._fresh() != self._news:
+        elif self._in_hand is not None:
+            self._put_down(self._in_hand)
+        if self._changes() != self._seen_changes:
             self._choice = self._choose()
-            self._news = self._fresh()
+            self._seen_changes = self._changes()
         return self._choice
 
-    def _fresh(self) -> int:
-        """Grows with every piece of news, none of which is ever taken back."""
-        places = len(self.memory.places) if self.duties.many else 0
-        return self.things.news + self.claims.news + places
+    def _changes(self) -> int:
+        """Grows with everything that could change the choice."""
+        places = len(self.memory.places) if self.subgoals.many else 0
+        return self.objects.changes + self.advice.changes + places
 
-    def _put_down(self, duty: Duty) -> None:
-        """What was in hand is not any more: it was put where it belongs, or lies where it fell."""
-        self._held, outcome = None, self.me.now.outcome
-        self.things.news += 1
-        if self.duties.many and outcome is not None and outcome.ok and outcome.motion == "place":
-            duty.done, duty.tries = "seen", duty.tries + 1
-            duty.known.at = -1  # where exactly it lies is to be seen
+    def _put_down(self, subgoal: Subgoal) -> None:
+        """What was in hand was put down, where it belongs or elsewhere."""
+        self._in_hand, outcome = None, self.human.now.outcome
+        self.objects.changes += 1
+        if self.subgoals.many and outcome is not None and outcome.ok and outcome.motion == "place":
+            subgoal.done, subgoal.tries = "seen", subgoal.tries + 1
+            subgoal.known.at = -1  # its exact position is not seen yet
 
-    def _choose(self) -> Aim | None:
-        self.duties.settle()
-        todo = self.duties.open()
-        lying = [duty for duty in todo if duty.known.lies is not None]
-        for duty in lying:
-            self.claims.forget(duty)
-        self.missing = tuple(duty for duty in todo if duty.known.seen is None)
-        options = [self._fetches[duty.target] for duty in lying]
-        options += [self._follow(claim) for claim in self.claims.kept.values() if self._is_open(claim)]
+    def _choose(self) -> Goal | None:
+        self.subgoals.update()
+        unfinished = self.subgoals.unfinished()
+        lying = [subgoal for subgoal in unfinished if subgoal.known.lies is not None]
+        for subgoal in lying:
+            self.advice.drop_about(subgoal)
+        self.missing = tuple(subgoal for subgoal in unfinished if subgoal.known.seen is None)
+        options = [self._fetches[subgoal.target] for subgoal in lying]
+        options += [self._follow(advice) for advice in self.advice.kept.values() if self._is_open(advice)]
         if len(options) > 1:
             return self._nearest(options)
         if options:
             return options[0]
         if not self.missing:
-            self.missing = tuple(duty for duty in self.duties.all.values() if duty.done != "seen")
-        return None if self.missing or not self.duties.many else REST
+            self.missing = tuple(subgoal for subgoal in self.subgoals.all.values() if subgoal.done != "seen")
+        return None if self.missing or not self.subgoals.many else REST
 
-    def _is_open(self, claim: Claim) -> bool:
-        return claim.duty is None or not claim.duty.done
+    def _is_open(self, advice: Advice) -> bool:
+        return advice.subgoal is None or not advice.subgoal.done
 
-    def _follow(self, claim: Claim) -> Aim:
-        return self._follows.setdefault(claim.number, Aim(verb="follow", duty=claim.duty, claim=claim))
+    def _follow(self, advice: Advice) -> Goal:
+        return self._follows.setdefault(advice.number, Goal(activity="follow", subgoal=advice.subgoal, advice=advice))
 
-    def _nearest(self, options: list[Aim]) -> Aim:
-        spots = [(aim.position[0], aim.position[1]) for aim in options]
-        far = self._apart(self.me.here, spots)
-        return options[min(range(len(options)), key=lambda k: (far[k], math.dist(self.me.here, spots[k]), k))]
+    def _nearest(self, options: list[Goal]) -> Goal:
+        spots = [(goal.position[0], goal.position[1]) for goal in options]
+        far, here = self._distances(self.human.here, spots), self.human.here
+        return options[min(range(len(options)), key=lambda k: (far[k], math.dist(here, spots[k]), k))]

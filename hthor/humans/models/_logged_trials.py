@@ -1,7 +1,4 @@
-"""Trials of a person as a run's log holds them, to be done again.
-
-Only what a person did is read: where they went, where they looked, what they handled, what they answered.
-"""
+"""The trials of a participant in a run's log, as far as `replay` needs them: ways, looks, hands, answers."""
 
 from __future__ import annotations
 
@@ -16,11 +13,13 @@ from msgspec import Struct
 
 from hthor import documents, rules
 from hthor.errors import HthorError
-from hthor.humans.memory.subgoals import todo
 from hthor.types import HUMAN, Briefing, Close, Drop, Event, Motion, Open, Pick, Place, Pose, TrialSpec
 
 _START_M = 0.002
-_DEEDS: dict[str, Callable[[dict[str, str]], Motion]] = {
+"""[m] A trial begins at a logged pose if it is this near. Our choice: poses are logged to a millimetre."""
+_MILLI = 1000.0
+"""[1/unit] Poses and pitches are logged in thousandths. Source: docs/files.md."""
+_HAND_ACTIONS: dict[str, Callable[[dict[str, str]], Motion]] = {
     "picked": lambda data: Pick(object=data["object"]),
     "held": lambda data: Pick(object=data["object"]),
     "placed": lambda data: Place(on=data["on"]),
@@ -33,8 +32,8 @@ _DEEDS: dict[str, Callable[[dict[str, str]], Motion]] = {
 _HINT = "Give a run folder or its trials.jsonl, as in --humans replay:runs/oracle-paper-seed0."
 
 
-class Past(Struct, frozen=True, kw_only=True):
-    """One trial of a log, as far as it is the person's; what else stands in its line is passed over."""
+class LoggedTrial(Struct, frozen=True, kw_only=True):
+    """One trial of a log; other fields of its line are ignored."""
 
     spec: TrialSpec
     ticks: int
@@ -44,40 +43,39 @@ class Past(Struct, frozen=True, kw_only=True):
     journal: tuple[Event, ...] = ()
 
     def is_of(self, briefing: Briefing) -> bool:
-        """Whether the task is the one that the person is told of now, as far as words go."""
+        """Whether it is the task of this briefing."""
         task = self.spec.task
-        told = (briefing.instruction, briefing.target, briefing.relation, briefing.time_limit)
-        return told == (task.instruction, task.goal.target, task.goal.relation, task.time_limit) and (
-            todo(briefing) == task.goal.todo
-        )
+        words = (briefing.instruction, briefing.target, briefing.relation, briefing.time_limit)
+        logged = (task.instruction, task.goal.target, task.goal.relation, task.time_limit)
+        return words == logged and briefing.jobs == task.goal.todo
 
     def begins_at(self, pose: Pose) -> bool:
-        """Whether the person stood here when it began."""
+        """Whether the participant stood here at its start."""
         start = self.spec.task.human_start
         return math.dist((start.x, start.y), (pose.x, pose.y)) < _START_M
 
-    def deeds(self) -> Iterator[tuple[int, Motion]]:
-        """What the hands did, and at which tick it took effect."""
+    def hand_actions(self) -> Iterator[tuple[int, Motion]]:
+        """What the hands did, with the tick of the effect."""
         for event in self.events:
-            if event.seat == HUMAN and event.kind in _DEEDS:
-                yield event.tick, _where(_DEEDS[event.kind](event.data), event.tick, self.journal)
+            if event.seat == HUMAN and event.kind in _HAND_ACTIONS:
+                yield event.tick, _where(_HAND_ACTIONS[event.kind](event.data), event.tick, self.journal)
 
     def answers(self) -> Iterator[tuple[int, bool]]:
-        """When the person confirmed (True) or declined a message."""
+        """The ticks of answers; True for a confirmed message."""
         for event in self.events:
             if event.seat == HUMAN and event.kind in ("confirmed", "declined"):
                 yield event.tick, event.kind == "confirmed"
 
     def poses(self) -> list[Pose]:
-        """Where the person was and looked, every `rules.LOG_EVERY_TICKS` ticks."""
+        """Pose of the head, every `rules.LOG_EVERY_TICKS` ticks."""
         pitch = self._pitch()
         return [
-            Pose(x=x / 1000.0, y=y / 1000.0, yaw=yaw / 1000.0, pitch=pitch(k * rules.LOG_EVERY_TICKS))
+            Pose(x=x / _MILLI, y=y / _MILLI, yaw=yaw / _MILLI, pitch=pitch(k * rules.LOG_EVERY_TICKS))
             for k, (x, y, yaw) in enumerate(self.paths[HUMAN])
         ]
 
     def moving(self) -> Callable[[int], bool | None]:
-        """Whether the stick was pushed at a tick; None where the log does not say."""
+        """Whether the stick was pushed at a tick; None if the log does not say."""
         runs = next((event.data["runs"] for event in self.journal if event.kind == "stick"), None)
         if runs is None:
             return lambda _: None
@@ -87,10 +85,10 @@ class Past(Struct, frozen=True, kw_only=True):
     def _pitch(self) -> Callable[[int], float]:
         runs = next((event.data["pitch"] for event in self.journal if event.kind == "head"), [0, 0])
         value = _steps(runs)
-        return lambda tick: value(tick) / 1000.0
+        return lambda tick: value(tick) / _MILLI
 
 
-def read(source: str) -> dict[int, list[Past]]:
+def read_logged_trials(source: str) -> dict[int, list[LoggedTrial]]:
     """The trials of each participant in a run folder or a log.
 
     Raises:
@@ -100,28 +98,28 @@ def read(source: str) -> dict[int, list[Past]]:
     return _read(str(path / "trials.jsonl" if path.is_dir() else path))
 
 
-def sha256(source: str) -> str:
+def log_sha256(source: str) -> str:
     """Hash of the log's bytes."""
     path = Path(source)
     return hashlib.sha256(_bytes(path / "trials.jsonl" if path.is_dir() else path)).hexdigest()
 
 
 @cache
-def _read(path: str) -> dict[int, list[Past]]:
-    decoder = msgspec.json.Decoder(Past)
-    found: dict[int, list[Past]] = {}
+def _read(path: str) -> dict[int, list[LoggedTrial]]:
+    decoder = msgspec.json.Decoder(LoggedTrial)
+    trials: dict[int, list[LoggedTrial]] = {}
     for number, line in enumerate(_bytes(Path(path)).splitlines(keepends=True), 1):
         if not line.endswith(b"\n"):
             break  # a run that was stopped
         try:
             with documents.reading_errors():
-                past = decoder.decode(line)
+                trial = decoder.decode(line)
         except documents.Unreadable as error:
             raise HthorError(f"{path}, line {number}: {error}. {_HINT}") from None
-        found.setdefault(past.spec.participant, []).append(past)
-    if not found:
+        trials.setdefault(trial.spec.participant, []).append(trial)
+    if not trials:
         raise HthorError(f"{path} holds no whole trial. {_HINT}")
-    return {person: sorted(trials, key=lambda past: past.spec.index) for person, trials in found.items()}
+    return {number: sorted(own, key=lambda trial: trial.spec.index) for number, own in trials.items()}
 
 
 def _bytes(path: Path) -> bytes:

@@ -1,8 +1,8 @@
-"""A person who searches without any plan and never confirms a message: chance picks among the options, all alike.
+"""A human who searches at random and never confirms a message.
 
-With `hthor.humans.models.greedy` it brackets what real people may do: no robot can help such a person by what it says,
-so what still differs between two robots is how much they stand in the way. Eyes, memory, legs and hands are those of
-any person of the population (`hthor.humans.models.proxy`), with their differences; messages are read, and declined.
+With `hthor.humans.models.greedy` it brackets what real people may do: no robot can help such a human by messages, so
+robots differ only in how much they stand in the way. Eyes, memory, legs and hands are the proxy's, with the
+population's differences; messages are read, and declined.
 """
 
 from __future__ import annotations
@@ -14,25 +14,25 @@ from hthor.types import Briefing
 
 
 class Model(proxy.Model):
-    """The random person."""
+    """The random human."""
 
     def begin(self, briefing: Briefing) -> None:
-        """A trial begins, with luck of its own."""
-        self.policy = Whim(seeds.derive(self.person.trial(self.trials), "whim"))
+        """Start a trial with random numbers of its own."""
+        self.policy = RandomPolicy(seeds.derive(self.participant.trial_root(self.trials), "whim"))
         super().begin(briefing)
 
 
-class Whim:
-    """Chooses by luck alone, each option by its own, and declines everything."""
+class RandomPolicy:
+    """Chooses by a random number for each option, and declines everything."""
 
     def __init__(self, root: int) -> None:
         self.root = root
 
     def choose(self, situation: Situation) -> int:
-        """The luckiest."""
-        luck = [seeds.draw(self.root, situation.aim, situation.number, choice.name) for choice in situation.options]
+        """The option with the largest random number."""
+        luck = [seeds.draw(self.root, situation.aim, situation.number, option.name) for option in situation.options]
         return luck.index(max(luck))
 
-    def answer(self, offer: Offer) -> Answer:  # noqa: ARG002  whatever it says
-        """No."""
+    def answer(self, offer: Offer) -> Answer:  # noqa: ARG002  always the same
+        """Decline."""
         return "decline"

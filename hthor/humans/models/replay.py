@@ -1,16 +1,16 @@
-"""A person who does again what somebody did in a log: the same ways, looks, deeds and answers; decides nothing.
+"""Repeats what a logged participant did: the same ways, looks, hand actions and answers; decides nothing.
 
     hthor eval --agent my_robot.py --suite paper --humans replay:runs/oracle-paper-seed0
 
-It is defined for the trials of that log: the same suite, seed and participants; anything else is an error that says
-so. The robot may be another one. What then happens is simple, and no person would do it:
+It is defined for the trials of that log only: the same suite, seed and participants. The robot may be another one. Then
+simple rules hold, which no real person would follow:
 
-- Messages are answered at the ticks at which the logged person answered: whatever is shown then is confirmed or
-  declined as it was then. If nothing is shown then, the answer lapses. Nothing that a message says changes the way.
-- When a robot blocks the way the person stands and tries again every half second, never goes round, and does what was
-  missed as fast as the stick and the body allow. Deeds are done at their places, so they come later too.
-- When anything else blocks it (a door that somebody shut), that part of the way is passed over after three tries.
-- When the log is at its end, so is the person: they stand still. The rating is the logged one.
+- A message that is shown at the tick of a logged answer gets that answer; if none is shown, the answer lapses. The
+  content of messages changes nothing.
+- Where a robot blocks the way, the replay stands and tries again every half second, and never goes around it. Then it
+  catches up as fast as stick and body allow. Hand actions happen at their places, so they come later too.
+- Where anything else blocks it (a door that was shut), that part of the way is skipped after three tries.
+- After the end of the log it stands still. The rating is the logged one.
 """
 
 from __future__ import annotations
@@ -23,45 +23,51 @@ from hthor import rules
 from hthor.errors import HthorError
 from hthor.geometry.plane import turn, wrap
 from hthor.humans.models import _logged_trials
-from hthor.humans.models._logged_trials import Past
-from hthor.humans.population.participant import Person
+from hthor.humans.models._logged_trials import LoggedTrial
+from hthor.humans.population.participant import Participant
 from hthor.types import Action, Briefing, Motion, Move, Observation, Pose, Reply, Rotate, Wait
 
 _EVERY = rules.LOG_EVERY_TICKS
-_THERE_M, _THERE_RAD = 0.003, 0.003
-_PAUSE_S, _TRIES = 0.5, 3
+_THERE_M = 0.003
+"""[m] A logged position is reached within this. Our choice: poses are logged to a millimetre."""
+_THERE_RAD = 0.003
+"""[rad] A logged direction is reached within this. Our choice: angles are logged to a milliradian."""
+_PAUSE_S = 0.5
+"""[s] From one try to the next while a robot blocks the way. Our choice."""
+_TRIES = 3
+"""[count] Tries after which a blocked part of the way is skipped. Our choice."""
 _LAPSE_TICKS = 10
-"""An answer that is due while the hands are busy may come so much later."""
+"""[ticks] So late an answer may come that is due while the hands are busy. Our choice: one second."""
 
 
 class Model:
-    """A logged person.
+    """A logged participant.
 
     Args:
-        person: which participant of the log.
+        participant: its number says which participant of the log.
         state: how many trials were done.
         source: the run folder or log.
     """
 
-    def __init__(self, person: Person, state: Mapping[str, Any] | None = None, source: str = "") -> None:
+    def __init__(self, participant: Participant, state: Mapping[str, Any] | None = None, source: str = "") -> None:
         if not source:
             raise HthorError("replay needs the run to replay: --humans replay:RUN, a run folder or its trials.jsonl.")
-        self.person, self.source = person, source
+        self.participant, self.source = participant, source
         self.trials = int(state["trials"]) if state else 0
-        logged = _logged_trials.read(source)
-        if person.participant not in logged:
+        logged = _logged_trials.read_logged_trials(source)
+        if participant.number not in logged:
             raise HthorError(
-                f"{source} has no participant {person.participant}; it holds {', '.join(map(str, sorted(logged)))}. "
+                f"{source} has no participant {participant.number}; it holds {', '.join(map(str, sorted(logged)))}. "
                 "Evaluate with that run's suite, seed and number of participants."
             )
-        self._logged = logged[person.participant]
+        self._logged = logged[participant.number]
         self._again: Reenactment | None = None
 
     def begin(self, briefing: Briefing) -> None:
-        """Look up the trial in the log.
+        """Look up the task in the log.
 
         Raises:
-            HthorError: when this person did no such task.
+            HthorError: when this participant has no such task.
         """
         self._brief, self._again = briefing, None
         self._fitting = [one for one in self._logged if one.is_of(briefing)]
@@ -69,15 +75,18 @@ class Model:
             raise self._unknown()
 
     def act(self, observation: Observation) -> Action:
+        """What the logged participant did at this point."""
         again = self._again or self._find(observation)
         say = again.say(observation)
         return Action(motion=again.motion(observation) if observation.idle else Wait(), say=say)
 
     def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the log has the answer
+        """The logged rating."""
         self.trials += 1
-        return self._again.past.trust if self._again is not None and self._brief.teammates else None
+        return self._again.trial.trust if self._again is not None and self._brief.teammates else None
 
     def state(self) -> dict[str, Any]:
+        """How many trials were done."""
         return {"trials": self.trials}
 
     def _find(self, observation: Observation) -> Reenactment:
@@ -89,30 +98,30 @@ class Model:
         return self._again
 
     def _unknown(self) -> HthorError:
-        told = ", ".join(f"{one.spec.index}: {one.spec.task.id}" for one in self._logged)
+        trials = ", ".join(f"{one.spec.index}: {one.spec.task.id}" for one in self._logged)
         return HthorError(
-            f"{self.source}: participant {self.person.participant} did no such task as '{self._brief.instruction}' "
-            f"from this place; their trials are {told}. A replay plays the trials of its log only: evaluate with that "
-            "run's suite, seed and number of participants."
+            f"{self.source}: participant {self.participant.number} did no such task as '{self._brief.instruction}' "
+            f"from this place; their trials are {trials}. A replay repeats the trials of its log only: evaluate with "
+            "that run's suite, seed and number of participants."
         )
 
 
 def ingredients(source: str = "") -> dict[str, Any]:
-    """What decides how these people behave: the log's bytes."""
-    return {"log_sha256": _logged_trials.sha256(source)} if source else {}
+    """What decides how this model behaves: the log's bytes."""
+    return {"log_sha256": _logged_trials.log_sha256(source)} if source else {}
 
 
 class Reenactment:
-    """Doing one logged trial again. ``clock`` is the logged tick that was reached; it never runs ahead of time."""
+    """Repeats one logged trial. ``clock`` is the logged tick that was reached; it never runs ahead of time."""
 
-    def __init__(self, one: Past, briefing: Briefing) -> None:
-        self.past, self.body, self.clock = one, briefing.body, 0
+    def __init__(self, trial: LoggedTrial, briefing: Briefing) -> None:
+        self.trial, self.body, self.clock = trial, briefing.body, 0
         self._tick_s = briefing.tick_s
         handling = math.ceil(self.body.handling / self._tick_s - 1e-6)
-        self._poses, self._moving = _and_on(one.poses(), one.ticks), one.moving()
-        self._deeds = [(tick - handling, motion) for tick, motion in one.deeds()]
+        self._poses, self._moving = _extrapolated(trial.poses(), trial.ticks), trial.moving()
+        self._hand_actions = [(tick - handling, motion) for tick, motion in trial.hand_actions()]
         self._handling = handling
-        self._answers = list(one.answers())
+        self._answers = list(trial.answers())
         self._tries = 0
 
     def say(self, now: Observation) -> Reply | None:
@@ -125,40 +134,40 @@ class Reenactment:
         return Reply(message=now.inbox[-1].id, accept=accept) if now.inbox else None
 
     def motion(self, now: Observation) -> Motion:
-        """The next motion; waits where the logged person waited."""
+        """The next motion; waits where the logged participant waited."""
         if self._is_stuck(now):
             return Wait(seconds=_PAUSE_S)
         self._arrive(now)
-        if self._deeds and self._deeds[0][0] <= self.clock:
-            _, deed = self._deeds.pop(0)
+        if self._hand_actions and self._hand_actions[0][0] <= self.clock:
+            _, action = self._hand_actions.pop(0)
             self.clock += self._handling
-            return deed
-        return self._on_the_way(now) if self.clock < self._end else Wait(seconds=self._tick_s)
+            return action
+        return self._step(now) if self.clock < self._end else Wait(seconds=self._tick_s)
 
     @property
     def _end(self) -> int:
-        return min(self.past.ticks, (len(self._poses) - 1) * _EVERY)
+        return min(self.trial.ticks, (len(self._poses) - 1) * _EVERY)
 
     def _next(self) -> int:
         """Number of the logged pose that comes after the clock."""
         return min(self.clock // _EVERY + 1, len(self._poses) - 1)
 
     def _arrive(self, now: Observation) -> None:
-        """Let the clock run on to what was reached, at most to now."""
+        """Move the clock on to what was reached, at most to now."""
         while self.clock < min(now.tick, self._end):
             after = self._next()
             if not self._is_there(now.pose, self._poses[after]):
                 if now.tick < after * _EVERY:  # on time, between two poses
                     self.clock = now.tick
                 return
-            due = self._deeds[0][0] if self._deeds else self._end
+            due = self._hand_actions[0][0] if self._hand_actions else self._end
             if self.clock <= due < min(now.tick, after * _EVERY):
                 self.clock = due
                 return
             self.clock = min(now.tick, after * _EVERY)
             self._tries = 0
 
-    def _on_the_way(self, now: Observation) -> Motion:
+    def _step(self, now: Observation) -> Motion:
         """One tick towards the next logged pose."""
         after = self._next()
         goal, left = self._poses[after], after * _EVERY - now.tick
@@ -188,7 +197,7 @@ class Reenactment:
         return near and max(abs(wrap(goal.yaw - pose.yaw)), abs(goal.pitch - pose.pitch)) <= _THERE_RAD
 
     def _is_stuck(self, now: Observation) -> bool:
-        """Whether a robot stands in the way; what nobody will clear away is given up after some tries."""
+        """Whether a robot stands in the way; other obstacles are skipped after some tries."""
         outcome = now.outcome
         if outcome is None or outcome.ok or outcome.motion != "move":
             return False
@@ -201,8 +210,8 @@ class Reenactment:
         return False
 
 
-def _and_on(poses: list[Pose], ticks: int) -> list[Pose]:
-    """The poses, and one more for the ticks after the last of them, in which what went on is taken to go on."""
+def _extrapolated(poses: list[Pose], ticks: int) -> list[Pose]:
+    """The poses, and one more by the last velocity for the ticks after the last of them."""
     if (len(poses) - 1) * _EVERY >= ticks or len(poses) < 2:
         return poses
     a, b = poses[-2:]

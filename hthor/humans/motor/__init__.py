@@ -1,1 +1,1 @@
-"""How a person walks, stands, approaches and uses their hands."""
+"""How a participant walks, stands, approaches things and handles them."""

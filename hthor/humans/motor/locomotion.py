@@ -1,4 +1,4 @@
-"""How a person gets about: on a map of their own, at their own pace, hopeful about what they have not seen."""
+"""How a participant walks: on a map of what was seen, at their own pace, optimistic about the rest."""
 
 from __future__ import annotations
 
@@ -10,32 +10,59 @@ from itertools import pairwise
 from msgspec import Struct
 
 from hthor.geometry.plane import wrap
-from hthor.humans.core.trial_context import GAZE_PITCH, Deed, Subject
-from hthor.humans.memory.spatial_memory import Doorway, Memory
+from hthor.humans.core.trial_context import GAZE_PITCH, Behaviour, HumanContext
+from hthor.humans.memory.spatial_memory import KnownDoorway, SpatialMemory
 from hthor.navigation.grid_map import CELL_M, FREE, GridMap
 from hthor.navigation.path_follower import toward
 from hthor.navigation.planner import Planner, length
 from hthor.types import Motion, Move, Rotate, Vec2, Wait
 
 _TURN_RAD = math.radians(12.0)
-_MAP_EVERY_M, _MAP_EVERY_RAD = 0.4, 0.6
+"""[rad] Larger direction errors are turned away standing, smaller ones while walking. Our choice: 12 degrees."""
+_MAP_EVERY_M = 0.4
+"""[m] After walking so far, what is in view is added to the map. Our choice."""
+_MAP_EVERY_RAD = 0.6
+"""[rad] After turning so far, what is in view is added to the map. Our choice."""
 _ARRIVED_M = 0.03
+"""[m] A point of the path this near has been reached. Our choice."""
 _CHECK_TICKS = 5
+"""[ticks] How often people check that the way ahead is free and that they advance. Our choice: twice a second."""
 _CREEP = 0.3
-_DETOUR, _DETOUR_M = 1.4, 1.5
-_FAMILIAR, _FAMILIAR_M = 1.5, 2.0
+"""[ratio] Below this share of their pace people take themselves to be blocked. Our choice."""
+_DETOUR = 1.4
+"""[ratio] A new way that is longer than this times the first, plus `_DETOUR_M`, is not taken. Our choice."""
+_DETOUR_M = 1.5
+"""[m] Part of a permitted detour that does not depend on the way's length. Our choice."""
+_FAMILIAR = 1.5
+"""[ratio] Seen floor is preferred up to this times the shortest hopeful way, plus `_FAMILIAR_M`. Our choice."""
+_FAMILIAR_M = 2.0
+"""[m] Part of that preference that does not depend on the way's length. Our choice."""
 _DOORWAY_M = 1.0
-_GIVE_UP, _REPLANS = 12, 100
-_POLITE_S, _AVOID_S, _TRUSTED_S = 0.5, 6.0, 10.0
+"""[m] A way by a known doorway may be longer than the straight guess by this. Our choice."""
+_GIVE_UP = 12
+"""[count] Bumps after which a walk is given up. Our choice."""
+_REPLANS = 100
+"""[count] Plans after which a walk is given up. Our choice: a bound that walks do not reach."""
+_POLITE_S = 0.5
+"""[s] How long people wait for a robot in their way. Our choice."""
+_AVOID_S = 6.0
+"""[s] How long they plan around a robot that did not move. Our choice."""
+_TRUSTED_S = 10.0
+"""[s] A map younger than this is not thrown away even if it shows no way. Our choice."""
 _ASIDE_RAD = math.radians(60.0)
+"""[rad] Largest turn aside at a stop to look. Our choice: 60 degrees."""
+_FELT_M = 0.05
+"""[m] How far beyond the body's edge something lies that was bumped into. Our choice."""
+MARGIN_M = 0.06
+"""[m] What is nearer to furniture on the map belongs to it. Our choice: walls are thicker."""
 
 
-class Way(Struct, frozen=True, kw_only=True):
+class Route(Struct, frozen=True, kw_only=True):
     """A path [m] to a goal ``metres`` away, or only to just behind the ``doorway`` that should lead there."""
 
     path: tuple[Vec2, ...]
     metres: float
-    doorway: Doorway | None = None
+    doorway: KnownDoorway | None = None
 
 
 def never() -> bool:
@@ -44,51 +71,54 @@ def never() -> bool:
 
 
 class Walker:
-    """Legs and the map in the head.
+    """Legs and a mental map.
 
-    ``haste`` scales the pace: below 1 while reading or following a map. Nearer than ``margin`` [m] to a piece of
-    furniture, what is on the map is taken for a part of it. A person's stick gives the pace directly, one short move a
-    tick; larger turns are made standing, and while people are ``looking`` for something they stop now and then to look
-    aside.
+    The stick gives the pace directly, one short move a tick; larger turns are made standing.
+
+    Attributes:
+        haste: scales the pace, below 1 while reading or following a map.
+        looking: whether something is searched for; then people stop now and then to look aside.
     """
 
-    def __init__(self, me: Subject, memory: Memory, x: float, y: float, margin: float = 0.12) -> None:
-        self.me, self.memory, self.haste, self.margin, self._bumps = me, memory, 1.0, margin, 0
+    margin = MARGIN_M
+
+    def __init__(self, human: HumanContext, memory: SpatialMemory, x: float, y: float) -> None:
+        self.human, self.memory, self.haste, self._bumps = human, memory, 1.0, 0
         self.looking = True
         self._robot: tuple[float, float, float] | None = None
         self._robot_until = -1
-        self._drawn = me.now.tick
+        self._drawn = human.now.tick
         self._stops = 0
         self._until_stop = self._stretch()
         self._draw_map(x, y)
 
     def _draw_map(self, x: float, y: float) -> None:
         self.grid = GridMap(x, y)
-        self.planner = Planner(self.grid, self.me.body.radius, optimistic=True)
+        self.planner = Planner(self.grid, self.human.body.radius, optimistic=True)
         self._mapped: tuple[float, float, float] | None = None
 
     def sense(self) -> None:
-        """Bring the map up to date, when the view has changed enough."""
-        pose, last = self.me.now.pose, self._mapped
+        """Add what is in view to the map, when the view has changed enough."""
+        pose, last = self.human.now.pose, self._mapped
         if last is not None:
             near = math.hypot(pose.x - last[0], pose.y - last[1]) < _MAP_EVERY_M
             if near and abs(wrap(pose.yaw - last[2])) < _MAP_EVERY_RAD:
                 return
         self._mapped = (pose.x, pose.y, pose.yaw)
-        self.grid.integrate(self.me.now.scan)
+        self.grid.integrate(self.human.now.scan)
 
-    def go(self, goal: Vec2, within: float = 0.0, stop: Callable[[], bool] = never) -> Deed:
+    def go(self, goal: Vec2, within: float = 0.0, stop: Callable[[], bool] = never) -> Behaviour:
         """Walk to ``goal`` [m], or to where it is within ``within`` metres; False when there is no way.
 
-        A way that turns out to be blocked, so that the next one is much longer, is no way either: time to think again.
+        A way that turns out to be blocked, so that the next one is much longer, does not count: time to choose again.
 
         Args:
-            stop: asked before each motion; the walk ends, well, when it says so.
+            stop: checked before each motion; the walk ends successfully when it returns True.
         """
-        self._bumps, budget, here = 0, math.inf, self.me.here
+        self._bumps, budget, here = 0, math.inf, self.human.here
         for _ in range(_REPLANS):
             way = self._way(goal, within)
-            budget, here = budget - math.dist(here, self.me.here), self.me.here
+            budget, here = budget - math.dist(here, self.human.here), self.human.here
             if way is None or way.metres > budget:
                 return False
             budget, bumps = min(budget, _DETOUR * way.metres + _DETOUR_M), self._bumps
@@ -103,19 +133,21 @@ class Walker:
                 return False
         return False
 
-    def _way(self, goal: Vec2, within: float) -> Way | None:
-        """How to get to the goal: where one has been if that is not much farther, else by a doorway, else straight on.
+    def _way(self, goal: Vec2, within: float) -> Route | None:
+        """The way to the goal: over seen floor if that is not much farther, else by a doorway, else straight on.
 
         None when there is no way or a robot stands on the goal.
         """
-        if self._robot is not None and self.me.now.tick <= self._robot_until:
+        if self._robot is not None and self.human.now.tick <= self._robot_until:
             x, y, radius = self._robot
-            if math.dist((x, y), goal) <= radius + self.me.body.radius + within:
+            if math.dist((x, y), goal) <= radius + self.human.body.radius + within:
                 return None
-            return _as_way(_planner_with(self.grid, self.me.body.radius, x, y, radius).path(self.me.here, goal, within))
-        hopeful = _as_way(self.planner.path(self.me.here, goal, within))
+            return _as_way(
+                _planner_with(self.grid, self.human.body.radius, x, y, radius).path(self.human.here, goal, within)
+            )
+        hopeful = _as_way(self.planner.path(self.human.here, goal, within))
         if hopeful is None:
-            return _as_way(self.planner.path(self.me.here, goal, within)) if self._doubted() else None
+            return _as_way(self.planner.path(self.human.here, goal, within)) if self._begin_new_map() else None
         if all(self.grid.seen(a, b) for a, b in pairwise(hopeful.path)):
             return hopeful
         known = self._known(goal, within)
@@ -123,20 +155,20 @@ class Walker:
             return known
         return self._by_doorway(goal, hopeful.metres + _DOORWAY_M) or hopeful
 
-    def _known(self, goal: Vec2, within: float) -> Way | None:
+    def _known(self, goal: Vec2, within: float) -> Route | None:
         """A way over floor that was seen."""
         if within <= 0.0 and self.grid.at(*goal) != FREE:
             return None
         self.planner.optimistic = False
         try:
-            return _as_way(self.planner.path(self.me.here, goal, within))
+            return _as_way(self.planner.path(self.human.here, goal, within))
         finally:
             self.planner.optimistic = True
 
-    def _by_doorway(self, goal: Vec2, most: float) -> Way | None:
-        """The way through the doorway not yet passed that promises the shortest way, ``most`` metres in all."""
-        doors = [door for door in self.memory.doorways.values() if door.sides and not door.spent]
-        here, best = self.me.here, None
+    def _by_doorway(self, goal: Vec2, most: float) -> Route | None:
+        """The shortest way through an unexplored doorway, if it is below ``most`` metres in all."""
+        doors = self.memory.unexplored_doorways()
+        here, best = self.human.here, None
         least = {door.id: math.dist(here, door.beyond) + math.dist(door.beyond, goal) for door in doors}
         for door in sorted(doors, key=lambda door: (least[door.id], door.id)):
             if least[door.id] >= most:
@@ -145,13 +177,13 @@ class Walker:
             path = self.planner.path(here, door.beyond, most=most - rest)
             if path is not None and length(path) + rest < most:
                 most = length(path) + rest
-                best = Way(path=path, metres=most, doorway=door)
+                best = Route(path=path, metres=most, doorway=door)
         return best
 
-    def _follow(self, path: tuple[Vec2, ...], stop: Callable[[], bool]) -> Deed:
+    def _follow(self, path: tuple[Vec2, ...], stop: Callable[[], bool]) -> Behaviour:
         """Walk the path; False when it turns out to be blocked."""
-        me, ahead, left, moves = self.me, list(path), math.inf, 0
-        now, checked = me.now, me.now.tick
+        human, ahead, left, moves = self.human, list(path), math.inf, 0
+        now, checked = human.now, human.now.tick
         while not stop():
             pose = now.pose
             here = pose.x, pose.y
@@ -161,97 +193,91 @@ class Walker:
                 return True
             if now.tick - checked >= _CHECK_TICKS:
                 checked = now.tick
-                if not self._open(ahead):
+                if not self.planner.clear((self.human.here, *ahead)):  # the rest of the way is free no more
                     return False
                 was, left = left, length((here, *ahead))
-                if moves >= _CHECK_TICKS and left > was - _CREEP * moves * self._pace() * me.tick_s:
+                if moves >= _CHECK_TICKS and left > was - _CREEP * moves * self._pace() * human.tick_s:
                     yield from self._give_way(ahead[0])
                     return False
                 moves = 0
-            motion = toward(pose, ahead[0], self._pace() * me.tick_s, _TURN_RAD)
+            motion = toward(pose, ahead[0], self._pace() * human.tick_s, _TURN_RAD)
             if isinstance(motion, Move):
                 yield motion
-                now, moves = me.now, moves + 1
+                now, moves = human.now, moves + 1
                 outcome = now.outcome
                 if outcome is not None and not outcome.ok and outcome.motion == "move":
                     yield from self._give_way(ahead[0])
                     return False
-                self._until_stop -= me.tick_s if self.looking else 0.0
+                self._until_stop -= human.tick_s if self.looking else 0.0
                 if self._until_stop <= 0.0:
                     yield from self._look_aside()
-                    now = me.now
+                    now = human.now
             else:
-                yield self._measured(motion)
-                now = me.now
+                yield self._at_own_rate(motion)
+                now = human.now
         return True
 
     def _pace(self) -> float:
-        return min(self.me.traits.v_pace * self.haste, self.me.body.speed)
+        return min(self.human.traits.v_pace * self.haste, self.human.body.speed)
 
     def _stretch(self) -> float:
         """Seconds under way until the next stop to look."""
-        return -self.me.traits.stop_every * math.log(self.me.draw("stop", self._stops))
+        return -self.human.traits.stop_every * math.log(self.human.draw("stop", self._stops))
 
-    def _look_aside(self) -> Deed:
-        """Stop, look to the side that chance names, and stand a moment."""
-        me, number = self.me, self._stops
+    def _look_aside(self) -> Behaviour:
+        """Stop, look to a random side, and stand a moment."""
+        human, number = self.human, self._stops
         self._stops += 1
         self._until_stop = self._stretch()
-        yield from me.look_round(_ASIDE_RAD * me.draw("aside", number), "stop", number)
-        yield from me.rest(me.traits.stop_s)
+        yield from human.look_round(_ASIDE_RAD * human.draw("aside", number), "stop", number)
+        yield from human.rest(human.traits.stop_s)
         return True
 
-    def _measured(self, motion: Motion) -> Motion:
+    def _at_own_rate(self, motion: Motion) -> Motion:
+        """A turn at the participant's own speed of turning."""
         if isinstance(motion, Rotate):
-            return self.me.turn(motion.yaw, GAZE_PITCH - self.me.now.pose.pitch)
+            return self.human.turn(motion.yaw, GAZE_PITCH - self.human.now.pose.pitch)
         return motion
 
-    def _open(self, ahead: list[Vec2]) -> bool:
-        """Whether the rest of the way still looks free."""
-        return self.planner.clear((self.me.here, *ahead))
-
-    def _bumped(self) -> bool:
-        outcome = self.me.now.outcome
-        return outcome is not None and outcome.motion == "move" and not outcome.ok
-
-    def _give_way(self, ahead: Vec2) -> Deed:
-        """Put furniture that is felt on the map; wait for what moves, then plan round it."""
+    def _give_way(self, ahead: Vec2) -> Behaviour:
+        """Put furniture that was bumped into on the map; wait for a robot, then plan around it."""
         self._bumps += 1
-        outcome = self.me.now.outcome
-        if self._bumped() and outcome is not None and not outcome.by.startswith("robot"):
+        outcome = self.human.now.outcome
+        bumped = outcome is not None and outcome.motion == "move" and not outcome.ok
+        if bumped and outcome is not None and not outcome.by.startswith("robot"):
             self._mark(ahead)
             return True
         obstacle = self._felt(ahead)
         yield Wait(seconds=_POLITE_S)
         if self._bumps > 1:
-            self._robot, self._robot_until = obstacle, self.me.now.tick + round(_AVOID_S / self.me.tick_s)
+            self._robot, self._robot_until = obstacle, self.human.now.tick + round(_AVOID_S / self.human.tick_s)
         return True
 
     def _felt(self, ahead: Vec2) -> tuple[float, float, float]:
-        """Middle and radius [m] of what stands in the way ``ahead``: as large as oneself, as near as a touch."""
-        (x, y), radius = self.me.here, self.me.body.radius
+        """Middle and radius [m] of what stands in the way: taken to be as large as oneself, and to touch the body."""
+        (x, y), radius = self.human.here, self.human.body.radius
         share = 2.0 * radius / max(math.dist((x, y), ahead), 1e-9)
         return (x + share * (ahead[0] - x), y + share * (ahead[1] - y), radius)
 
     def _mark(self, point: Vec2) -> None:
-        """Something that no scan showed stands in the direction of ``point`` [m], in touch with the body."""
-        (x, y), apart = self.me.here, math.dist(self.me.here, point)
+        """Put something that no scan showed on the map, in the direction of ``point`` [m], just beyond the body."""
+        (x, y), apart = self.human.here, math.dist(self.human.here, point)
         if apart > 0.0:
-            share = (self.me.body.radius + 0.05) / apart
+            share = (self.human.body.radius + _FELT_M) / apart
             self.grid.mark_blocked(x + share * (point[0] - x), y + share * (point[1] - y))
 
-    def _doubted(self) -> bool:
-        """Throw a map away that shows no way: what was felt may have gone, what was seen may have been seen badly."""
-        if self.me.now.tick < self._drawn + round(_TRUSTED_S / self.me.tick_s):
+    def _begin_new_map(self) -> bool:
+        """Begin a new map when an old one shows no way: obstacles may have moved. Returns whether it did."""
+        if self.human.now.tick < self._drawn + round(_TRUSTED_S / self.human.tick_s):
             return False
-        self._drawn = self.me.now.tick
-        self._draw_map(*self.me.here)
+        self._drawn = self.human.now.tick
+        self._draw_map(*self.human.here)
         self.sense()
         return True
 
 
-def _as_way(path: tuple[Vec2, ...] | None) -> Way | None:
-    return None if path is None else Way(path=path, metres=length(path))
+def _as_way(path: tuple[Vec2, ...] | None) -> Route | None:
+    return None if path is None else Route(path=path, metres=length(path))
 
 
 def _planner_with(grid: GridMap, radius: float, x: float, y: float, size: float) -> Planner:

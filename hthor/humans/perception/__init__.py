@@ -1,1 +1,1 @@
-"""What a person notices of what is in view."""
+"""What a participant notices of what is in view. Begin with `perception.Eyes`."""

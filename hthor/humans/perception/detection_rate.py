@@ -1,10 +1,8 @@
-"""How fast a person notices what they see, glimpse by glimpse.
+"""How fast a participant notices what is in view.
 
-The rate is lam0 / (1 + (a50 / angle)^2) * exp(-(ecc / ecc_sd)^2 / 2) * share * exp(-clutter * beside). Glimpses
-that come at a rate and succeed independently of one another make the time to notice exponential (Koopman 1956).
-That it is long for what is small, off the middle of the view, half hidden or crowded is the common finding of
-visual search; the form of each factor is a choice. Priors and sources of the parameters stand in
-`hthor.humans.population.parameter_registry`.
+The rate is lam0 / (1 + (a50 / angle)^2) * exp(-(ecc / ecc_sd)^2 / 2) * share * exp(-clutter * beside). Independent
+glimpses at a rate make the time to notice exponential (Koopman 1956). That it is long for what is small, off the middle
+of the view, half hidden or crowded is the common finding of visual search; the form of each factor is our choice.
 """
 
 from __future__ import annotations
@@ -13,14 +11,15 @@ import math
 from functools import cache
 
 from hthor import catalog
-from hthor.humans.memory.subgoals import kind_of
+from hthor.humans.memory.subgoals import object_kind
 from hthor.humans.population.parameters import Parameters
 from hthor.types import Pose, Vec3
 
 _USUAL_M = 0.1
+"""[m] Size of an object of unknown kind. Our choice: what a hand holds."""
 
 
-def rate(traits: Parameters, angle: float, ecc: float, share: float = 1.0, beside: int = 0) -> float:
+def detection_rate(traits: Parameters, angle: float, ecc: float, share: float = 1.0, beside: int = 0) -> float:
     """Rate [1/s] at which a small thing in view is noticed.
 
     Args:
@@ -33,17 +32,17 @@ def rate(traits: Parameters, angle: float, ecc: float, share: float = 1.0, besid
     return traits.lam0 * share / (1.0 + small * small) * math.exp(-0.5 * aside * aside - traits.clutter * beside)
 
 
-def extent(size: Vec3) -> float:
+def apparent_size(size: Vec3) -> float:
     """The size [m] that counts for the eye: the side of a square as large as the largest face of a box."""
     _, middle, longest = sorted(size)
     return math.sqrt(middle * longest)
 
 
 @cache
-def expected(target: str) -> float:
-    """The size [m] that people know things to have of the kind of this object; 0.1 m when it is of no known kind."""
-    kind = kind_of(target)
-    return extent(catalog.kind(kind).size) if kind in catalog.names() else _USUAL_M
+def expected_size(target: str) -> float:
+    """The usual size [m] of objects of this kind, `_USUAL_M` for an unknown kind."""
+    kind = object_kind(target)
+    return apparent_size(catalog.kind(kind).size) if kind in catalog.names() else _USUAL_M
 
 
 class Head:
@@ -57,17 +56,17 @@ class Head:
         self.ahead = flat * math.cos(pose.yaw), flat * math.sin(pose.yaw), math.sin(pose.pitch)
 
     def to(self, point: Vec3) -> tuple[float, float]:
-        """Distance [m] of a point, and how far [rad] it is off the direction of the head."""
+        """Distance [m] of a point, and its angle [rad] off the direction of the head."""
         (x, y, z), (ex, ey, ez), (ux, uy, uz) = point, self.eye, self.ahead
         dx, dy, dz = x - ex, y - ey, z - ez
         far = math.sqrt(dx * dx + dy * dy + dz * dz) or 1e-9
         return far, math.acos(max(-1.0, min(1.0, (dx * ux + dy * uy + dz * uz) / far)))
 
 
-class Outlook:
-    """How fast a thing of ``size`` [m] would be noticed, were it where one looks, alone and in full view.
+class PlaceDetection:
+    """How fast a thing of ``size`` [m] would be noticed at a point, alone and in full view.
 
-    The same as `rate` says, in one go: this is asked of all furniture in view at every glimpse.
+    The same law as `detection_rate`, written for speed: it is evaluated for all furniture in view at every glimpse.
     """
 
     __slots__ = ("_aside", "_most", "_small")

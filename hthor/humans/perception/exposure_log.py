@@ -1,7 +1,7 @@
-"""What the glimpses at each object were like until it was noticed, for the journal.
+"""The glimpses at each object until it was noticed, for the journal.
 
-For a recorder that tells what is in view, this is what a regression needs to estimate the parameters of noticing:
-glimpses that found nothing, and the one that found. Glimpses that are much alike are added up.
+A regression needs them to estimate the parameters of noticing: glimpses without success, and the successful one.
+Similar glimpses are added up.
 """
 
 from __future__ import annotations
@@ -10,11 +10,16 @@ import math
 
 from msgspec import Struct
 
-from hthor.humans.core.trial_context import Subject
+from hthor.humans.core.trial_context import HumanContext
 
-_PER_OCTAVE, _ECC_RAD, _SHARE = 4, 0.1, 0.2
-"""Glimpses are alike when they fall into the same cell of visual angle, eccentricity and share."""
+_PER_OCTAVE = 4
+"""[1/octave] Cells of visual angle into which glimpses are added up. Our choice, for small logs."""
+_ECC_RAD = 0.1
+"""[rad] Width of a cell of eccentricity. Our choice, for small logs."""
+_SHARE = 0.2
+"""[share] Width of a cell of the visible share. Our choice, for small logs."""
 _DIGITS = 4
+"""[digits] Decimals of the means in the journal. Our choice."""
 
 Row = tuple[float, float, float, float, int, int]
 
@@ -35,27 +40,27 @@ class Glimpse(Struct, frozen=True):
 
     @property
     def cell(self) -> tuple[int, int, int, int, bool]:
-        """What this has in common with all that are much like it."""
+        """The cell in which it is added up."""
         angle = math.floor(_PER_OCTAVE * math.log2(max(self.angle, 1e-9)))
         return angle, int(self.ecc / _ECC_RAD), int(self.share / _SHARE), self.beside, self.attended
 
 
-class Exposures:
-    """The glimpses of one trial at what is not noticed yet, each object on its own.
+class ExposureLog:
+    """The glimpses of one trial at objects not noticed yet.
 
-    In the journal they are an event "exposure" with the ``object``, whether it was ``noticed``, the ``seconds`` in
-    view, and ``gathered``: rows [seconds, angle, ecc, share, beside, attended] as `Glimpse` has them, ``attended`` 0
-    or 1, and the means of those that are added up. The last row is the last glimpse alone: the one at which it was
-    noticed. It is written when that happens, or at the end of the trial of what never was.
+    Each object gets one journal event "exposure", when it is noticed or at the end of the trial, with the ``object``,
+    whether it was ``noticed``, the ``seconds`` in view, and ``gathered``: rows [seconds, angle, ecc, share, beside,
+    attended] as in `Glimpse`, means of those that are added up, ``attended`` 0 or 1. The last row is the last glimpse
+    alone, the one at which the object was noticed.
     """
 
-    def __init__(self, me: Subject) -> None:
-        self.me = me
+    def __init__(self, human: HumanContext) -> None:
+        self.human = human
         self._cells: dict[str, dict[tuple[int, int, int, int, bool], list[float]]] = {}
         self._last: dict[str, Glimpse] = {}
 
     def add(self, name: str, glimpse: Glimpse) -> None:
-        """An object was looked at."""
+        """Add a glimpse at an object."""
         last = self._last.get(name)
         if last is not None:
             sums = self._cells.setdefault(name, {}).setdefault(last.cell, [0.0, 0.0, 0.0, 0.0])
@@ -65,7 +70,7 @@ class Exposures:
         self._last[name] = glimpse
 
     def close(self, name: str, noticed: bool) -> None:
-        """Write down the glimpses at one object, if there were any."""
+        """Write the glimpses at one object, if there were any."""
         last = self._last.pop(name, None)
         if last is None:
             return
@@ -73,10 +78,12 @@ class Exposures:
         rows = [_row(cell, sums) for cell, sums in sorted(cells.items())]
         rows.append(_rounded(last.seconds, last.angle, last.ecc, last.share, last.beside, last.attended))
         seconds = round(sum(row[0] for row in rows), _DIGITS)
-        self.me.note("exposure", object=name, noticed=noticed, seconds=seconds, gathered=[list(row) for row in rows])
+        self.human.record(
+            "exposure", object=name, noticed=noticed, seconds=seconds, gathered=[list(row) for row in rows]
+        )
 
     def end(self) -> None:
-        """The trial is over: write down what was in view and never noticed."""
+        """At the end of the trial, write what was in view and never noticed."""
         for name in sorted(self._last):
             self.close(name, noticed=False)
 

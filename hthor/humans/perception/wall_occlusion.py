@@ -1,7 +1,6 @@
-"""Whether a wall that a person knows of is between two points.
+"""Whether a known wall is between two points.
 
-People look over a counter and past a lamp, but not through a wall: of what a scan met, only what reaches higher than
-any furniture counts here.
+People look over a counter and past a lamp, but not through a wall: only what reaches higher than any furniture counts.
 """
 
 from __future__ import annotations
@@ -14,15 +13,13 @@ from hthor.navigation.grid_map import CELL_M, GridMap
 from hthor.types import Vec2
 
 _THICK_M = 0.6 * CELL_M
+"""[m] Half the thickness of a wall on the map. Our choice: a little more than half a cell."""
 _SHORT_M = 0.02
+"""[m] Walls this close to either end of the line do not count. Our choice."""
 
 
 class Walls:
-    """The walls on the map near ``point`` [m], as they are known now.
-
-    Args:
-        reach: farther than this [m] from the point nothing is asked.
-    """
+    """The walls on the map within ``reach`` metres of ``point`` [m]."""
 
     def __init__(self, grid: GridMap, point: Vec2, reach: float) -> None:
         self.point = point

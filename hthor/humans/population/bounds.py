@@ -22,14 +22,14 @@ _LOGITS = ("a0", "a_trust", "a_gain", "a_load", "a_again")
 _MOST_LOGIT = 50.0
 
 
-def of(name: str) -> tuple[float, float]:
+def parameter_range(name: str) -> tuple[float, float]:
     """The least and the greatest value of a parameter, in its unit.
 
     Raises:
         UnknownName: when there is no such parameter.
     """
-    if name not in known():
-        raise UnknownName("parameter", name, known())
+    if name not in parameter_names():
+        raise UnknownName("parameter", name, parameter_names())
     if name in _SHARES or name in _SIGNALS:
         return 0.0, 1.0
     if name in _LOGITS:
@@ -37,20 +37,20 @@ def of(name: str) -> tuple[float, float]:
     return (_LEAST if name in _POSITIVE else 0.0), _MOST
 
 
-def known() -> tuple[str, ...]:
+def parameter_names() -> tuple[str, ...]:
     """Names of all parameters, free and fixed, in the order of `Parameters`."""
     return tuple(field.name for field in fields(Parameters))
 
 
-def problem(name: str, value: float) -> str:
+def range_problem(name: str, value: float) -> str:
     """What is wrong with a value, empty when nothing is."""
-    low, high = of(name)
+    low, high = parameter_range(name)
     if math.isfinite(value) and low <= value <= high:
         return ""
     return f"{value:g} is out of range; {name} lies from {low:g} to {high:g}"
 
 
-def nearest(name: str, value: float) -> float:
+def clamp(name: str, value: float) -> float:
     """The value itself, or the nearest that is possible."""
-    low, high = of(name)
+    low, high = parameter_range(name)
     return min(high, max(low, value))

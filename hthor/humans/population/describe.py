@@ -12,18 +12,17 @@ from hthor.humans.population import population_file
 from hthor.humans.population.distributions import Prior
 from hthor.humans.population.parameter_registry import Grade
 from hthor.humans.population.population import Population, Validity
-from hthor.humans.population.resolve import People
+from hthor.humans.population.resolve import ParticipantSource
 
-LEVELS = (0.05, 0.5, 0.95)
+QUANTILES = (0.05, 0.5, 0.95)
 """Of all quantiles that are told."""
 
 
-class Trait(Struct, frozen=True, kw_only=True):
+class ParameterDescription(Struct, frozen=True, kw_only=True):
     """One free parameter of people.
 
     Attributes:
-        mean: over the population's draws, after what the kind changes; ``quantiles`` at `LEVELS`, ``prior_quantiles``
-            likewise.
+        mean: over the population's draws, after the kind's changes; ``quantiles``, ``prior_quantiles`` at `QUANTILES`.
         person_sd: standard deviation between people [of the logarithm, the logit or the number: ``scale``], mean draw.
         says: whether the data tell anything of it.
     """
@@ -44,7 +43,7 @@ class Trait(Struct, frozen=True, kw_only=True):
     source: str
 
 
-class Changed(Struct, frozen=True, kw_only=True):
+class ParameterChange(Struct, frozen=True, kw_only=True):
     """What a kind of people makes of one parameter; ``before`` and ``after`` are means over the draws."""
 
     parameter: str
@@ -64,12 +63,12 @@ class PopulationDescription(Struct, frozen=True, kw_only=True):
     model: str
     kind: str
     reason: str
-    changes: tuple[Changed, ...]
+    changes: tuple[ParameterChange, ...]
     population: str
     population_sha256: str
     draws: int
     effective_draws: float
-    traits: tuple[Trait, ...]
+    traits: tuple[ParameterDescription, ...]
     fixed: dict[str, float]
     statistics: tuple[str, ...]
     design_effects: dict[str, float]
@@ -80,7 +79,7 @@ class PopulationDescription(Struct, frozen=True, kw_only=True):
     command: str
 
 
-def describe(found: People) -> PopulationDescription:
+def describe_population(found: ParticipantSource) -> PopulationDescription:
     """Everything about these people."""
     whom = _turned(found)
     return PopulationDescription(
@@ -91,7 +90,7 @@ def describe(found: People) -> PopulationDescription:
         kind=found.kind.name if found.kind else "",
         reason=found.kind.reason if found.kind else "",
         changes=_changes(found, whom),
-        population=population_file.called(whom.name),
+        population=population_file.population_name(whom.name),
         population_sha256=found.population.sha256,
         draws=len(whom.draws),
         effective_draws=round(whom.ess, 1),
@@ -107,19 +106,20 @@ def describe(found: People) -> PopulationDescription:
     )
 
 
-def sample(found: People, count: int, seed: int) -> list[dict[str, Any]]:
+def sample_participants(found: ParticipantSource, count: int, seed: int) -> list[dict[str, Any]]:
     """The first participants of the study with this seed: their number and all their parameters."""
     return [
-        {"participant": number, **msgspec.structs.asdict(found.person(seed, number).traits)} for number in range(count)
+        {"participant": number, **msgspec.structs.asdict(found.participant(seed, number).traits)}
+        for number in range(count)
     ]
 
 
-def personal(found: People) -> list[str]:
+def varying_parameters(found: ParticipantSource) -> list[str]:
     """The parameters in which people differ, in order."""
     return [spec.name for spec in found.population.specs if spec.effect]
 
 
-def _turned(found: People) -> Population:
+def _turned(found: ParticipantSource) -> Population:
     """The population after what the kind changes, draw by draw."""
     if found.kind is None:
         return found.population
@@ -130,12 +130,12 @@ def _turned(found: People) -> Population:
     return msgspec.structs.replace(found.population, draws=np.array(draws), fixed=fixed)
 
 
-def _changes(found: People, after: Population) -> tuple[Changed, ...]:
+def _changes(found: ParticipantSource, after: Population) -> tuple[ParameterChange, ...]:
     if found.kind is None:
         return ()
     before, now = found.population.mean(), after.mean()
     return tuple(
-        Changed(
+        ParameterChange(
             parameter=change.parameter,
             verb=change.verb,
             value=change.value,
@@ -147,17 +147,17 @@ def _changes(found: People, after: Population) -> tuple[Changed, ...]:
     )
 
 
-def _traits(whom: Population) -> tuple[Trait, ...]:
-    mean, quantiles = whom.mean(), whom.quantiles(LEVELS)
+def _traits(whom: Population) -> tuple[ParameterDescription, ...]:
+    mean, quantiles = whom.mean(), whom.quantiles(QUANTILES)
     return tuple(
-        Trait(
+        ParameterDescription(
             name=spec.name,
             unit=spec.unit,
             meaning=spec.meaning,
             mean=getattr(mean, spec.name),
             quantiles=tuple(quantiles[:, column].tolist()),
             prior=spec.prior,
-            prior_quantiles=tuple(spec.prior.quantile(level) for level in LEVELS),
+            prior_quantiles=tuple(spec.prior.quantile(level) for level in QUANTILES),
             person_sd=spec.effect * mean.sigma,
             scale=spec.scale if spec.effect else "",
             fitted=spec.fitted,

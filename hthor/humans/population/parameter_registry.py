@@ -13,7 +13,7 @@ from hthor.errors import UnknownName
 from hthor.humans.population.distributions import Beta, HalfNormal, LogNormal, LogUniform, Normal, Prior, Uniform
 from hthor.humans.population.parameters import Parameters
 
-MIND = 1
+PROXY_VERSION = 1
 """Version of the proxy's mind: raised when a person with the same numbers would behave otherwise than before.
 
 Populations fitted to another version are no longer known to fit."""
@@ -183,7 +183,7 @@ PARAMETERS: tuple[Parameter, ...] = (
 """Those that are not fixed, in the order of a population's columns."""
 
 
-def names() -> tuple[str, ...]:
+def free_parameter_names() -> tuple[str, ...]:
     """Names of the free parameters, in order."""
     return tuple(parameter.name for parameter in PARAMETERS)
 
@@ -200,11 +200,11 @@ def parameter(name: str) -> Parameter:
         UnknownName: when there is none.
     """
     if name not in _by_name():
-        raise UnknownName("parameter", name, names())
+        raise UnknownName("parameter", name, free_parameter_names())
     return _by_name()[name]
 
 
-def from_unit(point: tuple[float, ...] | list[float]) -> Parameters:
+def parameters_at(point: tuple[float, ...] | list[float]) -> Parameters:
     """The population at a point of the unit cube: each coordinate is a quantile of its parameter's prior."""
     values = {p.name: p.prior.quantile(u) for p, u in zip(PARAMETERS, point, strict=True) if p.prior is not None}
     return Parameters(**values)
@@ -215,12 +215,12 @@ def to_unit(population: Parameters) -> tuple[float, ...]:
     return tuple(p.prior.cdf(getattr(population, p.name)) for p in PARAMETERS if p.prior is not None)
 
 
-def physical(points: Any) -> Any:
+def from_quantiles(points: Any) -> Any:
     """Populations at points of the unit cube, in physical units: (N, P) to (N, P), see `from_unit`."""
     return _by_column(points, [p.prior.quantile for p in PARAMETERS if p.prior is not None])
 
 
-def unit(values: Any) -> Any:
+def to_quantiles(values: Any) -> Any:
     """Quantiles of populations in their priors: the inverse of `physical`."""
     return _by_column(values, [p.prior.cdf for p in PARAMETERS if p.prior is not None])
 

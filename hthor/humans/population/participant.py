@@ -1,4 +1,4 @@
-"""One person: who they are, and how chance treats them."""
+"""One participant: who they are, and the roots of their random numbers."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ from hthor import seeds
 from hthor.humans.population.parameters import Parameters
 
 
-class Person(Struct, frozen=True, kw_only=True):
-    """Participant number ``participant`` of the study with this ``seed``, with these ``traits``.
+class Participant(Struct, frozen=True, kw_only=True):
+    """Participant ``number`` of the study with this ``seed``, with these ``traits``.
 
-    The same seed and number out of the same population are the same person, whoever they meet.
+    The same seed and number from the same population are the same participant, whichever robots they meet.
     """
 
     seed: int
-    participant: int
+    number: int
     traits: Parameters = Parameters()
 
     @property
     def root(self) -> int:
-        """Root of everything that chance decides about this person; never depends on the robots."""
-        return root(self.seed, self.participant)
+        """Root of all random numbers of this participant; never depends on the robots."""
+        return participant_root(self.seed, self.number)
 
-    def trial(self, index: int) -> int:
-        """Root of the chances of this person's trial number ``index``."""
+    def trial_root(self, index: int) -> int:
+        """Root of the random numbers of trial ``index``, from 0."""
         return seeds.derive(self.root, "trial", index)
 
 
-def root(seed: int, participant: int) -> int:
-    """Root of all chances of a participant of a study."""
-    return seeds.derive(seed, "participant", participant)
+def participant_root(seed: int, number: int) -> int:
+    """Root of all random numbers of participant ``number`` of a study."""
+    return seeds.derive(seed, "participant", number)

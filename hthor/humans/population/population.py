@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import bisect
 import hashlib
+import io
+import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
-from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
 import numpy as np
 from msgspec import Struct
+from numpy.typing import NDArray
 
 from hthor import jsonio, rules, seeds
 from hthor.humans.population import bounds, parameter_registry, participant, random_effects
@@ -23,12 +25,18 @@ from hthor.humans.population.distributions import Prior
 from hthor.humans.population.parameter_registry import Grade
 from hthor.humans.population.parameters import Parameters
 
-IDENTIFIED, WEAKLY = 0.4, 0.1
-"""Least contraction (1 - variance of the posterior / variance of the prior, in quantiles of the prior) of a parameter
-that is called identified, and weakly so. Sampling alone makes some .05 of it."""
+Floats = NDArray[np.float64]
+
+IDENTIFIED_FROM = 0.4
+"""[ratio] Least contraction (1 - variance of posterior / variance of prior, in quantiles of the prior) of a parameter
+that is called identified. Our choice."""
+WEAKLY_IDENTIFIED_FROM = 0.1
+"""[ratio] Least contraction of a parameter that is called weakly identified. Our choice: sampling makes some .05."""
+_EARLIEST = (1980, 1, 1, 0, 0, 0)
+"""[date] That of every file in an archive, so that equal populations are equal bytes. Source: the ZIP format."""
 
 
-class Spec(Struct, frozen=True, kw_only=True):
+class PopulationColumn(Struct, frozen=True, kw_only=True):
     """One column of a population: what `hthor.humans.population.parameter_registry.Parameter` says of it, and what the
     data told.
 
@@ -50,16 +58,16 @@ class Spec(Struct, frozen=True, kw_only=True):
     @property
     def word(self) -> str:
         """Whether the data say anything of it."""
-        if self.contraction >= IDENTIFIED:
+        if self.contraction >= IDENTIFIED_FROM:
             return "identified"
-        return "weakly identified" if self.contraction >= WEAKLY else "not identified"
+        return "weakly identified" if self.contraction >= WEAKLY_IDENTIFIED_FROM else "not identified"
 
 
 class Validity(Struct, frozen=True, kw_only=True):
     """What a population was fitted to and with: elsewhere it is not known to fit. Empty where it was fitted to nothing.
 
     Attributes:
-        simulation: `hthor.rules.SIMULATION`; ``mind``: `hthor.humans.population.parameter_registry.MIND`.
+        simulation: `hthor.rules.SIMULATION`; ``mind``: `hthor.humans.population.parameter_registry.PROXY_VERSION`.
         settings: what was set by hand and bears on the fit: the robot's name, speed, ranges and detector.
     """
 
@@ -68,7 +76,7 @@ class Validity(Struct, frozen=True, kw_only=True):
     targets: str = ""
     targets_sha256: str = ""
     simulation: int = rules.SIMULATION
-    mind: int = parameter_registry.MIND
+    mind: int = parameter_registry.PROXY_VERSION
     rules_sha256: str = msgspec.field(default_factory=rules.sha256)
     settings: dict[str, str | float] = {}
 
@@ -89,7 +97,7 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
 
     name: str
     purpose: str
-    specs: tuple[Spec, ...]
+    specs: tuple[PopulationColumn, ...]
     draws: Any
     log_weight: Any
     fixed: dict[str, float]
@@ -106,7 +114,7 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
         return f"Population({self.name!r}, {len(self.draws)} draws, {self.sha256[:10]})"
 
     @staticmethod
-    def of(
+    def make(
         name: str,
         draws: Any,
         log_weight: Any = None,
@@ -133,10 +141,10 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
         Raises:
             ValueError: when shapes do not fit, a value is out of its parameter's range, or no weight is left.
         """
-        columns = parameter_registry.names() if names is None else tuple(names)
+        columns = parameter_registry.free_parameter_names() if names is None else tuple(names)
         table = np.array(draws, dtype=np.float64)
         raw = np.zeros(len(table)) if log_weight is None else np.array(log_weight, dtype=np.float64)
-        if problem := trouble(columns, table, raw):
+        if problem := array_problem(columns, table, raw):
             raise ValueError(f"{problem[0]}: {problem[1]}")
         top = float(raw.max())
         weight = raw - (top + float(np.log(np.exp(raw - top).sum())))
@@ -157,21 +165,6 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
             validity=validity or Validity(),
         )
 
-    @staticmethod
-    def load(name_or_path: str | Path) -> Population:
-        """A population that ships with hthor, by name, or one from its files; see
-        `hthor.humans.population.population_file`.
-        """
-        from hthor.humans.population import population_file
-
-        return population_file.load(name_or_path)
-
-    def save(self, path: str | Path) -> Path:
-        """Write the two files, each in one step; the same population gives the same bytes. Returns the JSON's path."""
-        from hthor.humans.population import population_file
-
-        return population_file.save(self, Path(path))
-
     @property
     def names(self) -> tuple[str, ...]:
         """The columns of the draws."""
@@ -190,9 +183,7 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
     @cached_property
     def arrays(self) -> bytes:
         """The NPZ file's bytes."""
-        from hthor.humans.population import population_file
-
-        return population_file.pack(self.names, self.draws, self.log_weight)
+        return _pack(self.names, self.draws, self.log_weight)
 
     @cached_property
     def sha256(self) -> str:
@@ -211,17 +202,21 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
 
     def pick(self, seed: int, index: int) -> int:
         """The draw of participant ``index`` of the study with this seed."""
-        mark = seeds.draw(participant.root(seed, index), "population")
+        mark = seeds.draw(participant.participant_root(seed, index), "population")
         return min(bisect.bisect_right(self._cumulated, mark * self._cumulated[-1]), len(self._cumulated) - 1)
 
-    def person(self, seed: int, index: int, change: Callable[[Parameters], Parameters] | None = None) -> Parameters:
+    def draw_traits(
+        self, seed: int, index: int, change: Callable[[Parameters], Parameters] | None = None
+    ) -> Parameters:
         """Participant ``index`` of the study with this seed: their draw, and their random effects upon it.
 
         Args:
             change: what becomes of the draw before that, for people of a kind of their own.
         """
         mean = self.parameters(self.pick(seed, index))
-        return random_effects.individual(change(mean) if change else mean, participant.root(seed, index), self.specs)
+        return random_effects.add_random_effects(
+            change(mean) if change else mean, participant.participant_root(seed, index), self.specs
+        )
 
     def mean(self) -> Parameters:
         """The weighted mean of the draws."""
@@ -241,7 +236,23 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
         return list(np.cumsum(self.weights).tolist())
 
 
-def trouble(names: Sequence[str], draws: Any, log_weight: Any) -> tuple[str, str] | None:
+def _pack(names: tuple[str, ...], draws: Floats, log_weight: Floats) -> bytes:
+    """An NPZ archive of these arrays, always the same bytes: stored, and without a date."""
+    arrays = {
+        "draws": draws.astype("<f8"),
+        "log_weight": log_weight.astype("<f8"),
+        "names": np.array(names, dtype="<U32"),
+    }
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        for name, array in arrays.items():
+            member = io.BytesIO()
+            np.lib.format.write_array(member, np.ascontiguousarray(array), version=(1, 0), allow_pickle=False)
+            archive.writestr(zipfile.ZipInfo(f"{name}.npy", _EARLIEST), member.getvalue())
+    return file.getvalue()
+
+
+def array_problem(names: Sequence[str], draws: Any, log_weight: Any) -> tuple[str, str] | None:
     """What is wrong with a population's arrays: the field and the problem; None when nothing is."""
     if draws.ndim != 2 or draws.shape[1] != len(names) or not len(draws):
         return "draws", f"the shape is {draws.shape}; expected one row or more of {len(names)} columns"
@@ -251,18 +262,18 @@ def trouble(names: Sequence[str], draws: Any, log_weight: Any) -> tuple[str, str
         return "log_weight", "every weight must be a number below infinity, and one at least above minus infinity"
     for column, name in enumerate(names):
         for row in np.unique([draws[:, column].argmin(), draws[:, column].argmax()]).tolist():
-            if problem := bounds.problem(name, float(draws[row, column])):
+            if problem := bounds.range_problem(name, float(draws[row, column])):
                 return f"draws[{row}].{name}", problem
     return None
 
 
-def _spec(name: str, values: Any, log_weight: Any) -> Spec:
+def _spec(name: str, values: Any, log_weight: Any) -> PopulationColumn:
     known = parameter_registry.parameter(name)
     if known.prior is None:
         raise ValueError(f"names: '{name}' has no prior, so it cannot be a column")
     weight, quantiles = np.exp(log_weight), np.array([known.prior.cdf(value) for value in values.tolist()])
     mean = float(weight @ quantiles)
-    return Spec(
+    return PopulationColumn(
         name=name,
         unit=known.unit,
         meaning=known.meaning,

@@ -17,21 +17,20 @@ from msgspec import Struct
 
 from hthor import documents, jsonio
 from hthor.errors import PopulationError, UnknownName
-from hthor.humans.population import bounds
+from hthor.humans.population import bounds, prior_population
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.population import Population, Spec, Validity, trouble
+from hthor.humans.population.population import Population, PopulationColumn, Validity, array_problem
 
 SCHEMA = "hthor.population/1"
 FOLDER = Path(__file__).parents[1] / "populations"
-MADE = "literature"
+PRIOR_POPULATION = "literature"
 """The population that is no file: it is drawn from the priors of now."""
-CALIBRATED = "study"
+CALIBRATED_POPULATION = "study"
 """The population that is calibrated to the published user study."""
-_STEMS = {CALIBRATED: "paper"}
+_STEMS = {CALIBRATED_POPULATION: "paper"}
 """Files of populations that are called otherwise than their files, whose bytes and hashes stay; both words are read."""
 _ROUNDING = 1e-6
 """How far from 1 a file's weights may add up."""
-_EARLIEST = (1980, 1, 1, 0, 0, 0)
 _DAMAGED = (
     "it was changed or cut off after it was written; restore both files, or make them again with 'hthor calibrate'"
 )
@@ -51,7 +50,7 @@ class Document(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     schema: str = SCHEMA
     name: str
     purpose: str
-    parameters: tuple[Spec, ...]
+    parameters: tuple[PopulationColumn, ...]
     fixed: dict[str, float]
     statistics: tuple[str, ...]
     design_effects: dict[str, float]
@@ -65,22 +64,22 @@ class Document(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 def names() -> tuple[str, ...]:
     """The populations that come with hthor."""
-    return tuple(sorted({MADE, *(called(path.stem) for path in FOLDER.glob("*.json"))}))
+    return tuple(sorted({PRIOR_POPULATION, *(population_name(path.stem) for path in FOLDER.glob("*.json"))}))
 
 
-def called(name: str) -> str:
+def population_name(name: str) -> str:
     """What a population of this name, or of this file's stem, is called."""
     return next((word for word, stem in _STEMS.items() if stem == name), name)
 
 
-def load(name_or_path: str | Path) -> Population:
+def load_population(name_or_path: str | Path) -> Population:
     """A population by name, or from its files, of which either is named; the other lies beside it.
 
     Raises:
         UnknownName: when no population has that name.
         PeopleError: when a file is missing, damaged or not a population's, or a value is out of its range.
     """
-    word = called(str(name_or_path))
+    word = population_name(str(name_or_path))
     if word in names():
         return _shipped(word)
     path = Path(word)
@@ -89,7 +88,7 @@ def load(name_or_path: str | Path) -> Population:
     return _read(path.with_suffix(".json"))
 
 
-def save(population: Population, path: Path) -> Path:
+def save_population(population: Population, path: Path) -> Path:
     """Write PATH.npz and PATH.json; the JSON last, as it is what names the other by its hash."""
     path = path.with_suffix("") if path.suffix in (".npz", ".json") else path
     data = population.arrays
@@ -114,28 +113,10 @@ def save(population: Population, path: Path) -> Path:
     return written
 
 
-def pack(names: tuple[str, ...], draws: Any, log_weight: Any) -> bytes:
-    """An NPZ archive of these arrays, always the same bytes."""
-    held = {
-        "draws": draws.astype("<f8"),
-        "log_weight": log_weight.astype("<f8"),
-        "names": np.array(names, dtype="<U32"),
-    }
-    file = io.BytesIO()
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
-        for name, array in held.items():
-            member = io.BytesIO()
-            np.lib.format.write_array(member, np.ascontiguousarray(array), version=(1, 0), allow_pickle=False)
-            archive.writestr(zipfile.ZipInfo(f"{name}.npy", _EARLIEST), member.getvalue())
-    return file.getvalue()
-
-
 @cache
 def _shipped(name: str) -> Population:
-    if name == MADE:
-        from hthor.humans.population import prior_population
-
-        return prior_population.population()
+    if name == PRIOR_POPULATION:
+        return prior_population.make_prior_population()
     return _read(FOLDER / f"{_STEMS.get(name, name)}.json")
 
 
@@ -144,7 +125,7 @@ def _read(path: Path) -> Population:
     numbers = path.with_suffix(".npz")
     draws, log_weight = _arrays(numbers, document)
     columns = [spec.name for spec in document.parameters]
-    known = bounds.known()
+    known = bounds.parameter_names()
     given = (*columns, *document.fixed)
     for field, name in (*(("parameters", name) for name in columns), *(("fixed", name) for name in document.fixed)):
         if name not in known:
@@ -154,9 +135,9 @@ def _read(path: Path) -> Population:
         if given.count(name) > 1:
             raise PopulationError(str(path), field, f"'{name}' is there twice")
     for name, value in document.fixed.items():
-        if problem := bounds.problem(name, value):
+        if problem := bounds.range_problem(name, value):
             raise PopulationError(str(path), f"fixed.{name}", problem)
-    if found := trouble(columns, draws, log_weight):
+    if found := array_problem(columns, draws, log_weight):
         raise PopulationError(str(numbers), *found)
     with np.errstate(over="ignore"):
         total = float(np.exp(log_weight).sum())

@@ -15,12 +15,14 @@ _NOTES = (
 )
 
 
-def population() -> Population:
+def make_prior_population() -> Population:
     """The same number of draws from each stratum of every prior, the strata of different parameters mixed."""
-    orders = [seeds.shuffled(DRAWS, _ROOT, name) for name in parameter_registry.names()]
+    orders = [seeds.shuffled(DRAWS, _ROOT, name) for name in parameter_registry.free_parameter_names()]
     points = [[(order[row] + 0.5) / DRAWS for order in orders] for row in range(DRAWS)]
-    draws = [[float(f"{value:.{_DIGITS}g}") for value in row] for row in parameter_registry.physical(points).tolist()]
-    return Population.of(
+    draws = [
+        [float(f"{value:.{_DIGITS}g}") for value in row] for row in parameter_registry.from_quantiles(points).tolist()
+    ]
+    return Population.make(
         "literature",
         draws,
         purpose="people drawn from the priors, fitted to nothing",

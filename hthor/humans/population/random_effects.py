@@ -16,7 +16,7 @@ _LEAST_SHARE = 1e-3
 """A share is kept so far from 0 and 1, where its logit has no value."""
 
 
-class Effect(Protocol):
+class RandomEffect(Protocol):
     """How far people are from their population's mean in one parameter: see
     `hthor.humans.population.parameter_registry.Parameter`.
     """
@@ -29,7 +29,7 @@ class Effect(Protocol):
     def scale(self) -> str: ...
 
 
-def individual(population: Parameters, root: int, effects: Iterable[Effect] = PARAMETERS) -> Parameters:
+def add_random_effects(population: Parameters, root: int, effects: Iterable[RandomEffect] = PARAMETERS) -> Parameters:
     """The population's parameters with the random effects of the person whose chances have this ``root``."""
     own: dict[str, float] = {}
     for parameter in effects:
@@ -39,7 +39,7 @@ def individual(population: Parameters, root: int, effects: Iterable[Effect] = PA
     return msgspec.structs.replace(population, **own)
 
 
-def practised(traits: Parameters, index: int) -> Parameters:
+def with_practice(traits: Parameters, index: int) -> Parameters:
     """The same person in their trial number ``index``, from 0: brisker with practice.
 
     What is new to people is the stick, the controllers and the search: pace, handling and dwelling get quicker. They

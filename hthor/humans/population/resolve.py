@@ -16,8 +16,8 @@ from msgspec import Struct
 from hthor import documents, jsonio, plugins
 from hthor.errors import PopulationError, UnknownName
 from hthor.humans.population import kinds, population_file
-from hthor.humans.population.kinds import Kind
-from hthor.humans.population.participant import Person
+from hthor.humans.population.kinds import PopulationKind
+from hthor.humans.population.participant import Participant
 from hthor.humans.population.population import Population
 
 PROXY = "proxy"
@@ -26,7 +26,7 @@ _SORT = "human model"
 _HINT = "Or give a path: pop.npz of a population, my_kind.json of a kind of people, my_human.py of a human model."
 
 
-class People(Struct, frozen=True, kw_only=True, eq=False):
+class ParticipantSource(Struct, frozen=True, kw_only=True, eq=False):
     """People of one sort.
 
     Attributes:
@@ -45,36 +45,40 @@ class People(Struct, frozen=True, kw_only=True, eq=False):
     model: str
     source: str
     population: Population
-    kind: Kind | None
+    kind: PopulationKind | None
     sha256: str
 
-    def person(self, seed: int, participant: int) -> Person:
+    def participant(self, seed: int, participant: int) -> Participant:
         """Participant number ``participant`` of the study with this seed; the robots have no part in who that is.
 
         A model whose class says ``alike = True`` knows no differences between people: everybody is the mean.
         """
         if self.model != PROXY and getattr(plugins.load(_SORT, self.model), "alike", False):
-            return Person(seed=seed, participant=participant, traits=self.population.mean())
+            return Participant(seed=seed, number=participant, traits=self.population.mean())
         change = self.kind.change if self.kind is not None else None
-        return Person(seed=seed, participant=participant, traits=self.population.person(seed, participant, change))
+        return Participant(seed=seed, number=participant, traits=self.population.draw_traits(seed, participant, change))
 
-    def make(self, seed: int, participant: int) -> Any:
+    def make_model(self, seed: int, participant: int) -> Any:
         """The human model of that person, before their first trial."""
-        model, who = plugins.load(_SORT, self.model), self.person(seed, participant)
+        model, who = plugins.load(_SORT, self.model), self.participant(seed, participant)
         return model(who, source=self.source) if self.source else model(who)
 
 
-def default() -> str:
+def default_population() -> str:
     """The population that people are of where none is named."""
-    return population_file.CALIBRATED if population_file.CALIBRATED in population_file.names() else population_file.MADE
+    return (
+        population_file.CALIBRATED_POPULATION
+        if population_file.CALIBRATED_POPULATION in population_file.names()
+        else population_file.PRIOR_POPULATION
+    )
 
 
-def names() -> tuple[str, ...]:
+def human_names() -> tuple[str, ...]:
     """Every word that stands for people without being a path: populations, kinds, models."""
     return (*population_file.names(), *kinds.names(), *plugins.names(_SORT))
 
 
-def find(word: str) -> People:
+def resolve_humans(word: str) -> ParticipantSource:
     """The people that a word stands for.
 
     Raises:
@@ -82,21 +86,23 @@ def find(word: str) -> People:
         PeopleError: when a file of people cannot be used.
         HthorError: when a human model's file does not load.
     """
-    word = "@".join(map(population_file.called, word.split("@")))
+    word = "@".join(map(population_file.population_name, word.split("@")))
     left, base = _split(word)
     if left in population_file.names() or left.endswith(".npz") or _schema(left) == population_file.SCHEMA:
         if base is not None:
             raise PopulationError(word, "@", f"'{left}' is a population itself; write a kind or a model before the @")
-        return _people(word, left, PROXY, "", Population.load(left), None)
+        return _people(word, left, PROXY, "", population_file.load_population(left), None)
     if left in kinds.names() or left.endswith(".json"):
         kind = kinds.load(left)
-        return _people(word, left, PROXY, "", base or Population.load(kind.base or default()), kind)
+        return _people(
+            word, left, PROXY, "", base or population_file.load_population(kind.base or default_population()), kind
+        )
     model, _, source = (left, "", "") if left.endswith(".py") else left.partition(":")
     if model not in plugins.names(_SORT) and not model.endswith(".py"):
-        raise UnknownName("people", word, names(), _HINT)
+        raise UnknownName("people", word, human_names(), _HINT)
     if model.endswith(".py"):
         plugins.load(_SORT, model)  # now, not in the middle of a run
-    return _people(word, left, model, source, base or Population.load(default()), None)
+    return _people(word, left, model, source, base or population_file.load_population(default_population()), None)
 
 
 def _split(word: str) -> tuple[str, Population | None]:
@@ -108,10 +114,12 @@ def _split(word: str) -> tuple[str, Population | None]:
                 "population", right, population_file.names(), "After the @ comes a population or its file."
             )
         return word, None
-    return left, Population.load(right)
+    return left, population_file.load_population(right)
 
 
-def _people(word: str, left: str, model: str, source: str, population: Population, kind: Kind | None) -> People:
+def _people(
+    word: str, left: str, model: str, source: str, population: Population, kind: PopulationKind | None
+) -> ParticipantSource:
     made = {
         "model": model if not model.endswith(".py") else plugins.sha256(model),
         "population": "" if source else population.sha256,
@@ -119,7 +127,7 @@ def _people(word: str, left: str, model: str, source: str, population: Populatio
         "ingredients": _ingredients(model, source),
     }
     digest = jsonio.sha256(made)
-    return People(
+    return ParticipantSource(
         name="@".join(_named(part, digest) for part in _parts(word, left)),
         word="@".join(_anywhere(part) for part in _parts(word, left)),
         purpose=_purpose(left, model, population, kind),
@@ -134,11 +142,11 @@ def _people(word: str, left: str, model: str, source: str, population: Populatio
 def _named(word: str, digest: str) -> str:
     """What to call these people: a file that is called like people of ours goes by its hash too, as it is not them."""
     name = _plain(word)
-    own = word in names() or not word.endswith((".npz", ".json", ".py"))
-    return name if own or name not in names() else f"{name}-{digest[:6]}"
+    own = word in human_names() or not word.endswith((".npz", ".json", ".py"))
+    return name if own or name not in human_names() else f"{name}-{digest[:6]}"
 
 
-def _purpose(left: str, model: str, population: Population, kind: Kind | None) -> str:
+def _purpose(left: str, model: str, population: Population, kind: PopulationKind | None) -> str:
     if kind is not None:
         return kind.purpose
     return plugins.summary(_SORT, model) if left.partition(":")[0] == model else population.purpose

@@ -1,1 +1,1 @@
-"""Where a person looks next."""
+"""Where a participant searches next. Begin with `option_choice`; `exploration` carries the choices out."""

@@ -1,4 +1,4 @@
-"""How a person looks for something: doorways, rooms, furniture one by one."""
+"""How a participant searches the house: doorways, rooms, furniture one by one."""
 
 from __future__ import annotations
 
@@ -7,78 +7,93 @@ from collections.abc import Callable, Generator
 from functools import partial
 
 from hthor.geometry.plane import to_house
-from hthor.humans.core.trial_context import Deed, Subject
-from hthor.humans.memory.spatial_memory import Memory, Place
+from hthor.humans.core.trial_context import Behaviour, HumanContext
+from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.humans.motor.locomotion import Walker, never
 from hthor.humans.motor.manipulation import Hands
 from hthor.humans.perception.perception import Eyes
-from hthor.humans.search.option_choice import Option, Search
+from hthor.humans.search.option import Option
+from hthor.humans.search.option_choice import OptionChoice
 from hthor.navigation.frontier import frontiers
 from hthor.types import Motion, Open, Vec2, Vec3, Wait
 
 _INSIDE_M = 0.5
-_SWEEP_RAD = 1.0
-_NEXT = 0.6
+"""[m] So far into a room people have entered it, and so near to a doorway's far side they have passed. Our choice."""
+_GAZE_WIDTH_RAD = 1.0
+"""[rad] Width of furniture that one gaze takes in; a wider piece is looked at part by part. Our choice."""
+_GAZE_SLACK = 0.3
+"""[gazes] A piece may be wider than its gazes take in by this share of one. Our choice."""
+_TABLE_M = 1.3
+"""[m] Open furniture lower than this is looked at on top, anything higher in the middle. Our choice: below the eyes."""
+_PART_SHARE = 0.6
+"""[ratio] Share of t_dwell for each part of a piece that is looked at part by part. Our choice."""
 _PAUSE_S = 0.3
-_BESIDE_M, _ROAM_S = 1.0, 40.0
+"""[s] A pause when nothing else could be done, such as before a blocked doorway. Our choice."""
+_BESIDE_M = 1.0
+"""[m] People stop this near to a place on the map that they make for. Our choice."""
+_ROAM_S = 40.0
+"""[s] So long people try to get near a place on the map before they give it up. Our choice."""
+_EXPOSURE_UNREACHED = 1.0
+"""[exposure] Added to a place that cannot be reached, so that others come first. Our choice."""
+_MAX_FAILURES = 1
+"""[count] Failed attempts at a doorway after which it counts as passed: more than this. Our choice."""
 
 
-class Exploring:
-    """Going through the house. ``fresh`` is where a room was entered that was not looked round in yet."""
+class Exploration:
+    """Carries out a search. ``fresh`` is where a room was entered that was not looked round in yet [m]."""
 
-    def __init__(self, me: Subject, eyes: Eyes, memory: Memory, walker: Walker, hands: Hands) -> None:
-        self.me, self.eyes, self.memory, self.walker, self.hands = me, eyes, memory, walker, hands
+    def __init__(self, human: HumanContext, eyes: Eyes, memory: SpatialMemory, walker: Walker, hands: Hands) -> None:
+        self.human, self.eyes, self.memory, self.walker, self.hands = human, eyes, memory, walker, hands
         self.fresh: Vec2 | None = None
         self._turns = 0
 
-    def look_for(self, search: Search, enough: Callable[[], bool]) -> Deed:
-        """Do what ``search`` chooses, one thing after the other, until it is ``enough``."""
+    def look_for(self, search: OptionChoice, enough: Callable[[], bool]) -> Behaviour:
+        """Carry out what ``search`` chooses, one option after the other, until ``enough``."""
         while not enough():
             if self.fresh is not None:
                 self.fresh = None
-                yield from self.look_round(self.me.traits.scan)
+                yield from self.look_round(self.human.traits.scan)
                 continue
-            option, since = search.choose(), self.me.now.tick
+            option, since = search.choose(), self.human.now.tick
             if option is None:
                 yield from self._wander(search, enough)
             elif option.place is not None:
-                yield from self._inspect(option.place, option.spot, partial(search.done, option.place))
+                yield from self._inspect(option.place, option.spot, partial(search.is_done, option.place))
             else:
                 yield from self._pass(option, enough)
-            if self.me.now.tick == since:
+            if self.human.now.tick == since:
                 yield Wait(seconds=_PAUSE_S)
         return True
 
-    def make_for(self, point: Vec3, known: Callable[[], bool], search: Search) -> Deed:
+    def make_for(self, point: Vec3, known: Callable[[], bool], search: OptionChoice) -> Behaviour:
         """Go near a point [m] until what is there is ``known`` by sight.
 
-        When it is not, it is in another room: by a doorway not gone through yet, or one entered elsewhere, whichever
-        comes closer to it; and so on for a while.
+        As long as it is not, it must be in another room: go through the doorway, or back to the room, whose entrance is
+        nearest to it; and so on for a while.
         """
-        until = self.me.now.tick + round(_ROAM_S / self.me.tick_s)
+        until = self.human.now.tick + round(_ROAM_S / self.human.tick_s)
         tried: list[str] = []
 
         def enough() -> bool:
-            return known() or self.me.now.tick >= until
+            return known() or self.human.now.tick >= until
 
         while not enough():
-            since = self.me.now.tick
-            tried.append(self.me.now.room)
+            since = self.human.now.tick
+            tried.append(self.human.now.room)
             yield from self.walker.go((point[0], point[1]), within=_BESIDE_M, stop=enough)
-            self.fresh, option = None, self._elsewhere(point, tried)
+            self.fresh, option = None, self._other_room(point, tried)
             if option is not None and not enough():
                 tried.append(option.name)
                 yield from self._pass(option, enough)
-                yield from self._take_in(enough)
-            if option is None or self.me.now.tick == since:
+                yield from self._look_round_if_new(enough)
+            if option is None or self.human.now.tick == since:
                 yield from self.look_for(search, enough)
         return known()
 
-    def _take_in(self, enough: Callable[[], bool]) -> Deed:
-        """Look round in a room that was entered just now."""
-        return (yield from self._sweep(enough)) if self.fresh is not None else True
+    def _look_round_if_new(self, enough: Callable[[], bool]) -> Behaviour:
+        return (yield from self._look_round_unless(enough)) if self.fresh is not None else True
 
-    def _elsewhere(self, point: Vec3, tried: list[str]) -> Option | None:
+    def _other_room(self, point: Vec3, tried: list[str]) -> Option | None:
         """The entrance to another room that is nearest to a point as the crow flies."""
         doors = [door for door in self.memory.doorways.values() if door.sides and not door.passed]
         ways = [Option(name=door.id, value=0.0, spot=door.beyond, doorway=door) for door in doors]
@@ -86,98 +101,98 @@ class Exploring:
         left = [option for option in ways if option.name not in tried]
         return min(left, key=lambda option: (math.dist(option.spot, point[:2]), option.name), default=None)
 
-    def _pass(self, option: Option, enough: Callable[[], bool]) -> Deed:
+    def _pass(self, option: Option, enough: Callable[[], bool]) -> Behaviour:
         """Go through a doorway."""
-        arrived = yield from self.walker.go(option.spot, stop=lambda: self._inside() or enough())
+        arrived = yield from self.walker.go(option.spot, stop=lambda: self._is_inside() or enough())
         doorway = option.doorway
         if doorway is not None:
             doorway.failures += not arrived
-            if doorway.failures > 1 or math.dist(self.me.here, option.spot) < _INSIDE_M:
+            if doorway.failures > _MAX_FAILURES or math.dist(self.human.here, option.spot) < _INSIDE_M:
                 doorway.passed = True
         return arrived
 
-    def _inspect(self, place: Place, spot: Vec2, plain: Callable[[], bool] = never) -> Deed:
-        """Go to a place and look at all of it, or pass it by once it is ``plain`` on the way that nothing is there."""
-        me, memory = self.me, self.memory
+    def _inspect(self, place: KnownPlace, spot: Vec2, is_done: Callable[[], bool] = never) -> Behaviour:
+        """Go to a place and look at all of it, or pass it by once it ``is_done`` on the way."""
+        human, memory = self.human, self.memory
         self.eyes.attention = place
-        arrived = yield from self.walker.go(spot, stop=lambda: self._inside() or plain())
-        if arrived and (plain() or self._inside()):
+        arrived = yield from self.walker.go(spot, stop=lambda: self._is_inside() or is_done())
+        if arrived and (is_done() or self._is_inside()):
             self.eyes.attention = None
             return True
         if not arrived:
-            memory.expose(place, 1.0, me.now.tick)
+            memory.expose(place, _EXPOSURE_UNREACHED, human.now.tick)
             self.eyes.attention = None
             return False
         if place.state != "closed" or not (yield from self.open(place)):
-            gazes = _gazes(place, me.here)
+            gazes = _gazes(place, human.here)
             for gaze in gazes:
-                yield from me.look_at(gaze)
-                yield from me.rest(me.traits.t_dwell * (1.0 if len(gazes) == 1 else _NEXT))
-        memory.expose(place, me.traits.e_done, me.now.tick)
+                yield from human.look_at(gaze)
+                yield from human.rest(human.traits.t_dwell * (1.0 if len(gazes) == 1 else _PART_SHARE))
+        memory.expose(place, human.traits.e_done, human.now.tick)
         self.eyes.attention = None
         return True
 
-    def open(self, place: Place) -> Generator[Motion, None, str]:
-        """Open the place; returns why not, empty when it worked."""
-        yield from self.me.look_at(place.centre)
+    def open(self, place: KnownPlace) -> Generator[Motion, None, str]:
+        """Open the place; returns the reason of a failure, empty when it worked."""
+        yield from self.human.look_at(place.centre)
         reason = yield from self.hands.do(Open(thing=place.id), f"open {place.id}")
         if not reason:
             place.state = "open"
         return reason
 
-    def retrace(self, enough: Callable[[], bool]) -> Deed:
-        """Look round here and in one room after the other that was entered before, the nearest first."""
+    def retrace(self, enough: Callable[[], bool]) -> Behaviour:
+        """Look round here and then in every room that was entered before, the nearest first."""
         left = dict(self.memory.entered)
-        yield from self.look_round(self.me.traits.scan)
+        yield from self.look_round(self.human.traits.scan)
         while not enough():
-            left.pop(self.me.now.room, None)
+            left.pop(self.human.now.room, None)
             if not left:
                 return False
-            far = self.walker.planner.distances(self.me.here, list(left.values()))
+            far = self.walker.planner.distances(self.human.here, list(left.values()))
             yield from self.walker.go(left.pop(min(zip(far, left, strict=True))[1]), stop=enough)
-            yield from self._sweep(enough)
+            yield from self._look_round_unless(enough)
         return True
 
-    def _sweep(self, enough: Callable[[], bool]) -> Deed:
+    def _look_round_unless(self, enough: Callable[[], bool]) -> Behaviour:
         if not enough():
-            yield from self.look_round(self.me.traits.scan)
+            yield from self.look_round(self.human.traits.scan)
         return True
 
-    def _wander(self, search: Search, enough: Callable[[], bool]) -> Deed:
-        """Nothing comes to mind: go where the known floor ends, search something again, or go back and look round."""
-        since = self.me.now.tick
-        edges = frontiers(self.walker.grid, self.walker.planner, self.me.now.pose)
+    def _wander(self, search: OptionChoice, enough: Callable[[], bool]) -> Behaviour:
+        """Without options: go where the known floor ends, search something again, or go back and look round."""
+        since = self.human.now.tick
+        edges = frontiers(self.walker.grid, self.walker.planner, self.human.now.pose)
         if edges:
             nearest = min(edges, key=lambda edge: edge.distance)
-            arrived = yield from self.walker.go(nearest.centre, stop=self._inside)
-            if arrived and self.me.now.tick > since:
+            arrived = yield from self.walker.go(nearest.centre, stop=self._is_inside)
+            if arrived and self.human.now.tick > since:
                 return True
-        place = search.again()
+        place = search.least_searched()
         spots = search.spots(place) if place is not None else []
         if place is not None and spots:
             return (yield from self._inspect(place, spots[0]))
         return (yield from self.retrace(enough))
 
-    def look_round(self, angle: float) -> Deed:
-        """Look round the room."""
+    def look_round(self, angle: float) -> Behaviour:
+        """Look round the room by ``angle`` [rad]."""
         self.fresh = None
         self._turns += 1
-        yield from self.me.look_round(angle, "round", self._turns)
+        yield from self.human.look_round(angle, "round", self._turns)
         return True
 
-    def _inside(self) -> bool:
-        """Whether the person has taken a step into a room not looked round in yet."""
-        return self.fresh is not None and math.dist(self.fresh, self.me.here) > _INSIDE_M
+    def _is_inside(self) -> bool:
+        """Whether the participant has stepped into a room not looked round in yet."""
+        return self.fresh is not None and math.dist(self.fresh, self.human.here) > _INSIDE_M
 
 
-def _gazes(place: Place, here: Vec2) -> list[Vec3]:
-    """Where to look to see all of a place from ``here``: its middle, or parts of a long one from left to right."""
+def _gazes(place: KnownPlace, here: Vec2) -> list[Vec3]:
+    """Points to look at to see all of a place from ``here``: its middle, or parts of a wide one from end to end."""
     w, d, h = place.size
-    top = h / 2.0 if h < 1.3 and not place.state else 0.0
+    top = h / 2.0 if h < _TABLE_M and not place.state else 0.0
     ends = [(-w / 2.0, 0.0, top), (w / 2.0, 0.0, top)] if w >= d else [(0.0, -d / 2.0, top), (0.0, d / 2.0, top)]
     a, b = (to_house(end, place.centre, place.yaw) for end in ends)
     bearings = [math.atan2(p[1] - here[1], p[0] - here[0]) for p in (a, b)]
     wide = abs(math.remainder(bearings[1] - bearings[0], 2.0 * math.pi))
-    count = max(1, math.ceil(wide / _SWEEP_RAD - 0.3))
+    count = max(1, math.ceil(wide / _GAZE_WIDTH_RAD - _GAZE_SLACK))
     shares = [(k + 0.5) / count for k in range(count)]
     return [(a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), a[2]) for s in shares]

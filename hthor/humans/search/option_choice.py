@@ -1,4 +1,7 @@
-"""What a person thinks of doing next while they look for something, and which of it they choose."""
+"""The options of a participant who searches, and which of them is chosen.
+
+An option is worth belief * exp(-exposure) / seconds^kappa; the choice follows Luce's law, P ~ worth^beta.
+"""
 
 from __future__ import annotations
 
@@ -6,159 +9,163 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
-from msgspec import Struct
-
-from hthor.humans.core.trial_context import Subject
-from hthor.humans.memory.spatial_memory import Doorway, Memory, Place
+from hthor.humans.core.trial_context import HumanContext
+from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.humans.motor import viewpoints
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.search import option_description
+from hthor.humans.search.option import Option
 from hthor.types import Vec2
 
-_STALE_TICKS = 100
-_FRESH_TICKS = 50
-DOOR_S = 2.0
+DOORWAY_S = 2.0
+"""[s] Expected time to go through a doorway and look into the room, besides the way. Our choice."""
 SETTLE_S = 1.0
+"""[s] Expected time to stop and turn at a place that is searched, besides the look at it. Our choice."""
+_STALE_TICKS = 100
+"""[ticks] After so long people work out again where to stand at a place: the map has grown. Our choice: ten seconds."""
+_FRESH_TICKS = 50
+"""[ticks] So long the options of the last choice are taken for those of now. Our choice: five seconds."""
 
 
-class Option(Struct, frozen=True, kw_only=True):
-    """Search ``place``, or go through ``doorway``: ``value`` is what it promises for its time, ``spot`` where to go.
+class OptionChoice:
+    """Lists the options of one search, weighs them and chooses.
 
-    ``metres`` is the way there, ``seconds`` what it takes, ``exposure`` how well the place was searched already.
-    """
-
-    name: str
-    value: float
-    spot: Vec2
-    place: Place | None = None
-    doorway: Doorway | None = None
-    metres: float = 0.0
-    seconds: float = 0.0
-    exposure: float = 0.0
-
-
-class Search:
-    """Weighs and chooses.
-
-    ``knowledge`` and ``uniform`` are the two parts that ``hope`` is mixed of: common knowledge, and not knowing. Where
-    they are set, choices are written into the person's journal.
+    Attributes:
+        belief: in each kind of furniture, adding up to 1; empty when the thing wanted would have been seen.
+        knowledge, uniform: the two parts that ``belief`` is mixed of, common knowledge and ignorance. Where they are
+            set, choices are recorded in the journal.
 
     Args:
-        hope: belief in each kind of receptacle, adding up to 1; empty when the thing wanted would have been seen.
-        name: what is looked for: "target", "destination" or "room".
+        name: what is searched for: "target", "destination" or "room".
     """
 
-    def __init__(self, me: Subject, memory: Memory, walker: Walker, hope: Mapping[str, float], name: str) -> None:
-        self.me, self.memory, self.walker, self.hope, self.name = me, memory, walker, hope, name
+    def __init__(self, human: HumanContext, memory: SpatialMemory, walker: Walker, name: str) -> None:
+        self.human, self.memory, self.walker, self.name = human, memory, walker, name
+        self.belief: Mapping[str, float] = {}
         self.knowledge: Mapping[str, float] = {}
         self.uniform: Mapping[str, float] = {}
         self._spots: dict[str, tuple[int, list[Vec2]]] = {}
         self._choices = 0
-        self._thought: tuple[int, list[Option]] = (-_FRESH_TICKS, [])
+        self._latest: tuple[int, list[Option]] = (-_FRESH_TICKS, [])
 
     def choose(self) -> Option | None:
-        """The next thing to do: by the person's own law, or as the policy says that decides in their place."""
-        options, number, me = self.options(), self._choices, self.me
-        self._thought = me.now.tick, options
+        """The next thing to do, by the model's own law or by the policy that decides in its place; None for nothing."""
+        options, number, human = self.options(), self._choices, self.human
+        self._latest = human.now.tick, options
         self._choices += 1
         if not options:
             return None
-        if me.policy is None:
-            chosen = self._own(options, number)
+        if human.policy is None and not self.knowledge:
+            chosen = self._by_luce(options, number)
         else:
-            told = option_description.describe(self, options, number)
-            chosen = options[option_description.valid(me.policy.choose(told), told)]
-        if self.knowledge:
-            me.note("choice", **option_description.features(self, options, chosen, number))
-        if me.think is not None:
-            option_description.tell(self, options, chosen)
+            known, uniform = self._shares(options, self.knowledge), self._shares(options, self.uniform)
+            if human.policy is None:
+                chosen = self._by_luce(options, number)
+            else:
+                situation = option_description.describe(human, self.name, number, options, known, uniform)
+                chosen = options[option_description.checked_index(human.policy.choose(situation), situation)]
+            if self.knowledge:
+                data = option_description.features(human.root, self.name, number, options, chosen, known, uniform)
+                human.record("choice", **data)
+        if human.listener is not None:
+            beliefs = self.place_beliefs(bool(self.memory.unexplored_doorways()))
+            ahead = self.doorway_belief(beliefs)
+            option_description.publish(human, self.name, self.memory, options, chosen, beliefs, ahead)
         return chosen
 
-    def _own(self, options: Sequence[Option], number: int) -> Option:
-        """Chance follows value^beta (Luce), with its own luck for each option."""
-        beta = self.me.traits.beta
+    def _by_luce(self, options: Sequence[Option], number: int) -> Option:
+        """Luce's law by its Gumbel form: the largest utility, with a random part for each option by its name."""
+        beta = self.human.traits.beta
 
         def utility(option: Option) -> float:
-            luck = -math.log(-math.log(self.me.draw("choose", self.name, number, option.name)))
+            luck = -math.log(-math.log(self.human.draw("choose", self.name, number, option.name)))
             return beta * math.log(max(option.value, 1e-12)) + luck
 
         return max(options, key=utility)
 
     def recent(self) -> list[Option]:
-        """What came to mind at the last choice, if that was just now; else everything that can be thought of."""
-        tick, _ = self._thought
-        if self.me.now.tick - tick >= _FRESH_TICKS:
-            self._thought = self.me.now.tick, self.options()
-        return self._thought[1]
+        """The options of the last choice, if that was just now; else those of now."""
+        tick, _ = self._latest
+        if self.human.now.tick - tick >= _FRESH_TICKS:
+            self._latest = self.human.now.tick, self.options()
+        return self._latest[1]
 
     def options(self) -> list[Option]:
-        """Everything that can be thought of from here."""
-        doorways = [door for door in self.memory.doorways.values() if door.sides and not door.spent]
-        beliefs = self.beliefs(bool(doorways))
-        places = [place for place in self.memory.places.values() if beliefs[place.id] > 0.0 and not self.done(place)]
+        """Everything that could be searched from here."""
+        doorways = self.memory.unexplored_doorways()
+        beliefs = self.place_beliefs(bool(doorways))
+        places = [place for place in self.memory.places.values() if beliefs[place.id] > 0.0 and not self.is_done(place)]
         spots = [self.spots(place) for place in places]
         nearest = self._nearest([*spots, *([door.beyond] for door in doorways)])
-        found = []
-        for place, some in zip(places, spots, strict=True):
-            option = self._searching(place, beliefs[place.id], some, *next(nearest))
-            found += [option] if option else []
-        ahead = self.ahead(beliefs)
+        options = []
+        for place, around in zip(places, spots, strict=True):
+            option = self._searching(place, beliefs[place.id], around, *next(nearest))
+            options += [option] if option else []
+        ahead = self.doorway_belief(beliefs)
         for door in doorways:
             metres, _ = next(nearest)
-            seconds = metres / self.me.traits.v_pace + DOOR_S
+            seconds = metres / self.human.traits.v_pace + DOORWAY_S
             if math.isfinite(seconds):
-                value = ahead / len(doorways) / seconds**self.me.traits.kappa
+                value = ahead / len(doorways) / seconds**self.human.traits.kappa
                 name = f"door {door.id}"
-                found.append(
+                options.append(
                     Option(name=name, value=value, spot=door.beyond, doorway=door, metres=metres, seconds=seconds)
                 )
-        return found
+        return options
 
-    def beliefs(self, more: bool, hope: Mapping[str, float] | None = None) -> dict[str, float]:
-        """Belief that the target is at each known place, before it was searched.
+    def place_beliefs(self, more: bool, belief: Mapping[str, float] | None = None) -> dict[str, float]:
+        """Belief that the object is at each known place, before it was searched.
 
         Args:
             more: whether there may be further places of each kind behind doorways.
-            hope: belief in each kind of receptacle, the person's own by default.
+            belief: in each kind of furniture, by default `belief`.
         """
-        held = self.hope if hope is None else hope
+        by_kind = self.belief if belief is None else belief
         places = self.memory.places.values()
         kinds = Counter(place.kind for place in places)
-        unseen = self.me.traits.unseen if more else 0.0
-        return {place.id: held.get(place.kind, 0.0) / (kinds[place.kind] + unseen) for place in places}
+        unseen = self.human.traits.unseen if more else 0.0
+        return {place.id: by_kind.get(place.kind, 0.0) / (kinds[place.kind] + unseen) for place in places}
 
-    def ahead(self, beliefs: Mapping[str, float]) -> float:
-        """Belief that the target is behind doorways not yet passed."""
-        return max(self.me.traits.spare, 1.0 - sum(beliefs.values()))
+    def doorway_belief(self, beliefs: Mapping[str, float]) -> float:
+        """Belief that the object is behind doorways not yet passed."""
+        return max(self.human.traits.spare, 1.0 - sum(beliefs.values()))
 
-    def done(self, place: Place) -> bool:
-        """Whether nothing is expected any more of a place that can be seen as it is."""
-        return place.state != "closed" and self.memory.exposure(place, self.me.now.tick) > self.me.traits.e_skip
+    def is_done(self, place: KnownPlace) -> bool:
+        """Whether nothing is expected any more of a place that is in plain view."""
+        return place.state != "closed" and self.memory.exposure(place, self.human.now.tick) > self.human.traits.e_skip
 
-    def again(self) -> Place | None:
-        """When everything was searched: the place that was searched least, or longest ago."""
-        hoped = [place for place in self.memory.places.values() if self.hope.get(place.kind, 0.0) > 0.0]
-        return min(hoped, key=lambda place: (self.memory.exposure(place, self.me.now.tick), place.id), default=None)
+    def least_searched(self) -> KnownPlace | None:
+        """When all was searched: the place that was searched least, or longest ago."""
+        places = [place for place in self.memory.places.values() if self.belief.get(place.kind, 0.0) > 0.0]
+        tick = self.human.now.tick
+        return min(places, key=lambda place: (self.memory.exposure(place, tick), place.id), default=None)
 
-    def spots(self, place: Place) -> list[Vec2]:
-        """Where to stand to search a place; worked out anew after ten seconds."""
+    def spots(self, place: KnownPlace) -> list[Vec2]:
+        """Where to stand to search a place."""
         tick, known = self._spots.get(place.id, (-_STALE_TICKS, []))
-        if self.me.now.tick - tick >= _STALE_TICKS or not known:
-            known = viewpoints.at(place, self.walker, front=bool(place.state))
-            self._spots[place.id] = (self.me.now.tick, known)
+        if self.human.now.tick - tick >= _STALE_TICKS or not known:
+            known = viewpoints.viewpoints_of_place(place, self.walker, front=bool(place.state))
+            self._spots[place.id] = (self.human.now.tick, known)
         return known
 
+    def _shares(self, options: Sequence[Option], belief: Mapping[str, float]) -> list[float]:
+        """Probability of each option by a belief in kinds of furniture, before any search."""
+        doors = len(self.memory.unexplored_doorways())
+        beliefs = self.place_beliefs(doors > 0, belief)
+        ahead = self.doorway_belief(beliefs) / max(1, doors)
+        return [ahead if option.place is None else beliefs[option.place.id] for option in options]
+
     def _nearest(self, groups: Sequence[Sequence[Vec2]]) -> Iterator[tuple[float, int]]:
-        """How far on foot [m] the nearest point of each group is, and which it is."""
-        return iter(self.walker.planner.nearest(self.me.here, groups) if groups else ())
+        """Walking distance [m] to the nearest point of each group, and its index."""
+        return iter(self.walker.planner.nearest(self.human.here, groups) if groups else ())
 
     def _searching(
-        self, place: Place, belief: float, spots: Sequence[Vec2], least: float, number: int
+        self, place: KnownPlace, belief: float, spots: Sequence[Vec2], metres: float, number: int
     ) -> Option | None:
-        if not math.isfinite(least):
+        if not math.isfinite(metres):
             return None
-        traits, exposure = self.me.traits, self.memory.exposure(place, self.me.now.tick)
-        seconds = least / traits.v_pace + traits.t_dwell + SETTLE_S
+        traits, exposure = self.human.traits, self.memory.exposure(place, self.human.now.tick)
+        seconds = metres / traits.v_pace + traits.t_dwell + SETTLE_S
         if place.state == "closed":
             seconds += traits.t_manip
         return Option(
@@ -166,7 +173,7 @@ class Search:
             value=belief * math.exp(-exposure) / seconds**traits.kappa,
             spot=spots[number],
             place=place,
-            metres=least,
+            metres=metres,
             seconds=seconds,
             exposure=exposure,
         )

@@ -1,120 +1,129 @@
-"""A person's options put into words, and into numbers for the record."""
+"""A participant's options in words, for policies, and in numbers, for the journal and for listeners."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from hthor import catalog, seeds
 from hthor.errors import HthorError
-from hthor.humans.core.policy import Choice, Situation
+from hthor.humans.core.policy import OptionDescription, Situation
+from hthor.humans.core.trial_context import HumanContext
+from hthor.humans.memory.spatial_memory import SpatialMemory
+from hthor.humans.search.option import Option
 from hthor.types import HUMAN, Event
 
-if TYPE_CHECKING:
-    from hthor.humans.search.option_choice import Option, Search
-
-MOST = 12
-"""So many options of one choice are kept in the journal: the chosen one, and others that chance picks."""
+MAX_RECORDED = 12
+"""[count] Options of one choice kept in the journal: the chosen one and a random sample. Our choice, for small logs."""
 FEATURES = ("knowledge", "uniform", "metres", "exposure", "closed", "is_door")
-"""What the journal holds of each option, see `hthor.humans.core.policy.Choice`; the last two are 0 or 1."""
-_LOOKED, _SEARCHED = 0.5, 2.0
+"""What the journal holds of each option, see `hthor.humans.core.policy.OptionDescription`; the last two are 0 or 1."""
+_GLANCED = 0.5
+"""[exposure] From here a place is described as "glanced at". Our choice."""
+_SEARCHED = 2.0
+"""[exposure] From here a place is described as "already searched". Our choice: as e_skip."""
+_HERE_M = 1.0
+"""[m] Anything nearer is described as "right here". Our choice."""
 
 
-def describe(search: Search, options: Sequence[Option], number: int) -> Situation:
-    """The choice as somebody sees it who was asked to decide."""
-    me = search.me
-    known, uniform = _parts(search, options)
+def describe(
+    human: HumanContext,
+    name: str,
+    number: int,
+    options: Sequence[Option],
+    knowledge: Sequence[float],
+    uniform: Sequence[float],
+) -> Situation:
+    """Choice ``number`` of the search called ``name``, as a policy sees it.
+
+    Args:
+        knowledge, uniform: probability of each option by common knowledge alone, and by ignorance.
+    """
     return Situation(
-        instruction=me.task.instruction,
-        aim="target" if search.name == "target" else "destination",
+        instruction=human.task.instruction,
+        aim="target" if name == "target" else "destination",
         number=number,
-        left=max(0.0, me.task.time_limit - me.now.tick * me.tick_s),
-        room=me.now.room,
-        holding=me.now.holding,
-        options=tuple(_choice(option, *parts) for option, *parts in zip(options, known, uniform, strict=True)),
+        left=human.seconds_left,
+        room=human.now.room,
+        holding=human.now.holding,
+        options=tuple(_described(option, *parts) for option, *parts in zip(options, knowledge, uniform, strict=True)),
     )
 
 
-def valid(answer: Any, situation: Situation) -> int:
-    """The index that a policy gave.
+def checked_index(index: Any, situation: Situation) -> int:
+    """The index that a policy returned.
 
     Raises:
-        HthorError: when it is none of the options'.
+        HthorError: when it is no index of an option.
     """
     count = len(situation.options)
-    if isinstance(answer, bool) or not isinstance(answer, int) or not 0 <= answer < count:
-        raise HthorError(
-            f"a policy's choose must return an index from 0 to {count - 1}, got {answer!r}. Mend its file."
-        )
-    return answer
+    if isinstance(index, bool) or not isinstance(index, int) or not 0 <= index < count:
+        raise HthorError(f"a policy's choose must return an index from 0 to {count - 1}, got {index!r}. Mend its file.")
+    return index
 
 
-def features(search: Search, options: Sequence[Option], chosen: Option, number: int) -> dict[str, Any]:
+def features(
+    root: int,
+    name: str,
+    number: int,
+    options: Sequence[Option],
+    chosen: Option,
+    knowledge: Sequence[float],
+    uniform: Sequence[float],
+) -> dict[str, Any]:
     """The choice as the journal holds it: `FEATURES` of each option, and the index of the chosen one.
 
-    Of more than `MOST` options chance keeps some, each equally likely, besides the chosen one: a conditional logit that
-    is fitted to such samples is as right as one that is fitted to all of them (McFadden 1978).
+    Of more than `MAX_RECORDED` options a random sample is kept besides the chosen one, each as likely: a conditional
+    logit fitted to such samples is consistent (McFadden 1978).
     """
-    kept = list(options)
-    if len(kept) > MOST:
-        root = search.me.root
-        luck = {o.name: seeds.draw(root, "kept", search.name, number, o.name) for o in kept if o is not chosen}
-        names = {chosen.name, *sorted(luck, key=luck.__getitem__)[: MOST - 1]}
-        kept = [option for option in kept if option.name in names]
-    known, uniform = _parts(search, kept)
+    kept = list(zip(options, knowledge, uniform, strict=True))
+    if len(kept) > MAX_RECORDED:
+        luck = {o.name: seeds.draw(root, "kept", name, number, o.name) for o in options if o is not chosen}
+        names = {chosen.name, *sorted(luck, key=luck.__getitem__)[: MAX_RECORDED - 1]}
+        kept = [one for one in kept if one[0].name in names]
     rows = [
-        [round(k, 5), round(u, 5), round(o.metres, 2), round(o.exposure, 3), _closed(o), int(o.place is None)]
-        for o, k, u in zip(kept, known, uniform, strict=True)
+        [round(k, 5), round(u, 5), round(o.metres, 2), round(o.exposure, 3), int(o.is_closed), int(o.place is None)]
+        for o, k, u in kept
     ]
-    return {"aim": search.name, "options": rows, "chosen": kept.index(chosen)}
+    return {"aim": name, "options": rows, "chosen": [option for option, *_ in kept].index(chosen)}
 
 
-def tell(search: Search, options: Sequence[Option], chosen: Option) -> None:
-    """Let whoever looks into the mind know: events "beliefs" and "choice", by the options' names."""
-    me, memory = search.me, search.memory
-    assert me.think is not None
-    beliefs = search.beliefs(any(door.sides and not door.spent for door in memory.doorways.values()))
+def publish(
+    human: HumanContext,
+    name: str,
+    memory: SpatialMemory,
+    options: Sequence[Option],
+    chosen: Option,
+    beliefs: Mapping[str, float],
+    ahead: float,
+) -> None:
+    """Send the listener the events "beliefs" and "choice"; ``ahead`` is the belief in what lies behind doorways."""
+    assert human.listener is not None
+    tick = human.now.tick
     places = [
         {
             "id": place.id,
             "kind": place.kind,
             "belief": round(beliefs[place.id], 5),
-            "exposure": round(memory.exposure(place, me.now.tick), 3),
+            "exposure": round(memory.exposure(place, tick), 3),
         }
         for place in memory.places.values()
     ]
-    about = {"aim": search.name, "ahead": round(search.ahead(beliefs), 5), "places": places}
-    me.think(Event(tick=me.now.tick, seat=HUMAN, kind="beliefs", data=about))
+    data = {"aim": name, "ahead": round(ahead, 5), "places": places}
+    human.listener(Event(tick=tick, seat=HUMAN, kind="beliefs", data=data))
     ranked = sorted(options, key=lambda option: (-option.value, option.name))
     data = {
-        "aim": search.name,
+        "aim": name,
         "options": [option.name for option in ranked],
         "values": [round(option.value, 6) for option in ranked],
         "metres": [round(option.metres, 2) for option in ranked],
         "chosen": chosen.name,
     }
-    me.think(Event(tick=me.now.tick, seat=HUMAN, kind="choice", data=data))
+    human.listener(Event(tick=tick, seat=HUMAN, kind="choice", data=data))
 
 
-def _parts(search: Search, options: Sequence[Option]) -> tuple[list[float], list[float]]:
-    """Each option's share by common knowledge alone, and by not knowing."""
-    doors = sum(door.sides != [] and not door.spent for door in search.memory.doorways.values())
-    return _shares(search, options, search.knowledge, doors), _shares(search, options, search.uniform, doors)
-
-
-def _shares(search: Search, options: Sequence[Option], hope: Mapping[str, float], doors: int) -> list[float]:
-    beliefs = search.beliefs(doors > 0, hope)
-    ahead = search.ahead(beliefs) / max(1, doors)
-    return [ahead if option.place is None else beliefs[option.place.id] for option in options]
-
-
-def _closed(option: Option) -> int:
-    return int(option.place is not None and option.place.state == "closed")
-
-
-def _choice(option: Option, knowledge: float, uniform: float) -> Choice:
+def _described(option: Option, knowledge: float, uniform: float) -> OptionDescription:
     place = option.place
-    return Choice(
+    return OptionDescription(
         name=option.name,
         text=_text(option),
         verb="pass" if place is None else "search",
@@ -124,18 +133,18 @@ def _choice(option: Option, knowledge: float, uniform: float) -> Choice:
         metres=option.metres,
         seconds=option.seconds,
         exposure=option.exposure,
-        closed=bool(_closed(option)),
+        closed=option.is_closed,
         value=option.value,
     )
 
 
 def _text(option: Option) -> str:
-    """What a person would call it, such as "open and search the fridge, 4 m away"."""
-    far = "right here" if option.metres < 1.0 else f"{option.metres:.0f} m away"
+    """Such as "open and search the fridge, 4 m away"."""
+    far = "right here" if option.metres < _HERE_M else f"{option.metres:.0f} m away"
     if option.place is None:
         return f"go through a doorway to a room not seen yet, {far}"
-    verb = "open and search" if _closed(option) else "search"
-    seen = (
-        ", already searched" if option.exposure >= _SEARCHED else ", glanced at" if option.exposure >= _LOOKED else ""
-    )
+    verb = "open and search" if option.is_closed else "search"
+    seen = ""
+    if option.exposure >= _GLANCED:
+        seen = ", already searched" if option.exposure >= _SEARCHED else ", glanced at"
     return f"{verb} the {catalog.kind(option.place.kind).title.lower()}, {far}{seen}"

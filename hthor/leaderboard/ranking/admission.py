@@ -63,7 +63,7 @@ def own() -> Admission:
     """What every board takes: the people of the benchmark, seed 0, and hthor's own suites, which are public."""
     suites = (library.read_suite(name) for name in tasks.suite_names())
     return Admission(
-        people=(Named(name=resolve.PROXY, sha256=resolve.find(resolve.PROXY).sha256),),
+        people=(Named(name=resolve.PROXY, sha256=resolve.resolve_humans(resolve.PROXY).sha256),),
         seeds=(0,),
         suites=tuple(Listed(name=one.name, sha256=one.sha256, standing=DEVELOPMENT) for one in suites),
     )

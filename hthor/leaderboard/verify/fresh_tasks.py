@@ -62,7 +62,7 @@ def verify(
     with tempfile.TemporaryDirectory() as folder:
         _draw(entry, board, word, count, Path(folder), jobs)
         chosen = task_selection.select_tasks(folder, "")
-        crew, who = replay.crew_of(entry, agent, given), resolve.find(entry.run.humans.source)
+        crew, who = replay.crew_of(entry, agent, given), resolve.resolve_humans(entry.run.humans.source)
         clock = {name: value for name, value in replay.dealt(entry).items() if name != "participants"}
         whole = sessions.make_sessions(chosen.suite, agent=crew, human=who, **clock)
         played = replay.perform(entry, whole, replay.player(folder, crew, who, required, given), jobs)

@@ -25,7 +25,7 @@ from hthor.eval.runner.engines import RunnerFactory
 from hthor.eval.runner.messages import SessionAbandoned, TrialDone
 from hthor.guest import AgentInputs, GuestConfig
 from hthor.humans.population import resolve
-from hthor.humans.population.resolve import People
+from hthor.humans.population.resolve import ParticipantSource
 from hthor.leaderboard.enter import OURS
 from hthor.leaderboard.entries.entry import REALTIME, Entry
 from hthor.leaderboard.entries.files import BoardError
@@ -56,7 +56,7 @@ def play(
             not be played, as nothing follows from a part of a draw.
     """
     chosen = task_selection.select_tasks(suite or entry.run.suite.name, "")
-    crew, who = crew_of(entry, agent, given), resolve.find(entry.run.humans.source)
+    crew, who = crew_of(entry, agent, given), resolve.resolve_humans(entry.run.humans.source)
     _same(entry, chosen, crew, who)
     whole = sessions.make_sessions(chosen.suite, agent=crew, human=who, **dealt(entry))
     wanted, seats = _cut(whole, places)
@@ -111,7 +111,7 @@ def crew_of(entry: Entry, agent: str, given: AgentInputs | None = None) -> Robot
     )
 
 
-def _same(entry: Entry, chosen: TaskSelection, crew: RobotTeam, who: People) -> None:
+def _same(entry: Entry, chosen: TaskSelection, crew: RobotTeam, who: ParticipantSource) -> None:
     """See that the same configuration comes out; versions of libraries belong to the platform."""
     here = run_config.build_config(chosen.suite, crew, human=who, **dealt(entry))
     there, here = (msgspec.structs.replace(plan, versions={}) for plan in (entry.run, here))
@@ -141,7 +141,9 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
     return wanted, seats
 
 
-def player(suite: str, crew: RobotTeam, who: People, required: str, given: AgentInputs | None = None) -> RunnerFactory:
+def player(
+    suite: str, crew: RobotTeam, who: ParticipantSource, required: str, given: AgentInputs | None = None
+) -> RunnerFactory:
     """What plays a session, as in the run that the entry is of.
 
     Args:

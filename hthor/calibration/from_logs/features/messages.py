@@ -11,7 +11,7 @@ from msgspec import Struct
 from hthor import rules
 from hthor.calibration.from_logs.features import locomotion
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.humans.communication.message_reading import same
+from hthor.humans.communication.message_reading import is_same_message
 from hthor.types import Event, Message
 
 _ANSWERS = ("confirmed", "declined")
@@ -50,9 +50,9 @@ def readings(record: TrialRecord) -> tuple[Reading, ...]:
     for event in record.events:
         if event.kind == "shown":
             message = sent[event.data["message"]]
-            if begun is None or not same(message, begun[1]):
+            if begun is None or not is_same_message(message, begun[1]):
                 found += _left(begun, event.tick)
-                begun = event.tick, message, any(same(message, old) for old in shown)
+                begun = event.tick, message, any(is_same_message(message, old) for old in shown)
             shown.append(message)
         elif event.kind in _ANSWERS and begun is not None:
             found.append(_reading(begun, event.tick, answered=True))

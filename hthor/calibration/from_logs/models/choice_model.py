@@ -16,7 +16,7 @@ from hthor.calibration.from_logs.models.priors import Belief, off
 from hthor.calibration.from_logs.models.timing_models import spread_term
 from hthor.humans.population.parameter_registry import parameter
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.search.option_choice import DOOR_S, SETTLE_S
+from hthor.humans.search.option_choice import DOORWAY_S, SETTLE_S
 
 _LEAST = 1e-12
 
@@ -49,7 +49,7 @@ def conditional_logit(choices: Sequence[Choice], person: Array, beliefs: Mapping
     pace = np.array([choice.pace for choice in choices])[:, None]
     dwell, manip = beliefs["t_dwell"].middle, beliefs["t_manip"].middle
     place_s = metres / pace + dwell + SETTLE_S + manip * closed
-    log_seconds = np.log(np.where(door > 0.0, metres / pace + DOOR_S, place_s))
+    log_seconds = np.log(np.where(door > 0.0, metres / pace + DOORWAY_S, place_s))
     rows, chosen = np.arange(len(choices)), np.array([choice.chosen for choice in choices])
     w_scale = beliefs["w_prior"].scale
 

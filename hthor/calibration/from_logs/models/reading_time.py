@@ -15,7 +15,7 @@ from hthor.calibration.from_logs.features.messages import Reading
 from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, Term, fit
 from hthor.calibration.from_logs.models.priors import Belief
 from hthor.calibration.from_logs.models.timing_models import log_normal, sample, spread_term
-from hthor.humans.communication.message_reading import FEWEST, KNOWN, WORDS
+from hthor.humans.communication.message_reading import LEAST_WORDS, REFERENCE_WORDS, REREADING_SHARE
 from hthor.humans.population.parameter_registry import parameter
 from hthor.humans.population.parameters import Parameters
 
@@ -43,7 +43,9 @@ def durations(readings: Sequence[Reading], person: Array, beliefs: Mapping[str, 
 
     y = np.log([one.seconds for one in readings])
     answered = np.array([one.answered for one in readings])
-    length = np.array([max(FEWEST, one.words) / WORDS * (KNOWN if one.known else 1.0) for one in readings])
+    length = np.array(
+        [max(LEAST_WORDS, one.words) / REFERENCE_WORDS * (REREADING_SHARE if one.known else 1.0) for one in readings]
+    )
     spread = Parameters().read_sd ** 2
 
     def likelihood(values: dict[str, float], effects: Array) -> Array:

@@ -23,7 +23,7 @@ FOLDER = Path(__file__).parent
 Verb = Literal["add", "times", "set"]
 
 
-class Change(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class ParameterEdit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What becomes of one parameter: ``value`` is added to it, multiplies it, or takes its place.
 
     Where that would leave the parameter's range, the range's end is taken.
@@ -34,13 +34,13 @@ class Change(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     value: float
     reason: str
 
-    def of(self, value: float) -> float:
+    def apply(self, value: float) -> float:
         """The parameter's new value."""
         new = {"add": value + self.value, "times": value * self.value, "set": self.value}[self.verb]
-        return bounds.nearest(self.parameter, new)
+        return bounds.clamp(self.parameter, new)
 
 
-class Kind(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class PopulationKind(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A kind of people.
 
     Attributes:
@@ -52,14 +52,14 @@ class Kind(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     name: str
     purpose: str
     reason: str
-    changes: tuple[Change, ...]
+    changes: tuple[ParameterEdit, ...]
     base: str = ""
 
     def change(self, population: Parameters) -> Parameters:
         """A population's parameters, as people of this kind have them."""
         new = population
         for change in self.changes:
-            value = change.of(getattr(new, change.parameter))
+            value = change.apply(getattr(new, change.parameter))
             new = msgspec.structs.replace(new, **{change.parameter: value})
         return new
 
@@ -74,7 +74,7 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in FOLDER.glob("*.json")))
 
 
-def load(name_or_path: str | Path) -> Kind:
+def load(name_or_path: str | Path) -> PopulationKind:
     """A kind by name, or from a file.
 
     Raises:
@@ -89,16 +89,18 @@ def load(name_or_path: str | Path) -> Kind:
     return _read(Path(word))
 
 
-def _read(path: Path) -> Kind:
-    kind = documents.read(path, Kind, PopulationError, schema=SCHEMA)
+def _read(path: Path) -> PopulationKind:
+    kind = documents.read(path, PopulationKind, PopulationError, schema=SCHEMA)
     if kind.name != path.stem:
         raise PopulationError(str(path), "name", f"it is '{kind.name}', but must be the file's name, '{path.stem}'")
     for number, change in enumerate(kind.changes):
         where = f"changes[{number}]"
-        if change.parameter not in bounds.known():
+        if change.parameter not in bounds.parameter_names():
             raise PopulationError(
-                str(path), f"{where}.parameter", str(UnknownName("parameter", change.parameter, bounds.known()))
+                str(path),
+                f"{where}.parameter",
+                str(UnknownName("parameter", change.parameter, bounds.parameter_names())),
             )
-        if change.verb == "set" and (problem := bounds.problem(change.parameter, change.value)):
+        if change.verb == "set" and (problem := bounds.range_problem(change.parameter, change.value)):
             raise PopulationError(str(path), f"{where}.value", problem)
     return kind
