@@ -193,7 +193,7 @@ class Checker:
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_collision(model, data)
-        owner = world._scene.owner
+        owner = world._geoms.owner
         for pair, distance in zip(data.contact.geom, data.contact.dist, strict=True):
             if distance < -DEEP_M:
                 yield f"{owner[pair[0]]} is {-1000 * distance:.0f} mm deep in {owner[pair[1]]}"

@@ -7,10 +7,11 @@ something else moves them. An umpire, which moves all bodies at once, uses `htho
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from hthor import rules
 from hthor.errors import HthorError
+from hthor.geometry import plane
 from hthor.types import (
     BodySpec,
     Close,
@@ -31,16 +32,16 @@ from hthor.types import (
     Send,
     Vec2,
     Vec3,
+    View,
     Wait,
 )
 from hthor.world import numbers, walk_to
+from hthor.world.interactive_simulation import InteractiveSimulation
 from hthor.world.rendering.lazy_images import Size
 
-if TYPE_CHECKING:
-    from hthor.types import View
-    from hthor.world.world import World
-
 _EPS = 1e-9
+_LENGTH_MIN_M, _TURN_MIN_RAD = 1e-6, 1e-3
+"""On a route, a shorter leg [m] needs no turn, and a smaller turn [rad] is left out."""
 MOVE_CALL_MAX_M = 1000.0
 """The longest way of one call."""
 
@@ -52,7 +53,7 @@ class Actor:
     house or a law forbids; wrong arguments, such as a name that does not exist, do.
     """
 
-    def __init__(self, world: World, seat: str) -> None:
+    def __init__(self, world: InteractiveSimulation, seat: str) -> None:
         self._world, self.seat = world, seat
 
     def __repr__(self) -> str:
@@ -114,7 +115,7 @@ class Actor:
     def look_at(self, target: str | Vec3) -> Outcome:
         """Turn body and camera towards a thing, an object, a seat or a point [m] of the house frame."""
         point = self._world.position(target) if isinstance(target, str) else numbers.point3("target", target)
-        return self.do(walk_to.towards(self.pose, self.body, point))
+        return self.do(walk_to.rotation_towards(self.pose, self.body, point))
 
     def go_to(self, target: str | Vec2) -> Outcome:
         """Walk the shortest way to the free floor nearest to a point (x, y) [m], or to where a thing, an object or a
@@ -126,7 +127,28 @@ class Actor:
         Raises:
             UnknownName: when there is no such thing. HthorError: when the point is in no room.
         """
-        return walk_to.go(self, self._world, target if isinstance(target, str) else numbers.point2("target", target))
+        world, seat = self._world, self.seat
+        target = target if isinstance(target, str) else numbers.point2("target", target)
+        for point in walk_to.route(world, seat, target):
+            outcome = self._walk_straight(point)
+            if not outcome.ok:
+                return outcome
+        other = walk_to.body_in_the_way(world, seat, target)
+        if other:
+            return Outcome(motion="move", ok=False, reason=f"{other} is in the way", by=other)
+        if not isinstance(target, str):
+            return Outcome(motion="move", ok=True)
+        facing = self.look_at(target)
+        reason = walk_to.out_of_hand(world, seat, target)
+        return Outcome(motion="move", ok=False, reason=reason) if facing.ok and reason else facing
+
+    def _walk_straight(self, point: Vec2) -> Outcome:
+        pose = self.pose
+        length = math.dist((pose.x, pose.y), point)
+        turn = plane.wrap(math.atan2(point[1] - pose.y, point[0] - pose.x) - pose.yaw)
+        if length > _LENGTH_MIN_M and abs(turn) > _TURN_MIN_RAD:
+            self.rotate(turn)
+        return self.move(length)
 
     def teleport(self, x: float, y: float, yaw: float | None = None, pitch: float | None = None) -> Pose:
         """Be at (x, y) [m] at once, facing ``yaw`` [rad], camera at ``pitch`` [rad]; None keeps what is.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,20 @@ from numpy.typing import NDArray
 from hthor.errors import StaleObservation
 from hthor.types import Camera, Detection, Scan, Sighting, View
 
-if TYPE_CHECKING:
-    from hthor.world.sensing_simulation import SensingSimulation
+
+class SensorReadings(Protocol):
+    """The sensors of all seats, read at the present tick; see `hthor.world.sensing_simulation.SensingSimulation`."""
+
+    @property
+    def moment(self) -> tuple[int, int]: ...
+    @property
+    def profile(self) -> str: ...
+    def detections(self, seat: str) -> tuple[Detection, ...]: ...
+    def sighting(self, seat: str, id: str) -> Sighting: ...
+    def scan(self, seat: str) -> Scan: ...
+    def camera(self, seat: str) -> Camera: ...
+    def look(self, seat: str) -> View: ...
+    def picture(self, seat: str, mode: str) -> Any: ...
 
 
 class SeatSenses:
@@ -19,7 +31,7 @@ class SeatSenses:
 
     __slots__ = ("_detections", "_drawn", "_moment", "_scan", "_seat", "_view", "_world")
 
-    def __init__(self, world: SensingSimulation, seat: str) -> None:
+    def __init__(self, world: SensorReadings, seat: str) -> None:
         self._world, self._seat, self._moment = world, seat, world.moment
         self._detections: tuple[Detection, ...] | None = None
         self._scan: Scan | None = None

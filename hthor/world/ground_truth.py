@@ -15,8 +15,8 @@ from hthor.world.state.objects import Objects
 class GroundTruth:
     """States of all objects and of all things that open, and what the person has in view."""
 
-    def __init__(self, objects: Objects, doors: Doors, gaze: Visibility, seats: Sequence[BodyState]) -> None:
-        self._objects, self._doors, self._gaze, self._seats = objects, doors, gaze, seats
+    def __init__(self, objects: Objects, doors: Doors, visibility: Visibility, seats: Sequence[BodyState]) -> None:
+        self._objects, self._doors, self._visibility, self._seats = objects, doors, visibility, seats
         self._human = next(seat for seat in seats if seat.name == HUMAN)
         self._things: dict[str, ThingState] = {}
         self._version = (-1, -1)
@@ -69,7 +69,7 @@ class GroundTruth:
                 f"in_view of the snapshot of tick {tick} is asked for only now that the world has moved on; "
                 "read it while the snapshot is new"
             )
-        return self._gaze.in_view(self._human)
+        return self._visibility.in_view(self._human)
 
 
 class LazyInView(Mapping[str, tuple[str, ...]]):

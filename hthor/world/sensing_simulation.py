@@ -23,7 +23,7 @@ from hthor.types import (
 )
 from hthor.types import cameras as hthor_cameras
 from hthor.world import numbers
-from hthor.world.body_senses import SeatSenses as SeatSenses
+from hthor.world.body_senses import SeatSenses
 from hthor.world.model import inventory
 from hthor.world.perception import view_frustum
 from hthor.world.rendering.lazy_images import LazyImages, Size
@@ -63,7 +63,7 @@ class SensingSimulation(Simulation):
             )
         self.cameras = dict(zip(self.seats[1:], given, strict=False))
         self._pictures = LazyImages(
-            self.house, self._env, self._scene, self._seats, self._studio, profile, self.cameras
+            self.house, self._env, self._geoms, self._seats, self._studio, profile, self.cameras
         )
 
     # -------------------------------------------------------------------------------------------------------- senses
@@ -74,12 +74,12 @@ class SensingSimulation(Simulation):
 
     def detections(self, seat: str) -> tuple[Detection, ...]:
         """What the seat's detector reports now, by id, with the errors that it has."""
-        found, noise = self._gaze.detections(self._seats[seat]), self._detectors.get(seat)
+        found, noise = self._visibility.detections(self._seats[seat]), self._detectors.get(seat)
         return found if noise is None else noise.report(found, self._objects, self._seed, self.tick)
 
     def sighting(self, seat: str, id: str) -> Sighting:
         """How well the seat sees an object now; nothing of it when it is not in view, or when it is no object."""
-        return self._gaze.sighting(self._seats[seat], id)
+        return self._visibility.sighting(self._seats[seat], id)
 
     def hidden(self, id: str, eye: Vec3) -> bool:
         """Whether furniture, walls or other objects hide an object from an eye at (x, y, z) [m].
@@ -90,7 +90,7 @@ class SensingSimulation(Simulation):
         eye, item = numbers.point3("eye", eye), self._objects.known(id)
         if item is None:
             raise UnknownName("object", id, [one.id for one in self._objects])
-        return all(self._scene.hidden(eye, point, id) for point in view_frustum.look_points(item.position, item.size))
+        return all(self._geoms.hidden(eye, point, id) for point in view_frustum.look_points(item.position, item.size))
 
     def scan(self, seat: str) -> Scan:
         """What the seat's range scanner measures now."""
@@ -148,7 +148,7 @@ class SensingSimulation(Simulation):
         """What draws the profile nice; its module wakes OpenGL, so it is loaded only now."""
         from hthor.world.rendering.opengl_renderer import OpenGLRenderer
 
-        return OpenGLRenderer(self.house, self._contents, self.bodies, self._env.model, self._scene, self._pack)
+        return OpenGLRenderer(self.house, self._contents, self.bodies, self._env.model, self._geoms, self._pack)
 
     @property
     def top_view_bounds(self) -> tuple[float, float, float, float]:

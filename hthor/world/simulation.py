@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from hthor import houses
-from hthor.errors import HthorError, PhysicsError, TaskError, UnknownName
+from hthor.errors import PhysicsError, TaskError, UnknownName
 from hthor.gc_freeze import collection_paused
 from hthor.houses.space.free_space import FreeSpace
 from hthor.types import (
@@ -27,29 +27,13 @@ from hthor.types import (
     Vec3,
 )
 from hthor.world import numbers
-from hthor.world.carrying.joint_carrying import JointCarrying
-from hthor.world.ground_truth import GroundTruth
 from hthor.world.interaction import manipulation
-from hthor.world.interaction.action_dispatch import ActionDispatch
-from hthor.world.interaction.manipulation import Manipulation
-from hthor.world.interaction.opening import DoorHandling
-from hthor.world.interaction.scene_editing import SceneEditor
 from hthor.world.model import inventory
 from hthor.world.model.bodies import avatar, bodies
-from hthor.world.model.composer_env import LazyComposerEnv
-from hthor.world.model.composer_task import HouseTask
-from hthor.world.model.geom_index import GeomIndex
 from hthor.world.motion import spawn
 from hthor.world.perception import detector_noise
-from hthor.world.perception.range_scanner import RangeScanner
-from hthor.world.perception.visibility import Visibility
-from hthor.world.state.body_state import BodyState, BodyStates
-from hthor.world.state.doors import Doors
-from hthor.world.state.doorways import Doorways
-from hthor.world.state.objects import Objects
-from hthor.world.state.overlap_test import OverlapTest
-from hthor.world.state.room_tracker import RoomTracker
-from hthor.world.state.support_surfaces import SupportSurfaces
+from hthor.world.simulation_parts import SimulationParts
+from hthor.world.state.body_state import BodyState
 
 
 class Simulation:
@@ -88,40 +72,17 @@ class Simulation:
         self.detectors = detector_noise.assign_detectors(self.seats[1:], self.bodies, detectors)
         self._contents = inventory.split_things(self.house, objects)
         with collection_paused():
-            self._task = HouseTask(self.house, self._contents, self.bodies)
-            self._env = LazyComposerEnv(self._task)
-            self._assemble()
+            parts = SimulationParts(self.house, self._contents, self.bodies, self.space, self.detectors)
+        self._task, self._env = parts.task, parts.env
+        self._geoms, self._objects, self._seats = parts.geoms, parts.objects, parts.seats
+        self._rooms, self._doorways, self._doors = parts.rooms, parts.doorways, parts.doors
+        self._door_handling, self._joint_carrying = parts.door_handling, parts.joint_carrying
+        self._manipulation, self._dispatch, self._editor = parts.manipulation, parts.dispatch, parts.editor
+        self._scanners, self._visibility, self._detectors = parts.scanners, parts.visibility, parts.detectors
+        self._truth = parts.truth
         self.tick, self._episode = 0, 0
         spawn.place_bodies(tuple(self._seats.values()), self.house.start, ())
         self._begin({})
-
-    def _assemble(self) -> None:
-        """The parts that share the compiled model."""
-        statics, env = self._contents.statics, self._env
-        places = SupportSurfaces(statics)
-        self._scene = GeomIndex(env, self._task)
-        touch = OverlapTest(env, self._scene)
-        self._objects = Objects(self._contents.movables, env, self._scene, places, touch)
-        self._doors = Doors(self._task.doors, env, places)
-        self._seats = BodyStates((name, BodyState(name, spec, self.space[name])) for name, spec in self.bodies.items())
-        self._scanners = {name: RangeScanner(seat.spec, seat.space, self.house) for name, seat in self._seats.items()}
-        seats = tuple(self._seats.values())
-        self._whereabouts = RoomTracker(self.house, self.seats)
-        self._passages = Doorways(seats, self.space)
-        self._hinges = DoorHandling(self._scene, self._objects, self._doors, places, self._passages, seats)
-        self._together = JointCarrying(self.house, self._objects, self._doors, touch, seats)
-        self._hands = Manipulation(
-            self.house, self._scene, self._objects, self._doors, places, self._hinges, touch, self._together
-        )
-        self._arranging = SceneEditor(self.house, self._task, env, self._scene, self._objects, places, touch)
-        self._gaze = Visibility(self._scene, self._objects, self._doors, statics, self.house.openings, seats)
-        self._starting = ActionDispatch(self.house, self._hands, self._doors, seats)
-        self._truth = GroundTruth(self._objects, self._doors, self._gaze, seats)
-        self._detectors = {
-            name: detector_noise.NoisyDetector(spec, self._seats[name], self._scene, places)
-            for name, spec in self.detectors.items()
-            if spec.miss or spec.false_alarm or spec.position_sigma
-        }
 
     @property
     def model(self) -> Any:
@@ -145,7 +106,7 @@ class Simulation:
         """
         if task.house_sha256 and self.house.sha256 and task.house_sha256 != self.house.sha256:
             raise TaskError(task.id, "house_sha256", f"made for another version of house '{task.house}'; make it anew")
-        _check_numbers(task)
+        spawn.check_numbers(task)
         self._begin({placement.id: placement for placement in task.objects}, task.id)
         self._seed = seed
         spawn.place_bodies(tuple(self._seats.values()), task.human_start, task.robot_starts)
@@ -155,7 +116,7 @@ class Simulation:
         for id in placements:
             if id not in movables:
                 raise TaskError(task, "objects", str(UnknownName("object", id, movables)))
-        self._whereabouts.reset()
+        self._rooms.reset()
         self._seed = 0
         begin: dict[str, tuple[Vec3, float, str]] = {}
         for id, movable in movables.items():
@@ -167,9 +128,9 @@ class Simulation:
         self._task.starts = {id: begin[id][:2] for id in placements}
         self._env.reset()
         self._objects.reset(begin)
-        self._together.reset()
+        self._joint_carrying.reset()
         self._doors.reset()
-        self._passages.update({})
+        self._doorways.update({})
         self.tick = 0
         self._episode += 1
         self._events: list[Event] = []
@@ -184,7 +145,7 @@ class Simulation:
         """Begin a motion. One that a law forbids is refused: see `outcome`, and the next `advance` reports it."""
         body = self._seats[seat]
         reason = (
-            f"{seat} is busy with another motion" if body.activity is not None else self._starting.refusal(body, action)
+            f"{seat} is busy with another motion" if body.activity is not None else self._dispatch.refusal(body, action)
         )
         if reason:
             verb = manipulation.motion_name(action)
@@ -192,7 +153,7 @@ class Simulation:
             data = {"motion": verb, "reason": reason}
             self._events.append(Event(tick=self.tick, seat=seat, kind="refused", data=data))
             return
-        body.activity = self._starting.activity(body, action)
+        body.activity = self._dispatch.activity(body, action)
 
     def outcome(self, seat: str) -> Outcome | None:
         """How the seat's last motion ended, None before any has."""
@@ -250,14 +211,15 @@ class Simulation:
             place: (x, y) [m] where the body would stand, facing it; None for where it stands, as it stands.
         """
         body = self._seats[seat]
-        if place is not None:
-            item, leaf = self._objects.get(id), self._doors.get(id)
-            centre = item.position if item is not None else leaf.thing.centre if leaf is not None else None
-            if centre is None:
-                return ""
-            body = BodyState(seat, body.spec, body.space)
-            body.pose = Pose(x=place[0], y=place[1], yaw=math.atan2(centre[1] - place[1], centre[0] - place[0]))
-        return self._hands.out_of_hand(body, id)
+        return self._manipulation.out_of_hand(body if place is None else self._imagined(body, id, place), id)
+
+    def _imagined(self, body: BodyState, id: str, place: Vec2) -> BodyState:
+        """A copy of a body that stands at a place and faces an object or a thing that opens."""
+        item, door = self._objects.get(id), self._doors.get(id)
+        x, y, _ = item.position if item is not None else door.thing.centre if door is not None else (*place, 0.0)
+        copy = BodyState(body.name, body.spec, body.space)
+        copy.pose = Pose(x=place[0], y=place[1], yaw=math.atan2(y - place[1], x - place[0]))
+        return copy
 
     def teleport(self, seat: str, pose: Pose) -> None:
         """Put a body somewhere at once; what it was doing ends.
@@ -267,25 +229,10 @@ class Simulation:
                 finite, or a camera pitch beyond the body's limit.
         """
         body, pose = self._seats[seat], numbers.pose(pose)
-        limit = body.spec.pitch_limit
-        if abs(pose.pitch) > limit + 1e-9:
-            raise HthorError(
-                f"pitch must be from {-limit:.2f} to {limit:.2f} rad for {seat}, "
-                f"got {numbers.format_number(pose.pitch)} rad"
-            )
-        here = f"({numbers.format_number(pose.x)}, {numbers.format_number(pose.y)})"
-        if not body.space.is_free(pose.x, pose.y):
-            raise HthorError(f"{here} is not free for {seat}; try space['{seat}'].nearest_free")
-        for other in self._seats.values():
-            least = body.spec.radius + other.spec.radius - 1e-9
-            if other is not body and math.dist((pose.x, pose.y), (other.pose.x, other.pose.y)) < least:
-                raise HthorError(
-                    f"{other.name} is in the way at {here}: {seat} must stay {least:.2f} m away from "
-                    f"({other.pose.x:.2f}, {other.pose.y:.2f})"
-                )
+        spawn.check_fits(body, pose, self._seats.values())
         body.pose, body.activity = pose, None
-        self._hinges.let_go(seat)
-        self._together.let_go(body)
+        self._door_handling.release(seat)
+        self._joint_carrying.release(body)
         if body.holding:
             self._objects.follow(body.holding)
 
@@ -314,7 +261,7 @@ class Simulation:
             HthorError: when it is in someone's hand, would be outdoors or inside something, has no room there, or is
                 to fly faster than anyone throws.
         """
-        self._arranging.put(id, position, on, yaw, velocity)
+        self._editor.put(id, position, on, yaw, velocity)
 
     def remove_object(self, id: str) -> None:
         """Take an object out of the episode; `put_object` brings it back.
@@ -323,7 +270,7 @@ class Simulation:
             UnknownName: when there is no such object.
             HthorError: when it is in someone's hand.
         """
-        self._arranging.remove(id)
+        self._editor.remove(id)
 
     def set_open(self, thing: str, wanted: bool = True) -> None:
         """Open or close a fridge, a drawer or a door at once.
@@ -332,7 +279,7 @@ class Simulation:
             UnknownName: when no such thing opens.
             HthorError: when something is in its way.
         """
-        self._hinges.put(thing, wanted)
+        self._door_handling.put(thing, wanted)
 
     # ---------------------------------------------------------------------------------------------------------- truth
 
@@ -360,7 +307,7 @@ class Simulation:
 
     def room(self, seat: str) -> str:
         """Id of the room the seat's body is in, the last one while it is between rooms."""
-        return self._whereabouts.room(seat, self._seats[seat].pose)
+        return self._rooms.room(seat, self._seats[seat].pose)
 
     def truth(self) -> tuple[ThingState, ...]:
         """True states of all objects and openable things, by id."""
@@ -369,15 +316,3 @@ class Simulation:
     def snapshot(self) -> Snapshot:
         """The truth at this tick, for the umpire and the log."""
         return self._truth.snapshot(self.tick)
-
-
-def _check_numbers(task: TaskSpec) -> None:
-    """Complain of a task whose positions or poses are no finite numbers."""
-    try:
-        for placement in task.objects:
-            numbers.point3(f"position of {placement.id}", placement.position)
-            numbers.number(f"yaw of {placement.id}", placement.yaw, "radians")
-        for pose in (task.human_start, *task.robot_starts):
-            numbers.pose(pose)
-    except HthorError as error:
-        raise TaskError(task.id, "objects or starts", str(error)) from None

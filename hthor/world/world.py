@@ -8,40 +8,14 @@ world.robot.go_to("fridge")
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
-from hthor import catalog, houses, rules
-from hthor.comms.mailbox import Mailbox
+from hthor import houses
 from hthor.errors import UnknownName
-from hthor.geometry import plane
-from hthor.types import (
-    HUMAN,
-    Event,
-    Message,
-    Motion,
-    Outcome,
-    Placement,
-    Receipt,
-    Room,
-    TaskSpec,
-    Thing,
-    ThingState,
-    Vec3,
-)
-from hthor.world import numbers
+from hthor.types import HUMAN
 from hthor.world.actor import Actor
-from hthor.world.motion import spawn
-from hthor.world.sensing_simulation import SensingSimulation
-
-_MOTION_TICKS_MAX = 36_000
-"""An hour: a call that is not done by then never will be."""
+from hthor.world.interactive_simulation import InteractiveSimulation
 
 
-_STEP_TICKS_MAX = 864_000
-"""A day: more than any study, and not yet without end."""
-
-
-class World(SensingSimulation):
+class World(InteractiveSimulation):
     """A house with one person and any number of robots in it, for notebooks, studies and scripts.
 
     It has all members of `Simulation` and `SensingSimulation`. ``human``, ``robot`` and ``actor(seat)`` are the bodies;
@@ -58,79 +32,10 @@ class World(SensingSimulation):
         events: everything that has happened since the last reset, in order.
     """
 
-    # ------------------------------------------------------------------------------------- environment configuration
-
     @staticmethod
     def scenes() -> tuple[str, ...]:
         """Names of the houses that come with hthor."""
         return houses.names()
-
-    def reset(self, task: TaskSpec | None = None, seed: int = 0) -> None:
-        """Begin anew: as a task says, or, without one, with the house as it is and everyone at the house's start."""
-        if task is not None:
-            super().reset(task, seed)
-            return
-        self._begin({})
-        self._seed = seed
-        spawn.place_bodies(tuple(self._seats.values()), self.house.start, ())
-
-    def objects(self, kind: str = "", room: str = "") -> tuple[ThingState, ...]:
-        """True states of the objects that can be picked up, by id; of one kind, or in one room (its id), when given.
-
-        Raises:
-            UnknownName: when there is no such room or kind.
-        """
-        _check_kind(kind)
-        where = self._room(room).polygon if room else ()
-        states = (item.state() for item in self._objects if item.present and kind in ("", item.kind))
-        return tuple(state for state in states if not where or plane.inside(state.position[:2], where))
-
-    def furniture(self, kind: str = "", room: str = "") -> tuple[Thing, ...]:
-        """The things that stay where they are, as the house file has them; of one kind, or in one room, when given.
-
-        Raises:
-            UnknownName: when there is no such room or kind.
-        """
-        _check_kind(kind)
-        where = self._room(room).id if room else ""
-        things = self._contents.statics
-        return tuple(thing for thing in things if kind in ("", thing.kind) and where in ("", thing.room))
-
-    def count(self, kind: str) -> int:
-        """How many things of a kind are in the house now, those in hands included.
-
-        Raises:
-            UnknownName: when there is no such kind.
-        """
-        return len(self.objects(kind)) + len(self.furniture(kind))
-
-    def state(self, id: str) -> ThingState:
-        """True state of an object or of a thing that opens: where it is, on what, in whose hand, whether open.
-
-        Raises:
-            UnknownName: when it is not in the house now.
-        """
-        states = {state.id: state for state in self.truth()}
-        if id not in states:
-            raise UnknownName("object", id, states)
-        return states[id]
-
-    def position(self, id: str) -> Vec3:
-        """Centre [m], house frame, of an object, a thing, a doorway or a seat's body (at the height of its eye).
-
-        Raises:
-            UnknownName: when there is no such thing.
-        """
-        if id in self.bodies:
-            pose = self.pose(id)
-            return (pose.x, pose.y, self.bodies[id].eye)
-        places = {thing.id: thing.centre for thing in self._contents.statics}
-        places |= {state.id: state.position for state in self.truth()}
-        if id not in places:
-            raise UnknownName("thing", id, places)
-        return places[id]
-
-    # ------------------------------------------------------------------------------------------------- agent control
 
     def actor(self, seat: str) -> Actor:
         """The body in a seat.
@@ -151,62 +56,3 @@ class World(SensingSimulation):
     def robot(self) -> Actor:
         """The first robot."""
         return self.actor("robot")
-
-    def run(self, seat: str, motion: Motion) -> Outcome:
-        """Start a motion and let ticks pass until it has ended."""
-        self.start(seat, motion)
-        for _ in range(_MOTION_TICKS_MAX):
-            self.step()
-            if self.idle(seat):
-                break
-        outcome = self.outcome(seat)
-        assert outcome is not None
-        return outcome
-
-    def step(self, ticks: int = 1) -> tuple[Event, ...]:
-        """Let ``ticks`` of 0.1 s pass; returns what happened in them, which `events` keeps too."""
-        news: list[Event] = []
-        for _ in range(numbers.whole_number("ticks", ticks, 0, _STEP_TICKS_MAX)):
-            happened = self.advance()
-            self.note(happened)
-            news += happened
-        return tuple(news)
-
-    def settle(self, seconds: float = 10.0) -> bool:
-        """Let time pass until nothing falls, rolls or swings, at most ``seconds``; says whether all is still."""
-        for _ in range(
-            round(numbers.number("seconds", seconds, "seconds", 0.0, _MOTION_TICKS_MAX * rules.TICK_S) * 10)
-        ):
-            self.step()
-            if self.still:
-                return True
-        return self.still
-
-    # ------------------------------------------------------------------------------------------------ communication
-
-    @property
-    def messages(self) -> tuple[tuple[Message, Receipt], ...]:
-        """Every message since the last reset, with what became of it."""
-        return self.mail.messages
-
-    def note(self, events: Iterable[Event]) -> None:
-        """Keep events."""
-        self.events.extend(events)
-
-    def _begin(self, placements: dict[str, Placement], task: str = "") -> None:
-        super()._begin(placements, task)
-        self.mail = Mailbox(robots=self.seats[1:])
-        self.events: list[Event] = []
-
-    def _room(self, name: str) -> Room:
-        """A room by its id or its name."""
-        for room in self.house.rooms:
-            if name in (room.id, room.name):
-                return room
-        raise UnknownName("room", name, [room.name for room in self.house.rooms])
-
-
-def _check_kind(kind: str) -> None:
-    """Complain of a kind that does not exist; "" stands for all."""
-    if kind:
-        catalog.kind(kind)

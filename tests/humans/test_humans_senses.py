@@ -29,7 +29,7 @@ from hthor.humans.population.participant import Participant
 from hthor.types import HUMAN, Briefing, Detection, Job, Observation, Open, Pose, Sighting
 from hthor.world import World
 from hthor.world.model.bodies import avatar
-from hthor.world.perception import view_frustum, visibility_kernel, visible_fraction
+from hthor.world.perception import view_frustum, visible_fraction
 from hthor.world.perception.occluders import Occluders
 
 TRAITS = Parameters()
@@ -127,13 +127,13 @@ def test_a_closer_look_finds_what_ray_after_ray_finds(seed, yaw, pitch):
     crowd = slowly(
         view, 0, [others[k][None] for k in near], [99.0] * len(near), [tuple(wanted[k, 1:]) for k in near], *bodies
     )
-    hiders = Occluders(scene)
-    hiders.follow(1)
-    around = hiders.groups, hiders.spheres, hiders.boxes, hiders.firm, hiders.count
+    occluders = Occluders(scene)
+    occluders.follow(1)
+    around = occluders.arrays
     eye = pose.x, pose.y, avatar.HUMAN.eye, yaw, pitch, *view_frustum.half_fov_tangents(avatar.HUMAN)
     found = visible_fraction.measure(*eye, points, 0, others, wanted, *around)
     assert found == (len(whole) / len(points), len(crowd))
-    assert visibility_kernel.view_axes(*eye) == pytest.approx(tuple(view))
+    assert view_frustum.view_axes(*eye) == pytest.approx(tuple(view))
 
 
 @pytest.fixture(scope="module")

@@ -68,7 +68,7 @@ def drawn(world: World) -> World:
 def undressed(world: World, pack: Any = None) -> Any:
     """The visual model of a world, without any OpenGL."""
     split = inventory.split_things(world.house, inventory.DEFAULT_OBJECTS)
-    dressing = SceneBuilder(world.house, split, PoseSync(world.model, world._scene), AssetSource(pack))
+    dressing = SceneBuilder(world.house, split, PoseSync(world.model, world._geoms), AssetSource(pack))
     return dressing.build(world.bodies, lights.RoomLights(world.house))
 
 
@@ -164,7 +164,7 @@ def test_a_pack_comes_first_and_brings_its_own_textures(world: World) -> None:
 
 
 def test_puppets_follow_doors(world: World) -> None:
-    puppets = PoseSync(world.model, world._scene)
+    puppets = PoseSync(world.model, world._geoms)
     body = puppets.hung[FRIDGE, world._doors.get(FRIDGE).joints[0].name]
     closed = puppets.at(world._env.data.qpos)[1][body].copy()
     _, (w, *_rest) = puppets.relative(body, ((0.0, 0.0, 0.0), tuple(closed)))

@@ -45,7 +45,7 @@ def inside(world: World, id: str) -> str:
     """What an object is in."""
     item = world._objects.get(id)
     assert item is not None
-    return OverlapTest(world._env, world._scene).inside(item)
+    return OverlapTest(world._env, world._geoms).inside(item)
 
 
 # ------------------------------------------------------------------------------------- two things in one place

@@ -115,14 +115,14 @@ def test_nothing_passes_through_a_wall_or_a_surface(kind, x, y, z, speed, headin
     assert 0.0 < before[0] < 10.0
     assert 0.0 < before[1] < 4.0
     assert before[2] > 0.0
-    assert one._arranging._touch.inside(one._objects.get(id), 0.012) == ""
+    assert one._editor._overlap.inside(one._objects.get(id), 0.012) == ""
 
 
 @quick
 @given(kinds, st.sampled_from((TABLE, COFFEE, COUNTER, "sofa|1", "bed|1", "shelf|1")), st.floats(-2.0, 4.0), angles)
 def test_what_is_thrown_at_a_board_does_not_come_out_below(kind, thing, push, yaw) -> None:
     one = fresh()
-    place = max(one._arranging._places.of(thing), key=lambda place: place.centre[2])
+    place = max(one._editor._surfaces.of(thing), key=lambda place: place.centre[2])
     x, y, z = place.centre
     height = 0.28 if thing == "shelf|1" else 0.7
     id = put(one, kind, (x, y, z + height / 2 + 0.05), (0.0, 0.0, -max(push, 0.0)), yaw)
@@ -155,7 +155,7 @@ def test_energy_does_not_grow(kind, x, y, z, speed, heading) -> None:
 @given(kinds, st.sampled_from((TABLE, COFFEE, COUNTER, "bed|1", "sofa|1")), st.floats(-1, 1), st.floats(-1, 1), angles)
 def test_what_is_placed_stays(kind, thing, u, v, yaw) -> None:
     one = fresh()
-    places = [place for place in one._arranging._places.of(thing) if not place.inside]
+    places = [place for place in one._editor._surfaces.of(thing) if not place.inside]
     x, y, z = to_house((u * places[0].half[0], v * places[0].half[1], 0.0), places[0].centre, places[0].yaw)
     try:
         one.put_object(f"my {kind}", (x, y, z), on=thing, yaw=yaw if kind in ("apple", "egg", "lettuce") else 0.0)

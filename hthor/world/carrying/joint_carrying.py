@@ -47,7 +47,8 @@ from hthor.world.motion.reach import out_of_reach
 from hthor.world.state import doorways
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors
-from hthor.world.state.objects import MovableObject, Objects
+from hthor.world.state.movable_object import MovableObject
+from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import OverlapTest
 
 _LOWER_STEP_M = 0.01
@@ -64,9 +65,10 @@ class JointCarrying:
     """What several bodies of one world hold by its handles."""
 
     def __init__(
-        self, house: HouseSpec, objects: Objects, doors: Doors, touch: OverlapTest, seats: Sequence[BodyState]
+        self, house: HouseSpec, objects: Objects, doors: Doors, overlap: OverlapTest, seats: Sequence[BodyState]
     ) -> None:
-        self._house, self._objects, self._doors, self._touch, self._seats = house, objects, doors, touch, tuple(seats)
+        self._house, self._objects, self._doors, self._overlap = house, objects, doors, overlap
+        self._seats = tuple(seats)
         self._loads: dict[str, TrailerLoad] = {}
         self._fixed: Any = None
 
@@ -116,7 +118,7 @@ class JointCarrying:
         self._objects.take(item.id, next(iter(load.ends)), load.pose)
         return (held, ("lifted", {"object": item.id, "bearers": list(load.ends)}))
 
-    def let_go(self, seat: BodyState) -> EventList:
+    def release(self, seat: BodyState) -> EventList:
         """Let go; what the rest cannot hold is put down."""
         load = self.of(seat)
         if load is None:
@@ -151,7 +153,7 @@ class JointCarrying:
         for step in range(math.ceil((top - low) / _LOWER_STEP_M)):
             load.z = low + step * _LOWER_STEP_M
             self._objects.follow(item.id)
-            if not self._touch.inside(item):
+            if not self._overlap.inside(item):
                 break
         else:
             load.z = top

@@ -14,7 +14,7 @@ from hthor.types import Vec3
 from hthor.world.model import geoms
 from hthor.world.model.composer_env import QPose
 from hthor.world.state.body_state import BodyState
-from hthor.world.state.objects import MovableObject
+from hthor.world.state.movable_object import MovableObject
 
 LIFT_M = 0.30
 """How high above the floor the bottom of what is carried hangs."""

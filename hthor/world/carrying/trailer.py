@@ -20,7 +20,7 @@ from hthor.world.carrying import follow_paths as ways
 from hthor.world.carrying import trailer_kernel
 from hthor.world.carrying.load import Load
 from hthor.world.state.body_state import BodyState
-from hthor.world.state.objects import MovableObject
+from hthor.world.state.movable_object import MovableObject
 
 ARM_M = 0.30
 """How far from its bearer's side a handle is carried; arms stretch further only for a while."""

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from hthor.types import Close, Drop, HouseSpec, Motion, Move, Open, Pick, Place, Rotate, Vec2, Wait
 from hthor.world.carrying import carry_motion
-from hthor.world.interaction import manipulation
-from hthor.world.interaction.manipulation import Manipulation
+from hthor.world.interaction.manipulation import HandMotion, Manipulation
 from hthor.world.motion import locomotion
 from hthor.world.motion.blocking_object import ObstacleFootprints
 from hthor.world.state.body_state import Activity, BodyState
@@ -17,23 +16,23 @@ from hthor.world.state.doors import Doors
 class ActionDispatch:
     """What every body of a world can begin to do."""
 
-    def __init__(self, house: HouseSpec, hands: Manipulation, doors: Doors, seats: Sequence[BodyState]) -> None:
-        self._hands, self._doors, self._obstacles = hands, doors, ObstacleFootprints(house)
-        self._together = hands.together
+    def __init__(self, house: HouseSpec, manipulation: Manipulation, doors: Doors, seats: Sequence[BodyState]) -> None:
+        self._manipulation, self._doors, self._obstacles = manipulation, doors, ObstacleFootprints(house)
+        self._joint_carrying = manipulation.joint_carrying
         self._others = {seat.name: tuple(other for other in seats if other is not seat) for seat in seats}
 
     def refusal(self, seat: BodyState, action: object) -> str:
         """Why the motion cannot be started, empty when it can."""
         if isinstance(action, (Move, Rotate, Wait)):
             reason = locomotion.refusal(seat, action)
-            return reason or (self._together.stuck(seat) if seat.holding and isinstance(action, Move) else "")
+            return reason or (self._joint_carrying.stuck(seat) if seat.holding and isinstance(action, Move) else "")
         if isinstance(action, (Pick, Place, Drop, Open, Close)):
-            return self._hands.refusal(seat, action)
+            return self._manipulation.refusal(seat, action)
         return f"{type(action).__name__} is not a motion; valid: Move, Rotate, Pick, Place, Drop, Open, Close, Wait"
 
     def activity(self, seat: BodyState, action: Motion) -> Activity:
         """The motion under way."""
-        load = self._together.of(seat) if seat.holding else None
+        load = self._joint_carrying.of(seat) if seat.holding else None
         if load is not None and isinstance(action, Move):
             return carry_motion.CarryMotion(seat, action, load, self._culprit)
         if load is not None and isinstance(action, Rotate):
@@ -44,7 +43,7 @@ class ActionDispatch:
             return locomotion.RotateMotion(seat, action)
         if isinstance(action, Wait):
             return locomotion.WaitMotion(action)
-        return manipulation.HandMotion(seat, action, self._hands)
+        return HandMotion(seat, action, self._manipulation)
 
     def _culprit(self, seat: BodyState, step: Vec2) -> str:
         """What the body would have run into: the nearest thing's id, or "wall"."""

@@ -15,16 +15,17 @@ from hthor.types import Close, Drop, Event, HouseSpec, Open, Outcome, Pick, Plac
 from hthor.world import numbers
 from hthor.world.carrying.joint_carrying import EventList, JointCarrying
 from hthor.world.interaction.opening import DoorHandling
-from hthor.world.model import geoms
 from hthor.world.model.composer_env import QPose
 from hthor.world.model.geom_index import GeomIndex
+from hthor.world.model.geoms import quaternion
 from hthor.world.motion.locomotion import TickResult, duration_ticks
 from hthor.world.motion.reach import held_pose, out_of_reach, out_of_sight, too_heavy
 from hthor.world.perception import view_frustum
 from hthor.world.state import support_surfaces
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors
-from hthor.world.state.objects import MovableObject, Objects
+from hthor.world.state.movable_object import MovableObject
+from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import FLOOR, OverlapTest
 from hthor.world.state.support_surfaces import SupportSurfaces
 
@@ -71,17 +72,17 @@ class Manipulation:
     def __init__(
         self,
         house: HouseSpec,
-        scene: GeomIndex,
+        geoms: GeomIndex,
         objects: Objects,
         doors: Doors,
         surfaces: SupportSurfaces,
-        hinges: DoorHandling,
-        touch: OverlapTest,
-        together: JointCarrying,
+        overlap: OverlapTest,
+        door_handling: DoorHandling,
+        joint_carrying: JointCarrying,
     ) -> None:
         self._things = {thing.id: thing for thing in house.things}
-        self._scene, self._objects, self._doors, self._places = scene, objects, doors, surfaces
-        self._hinges, self._touch, self.together = hinges, touch, together
+        self._geoms, self._objects, self._doors, self._surfaces = geoms, objects, doors, surfaces
+        self._overlap, self._door_handling, self.joint_carrying = overlap, door_handling, joint_carrying
         self._news: EventList = ()
 
     def news(self) -> EventList:
@@ -92,30 +93,30 @@ class Manipulation:
     def refusal(self, seat: BodyState, motion: HandAction) -> str:
         """Why ``seat`` cannot do it now, empty when it can."""
         if isinstance(motion, (Open, Close)):
-            return self._hinges.refusal(seat, motion)
+            return self._door_handling.refusal(seat, motion)
         if isinstance(motion, Pick):
             return self._pick(seat, motion)
-        if self.together.of(seat) is not None:
+        if self.joint_carrying.of(seat) is not None:
             return self._refused(seat, motion)
         return self._drop(seat) if isinstance(motion, Drop) else self._place(seat, motion)[0]
 
     def begin(self, seat: BodyState, motion: HandAction) -> None:
         """Take hold of a door."""
         if isinstance(motion, (Open, Close)):
-            self._hinges.begin(seat, motion)
+            self._door_handling.begin(seat, motion)
 
     def during(self, motion: HandAction, share: float) -> None:
         """``share`` of the motion's time has passed: doors swing along."""
         if isinstance(motion, (Open, Close)):
-            self._hinges.during(motion, share)
+            self._door_handling.during(motion, share)
 
     def finish(self, seat: BodyState, motion: HandAction) -> str:
         """Do it, unless a law forbids it by now; the reason then."""
         if isinstance(motion, (Open, Close)):
-            return self._hinges.finish(motion)
+            return self._door_handling.finish(motion)
         if isinstance(motion, Pick):
             return self._pick(seat, motion) or self._take(seat, motion.object)
-        if self.together.of(seat) is not None:
+        if self.joint_carrying.of(seat) is not None:
             return self._refused(seat, motion) or self._let_go(seat)
         if isinstance(motion, Drop):
             return self._drop(seat) or self._put(seat, held_pose(seat, self._held(seat).size), "")
@@ -141,21 +142,21 @@ class Manipulation:
         item = self._objects.get(id)
         if item is not None:
             return self._out_of_hand(seat, item) if "pick" in seat.spec.capabilities else ""
-        return self._hinges.out_of_hand(seat, id) if "open" in seat.spec.capabilities else ""
+        return self._door_handling.out_of_hand(seat, id) if "open" in seat.spec.capabilities else ""
 
     def _out_of_hand(self, seat: BodyState, item: MovableObject) -> str:
         if item.held_by and not item.bearers:
             return f"{item.id} is held by {item.held_by}"
-        if self.together.takes(seat, item):
-            return self.together.refusal(seat, item) or out_of_sight(seat, item, self._scene)
+        if self.joint_carrying.takes(seat, item):
+            return self.joint_carrying.refusal(seat, item) or out_of_sight(seat, item, self._geoms)
         return (
-            out_of_reach(seat, item.id, item.position) or out_of_sight(seat, item, self._scene) or too_heavy(seat, item)
+            out_of_reach(seat, item.id, item.position) or out_of_sight(seat, item, self._geoms) or too_heavy(seat, item)
         )
 
     def _take(self, seat: BodyState, id: str) -> str:
         item = self._objects.get(id)
-        if item is not None and self.together.takes(seat, item):
-            self._news = self.together.hold(seat, item)
+        if item is not None and self.joint_carrying.takes(seat, item):
+            self._news = self.joint_carrying.hold(seat, item)
             return ""
         seat.holding = id
         size = self._held(seat).size
@@ -177,7 +178,7 @@ class Manipulation:
         return f"{seat.holding} is held by its handles; drop it, or place it on '{FLOOR}': it is put down where it is"
 
     def _let_go(self, seat: BodyState) -> str:
-        self._news = self.together.let_go(seat)
+        self._news = self.joint_carrying.release(seat)
         return ""
 
     # ------------------------------------------------------------------------------------------------------- drop
@@ -188,10 +189,10 @@ class Manipulation:
         item = self._objects.get(seat.holding)
         if item is None:
             return f"{seat.name} holds nothing to drop"
-        where = self._touch.inside(item)
+        where = self._overlap.inside(item)
         if not where:
             x, y, z = item.position
-            met = self._scene.first((seat.pose.x, seat.pose.y, z), (x, y, z), item.id)
+            met = self._geoms.first((seat.pose.x, seat.pose.y, z), (x, y, z), item.id)
             return f"{met} is between {seat.name} and {item.id}" if met else ""
         return f"{item.id} would be inside {where}"
 
@@ -205,7 +206,7 @@ class Manipulation:
             return f"{seat.name} holds nothing to place", _NO_POSE
         if motion.position is not None and not _is_point(motion.position):
             return f"position must be three finite numbers or None, got {numbers.quoted(motion.position)}", _NO_POSE
-        surfaces = self._places.of(motion.on) if isinstance(motion.on, str) else ()
+        surfaces = self._surfaces.of(motion.on) if isinstance(motion.on, str) else ()
         if not surfaces:
             return f"nothing can be placed on '{motion.on!s:.40}'", _NO_POSE
         surfaces = self._accessible(motion, surfaces)
@@ -237,7 +238,7 @@ class Manipulation:
         gap = nearest.distance(seat.pose.x, seat.pose.y)
         if gap > seat.spec.reach:
             return f"{motion.on} is {gap:.2f} m away; reach is {seat.spec.reach:.2f} m", _NO_POSE
-        boxes = self._scene.boxes(motion.on)
+        boxes = self._geoms.boxes(motion.on)
         lean = max(item.size[:2]) / 2 + rules.GRID_M
         w, d, h = item.size
         reason = f"no room on {motion.on}: {item.id} needs {w:.2f} x {d:.2f} m"
@@ -248,7 +249,7 @@ class Manipulation:
                 near = [centre for centre in free if not out_of_reach(seat, motion.on, centre, lean)]
                 visible = next(self._visible(seat, near), None)
                 if visible is not None:
-                    pose = (*visible, *geoms.quaternion(place.yaw + turn))
+                    pose = (*visible, *quaternion(place.yaw + turn))
                     found.append((round(math.dist(visible, wanted), 6), pose))
                 elif near:
                     reason = f"the free part of {motion.on} is out of sight"
@@ -260,7 +261,7 @@ class Manipulation:
 
     def _visible(self, seat: BodyState, centres: list[Vec3]) -> Iterator[Vec3]:
         eye = view_frustum.eye_position(seat.pose, seat.spec)
-        return (centre for centre in centres[:_SPOT_TRIES] if not self._scene.hidden(eye, centre))
+        return (centre for centre in centres[:_SPOT_TRIES] if not self._geoms.hidden(eye, centre))
 
     def _put(self, seat: BodyState, pose: QPose, on: str) -> str:
         id, seat.holding = seat.holding, ""

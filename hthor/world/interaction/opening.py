@@ -17,11 +17,11 @@ from hthor.types import Close, Joint, Open, Opening, Part, Thing, Vec3
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.motion.reach import out_of_reach
 from hthor.world.perception import view_frustum
-from hthor.world.state import doorways
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors, DoorState
-from hthor.world.state.doorways import Doorways
-from hthor.world.state.objects import MovableObject, Objects
+from hthor.world.state.doorways import Doorways, in_doorway
+from hthor.world.state.movable_object import MovableObject
+from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import OVERLAP_M
 from hthor.world.state.support_surfaces import SupportSurfaces
 
@@ -34,15 +34,15 @@ class DoorHandling:
 
     def __init__(
         self,
-        scene: GeomIndex,
+        geoms: GeomIndex,
         objects: Objects,
         doors: Doors,
-        places: SupportSurfaces,
-        gates: Doorways,
+        surfaces: SupportSurfaces,
+        doorways: Doorways,
         seats: Sequence[BodyState],
     ) -> None:
-        self._scene, self._objects, self._doors, self._places = scene, objects, doors, places
-        self._gates, self._seats = gates, seats
+        self._geoms, self._objects, self._doors, self._surfaces = geoms, objects, doors, surfaces
+        self._doorways, self._seats = doorways, seats
 
     def refusal(self, seat: BodyState, motion: Open | Close) -> str:
         """Why ``seat`` cannot do it now, empty when it can."""
@@ -89,7 +89,7 @@ class DoorHandling:
             raise HthorError(f"{id} cannot be {'opened' if wanted else 'closed'}: {reason}")
         self._rest(leaf, wanted)
 
-    def let_go(self, seat: str) -> None:
+    def release(self, seat: str) -> None:
         """A body leaves off: what it was opening or closing goes back."""
         for leaf in self._doors:
             if leaf.user == seat:
@@ -99,7 +99,7 @@ class DoorHandling:
     def _rest(self, leaf: DoorState, opened: bool) -> None:
         self._move(leaf, 1.0 if opened else 0.0)
         leaf.open = opened
-        self._gates.update({one.thing.id: one.opening for one in self._doors if one.opening and not one.open})
+        self._doorways.update({one.thing.id: one.opening for one in self._doors if one.opening and not one.open})
         self._doors.changes += 1
 
     def _leaf(self, motion: Open | Close) -> DoorState:
@@ -109,7 +109,7 @@ class DoorHandling:
 
     def _move(self, leaf: DoorState, share: float) -> None:
         step = share - leaf.share
-        for place in self._places.of(leaf.thing.id):
+        for place in self._surfaces.of(leaf.thing.id):
             if place.slides:
                 riders = [item.id for item in self._objects.lying(place)]
                 x, y, z = (step * way for way in place.way)
@@ -130,19 +130,19 @@ class DoorHandling:
         eye, name = view_frustum.eye_position(seat.pose, seat.spec), leaf.thing.id
         x, y, _ = point
         top = leaf.thing.centre[2] + 0.45 * leaf.thing.size[2]
-        ways = [place.way for place in self._places.of(name) if place.slides]
+        ways = [place.way for place in self._surfaces.of(name) if place.slides]
         points = [point, (x, y, top), *((x + leaf.share * way[0], y + leaf.share * way[1], top) for way in ways)]
-        return any(not self._scene.hidden(eye, place, name) for place in points)
+        return any(not self._geoms.hidden(eye, place, name) for place in points)
 
     # ---------------------------------------------------------------------------------------------- what is in the way
 
     def _in_the_way(self, leaf: DoorState, opening: bool) -> str:
         if leaf.opening is not None and not opening:
             for seat in self._seats:
-                if doorways.in_doorway(seat, leaf.opening):
+                if in_doorway(seat, leaf.opening):
                     return f"{seat.name} stands in the doorway"
         riders = set()
-        for place in self._places.of(leaf.thing.id):
+        for place in self._surfaces.of(leaf.thing.id):
             if place.slides:
                 lying = self._objects.lying(place)
                 riders |= {item.id for item in lying}

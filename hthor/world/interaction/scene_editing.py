@@ -9,12 +9,13 @@ from hthor.errors import HthorError, UnknownName
 from hthor.geometry import plane
 from hthor.types import HouseSpec, Vec3
 from hthor.world import numbers
-from hthor.world.model import geoms
 from hthor.world.model.composer_env import SPEED_MAX_M_S, LazyComposerEnv, QPose
 from hthor.world.model.composer_task import HouseTask
 from hthor.world.model.geom_index import GeomIndex
+from hthor.world.model.geoms import quaternion
 from hthor.world.state import support_surfaces
-from hthor.world.state.objects import MovableObject, Objects
+from hthor.world.state.movable_object import MovableObject
+from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import OverlapTest
 from hthor.world.state.support_surfaces import SupportSurfaces
 
@@ -27,13 +28,13 @@ class SceneEditor:
         house: HouseSpec,
         task: HouseTask,
         env: LazyComposerEnv,
-        scene: GeomIndex,
+        geoms: GeomIndex,
         objects: Objects,
         surfaces: SupportSurfaces,
-        touch: OverlapTest,
+        overlap: OverlapTest,
     ) -> None:
         self._house = house
-        self._env, self._scene, self._objects, self._places, self._touch = env, scene, objects, surfaces, touch
+        self._env, self._geoms, self._objects, self._surfaces, self._overlap = env, geoms, objects, surfaces, overlap
         self._parking = {prop.id: task.parking(number) for number, prop in enumerate(task.props)}
 
     def put(self, id: str, position: Sequence[float] | None, on: str, yaw: float, velocity: Sequence[float]) -> None:
@@ -47,7 +48,7 @@ class SceneEditor:
         if on:
             self._objects.move(id, self._on(item, on, at, yaw), speed)
         elif at is not None:
-            self._at(item, (*at, *geoms.quaternion(yaw)), speed)
+            self._at(item, (*at, *quaternion(yaw)), speed)
         else:
             raise HthorError(f"say where to put {id}: give its position, or what to put it on")
 
@@ -67,13 +68,13 @@ class SceneEditor:
 
     def _on(self, item: MovableObject, on: str, near: Vec3 | None, yaw: float) -> QPose:
         """A free place on the thing, nearest to ``near`` or to a surface's middle: inside only where it has no top."""
-        surfaces = self._places.of(on)
+        surfaces = self._surfaces.of(on)
         if not surfaces:
-            known = sorted({place.thing for place in self._places.all()})
+            known = sorted({place.thing for place in self._surfaces.all()})
             raise UnknownName("thing to put objects on", on, known)
         if near is None:
             surfaces = tuple(place for place in surfaces if not place.inside) or surfaces
-        boxes = self._scene.boxes_but(on, item.id)
+        boxes = self._geoms.boxes_but(on, item.id)
         found = []
         for turn in (yaw, yaw + math.pi / 2):
             w, d = abs(math.cos(turn)), abs(math.sin(turn))
@@ -83,7 +84,7 @@ class SceneEditor:
                 spots = support_surfaces.free_spots(place, size, boxes, goal)
                 if spots:
                     rank = math.dist(spots[0], goal) if near else float(order)
-                    found.append((round(rank, 6), (*spots[0], *geoms.quaternion(place.yaw + turn))))
+                    found.append((round(rank, 6), (*spots[0], *quaternion(place.yaw + turn))))
             if found:
                 return min(found)[1]
         w, d = item.size[:2]
@@ -99,7 +100,7 @@ class SceneEditor:
         rows, speeds = slice(item.qpos, item.qpos + 7), slice(item.dof, item.dof + 6)
         old = data.qpos[rows].copy(), data.qvel[speeds].copy()
         data.qpos[rows] = pose
-        where = self._touch.inside(item)
+        where = self._overlap.inside(item)
         if where:
             data.qpos[rows], data.qvel[speeds] = old
             self._env.touch()

@@ -12,7 +12,7 @@ from hthor.world.model.composer_env import QPose
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.perception import view_frustum
 from hthor.world.state.body_state import BodyState
-from hthor.world.state.objects import MovableObject
+from hthor.world.state.movable_object import MovableObject
 
 
 def out_of_reach(seat: BodyState, name: str, point: Vec3, lean: float = 1e-6) -> str:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hthor.errors import HthorError, TaskError
 from hthor.geometry.plane import wrap
-from hthor.types import Pose, Vec2
+from hthor.types import Pose, TaskSpec, Vec2
+from hthor.world import numbers
 from hthor.world.state.body_state import BodyState
 
 
@@ -52,3 +54,35 @@ def _cells_near(seat: BodyState, others: Sequence[BodyState]) -> NDArray[np.bool
 
 def _is_clear(place: Vec2, seat: BodyState, others: Sequence[BodyState]) -> bool:
     return all(math.dist(place, (o.pose.x, o.pose.y)) >= seat.spec.radius + o.spec.radius for o in others)
+
+
+def check_fits(body: BodyState, pose: Pose, seats: Iterable[BodyState]) -> None:
+    """Raise HthorError unless ``body`` can be at ``pose``: on free floor, clear of the others, its camera in range."""
+    limit = body.spec.pitch_limit
+    if abs(pose.pitch) > limit + 1e-9:
+        raise HthorError(
+            f"pitch must be from {-limit:.2f} to {limit:.2f} rad for {body.name}, "
+            f"got {numbers.format_number(pose.pitch)} rad"
+        )
+    here = f"({numbers.format_number(pose.x)}, {numbers.format_number(pose.y)})"
+    if not body.space.is_free(pose.x, pose.y):
+        raise HthorError(f"{here} is not free for {body.name}; try space['{body.name}'].nearest_free")
+    for other in seats:
+        least = body.spec.radius + other.spec.radius - 1e-9
+        if other is not body and math.dist((pose.x, pose.y), (other.pose.x, other.pose.y)) < least:
+            raise HthorError(
+                f"{other.name} is in the way at {here}: {body.name} must stay {least:.2f} m away from "
+                f"({other.pose.x:.2f}, {other.pose.y:.2f})"
+            )
+
+
+def check_numbers(task: TaskSpec) -> None:
+    """Raise TaskError for a task with a position, heading or pose that is not a finite number."""
+    try:
+        for placement in task.objects:
+            numbers.point3(f"position of {placement.id}", placement.position)
+            numbers.number(f"yaw of {placement.id}", placement.yaw, "radians")
+        for pose in (task.human_start, *task.robot_starts):
+            numbers.pose(pose)
+    except HthorError as error:
+        raise TaskError(task.id, "objects or starts", str(error)) from None

@@ -26,7 +26,7 @@ from hthor.types import BodySpec, Detection, DetectorSpec, Vec3, detector_specs
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.perception import view_frustum
 from hthor.world.state.body_state import BodyState
-from hthor.world.state.objects import MovableObject
+from hthor.world.state.movable_object import MovableObject
 from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces
 
 GLIMPSE_TICKS = round(1.0 / rules.TICK_S)

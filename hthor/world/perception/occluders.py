@@ -1,4 +1,4 @@
-"""Everything that hides something, laid out for `glance`: in groups that lie close together; sees nothing itself."""
+"""The solids that hide things, laid out for the visibility kernels: in groups that lie close together."""
 
 from __future__ import annotations
 
@@ -7,58 +7,67 @@ from typing import Any
 
 import numba
 import numpy as np
+from numpy.typing import NDArray
 
 from hthor.world.model.geom_index import GeomIndex
 
 _GROUP_MAX = 8
-"""A group is split as long as it has more members than this."""
+"""A group with more solids than this is split."""
 _GROUPED_RADIUS_MAX_M = 0.8
-"""Larger solids are groups of their own: they would make any other group large."""
+"""A larger solid [m] is a group of its own: it would make any other group large."""
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+OccluderArrays = tuple[Floats, Floats, Floats, int, int]
+"""``groups, spheres, boxes, fixed, count`` of `Occluders`, in the order in which kernels take them."""
 
 
 class Occluders:
-    """The solids of one world.
+    """The occluding solids of one world.
 
     Attributes:
-        spheres: (4, N) middles and radii [m]. boxes: (N, 13) half extents [m], rotations, and geoms. Those that never
-            move come first, ``firm`` of them; ``count`` says how many there are.
-        groups: (5, G + 1) middles and radii [m] of spheres around groups of those that never move, and where each
-            begins; the last column only says where they end.
-        version: of the world, when those that move were looked up last.
+        arrays: what the kernels take:
+            ``groups`` (5, G + 1), bounding spheres (centres and radii [m]) of groups of solids that never move, and the
+            index at which each group begins; the last column only marks the end;
+            ``spheres`` (4, N), bounding spheres of the solids [m];
+            ``boxes`` (N, 13), their half extents [m], row-major rotations, and numbers of geoms;
+            ``fixed``, how many of them, from the front, never move; ``count``, how many there are now.
+        version: of the world, at the last `follow`.
     """
 
-    def __init__(self, scene: GeomIndex) -> None:
-        self._scene = scene
-        spheres, boxes = _spheres(scene, scene.walls), _boxes(scene, scene.walls)
-        groups = list(_groups(spheres, np.arange(len(scene.walls))))
-        order = np.concatenate(groups) if groups else np.zeros(0, np.int64)
-        self.firm = self.count = len(order)
-        room = len(scene.radius)
-        self.spheres, self.boxes = np.zeros((4, room)), np.zeros((room, 13))
-        self.spheres[:, : self.firm], self.boxes[: self.firm] = spheres[:, order], boxes[order]
-        self.groups = np.zeros((5, len(groups) + 1))
-        for number, group in enumerate(groups):
-            self.groups[:4, number] = _bounding_sphere(spheres[:, group])
-        self.groups[4] = np.concatenate(([0], np.cumsum([len(group) for group in groups])))
+    def __init__(self, index: GeomIndex) -> None:
+        self._index = index
+        spheres, boxes = _spheres(index, index.walls), _boxes(index, index.walls)
+        members = list(_groups(spheres, np.arange(len(index.walls))))
+        order = np.concatenate(members) if members else np.zeros(0, np.int64)
+        self._fixed, room = len(order), len(index.radius)
+        self._spheres, self._boxes = np.zeros((4, room)), np.zeros((room, 13))
+        self._spheres[:, : self._fixed], self._boxes[: self._fixed] = spheres[:, order], boxes[order]
+        self._groups = np.zeros((5, len(members) + 1))
+        for number, group in enumerate(members):
+            self._groups[:4, number] = _bounding_sphere(spheres[:, group])
+        self._groups[4] = np.concatenate(([0], np.cumsum([len(group) for group in members])))
+        self.arrays: OccluderArrays = (self._groups, self._spheres, self._boxes, self._fixed, self._fixed)
         self.version = -1
 
     def follow(self, version: int) -> None:
-        """Look up those that move: one of them has since the last ``version``."""
+        """Read the poses of the solids that may move; ``version`` is that of the world now."""
         self.version = version
-        scene, firm = self._scene, self.firm
-        self.count = firm + len(scene.loose)
-        _copy(scene.pos, scene.radius, scene.half, scene.mat, scene.loose, self.spheres, self.boxes, firm)
+        index, fixed = self._index, self._fixed
+        solids = index.pos, index.radius, index.half, index.mat, index.loose
+        _copy_solids(*solids, self._spheres, self._boxes, fixed)
+        self.arrays = (self._groups, self._spheres, self._boxes, fixed, fixed + len(index.loose))
 
 
-def _groups(spheres: Any, members: Any) -> Iterator[Any]:
-    """Indices of spheres that lie close together."""
+def _groups(spheres: Floats, members: Ints) -> Iterator[Ints]:
+    """Groups of indices of spheres that lie close together."""
     large = spheres[3, members] > _GROUPED_RADIUS_MAX_M
     for one in members[large]:
         yield np.array([one])
     yield from _bisect(spheres, members[~large])
 
 
-def _bisect(spheres: Any, members: Any) -> Iterator[Any]:
+def _bisect(spheres: Floats, members: Ints) -> Iterator[Ints]:
     if len(members) <= _GROUP_MAX:
         if len(members):
             yield members
@@ -70,24 +79,24 @@ def _bisect(spheres: Any, members: Any) -> Iterator[Any]:
     yield from _bisect(spheres, order[middle:])
 
 
-def _bounding_sphere(spheres: Any) -> tuple[float, float, float, float]:
-    """Middle and radius [m] of a sphere around spheres, a little larger than it need be."""
+def _bounding_sphere(spheres: Floats) -> tuple[float, float, float, float]:
+    """Centre and radius [m] of a sphere around spheres, slightly enlarged against rounding."""
     middle = 0.5 * (spheres[:3].min(axis=1) + spheres[:3].max(axis=1))
     away = np.sqrt(((spheres[:3].T - middle) ** 2).sum(axis=1)) + spheres[3]
     return (*middle, float(away.max()) + 1e-6)
 
 
-def _spheres(scene: GeomIndex, geoms: Any) -> Any:
-    return np.vstack([scene.pos[geoms].T, scene.radius[geoms]])
+def _spheres(index: GeomIndex, geoms: Ints) -> Floats:
+    return np.vstack([index.pos[geoms].T, index.radius[geoms]])
 
 
-def _boxes(scene: GeomIndex, geoms: Any) -> Any:
-    return np.column_stack([scene.half[geoms], scene.mat[geoms], geoms])
+def _boxes(index: GeomIndex, geoms: Ints) -> Floats:
+    return np.column_stack([index.half[geoms], index.mat[geoms], geoms])
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _copy(pos: Any, radius: Any, half: Any, mat: Any, loose: Any, spheres: Any, boxes: Any, begin: int) -> None:
-    """Write the solids ``loose`` to spheres and boxes, from ``begin`` on."""
+def _copy_solids(pos: Any, radius: Any, half: Any, mat: Any, loose: Any, spheres: Any, boxes: Any, begin: int) -> None:
+    """Write the ``loose`` solids to ``spheres`` and ``boxes``, from column and row ``begin`` on."""
     for at in range(len(loose)):
         g, to = loose[at], begin + at
         spheres[0, to], spheres[1, to], spheres[2, to], spheres[3, to] = pos[g, 0], pos[g, 1], pos[g, 2], radius[g]

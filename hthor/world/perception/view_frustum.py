@@ -66,3 +66,41 @@ def nearest_distance(x: float, y: float, z: float, positions: Any) -> float:
         dx, dy, dz = positions[k, 0] - x, positions[k, 1] - y, positions[k, 2] - z
         best = min(best, dx * dx + dy * dy + dz * dz)
     return math.sqrt(best)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def view_axes(x: float, y: float, z: float, yaw: float, pitch: float, wide: float, high: float) -> Any:
+    """An eye [m], its forward, left and up axes, and the tangents of half its fields of view: 14 numbers."""
+    cy, sy, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
+    return x, y, z, cp * cy, cp * sy, sp, -sy, cy, 0.0, -sp * cy, -sp * sy, cp, wide, high
+
+
+@numba.njit(cache=True, error_model="numpy")
+def in_frame(view: Any, dx: float, dy: float, dz: float) -> bool:
+    """Whether a point at (dx, dy, dz) [m] from the eye is in the field of view."""
+    ahead = dx * view[3] + dy * view[4] + dz * view[5]
+    left = dx * view[6] + dy * view[7] + dz * view[8]
+    up = dx * view[9] + dy * view[10] + dz * view[11]
+    return bool((ahead > 0.0) & (abs(left) <= ahead * view[12]) & (abs(up) <= ahead * view[13]))
+
+
+@numba.njit(cache=True, error_model="numpy")
+def sphere_in_view(view: Any, reach: float, balls: Any, i: int) -> bool:
+    """Whether ball ``i`` of (4, N), middles and radii [m], is, in part, within reach and in the field of view."""
+    ex, ey, ez, fx, fy, fz = view[0], view[1], view[2], view[3], view[4], view[5]
+    lx, ly, lz, ux, uy, uz, w, h = view[6], view[7], view[8], view[9], view[10], view[11], view[12], view[13]
+    dx, dy, dz, size = balls[0, i] - ex, balls[1, i] - ey, balls[2, i] - ez, balls[3, i]
+    limit = reach + size
+    ahead = dx * fx + dy * fy + dz * fz
+    left = dx * lx + dy * ly + dz * lz
+    up = dx * ux + dy * uy + dz * uz
+    near = (dx * dx + dy * dy + dz * dz <= limit * limit) & (ahead >= -size)
+    aside = abs(left) - ahead * w <= size * math.sqrt(1.0 + w * w)
+    return bool(near & aside & (abs(up) - ahead * h <= size * math.sqrt(1.0 + h * h)))
+
+
+@numba.njit(cache=True, error_model="numpy")
+def mark_spheres_in_view(view: Any, reach: float, balls: Any, out: Any) -> None:
+    """Mark the balls of which this is so."""
+    for i in range(len(out)):
+        out[i] = sphere_in_view(view, reach, balls, i)

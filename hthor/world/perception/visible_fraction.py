@@ -9,7 +9,8 @@ import numba
 import numpy as np
 
 from hthor.types import Vec3
-from hthor.world.perception import visibility_kernel
+from hthor.world.perception.occlusion_kernel import first_occluder, nearby_occluders
+from hthor.world.perception.view_frustum import in_frame, view_axes
 
 BESIDE_RAD = 0.15
 """What appears this close to a thing is beside it: the angle between the two as seen by the eye."""
@@ -56,7 +57,7 @@ def measure(
     Returns:
         (2,) the share, 0 to 1, and the number.
     """
-    view = visibility_kernel.view_axes(x, y, z, yaw, pitch, wide, high)
+    view = view_axes(x, y, z, yaw, pitch, wide, high)
     tx, ty, tz = points[0, 0] - x, points[0, 1] - y, points[0, 2] - z
     apart = math.sqrt(tx * tx + ty * ty + tz * tz)
     size, farthest = 0.0, apart
@@ -70,25 +71,23 @@ def measure(
         if k == index or wanted[k, 0] <= 0.0 or along <= 0.0:
             continue
         far = math.sqrt(ox * ox + oy * oy + oz * oz)
-        if along >= math.cos(BESIDE_RAD) * far * apart and visibility_kernel.in_frame(view, ox, oy, oz):
+        if along >= math.cos(BESIDE_RAD) * far * apart and in_frame(view, ox, oy, oz):
             chosen[chosen_count] = k
             chosen_count += 1
             farthest = max(farthest, far)
     # only what stands in a narrow cone around the target can hide any of this
     half = math.tan(min(1.5, max(BESIDE_RAD, math.asin(min(1.0, size / max(apart, 1e-9)))) * _MARGIN))
-    cone = visibility_kernel.view_axes(
-        x, y, z, math.atan2(ty, tx), math.asin(max(-1.0, min(1.0, tz / max(apart, 1e-9)))), half, half
-    )
-    ids, rel = visibility_kernel.nearby_occluders(cone, farthest + size, groups, spheres, firm, count)
+    cone = view_axes(x, y, z, math.atan2(ty, tx), math.asin(max(-1.0, min(1.0, tz / max(apart, 1e-9)))), half, half)
+    ids, rel = nearby_occluders(cone, farthest + size, groups, spheres, firm, count)
     seen, beside, last = 0, 0, -1
     for p in range(len(points)):
         ux, uy, uz = points[p, 0] - x, points[p, 1] - y, points[p, 2] - z
-        if visibility_kernel.in_frame(view, ux, uy, uz):
-            by = visibility_kernel.first_occluder(ux, uy, uz, wanted[index, 1], wanted[index, 2], last, ids, rel, boxes)
+        if in_frame(view, ux, uy, uz):
+            by = first_occluder(ux, uy, uz, wanted[index, 1], wanted[index, 2], last, ids, rel, boxes)
             seen += by < 0
             last = by if by >= 0 else last
     for c in range(chosen_count):
         k = chosen[c]
         ux, uy, uz = others[k, 0] - x, others[k, 1] - y, others[k, 2] - z
-        beside += visibility_kernel.first_occluder(ux, uy, uz, wanted[k, 1], wanted[k, 2], -1, ids, rel, boxes) < 0
+        beside += first_occluder(ux, uy, uz, wanted[k, 1], wanted[k, 2], -1, ids, rel, boxes) < 0
     return seen / len(points), beside

@@ -48,8 +48,8 @@ class Doors:
         changes: grows whenever a door moves.
     """
 
-    def __init__(self, doors: Iterable[Door], env: LazyComposerEnv, places: SupportSurfaces) -> None:
-        self._env, self._places = env, places
+    def __init__(self, doors: Iterable[Door], env: LazyComposerEnv, surfaces: SupportSurfaces) -> None:
+        self._env, self._surfaces = env, surfaces
         self._leaves = {door.id: DoorState(door, env) for door in sorted(doors, key=lambda door: door.id)}
         self._moved: set[str] = set(self._leaves)
         self.changes = 0
@@ -68,7 +68,7 @@ class Doors:
             leaf.clear()
             self._firm(leaf)
         if self._moved:
-            self._places.reset()
+            self._surfaces.reset()
         self._moved.clear()
         self.changes += 1
 
@@ -79,7 +79,7 @@ class Doors:
             self._env.data.qvel[dof] = 0.0
         leaf.share = share
         self._moved.add(leaf.thing.id)
-        self._places.pull(leaf.thing.id, share)
+        self._surfaces.pull(leaf.thing.id, share)
         self._firm(leaf)
         self._env.touch()
         self.changes += 1

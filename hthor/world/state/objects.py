@@ -2,68 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
-from hthor.geometry.plane import wrap
-from hthor.types import ThingState, Vec3
-from hthor.world.model import geoms
+from hthor.types import Vec3
+from hthor.world.model import geoms as geom_bits
 from hthor.world.model.composer_env import LazyComposerEnv, QPose
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.model.inventory import MovableSpec
+from hthor.world.state.movable_object import ABSENT_POSITION, MovableObject
 from hthor.world.state.overlap_test import FLOOR, OverlapTest
 from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces
-
-ABSENT_POSITION: Vec3 = (-500.0, 0.0, 0.0)
-"""Where objects are that are not in the episode, for whoever asks."""
-
-
-class MovableObject:
-    """One object. ``present`` is false for what this episode does not use.
-
-    ``held_by`` is whose hand it is in, ``bearers`` all who hold it by its handles, whether it is off the floor or not.
-    ``number`` is its row in `Objects.positions`.
-    """
-
-    def __init__(self, movable: MovableSpec, number: int, model: Any, span: tuple[int, int]) -> None:
-        self.id, self.kind, self.size, self.mass = movable.id, movable.kind, movable.size, movable.mass
-        self.number, self.clutter = number, movable.clutter
-        body = model.geom_bodyid[span[0]]
-        joint = model.body_jntadr[body]
-        self.qpos, self.dof = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
-        self.tree = int(model.body_treeid[body])
-        self.geoms = slice(*span)
-        self.clear()
-
-    def clear(self) -> None:
-        """Out of the world until placed."""
-        self.present, self.held_by, self.support = False, "", ""
-        self.bearers: tuple[str, ...] = ()
-        self.position, self.yaw = ABSENT_POSITION, 0.0
-        self._state: ThingState | None = None
-
-    def at(self, qpos: Sequence[float]) -> None:
-        """Read position and heading from a pose, position and quaternion."""
-        x, y, z, w, _, _, k = qpos
-        self.position, self.yaw = (x, y, z), wrap(2.0 * math.atan2(k, w))
-        self._state = None
-
-    def state(self) -> ThingState:
-        """Its true state now; the same record until something about it changes."""
-        known = self._state
-        if known is None or known.support != self.support or known.held_by != self.held_by:
-            self._state = known = ThingState(
-                id=self.id,
-                kind=self.kind,
-                position=self.position,
-                support=self.support,
-                held_by=self.held_by,
-                bearers=self.bearers,
-            )
-        return known
 
 
 class Objects:
@@ -79,18 +29,18 @@ class Objects:
         self,
         movables: Iterable[MovableSpec],
         env: LazyComposerEnv,
-        scene: GeomIndex,
-        places: SupportSurfaces,
-        touch: OverlapTest,
+        geoms: GeomIndex,
+        surfaces: SupportSurfaces,
+        overlap: OverlapTest,
     ) -> None:
-        self._env, self._scene, self._places, self._touch = env, scene, places, touch
+        self._env, self._geoms, self._surfaces, self._overlap = env, geoms, surfaces, overlap
         ordered = sorted(movables, key=lambda movable: movable.id)
-        items = [MovableObject(movable, n, env.model, scene.span[movable.id]) for n, movable in enumerate(ordered)]
+        items = [MovableObject(movable, n, env.model, geoms.span[movable.id]) for n, movable in enumerate(ordered)]
         self._items = {item.id: item for item in items}
         self._list = items
         self._trees = np.array([item.tree for item in items], int)
         self._homes = {one.id: one.home for one in ordered if one.home is not None}
-        self._beneath = {id: places.support(home, self._items[id].size[2]) for id, home in self._homes.items()}
+        self._beneath = {id: surfaces.support(home, self._items[id].size[2]) for id, home in self._homes.items()}
         self.positions = np.full((len(items), 3), ABSENT_POSITION)
         self.present = np.zeros(len(items), np.bool_)
         self._ghosts: set[str] = set()
@@ -130,7 +80,7 @@ class Objects:
                 home = self._homes.get(item.id)
                 beneath = self._beneath[item.id] if home == position else self._below(item)
                 item.support = beneath or support
-        self._scene.hide_all_but(())
+        self._geoms.hide_all_but(())
         self._news.update(range(len(self._list)))
         self.changes += 1
         self.roster += 1
@@ -249,18 +199,18 @@ class Objects:
         self._news.add(item.number)
 
     def _below(self, item: MovableObject) -> str:
-        return self._places.support(item.position, item.size[2])
+        return self._surfaces.support(item.position, item.size[2])
 
     def _bearer(self, item: MovableObject, above: tuple[str, ...] = ()) -> str:
         """What bears an object at rest whose middle is over no surface, as it lies across an edge or leans.
 
         ``above`` are the objects on it whose bearer is sought.
         """
-        for owner in self._touch.touched(item):
+        for owner in self._overlap.touched(item):
             other = self.get(owner)
             if owner == FLOOR:
                 return ""
-            if other is None and self._places.of(owner):
+            if other is None and self._surfaces.of(owner):
                 return owner
             if other is not None and owner not in above:
                 found = self._below(other) or self._bearer(other, (*above, item.id))
@@ -269,11 +219,11 @@ class Objects:
         return ""
 
     def _collide(self, item: MovableObject, on: bool) -> None:
-        bits = geoms.MOVABLE if on else geoms.GHOST
+        bits = geom_bits.MOVABLE if on else geom_bits.GHOST
         self._env.model.geom_contype[item.geoms] = bits["contype"]
         self._env.model.geom_conaffinity[item.geoms] = bits["conaffinity"]
         (self._ghosts.discard if on else self._ghosts.add)(item.id)
 
     def _after_handling(self) -> None:
-        self._scene.hide_all_but(item.id for item in self._list if item.held_by)
+        self._geoms.hide_all_but(item.id for item in self._list if item.held_by)
         self.changes += 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,9 +11,7 @@ from hthor.world.model import geoms
 from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.engine import mujoco
 from hthor.world.model.geom_index import GeomIndex
-
-if TYPE_CHECKING:
-    from hthor.world.state.objects import MovableObject
+from hthor.world.state.movable_object import MovableObject
 
 OVERLAP_M = 0.005
 """Two things that are deeper in one another than this are in the same place."""
@@ -26,23 +24,23 @@ _MEETS = geoms.MOVABLE["conaffinity"]
 class OverlapTest:
     """Asks the engine for distances between shapes."""
 
-    def __init__(self, env: LazyComposerEnv, scene: GeomIndex) -> None:
-        self._env, self._scene = env, scene
+    def __init__(self, env: LazyComposerEnv, geoms: GeomIndex) -> None:
+        self._env, self._geoms = env, geoms
 
     def touched(self, item: MovableObject) -> list[str]:
         """Owners of the solids that an object touches where the engine has it now, the closest first.
 
         What lies on the floor touches `FLOOR` before anything else.
         """
-        model, data, scene = self._env.model, self._env.data, self._scene
+        model, data, index = self._env.model, self._env.data, self._geoms
         closest: dict[str, float] = {}
         for geom in range(item.geoms.start, item.geoms.stop):
-            if data.geom_xpos[geom, 2] - _extent(model, data, scene, geom) < CONTACT_M:
+            if data.geom_xpos[geom, 2] - _extent(model, data, index, geom) < CONTACT_M:
                 closest[FLOOR] = -math.inf
             for other in self._near(item, geom, CONTACT_M):
                 gap = mujoco.mj_geomDistance(model, data, geom, other, 1.0, None)
                 if gap < CONTACT_M:
-                    owner = str(scene.owner[other])
+                    owner = str(index.owner[other])
                     closest[owner] = min(gap, closest.get(owner, math.inf))
         return sorted(closest, key=lambda owner: (closest[owner], owner))
 
@@ -51,19 +49,19 @@ class OverlapTest:
 
         Being less than ``deep`` [m] in it does not count. The object counts as solid for this even when it is carried.
         """
-        model, data, scene = self._env.model, self._env.data, self._scene
+        model, data, index = self._env.model, self._env.data, self._geoms
         mujoco.mj_kinematics(model, data)
         for geom in range(item.geoms.start, item.geoms.stop):
-            if data.geom_xpos[geom, 2] - _extent(model, data, scene, geom) < -deep:
+            if data.geom_xpos[geom, 2] - _extent(model, data, index, geom) < -deep:
                 return FLOOR
             for other in self._near(item, geom):
                 if mujoco.mj_geomDistance(model, data, geom, other, 1.0, None) < -deep:
-                    return str(scene.owner[other])
+                    return str(index.owner[other])
         return ""
 
     def _near(self, item: MovableObject, geom: int, gap: float = 0.0) -> list[int]:
         """Solids of others whose bounding spheres come within ``gap`` [m] of that of one of the object's."""
-        model, data, radius = self._env.model, self._env.data, self._scene.radius
+        model, data, radius = self._env.model, self._env.data, self._geoms.radius
         solid = (model.geom_contype & _MEETS) != 0
         solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)
         solid[item.geoms] = False
@@ -73,9 +71,9 @@ class OverlapTest:
         return near
 
 
-def _extent(model: Any, data: Any, scene: GeomIndex, geom: int) -> float:
+def _extent(model: Any, data: Any, index: GeomIndex, geom: int) -> float:
     """Half the height [m] of a solid."""
-    shape, half, up = model.geom_type[geom], scene.half[geom], data.geom_xmat[geom, 6:9]
+    shape, half, up = model.geom_type[geom], index.half[geom], data.geom_xmat[geom, 6:9]
     if shape == int(mujoco.mjtGeom.mjGEOM_SPHERE):
         return float(half[0])
     if shape == int(mujoco.mjtGeom.mjGEOM_CYLINDER):

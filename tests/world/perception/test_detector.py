@@ -78,7 +78,7 @@ def test_false_alarms_are_as_many_as_declared_and_each_could_be_true(worlds: dic
             assert ghost.distance <= world.bodies["robot"].sight_range
             eye = (AT_TABLE.x, AT_TABLE.y, world.bodies["robot"].eye)
             assert math.dist(eye, ghost.position) == pytest.approx(ghost.distance)
-            assert not world._scene.hidden(eye, ghost.position)
+            assert not world._geoms.hidden(eye, ghost.position)
             place = world._detectors["robot"]._places.of(ghost.support)[-1]
             assert place.holds(ghost.position, ghost.size[2])
     assert within(alarms, 0.25)
@@ -124,7 +124,7 @@ def test_the_person_s_eyes_never_err(worlds: dict[str, World]) -> None:
     for world in worlds.values():
         start(world)
         assert "human" not in world.detectors
-        assert world.detections("human") == world._gaze.detections(world._seats["human"])
+        assert world.detections("human") == world._visibility.detections(world._seats["human"])
 
 
 def test_a_body_declares_its_own_and_a_trial_overrules_it() -> None:

@@ -81,19 +81,19 @@ def test_a_look_finds_what_ray_after_ray_finds(seed: int, turns: list[tuple[floa
     own = np.column_stack([begin, begin + chance.integers(0, 3, moving + still)])
     things = [scattered(count) for count in chance.integers(1, 6, still)]
     balls, spots = still_targets(things, own[moving:])
-    hiders, order = Occluders(scene), chance.permutation(moving + still)
+    occluders, order = Occluders(scene), chance.permutation(moving + still)
     far = float(chance.choice([0.0, 1.5, 4.0, 12.0]))
     for number, (yaw, pitch) in enumerate(turns):
         points[..., :2] += chance.uniform(-0.3, 0.3, 2)
         scene.pos[scene.loose, :2] += chance.uniform(-0.3, 0.3, 2)
-        hiders.follow(number)
+        occluders.follow(number)
         pose = Pose(x=0.1 + chance.choice([0.03, 0.3]) * number, y=-0.2, yaw=yaw, pitch=pitch)
         wanted = np.column_stack([chance.choice([0.0, 1.5, 4.0, 12.0], moving), own[:moving]])
         reach = [*wanted[:, 0], *[far] * still]
         bodies = scene.half, scene.pos, scene.mat, scene.radius, scene.ids
         found = slowly(view_frustum.view_vector(pose, BODY), small, [*points, *things], reach, own, *bodies)
         eye = pose.x, pose.y, BODY.eye, pose.yaw, pose.pitch, *view_frustum.half_fov_tangents(BODY)
-        around = hiders.groups, hiders.spheres, hiders.boxes, hiders.firm, hiders.count
+        around = occluders.arrays
         seen = visibility_kernel.visible_targets(*eye, small, points, wanted, far, balls, spots, *around, order)
         assert seen.tolist() == [k for k in order if k in found]
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 
 from hthor import rules
-from hthor.looks.meshes.mesh import Piece
 from hthor.types import HUMAN as SEAT
 from hthor.types import BodySpec, Part, Rgba, Vec3
 from hthor.world.model.bodies.primitives import HEAD, ball, box, post, rod, wheel
@@ -109,10 +108,3 @@ def _head() -> tuple[Part, ...]:
         ball((0.122, 0.0, 1.608), 0.014, SKIN, HEAD),
         box((0.103, 0.0, 1.572), (0.008, 0.024, 0.005), LIPS, HEAD),
     )
-
-
-def pieces() -> tuple[Piece, ...]:
-    """The same figure in meshes, see `hthor.world.model.bodies.human_mesh`."""
-    from hthor.world.model.bodies import human_mesh
-
-    return human_mesh.pieces()

@@ -58,8 +58,14 @@ def look(spec: BodySpec) -> tuple[Part, ...]:
 @functools.lru_cache(maxsize=64)
 def pieces(spec: BodySpec) -> tuple[Piece, ...]:
     """The body's meshes in its own frame, for pictures for people: its file's own, or its solids'."""
-    draw = getattr(_module(spec), "pieces", None)
+    draw = _human_pieces if _module(spec) is avatar else getattr(_module(spec), "pieces", None)
     return tuple(plain.plain_pieces(look(spec)) if draw is None else draw())
+
+
+def _human_pieces() -> tuple[Piece, ...]:
+    from hthor.world.model.bodies import human_mesh  # drawn only in the profile nice: not loaded for a trial
+
+    return human_mesh.pieces()
 
 
 def neck(spec: BodySpec) -> Vec3:

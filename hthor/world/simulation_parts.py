@@ -1,0 +1,103 @@
+"""The parts of a simulation, made in the order in which they need one another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from hthor.houses.space.free_space import FreeSpace
+from hthor.types import BodySpec, DetectorSpec, HouseSpec
+from hthor.world.carrying.joint_carrying import JointCarrying
+from hthor.world.ground_truth import GroundTruth
+from hthor.world.interaction.action_dispatch import ActionDispatch
+from hthor.world.interaction.manipulation import Manipulation
+from hthor.world.interaction.opening import DoorHandling
+from hthor.world.interaction.scene_editing import SceneEditor
+from hthor.world.model.composer_env import LazyComposerEnv
+from hthor.world.model.composer_task import HouseTask
+from hthor.world.model.geom_index import GeomIndex
+from hthor.world.model.inventory import Contents
+from hthor.world.perception.detector_noise import NoisyDetector
+from hthor.world.perception.range_scanner import RangeScanner
+from hthor.world.perception.visibility import Visibility
+from hthor.world.state.body_state import BodyState, BodyStates
+from hthor.world.state.doors import Doors
+from hthor.world.state.doorways import Doorways
+from hthor.world.state.objects import Objects
+from hthor.world.state.overlap_test import OverlapTest
+from hthor.world.state.room_tracker import RoomTracker
+from hthor.world.state.support_surfaces import SupportSurfaces
+
+
+class SimulationParts:
+    """Everything that shares one compiled model of a house.
+
+    Args:
+        house: the floor plan. contents: its things, split by what moves.
+        bodies: what each seat's body can do, the person's first. space: each seat's free-space grid; the dict is kept
+            up to date when doorways are shut or opened.
+        detectors: how each robot's detector errs.
+    """
+
+    def __init__(
+        self,
+        house: HouseSpec,
+        contents: Contents,
+        bodies: Mapping[str, BodySpec],
+        space: dict[str, FreeSpace],
+        detectors: Mapping[str, DetectorSpec],
+    ) -> None:
+        self.task = HouseTask(house, contents, bodies)
+        self.env = LazyComposerEnv(self.task)
+        self.geoms = GeomIndex(self.env, self.task)
+        surfaces = SupportSurfaces(contents.statics)
+        overlap = OverlapTest(env=self.env, geoms=self.geoms)
+        self.objects = Objects(contents.movables, env=self.env, geoms=self.geoms, surfaces=surfaces, overlap=overlap)
+        self.doors = Doors(self.task.doors, env=self.env, surfaces=surfaces)
+        self.seats = BodyStates((name, BodyState(name, spec, space[name])) for name, spec in bodies.items())
+        seats = tuple(self.seats.values())
+        self.rooms = RoomTracker(house, tuple(self.seats))
+        self.doorways = Doorways(seats, space)
+        self.door_handling = DoorHandling(
+            geoms=self.geoms,
+            objects=self.objects,
+            doors=self.doors,
+            surfaces=surfaces,
+            doorways=self.doorways,
+            seats=seats,
+        )
+        self.joint_carrying = JointCarrying(house, objects=self.objects, doors=self.doors, overlap=overlap, seats=seats)
+        self.manipulation = Manipulation(
+            house,
+            geoms=self.geoms,
+            objects=self.objects,
+            doors=self.doors,
+            surfaces=surfaces,
+            overlap=overlap,
+            door_handling=self.door_handling,
+            joint_carrying=self.joint_carrying,
+        )
+        self.dispatch = ActionDispatch(house, manipulation=self.manipulation, doors=self.doors, seats=seats)
+        self.editor = SceneEditor(
+            house,
+            task=self.task,
+            env=self.env,
+            geoms=self.geoms,
+            objects=self.objects,
+            surfaces=surfaces,
+            overlap=overlap,
+        )
+        self.scanners = {seat.name: RangeScanner(seat.spec, seat.space, house) for seat in seats}
+        self.visibility = Visibility(
+            geoms=self.geoms,
+            objects=self.objects,
+            doors=self.doors,
+            statics=contents.statics,
+            openings=house.openings,
+            seats=seats,
+        )
+        self.truth = GroundTruth(self.objects, self.doors, self.visibility, seats)
+        self.detectors = {
+            name: NoisyDetector(spec, self.seats[name], self.geoms, surfaces)
+            for name, spec in detectors.items()
+            if spec.miss or spec.false_alarm or spec.position_sigma
+        }
