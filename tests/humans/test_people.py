@@ -487,13 +487,8 @@ def test_a_worker_finds_files_by_path(files: Path):
     """Real worker processes, started in another folder than the files lie in."""
     model = "from hthor.humans.models.proxy import Model as Proxy\nclass Model(Proxy): pass\n"
     (files / "mine.py").write_text('"""Mine."""\n' + model)
-<<<<<<< HEAD
     suite = fakes.frozen("one", 1, tasks.load_suite("smoke").tasks[:1])
-    found = resolve.find(f"{files}/mine.py@{files}/pop.npz")
-=======
-    suite = fakes.frozen("one", 1, tasks.suite("smoke").tasks[:1])
     found = resolve.resolve_humans(f"{files}/mine.py@{files}/pop.npz")
->>>>>>> 1cd4740 (Human models: names of the field, no circles between modules, a full contract)
     (one,) = sessions.make_sessions(suite, agent="none", human=found, participants=1)
     code = (
         "import sys, msgspec\nfrom hthor.eval.runner import trial_runner\nfrom hthor.types import TrialSpec\n"

@@ -91,11 +91,7 @@ def folder(options: ValidationOptions) -> Path:
     """Where the report goes."""
     if options.out:
         return options.out
-<<<<<<< HEAD
-    found, suite = resolve.find(options.name), tasks.load_suite(SUITE)
-=======
-    found, suite = resolve.resolve_humans(options.name), tasks.suite(SUITE)
->>>>>>> 1cd4740 (Human models: names of the field, no circles between modules, a full contract)
+    found, suite = resolve.resolve_humans(options.name), tasks.load_suite(SUITE)
     what = [
         found.sha256,
         suite.sha256,
@@ -109,13 +105,8 @@ def folder(options: ValidationOptions) -> Path:
 
 def asked(options: ValidationOptions, one: Round) -> run_options.RunOptions:
     """A round as an evaluation, in a folder of its own."""
-<<<<<<< HEAD
     suite = tasks.load_suite(one.suite)
-    name = f"{resolve.find(one.word).name}-{Path(suite.name).name}-{one.participants}"
-=======
-    suite = tasks.suite(one.suite)
     name = f"{resolve.resolve_humans(one.word).name}-{Path(suite.name).name}-{one.participants}"
->>>>>>> 1cd4740 (Human models: names of the field, no circles between modules, a full contract)
     return run_options.RunOptions(
         agents=AGENTS,
         humans=(one.word,),

@@ -58,11 +58,7 @@ def run_validation(options: ValidationOptions, watcher: Watch) -> Outcome:
         RunError: when a run's folder holds another run, or the calibration's folder no evidence.
     """
     planned = plan.rounds(options)
-<<<<<<< HEAD
-    found, suite = resolve.find(options.name), tasks.load_suite(SUITE)
-=======
-    found, suite = resolve.resolve_humans(options.name), tasks.suite(SUITE)
->>>>>>> 1cd4740 (Human models: names of the field, no circles between modules, a full contract)
+    found, suite = resolve.resolve_humans(options.name), tasks.load_suite(SUITE)
     known, missing = _evidence(found, options.calibration)
     folder = plan.folder(options)
     stage = _Stage(options, watcher)
