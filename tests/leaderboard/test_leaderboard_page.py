@@ -20,9 +20,10 @@ from hthor.leaderboard import canonical_form
 from hthor.leaderboard.entries import files
 from hthor.leaderboard.entries.entry import Agent, Entry, Group, Harness
 from hthor.leaderboard.entries.verification import Fresh, Kept
-from hthor.leaderboard.page import markup, page
+from hthor.leaderboard.page import page
 from hthor.leaderboard.ranking import admission, listing
 from hthor.leaderboard.ranking.board import Board, Struck
+from hthor.report.html import markup
 
 ROOT = Path(__file__).resolve().parents[2]
 EVIL = "\"'><script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\"><b id=owned>"

@@ -8,8 +8,8 @@ from hthor.eval.metrics.metric import NUMBER, SHARE, Unit
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import Estimate
 from hthor.leaderboard.entries.verification import ENOUGH, Replayed
-from hthor.leaderboard.page.markup import Markup, Piece, join, link, tag
 from hthor.leaderboard.ranking.board import Row, Section, Standing
+from hthor.report.html.markup import Markup, Piece, join, link, tag
 from hthor.report.terminal.result_tables import least
 
 NOTHING = "–"

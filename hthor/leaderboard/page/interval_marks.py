@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from msgspec import Struct
 
 from hthor.eval.statistics.intervals import Estimate
-from hthor.leaderboard.page.markup import NOTHING, Markup, Piece, tag
+from hthor.report.html.markup import NOTHING, Markup, Piece, tag
 
 _WIDE, _HIGH, _EDGE = 150.0, 16.0, 6.0
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from hthor.eval.metrics.metric import SECONDS
 from hthor.leaderboard.page import cells, interval_marks, tables
-from hthor.leaderboard.page import markup as m
 from hthor.leaderboard.page.cells import Cell
-from hthor.leaderboard.page.markup import Markup, Piece, tag
 from hthor.leaderboard.ranking.board import Board, Row, Section, Struck
+from hthor.report.html import markup as m
 from hthor.report.html import style
+from hthor.report.html.markup import Markup, Piece, tag
 
 _RULES = """
 main{max-width:76rem}
@@ -92,15 +92,7 @@ def render(found: Board) -> str:
     """The page, the same bytes for the same list."""
     ranked = any(row.ranks for one in found.sections for row in one.rows)
     body = [_section(number, one) for number, one in enumerate(found.sections, 1)]
-    rules, title = style.css(_RULES), "hthor leaderboard"
-    head = (
-        tag("meta", charset="utf-8"),
-        m.policy(rules, tables.SORT),
-        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        tag("title", title),
-        tag("link", rel="icon", href="data:,"),
-        m.style(rules),
-    )
+    title = "hthor leaderboard"
     made = (
         "Made by hthor leaderboard build from the entries and the keeper's verifications alone; every number is in "
         f"leaderboard.json beside this page, schema {found.schema}."
@@ -110,15 +102,14 @@ def render(found: Board) -> str:
     steps = tag("ol", *(tag("li", one) for one in _TO_RANK))
     body.append(_titled(len(body) + 1, "rank", "How to get a ranked entry", steps))
     body.append(_titled(len(body) + 1, "how", "How to read this", *(tag("p", one) for one in _HOW)))
-    main = tag(
-        "main",
+    main = (
         tag("h1", title),
         tag("p", _LEAD, class_="lead"),
         m.NOTHING if ranked else tag("p", _NONE, class_="note"),
         *body,
         tag("footer", made),
     )
-    return m.document(head, (main, m.script(tables.SORT)))
+    return m.page(title, main, style.css(_RULES), code=tables.SORT, sealed=True)
 
 
 def _section(number: int, one: Section) -> Markup:

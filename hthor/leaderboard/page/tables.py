@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from hthor.leaderboard.page.cells import Cell
-from hthor.leaderboard.page.markup import Markup, Piece, join, tag
+from hthor.report.html import markup
+from hthor.report.html.markup import Markup, Piece, tag
 
 SORT = """
 for(const th of document.querySelectorAll("th[data-k]")){
@@ -22,7 +23,6 @@ for(const th of document.querySelectorAll("th[data-k]")){
  th.addEventListener("keydown",key=>{if(key.key==="Enter"||key.key===" "){key.preventDefault();go();}});
 }
 """
-_LINE = "\n"
 
 
 def table(
@@ -44,15 +44,15 @@ def table(
         tag("th", tag("span", title), scope="col", class_=None if place in wordy else "n", data_k=way or None)
         for place, (title, way) in enumerate(head)
     ]
-    body = [
+    body = (
         tag(
             "tr",
             *(_cell(part, place == named, place in wordy) for place, part in enumerate(parts)),
             class_=kind or None,
         )
         for kind, parts in lines
-    ]
-    return tag("div", tag("table", tag("thead", tag("tr", *tops)), tag("tbody", join(body, _LINE))), class_="wide")
+    )
+    return markup.table(tops, body)
 
 
 def _cell(part: Cell, named: bool, wordy: bool) -> Markup:

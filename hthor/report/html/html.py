@@ -8,6 +8,9 @@ from html import escape
 
 from msgspec import Struct
 
+from hthor.report.html import markup
+from hthor.report.html.markup import Markup, tag
+
 _WORD_MAX, _PARTS = 24, re.compile(r"[^_+/.:-]+[_+/.:-]*|[_+/.:-]+")
 """Letters of a word that is not broken, and what a longer one is made of."""
 _MANY = 3
@@ -69,13 +72,12 @@ def table(
     for row in held:
         for i, cell in enumerate(() if isinstance(row, Band) else row):
             kinds[i] = "v" if isinstance(cell, Value) else kinds[i]
-    top = "".join(f'<th scope="col"{_class(kind)}>{_held(word)}</th>' for kind, word in zip(kinds, head, strict=True))
-    body = "\n".join(_row(row, kinds) for row in held)
-    title = f"<caption><span>{_held(caption)}</span></caption>" if caption else ""
-    high = _class("high" if kinds.count("v") > _MANY else "")
-    return (
-        f'<div class="wide"><table{high}>{title}<thead><tr>{top}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>'
+    top = (
+        tag("th", Markup(_held(word)), scope="col", class_=kind or None) for kind, word in zip(kinds, head, strict=True)
     )
+    body = (Markup(_row(row, kinds)) for row in held)
+    title = tag("caption", tag("span", Markup(_held(caption)))) if caption else None
+    return markup.table(top, body, title, "high" if kinds.count("v") > _MANY else "").html
 
 
 def figure(drawing: str, caption: str | Sequence[Piece], mood: str = "") -> str:
@@ -113,6 +115,19 @@ def section(number: int, name: str, title: str, *parts: str) -> str:
     """A numbered section; empty parts are left out."""
     body = "\n".join(part for part in parts if part)
     return f'<section id="{escape(name)}">\n<h2><span>{number}</span> {_held(title)}</h2>\n{body}\n</section>'
+
+
+def navigation(titles: Mapping[str, str]) -> str:
+    """Links to the numbered sections, by their names."""
+    links = (
+        f'<a href="#{name}">{number} {escape(title)}</a>' for number, (name, title) in enumerate(titles.items(), 1)
+    )
+    return f"<nav>{' '.join(links)}</nav>"
+
+
+def page(title: str, body: Iterable[str], rules: str, description: str = "") -> str:
+    """A whole page of pieces that were made here."""
+    return markup.page(title, map(Markup, body), rules, description=description)
 
 
 def mark(yes: bool, good: str = "yes", bad: str = "no") -> Mark:

@@ -77,18 +77,14 @@ def render(found: Findings, drawings: Mapping[str, str]) -> str:
     Args:
         drawings: elements of the page by the names that `hthor.report.page.figure_index` gives.
     """
-    numbered = list(enumerate(_SECTIONS.items(), 1))
-    sections = [html.section(number, name, title, *make(found, drawings)) for number, (name, (title, make)) in numbered]
-    links = " ".join(f'<a href="#{name}">{number} {escape(title)}</a>' for number, (name, (title, _)) in numbered)
-    title = sentences.title(found)
-    return (
-        f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n<title>{escape(title)}</title>\n'
-        f'<meta name="description" content="{escape(headline.lead(found))}">\n<link rel="icon" href="data:,">\n'
-        f"<style>{style.css(_RULES)}</style>\n</head>\n<body>\n<main>\n{_head(found, title)}\n<nav>{links}</nav>\n"
-        + "\n".join(sections)
-        + f"\n{_foot(found)}\n</main>\n</body>\n</html>\n"
+    sections = (
+        html.section(number, name, title, *make(found, drawings))
+        for number, (name, (title, make)) in enumerate(_SECTIONS.items(), 1)
     )
+    title = sentences.title(found)
+    links = html.navigation({name: title for name, (title, _) in _SECTIONS.items()})
+    body = (_head(found, title), links, *sections, _foot(found))
+    return html.page(title, body, style.css(_RULES), headline.lead(found))
 
 
 def _head(found: Findings, title: str) -> str:

@@ -14,19 +14,19 @@ from hthor.calibration.validation.report.figures import predictions, sessions
 from hthor.calibration.validation.report.findings import Findings
 from hthor.report.html import html, matplotlib_svg, style
 
-_TITLES = (
-    ("data", "Data"),
-    ("table", "Published and predicted"),
-    ("predictive", "Before and after the fit"),
-    ("held-out", "Each condition held out"),
-    ("parameters", "What the data tell of each parameter"),
-    ("coverage", "Coverage"),
-    ("emulator", "Emulator and cross-check"),
-    ("sessions", "Time spent and trust"),
-    ("ranking", "How firm the ranking of robots is"),
-    ("misfits", "Known misfits"),
-    ("scope", "Scope"),
-)
+_TITLES = {
+    "data": "Data",
+    "table": "Published and predicted",
+    "predictive": "Before and after the fit",
+    "held-out": "Each condition held out",
+    "parameters": "What the data tell of each parameter",
+    "coverage": "Coverage",
+    "emulator": "Emulator and cross-check",
+    "sessions": "Time spent and trust",
+    "ranking": "How firm the ranking of robots is",
+    "misfits": "Known misfits",
+    "scope": "Scope",
+}
 
 
 def render(found: Findings) -> str:
@@ -44,21 +44,12 @@ def render(found: Findings) -> str:
         [html.bullets(found.misfits) if found.misfits else html.paragraph("None that the numbers show.")],
         [html.paragraph(found.scope, "lead")],
     )
-    sections = [
+    sections = (
         html.section(number, name, title, *body)
-        for number, ((name, title), body) in enumerate(zip(_TITLES, bodies, strict=True), 1)
-    ]
-    links = " ".join(
-        f'<a href="#{name}">{number} {escape(title)}</a>' for number, (name, title) in enumerate(_TITLES, 1)
+        for number, ((name, title), body) in enumerate(zip(_TITLES.items(), bodies, strict=True), 1)
     )
     title = f"Validation of {found.subject.name}"
-    return (
-        f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n<title>{escape(title)}</title>\n'
-        f"<style>{style.css()}</style>\n</head>\n<body>\n<main>\n{_head(found, title)}\n<nav>{links}</nav>\n"
-        + "\n".join(sections)
-        + f"\n{_foot(found)}\n</main>\n</body>\n</html>\n"
-    )
+    return html.page(title, (_head(found, title), html.navigation(_TITLES), *sections, _foot(found)), style.css())
 
 
 def _head(found: Findings, title: str) -> str:
