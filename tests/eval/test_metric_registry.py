@@ -32,16 +32,9 @@ def gestures(trial: Trial) -> float:
     return trial.log.ticks / 100.0
 
 
+HERTZ = Unit(name="Hz", difference="Hz")
 METRICS = (
-    Metric(
-        name="gestures_per_min",
-        title="human gestures",
-        short="gestures",
-        formula=gestures,
-        unit=Unit(name="Hz", difference="Hz"),
-        better=LOWER,
-        main=True,
-    ),
+    Metric("gestures_per_min", "human gestures", gestures, unit=HERTZ, better=LOWER, main=True),
 )
 '''
 SCRIPT = """

@@ -14,7 +14,6 @@ from hthor.types import TrialSpec
 DIGITS = 6
 """Decimals that are kept of a trial's value, so that a record reads the same on every machine."""
 Range = tuple[float, float]
-SHARES: Range = (0.0, 1.0)
 AMOUNTS: Range = (0.0, math.inf)
 """The range of what is counted and has no upper bound."""
 HIGHER, LOWER = "higher", "lower"
@@ -34,19 +33,20 @@ Formula = Callable[[Trial], Value | dict[str, float]]
 
 
 class Unit(Struct, frozen=True, kw_only=True):
-    """What values are shown in: a value times ``scale`` in ``name``; differences are named ``difference``."""
+    """What values are shown in: ``scale`` times the value in ``name``, for differences in ``difference``."""
 
     name: str = ""
     difference: str = ""
     scale: float = 1.0
+    limits: Range = AMOUNTS
 
 
-SHARE = Unit(name="%", difference="points", scale=100.0)
+SHARE = Unit(name="%", difference="points", scale=100.0, limits=(0.0, 1.0))
 SECONDS = Unit(name="s", difference="s")
 NUMBER = Unit()
 
 
-class Metric(Struct, frozen=True, kw_only=True):
+class Metric(Struct, frozen=True):
     """One metric: everything that results, tables, comparisons, reports and the documentation say about it.
 
     Attributes:
@@ -62,7 +62,8 @@ class Metric(Struct, frozen=True, kw_only=True):
         by_seat: whether a trial has several values, by name of a seat or of a pair of seats.
         needs_robot: whether it has no value in a trial without a robot.
         optional: whether tables leave it out where no trial has a value.
-        bounds: the least and the greatest value. timed: whether the time limit [s] of the trial is a bound too.
+        limits: the least and the greatest value, by default those of its unit.
+        timed: whether the time limit [s] of the trial is a bound too.
     """
 
     name: str
@@ -80,8 +81,13 @@ class Metric(Struct, frozen=True, kw_only=True):
     by_seat: bool = False
     needs_robot: bool = False
     optional: bool = False
-    bounds: Range = AMOUNTS
+    limits: Range | None = None
     timed: bool = False
+
+    @property
+    def bounds(self) -> Range:
+        """The least and the greatest value, whatever the time limit."""
+        return self.limits or self.unit.limits
 
     @property
     def doc(self) -> str:

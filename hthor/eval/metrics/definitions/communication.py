@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import functools
+
 from hthor import rules
 from hthor.comms import claims
 from hthor.episode import EpisodeLog
-from hthor.eval.metrics.metric import HIGHER, LOWER, SECONDS, SHARE, SHARES, Metric, Trial
+from hthor.eval.metrics.metric import HIGHER, LOWER, SECONDS, SHARE, Metric, Trial
 from hthor.types import HUMAN, Event
 
 _OUTCOMES = ("confirmed", "declined", "covered")
@@ -111,100 +113,37 @@ def _true_claims(log: EpisodeLog) -> set[object]:
     return {event.data.get("message") for event in _claims(log) if not claims.is_false(event.data)}
 
 
+_message = functools.partial(Metric, section="messages", needs_robot=True)
+
 METRICS = (
-    Metric(
-        name="adoption",
-        title="adoption",
-        formula=adoption,
-        unit=SHARE,
-        better=HIGHER,
-        rank=40,
-        main=True,
-        section="messages",
-        needs_robot=True,
-        bounds=SHARES,
-    ),
-    *(
-        Metric(
-            name=name,
-            title=title,
-            formula=formula,
-            rank=rank,
-            decimals=2,
-            section="messages",
-            part_of=part_of,
-            needs_robot=True,
-        )
-        for rank, name, title, formula, part_of in (
-            (210, "sent", "messages sent, a trial", sent, ""),
-            (220, "accepted", "accepted", accepted, "sent"),
-            (230, "declined", "declined", declined, "sent"),
-            (240, "covered", "covered by a newer one", covered, "sent"),
-            (250, "unanswered", "unanswered", unanswered, "sent"),
-        )
-    ),
-    Metric(
-        name="false_claims",
-        title="messages that were false, a trial",
-        formula=false_claims,
-        decimals=2,
-        better=LOWER,
-        rank=260,
-        section="messages",
-        needs_robot=True,
-    ),
-    Metric(
-        name="precision",
-        title="true among the claims",
-        formula=precision,
-        unit=SHARE,
-        better=HIGHER,
-        rank=270,
-        section="messages",
-        needs_robot=True,
-        bounds=SHARES,
-    ),
-    Metric(
-        name="first_useful_s",
-        title="first useful message after",
+    _message("adoption", "adoption", adoption, unit=SHARE, better=HIGHER, rank=40, main=True),
+    _message("sent", "messages sent, a trial", sent, decimals=2, rank=210),
+    _message("accepted", "accepted", accepted, decimals=2, rank=220, part_of="sent"),
+    _message("declined", "declined", declined, decimals=2, rank=230, part_of="sent"),
+    _message("covered", "covered by a newer one", covered, decimals=2, rank=240, part_of="sent"),
+    _message("unanswered", "unanswered", unanswered, decimals=2, rank=250, part_of="sent"),
+    _message("false_claims", "messages that were false, a trial", false_claims, decimals=2, better=LOWER, rank=260),
+    _message("precision", "true among the claims", precision, unit=SHARE, better=HIGHER, rank=270),
+    _message(
+        "first_useful_s",
+        "first useful message after",
+        first_useful,
         short="first useful message",
-        formula=first_useful,
         unit=SECONDS,
         better=LOWER,
         rank=280,
-        section="messages",
-        needs_robot=True,
         timed=True,
     ),
-    Metric(
-        name="interruptions_per_min",
-        title="messages shown, a minute",
+    _message(
+        "interruptions_per_min",
+        "messages shown, a minute",
+        interruptions,
         short="interruptions a minute",
-        formula=interruptions,
         decimals=2,
         rank=290,
-        section="messages",
-        needs_robot=True,
     ),
-    Metric(
-        name="useful",
-        title="accepted messages that were true and new, a trial",
-        formula=useful,
-        decimals=2,
-        better=HIGHER,
-        rank=300,
-        section="messages",
-        needs_robot=True,
+    _message(
+        "useful", "accepted messages that were true and new, a trial", useful, decimals=2, better=HIGHER, rank=300
     ),
-    Metric(
-        name="usefulness",
-        title="true and new among the accepted",
-        formula=usefulness,
-        unit=SHARE,
-        better=HIGHER,
-        rank=310,
-        section="messages",
-        needs_robot=True,
-        bounds=SHARES,
-    ),
+    _message("usefulness", "true and new among the accepted", usefulness, unit=SHARE, better=HIGHER, rank=310),
 )

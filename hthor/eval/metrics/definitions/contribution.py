@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from hthor.episode import EpisodeLog
-from hthor.eval.metrics.metric import SHARE, SHARES, Metric, Trial
+from hthor.eval.metrics.metric import SHARE, Metric, Trial
 from hthor.types import HUMAN, Event, TrialSpec
 
 _FINISH = ("placed", "dropped", "lifted", "lowered", "opened", "closed")
@@ -126,15 +126,4 @@ def _is_of(event: Event, object_: str) -> bool:
     return bool(event.data.get("object") == object_)
 
 
-METRICS = (
-    Metric(
-        name="work",
-        title="share of the work",
-        formula=work,
-        unit=SHARE,
-        rank=900,
-        by_seat=True,
-        needs_robot=True,
-        bounds=SHARES,
-    ),
-)
+METRICS = (Metric("work", "share of the work", work, unit=SHARE, rank=900, by_seat=True, needs_robot=True),)

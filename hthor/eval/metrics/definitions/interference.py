@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterable, Iterator
 
@@ -32,12 +33,8 @@ def human_hindered(trial: Trial) -> float:
 def hindered_by_pair(trial: Trial) -> dict[str, float]:
     """Seconds that each seat lost to each other one, by names such as "human by robot2"."""
     seats = list(trial.log.paths)
-    return {
-        f"{seat} by {other}": _seconds(_spans(trial.log, seat, other))
-        for seat in seats
-        for other in seats
-        if seat != other
-    }
+    pairs = [(seat, other) for seat in seats for other in seats if seat != other]
+    return {f"{seat} by {other}": _seconds(_spans(trial.log, seat, other)) for seat, other in pairs}
 
 
 def _spans(log: EpisodeLog, seat: str, by: str = "") -> Iterator[Span]:
@@ -67,37 +64,10 @@ def _seconds(spans: Iterable[Span]) -> float:
     return ticks * rules.TICK_S
 
 
+_hindrance = functools.partial(Metric, decimals=2, better=LOWER, needs_robot=True)
+
 METRICS = (
-    Metric(
-        name="in_way",
-        title="bodies in the way, a trial",
-        formula=encounters,
-        decimals=2,
-        better=LOWER,
-        rank=120,
-        needs_robot=True,
-    ),
-    Metric(
-        name="hindered_s",
-        title="human hindered",
-        formula=human_hindered,
-        unit=SECONDS,
-        decimals=2,
-        better=LOWER,
-        rank=130,
-        needs_robot=True,
-        timed=True,
-    ),
-    Metric(
-        name="hindered_by",
-        title="hindered",
-        formula=hindered_by_pair,
-        unit=SECONDS,
-        decimals=2,
-        better=LOWER,
-        rank=910,
-        by_seat=True,
-        needs_robot=True,
-        timed=True,
-    ),
+    _hindrance("in_way", "bodies in the way, a trial", encounters, rank=120),
+    _hindrance("hindered_s", "human hindered", human_hindered, unit=SECONDS, rank=130, timed=True),
+    _hindrance("hindered_by", "hindered", hindered_by_pair, unit=SECONDS, rank=910, by_seat=True, timed=True),
 )

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 from numpy.typing import NDArray
 
 from hthor.eval.metrics.definitions import time_spent
-from hthor.eval.metrics.metric import HIGHER, SHARE, SHARES, Metric, Trial
+from hthor.eval.metrics.metric import HIGHER, SHARE, Metric, Trial
 
 
 def success(trial: Trial) -> int:
@@ -38,40 +40,10 @@ def progress(trial: Trial) -> float | None:
     return trial.log.progress
 
 
+_share = functools.partial(Metric, unit=SHARE, better=HIGHER, main=True)
+
 METRICS = (
-    Metric(
-        name="sr",
-        title="success rate",
-        short="success",
-        abbreviation="SR",
-        formula=success,
-        unit=SHARE,
-        better=HIGHER,
-        rank=10,
-        main=True,
-        bounds=SHARES,
-    ),
-    Metric(
-        name="twsr",
-        title="time-weighted success",
-        short="time-weighted",
-        abbreviation="TWSR",
-        formula=time_weighted_success,
-        unit=SHARE,
-        better=HIGHER,
-        rank=20,
-        main=True,
-        bounds=SHARES,
-    ),
-    Metric(
-        name="progress",
-        title="progress",
-        formula=progress,
-        unit=SHARE,
-        better=HIGHER,
-        rank=30,
-        main=True,
-        optional=True,
-        bounds=SHARES,
-    ),
+    _share("sr", "success rate", success, short="success", abbreviation="SR", rank=10),
+    _share("twsr", "time-weighted success", time_weighted_success, short="time-weighted", abbreviation="TWSR", rank=20),
+    _share("progress", "progress", progress, rank=30, optional=True),
 )

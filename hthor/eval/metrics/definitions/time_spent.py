@@ -18,16 +18,6 @@ def idle(trial: Trial) -> float | None:
 
 
 METRICS = (
-    Metric(
-        name="time_s",
-        title="time spent",
-        short="time",
-        formula=time_spent,
-        unit=SECONDS,
-        better=LOWER,
-        rank=50,
-        main=True,
-        timed=True,
-    ),
-    Metric(name="idle_s", title="human idle", formula=idle, unit=SECONDS, rank=110, timed=True),
+    Metric("time_s", "time spent", time_spent, "time", unit=SECONDS, better=LOWER, rank=50, main=True, timed=True),
+    Metric("idle_s", "human idle", idle, unit=SECONDS, rank=110, timed=True),
 )

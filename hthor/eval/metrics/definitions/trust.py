@@ -11,16 +11,18 @@ def trust(trial: Trial) -> int | None:
     return trial.log.trust
 
 
+_LIMITS = (float(rules.TRUST_MIN), float(rules.TRUST_MAX))
+
 METRICS = (
     Metric(
-        name="trust",
-        title=f"trust ({rules.TRUST_MIN} to {rules.TRUST_MAX})",
-        formula=trust,
+        "trust",
+        "trust (1 to 7)",
+        trust,
         decimals=2,
         better=HIGHER,
         rank=60,
         main=True,
         needs_robot=True,
-        bounds=(float(rules.TRUST_MIN), float(rules.TRUST_MAX)),
+        limits=_LIMITS,
     ),
 )
