@@ -107,8 +107,8 @@ def _line(number: int, record: TrialRecord) -> TrialLine:
         participant=spec.participant,
         met=record.met,
         time_s=round(record.ticks * rules.TICK_S, 1),
-        sent=sum(event.kind == "sent" for event in record.events),
-        accepted=sum(event.kind == "accepted" for event in record.events),
+        sent=int(record.metrics["sent"] or 0),
+        accepted=int(record.metrics["accepted"] or 0),
         trust=record.trust,
         fault=f"{first.kind} at {first.tick * rules.TICK_S:.1f} s" if first else "",
     )

@@ -46,10 +46,7 @@ def correlation_range(first: float, second: float) -> tuple[float, float]:
     spread = math.sqrt(first * (1.0 - first) * second * (1.0 - second))
     if spread <= 0.0:
         return 0.0, 0.0
-    return (
-        (max(0.0, first + second - 1.0) - first * second) / spread,
-        (min(first, second) - first * second) / spread,
-    )
+    return ((max(0.0, first + second - 1.0) - first * second) / spread, (min(first, second) - first * second) / spread)
 
 
 def possible(first: float, second: float) -> None:

@@ -45,10 +45,7 @@ def _split(word: str, runs: Sequence[Run], part: Callable[[TrialRecord], str], o
     names = sorted({part(record) for run in runs for record in run.records} - {""})
     names.sort(key=lambda name: order.index(name) if name in order else len(order))
     groups = (
-        Group(
-            name=name,
-            sr={run.label: rate([one for one in run.records if part(one) == name]) for run in runs},
-        )
+        Group(name=name, sr={run.label: rate([one for one in run.records if part(one) == name]) for run in runs})
         for name in names
     )
     return Split(word=word, groups=tuple(groups))

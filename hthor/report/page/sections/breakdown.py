@@ -60,12 +60,7 @@ def people(found: Findings, drawings: Mapping[str, str]) -> list[str]:
 
 
 def _made(
-    found: Findings,
-    held: Sequence[Split],
-    said: Sequence[str],
-    drawings: Mapping[str, str],
-    name: str,
-    caption: str,
+    found: Findings, held: Sequence[Split], said: Sequence[str], drawings: Mapping[str, str], name: str, caption: str
 ) -> list[str]:
     labels = _ordered(found, (label for one in held for group in one.groups for label in group.sr))
     helped = _ordered(found, (label for one in held for by in _gains(found, one).values() for label in by))

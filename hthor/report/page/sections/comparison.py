@@ -40,9 +40,7 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
             f"robot that is named first is better. Bars: {_bars(found)}.",
         ),
         html.table(
-            _HEAD,
-            [_row(pair) for pair in found.comparisons],
-            f"The same in numbers. {_intervals(found)} {_COLUMNS}",
+            _HEAD, [_row(pair) for pair in found.comparisons], f"The same in numbers. {_intervals(found)} {_COLUMNS}"
         ),
         *apart,
     ]

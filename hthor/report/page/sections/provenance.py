@@ -23,10 +23,7 @@ def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
     beside = [one.name for one in found.origins if one.beside]
     return [
         html.table(
-            ("", *(one.name for one in found.origins)),
-            rows,
-            f"{said}same bytes.",
-            words=range(len(found.origins) + 1),
+            ("", *(one.name for one in found.origins)), rows, f"{said}same bytes.", words=range(len(found.origins) + 1)
         ),
         html.paragraph(f"{', '.join(beside)} was not named, but found beside as a control.") if beside else "",
         html.paragraph(f"The commands that play these runs again{_own(found)}:"),

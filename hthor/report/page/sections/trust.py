@@ -38,9 +38,7 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     return [
         html.paragraph(sentences.trust(found.trust)),
         html.drawn(
-            drawings,
-            "trust",
-            f"Mean rating after each trial of a session; bars and bands are 95 % intervals.{cut}",
+            drawings, "trust", f"Mean rating after each trial of a session; bars and bands are 95 % intervals.{cut}"
         ),
         html.table(_HEAD, rows, "Trust from 1 to 7: means over people with 95 % intervals; slopes ± standard error."),
     ]
