@@ -99,15 +99,15 @@ def _row(sort: Sort, level: float, name: str, tasks: np.ndarray, people: np.ndar
     one, other = (sort.value(values) for values in latent(tasks, people, level, repeats))
     metric = registry.get(sort.metric)
     mean, within, share = truth(sort, level), metric.range(LIMIT_S), metric.is_share
-    found = variance_components.two_way(one, tasks, people)
-    apart = paired_difference.spread_of(one - other, tasks, people, share=share)
+    found = variance_components.two_way_spread(one, tasks, people)
+    apart = paired_difference.difference_spread(one - other, tasks, people, share=share)
     room = metric.width(LIMIT_S)
     plain, gap = (_plain(held) for held in (found, apart))
     told = [f"{sort.metric:7} {mean:5.2f} {name:23}"]
     for ends, true, most in (
-        (intervals.interval(found, len(tasks), within), mean, within),
+        (intervals.confidence_interval(found, len(tasks), within), mean, within),
         (plain, mean, within),
-        (paired_difference.ends(apart, share=share, room=room), 0.0, (-room, room)),
+        (paired_difference.interval_ends(apart, share=share, room=room), 0.0, (-room, room)),
         (gap, 0.0, (-room, room)),
     ):
         low, high = ends
@@ -117,7 +117,7 @@ def _row(sort: Sort, level: float, name: str, tasks: np.ndarray, people: np.ndar
     return " | ".join(told)
 
 
-def _plain(found: variance_components.Spread) -> tuple[np.ndarray, np.ndarray]:
+def _plain(found: variance_components.MeanSpread) -> tuple[np.ndarray, np.ndarray]:
     """The mean and some standard errors."""
-    half = intervals.student(found.freedom, (1.0 + intervals.LEVEL) / 2.0) * np.sqrt(found.variance)
+    half = intervals.student_quantile(found.freedom, (1.0 + intervals.LEVEL) / 2.0) * np.sqrt(found.variance)
     return found.mean - half, found.mean + half

@@ -95,10 +95,10 @@ def main() -> None:
         for rate in RATES:
             for task_sd, person_sd in SPREADS:
                 one, other = outcomes(tasks, people, rate, task_sd, person_sd, repeats)
-                found = variance_components.two_way(one, tasks, people)
-                low, high = intervals.interval(found, len(tasks), intervals.SHARE)
-                least, most = paired_difference.ends(
-                    paired_difference.spread_of(one - other, tasks, people, share=True), share=True
+                found = variance_components.two_way_spread(one, tasks, people)
+                low, high = intervals.confidence_interval(found, len(tasks), intervals.SHARE)
+                least, most = paired_difference.interval_ends(
+                    paired_difference.difference_spread(one - other, tasks, people, share=True), share=True
                 )
                 held = 100.0 * np.mean((low <= rate) & (rate <= high))
                 equal = 100.0 * np.mean((least <= 0.0) & (most >= 0.0))

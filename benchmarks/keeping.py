@@ -50,10 +50,10 @@ def main() -> None:
     options = argparse.ArgumentParser(prog="python -m benchmarks.keeping", description=__doc__.split("\n\n")[0])
     options.add_argument("run", type=Path, help="the folder of a finished run")
     folder = options.parse_args().run
-    plan, dealt, stored = run_config.load_config(folder), sessions(folder), result_file.load(folder)
+    plan, dealt, stored = run_config.load_config(folder), sessions(folder), result_file.load_result(folder)
     engine = engines.find_engine("local", jobs=2)
     scoring = 0.0
-    real = aggregate.summarise
+    real = aggregate.make_result
 
     def summarise(*words, **more):  # type: ignore[no-untyped-def]
         nonlocal scoring
@@ -62,7 +62,7 @@ def main() -> None:
         scoring += time.process_time() - began
         return result
 
-    aggregate.summarise = summarise
+    aggregate.make_result = summarise
     with tempfile.TemporaryDirectory(prefix="hthor-keeping-") as name:
         began = time.process_time()
         make = functools.partial(player, folder / "trials.jsonl")

@@ -41,7 +41,7 @@ def player(folder: Path, sources: object = None) -> Callable[[Session], Iterator
 def main(folder: Path) -> None:
     """Give the run's command again, and print what the harness took."""
     plan = run_config.load_config(folder)
-    results = [result_file.load(path) for path in (folder, folder / baseline.FOLDER)]
+    results = [result_file.load_result(path) for path in (folder, folder / baseline.FOLDER)]
     trials_s = sum(one.effort.cpu_s for one in results if one is not None and one.effort is not None)
     spent: dict[str, float] = {}
     for place, name in ((collector, "play"), (run, "_finish")):

@@ -38,7 +38,7 @@ def main() -> None:
             pass
     print("pair                  n  only 1st/2nd   metric  difference (interval)      r  gain")
     for seed, (one, other) in itertools.product(range(wanted.seeds), itertools.combinations(AGENTS, 2)):
-        pair = compare.runs([wanted.folder / str(seed) / name for name in (one, other)]).pairs[0]
+        pair = compare.compare_runs([wanted.folder / str(seed) / name for name in (one, other)]).pairs[0]
         for metric in ("sr", "twsr", "time_s"):
             found = pair.differences[metric]
             low, high = found.ci95 or (0.0, 0.0)

@@ -132,8 +132,8 @@ def _maker(name: str) -> Callable[[Path], None]:
 
 def _draw_trial(path: Path, task_id: str) -> None:
     record = played(task_id)
-    made = trial_figure.figure(record.spec, record.log, houses.load(record.spec.task.house))
-    lettering.save(made, path, metadata={"Software": None})
+    made = trial_figure.trial_figure(record.spec, record.log, houses.load(record.spec.task.house))
+    lettering.save_figure(made, path, metadata={"Software": None})
 
 
 @functools.cache

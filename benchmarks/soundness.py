@@ -21,7 +21,7 @@ from pathlib import Path
 from hthor import code_identity, houses, jsonio
 from hthor.eval.task_check import make_suite as proved
 from hthor.eval.task_check import proof
-from hthor.eval.task_check.proof import Verdict
+from hthor.eval.task_check.proof import TaskVerdict
 from hthor.houses import HouseLibrary
 from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
@@ -52,26 +52,26 @@ def _measure(given: argparse.Namespace, folder: Path) -> None:
     recipe = Recipe(name="soundness", tasks=given.tasks)
     if given.raw:
         _count("first draws", [one for _, own in _shared(_first, recipe, found, given.jobs) for one in own])
-    made = dict(proved.columns(recipe, found, jobs=given.jobs))
+    made = dict(proved.make_tasks(recipe, found, jobs=given.jobs))
     columns = [made[number] for number in range(len(found))]
     path = suite_files.write_files(
         folder / "suite.json", suite_files.make_files(recipe.name, custom_suite.VERSION, found, columns)
     )
     tasks = [task for column in columns for task in column]
     library = HouseLibrary(folder=path.with_suffix(".houses"))
-    _count("made", list(proof.verdicts(tasks, jobs=given.jobs, houses=library)))
+    _count("made", list(proof.check_tasks(tasks, jobs=given.jobs, houses=library)))
     if given.agent != "-":
         _play(path, given, folder / "run")
 
 
 def _shared(work: object, recipe: Recipe, found: tuple[HouseSource, ...], jobs: int) -> object:
-    return proof.shared(functools.partial(work, recipe), found, jobs=jobs)  # type: ignore[arg-type]
+    return proof.run_in_workers(functools.partial(work, recipe), found, jobs=jobs)  # type: ignore[arg-type]
 
 
-def _first(recipe: Recipe, source: HouseSource) -> list[Verdict]:
+def _first(recipe: Recipe, source: HouseSource) -> list[TaskVerdict]:
     """Verdicts on the first draws in one house."""
     house = houses.load(source.given)
-    return [proof.examine(task, house) for task in custom_suite.make_tasks(recipe, house)]
+    return [proof.check_task(task, house) for task in custom_suite.make_tasks(recipe, house)]
 
 
 def _generated(given: argparse.Namespace, folder: Path) -> list[str]:
@@ -85,7 +85,7 @@ def _generated(given: argparse.Namespace, folder: Path) -> list[str]:
     return paths
 
 
-def _count(what: str, verdicts: list[Verdict]) -> None:
+def _count(what: str, verdicts: list[TaskVerdict]) -> None:
     bad = [verdict for verdict in verdicts if verdict.faults]
     inside = [
         verdict for verdict in bad if any("inside" in f.reason or "in one another" in f.reason for f in verdict.faults)

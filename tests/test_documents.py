@@ -66,7 +66,7 @@ def _lines(read: Callable[[Path], Any]) -> Callable[[Path], Any]:
 
 READERS: dict[str, tuple[str, type[HthorError], Callable[[Path], Any]]] = {
     "run": ("run.json", RunError, lambda path: run_config.load_config(path.parent)),
-    "result": ("result.json", RunError, lambda path: result_file.load(path.parent)),
+    "result": ("result.json", RunError, lambda path: result_file.load_result(path.parent)),
     "trials": ("trials.jsonl", RunError, _lines(lambda path: list(trial_log.read(path)))),
     "isolation": ("isolation.json", RunError, lambda path: run_isolation.load_isolation(path.parent)),
     "platform": ("platform.json", RunError, lambda path: platform.load(path.parent)),
@@ -124,7 +124,7 @@ def test_damaged_entries_and_submissions_are_problems(damage: str, tmp_path: Pat
 def test_damage_that_is_only_looked_at_raises_nothing(damage: str, tmp_path: Path):
     path = tmp_path / "result.json"
     path.write_bytes(DAMAGES[damage])
-    assert not result_file.outdated(path)
+    assert not result_file.is_outdated(path)
     assert documents.schema_of(path) in ("", "hthor.other/1")
 
 

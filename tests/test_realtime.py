@@ -106,5 +106,5 @@ def test_it_is_another_trial_for_the_same_occasion() -> None:
     spec = fakes.run_of()[1][0].trials[0]
     late = msgspec.structs.replace(spec, realtime=True)
     assert trial_record.key(spec) != trial_record.key(late)
-    assert pairing.occasion(spec) == pairing.occasion(late)
+    assert pairing.pairing_key(spec) == pairing.pairing_key(late)
     assert b"realtime" not in msgspec.json.encode(spec), "lock-step reads as it always did"

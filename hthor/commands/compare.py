@@ -36,18 +36,18 @@ def compare(
     from hthor.eval.comparison import compare as comparing
     from hthor.report.terminal import comparison_tables
 
-    found = comparing.runs(runs)
+    found = comparing.compare_runs(runs)
     if json := formats.asks_json(json, shape):
         output.put_json(found)
     elif shape is Format.CSV:
         output.put_records([row for pair in found.pairs for row in _rows(pair)])
     else:
         for pair in found.pairs:
-            output.put_rich(comparison_tables.table(pair), shape)
+            output.put_rich(comparison_tables.comparison_table(pair), shape)
             if len(found.pairs) == 1:
                 for by in pair.groups:
                     output.put_rich(comparison_tables.groups_table(pair, by), shape)
-            for line in comparison_tables.lines(pair):
+            for line in comparison_tables.comparison_lines(pair):
                 output.put_line(line, shape)
     talk = output.console(talk=True)
     if len(found.pairs) > 1 and not json:

@@ -37,7 +37,7 @@ def doctor(
         return
     from hthor.eval.doctor import run_all
 
-    found = run_all.run_all(out, require_isolation)
+    found = run_all.run_checks(out, require_isolation)
     if json:
         output.put_json(found)
     else:
@@ -52,8 +52,8 @@ def _renew(json: bool) -> None:
     from hthor.errors import HthorError
     from hthor.eval.doctor import reproducibility, subprocess_probe
 
-    with subprocess_probe.start(reproducibility.__name__) as process:
-        course = process.answer(reproducibility.Course)
+    with subprocess_probe.start_probe(reproducibility.__name__) as process:
+        course = process.answer(reproducibility.TrialFingerprint)
     if isinstance(course, str):
         raise HthorError(f"the trial could not be played: {course}.")
     jsonio.write(reproducibility.REFERENCE, jsonio.pretty(course))

@@ -146,7 +146,7 @@ def show(
     if path.suffix.lower() != ".png":
         raise typer.BadParameter(f"'{path}' does not end in .png", param_hint="--out")
     world = World(spec)
-    picture = house_labels.captioned(world.top_view(scale), spec, world.top_view_bounds, named=not plain)
+    picture = house_labels.with_labels(world.top_view(scale), spec, world.top_view_bounds, named=not plain)
     jsonio.write(path, cv2.imencode(".png", picture[:, :, ::-1])[1].tobytes())
     output.put_files([path], json, house=spec.id)
 

@@ -35,7 +35,7 @@ def merge(
         from hthor.report.terminal import result_tables
 
         output.console().print(result_tables.result_table(done.result))
-        for note in result_tables.notes([done.result]):
+        for note in result_tables.result_notes([done.result]):
             output.put_line(note)
     talk = output.console(talk=True)
 

@@ -61,7 +61,7 @@ def replay(
 
     record = find.find_trial(run, trial)
     path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'webm' if video else 'png'}"
-    render_trial.draw(run, record, path, video=video)
+    render_trial.draw_trial(run, record, path, video=video)
     output.put_files([path], json, key=record.key, task=record.spec.task.id)
 
 
@@ -74,7 +74,7 @@ def _replay_mind(
     from hthor.report.drawing import human_trace_figure, lettering, render_trial
 
     record = find.find_trial(run, trial)
-    house = render_trial.house(run, record)
+    house = render_trial.load_house(run, record)
     stream = human_trace.trace_human(run, record, agents=agents, humans=humans, given=given)
     if not stream.same:
         talk = output.console(talk=True)
@@ -88,6 +88,6 @@ def _replay_mind(
         return
     path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}-mind.png"
     path.parent.mkdir(parents=True, exist_ok=True)
-    render_trial.check_name(path, video=False)
-    lettering.save(human_trace_figure.figure(record, house, stream), path)
+    render_trial.check_file_name(path, video=False)
+    lettering.save_figure(human_trace_figure.figure(record, house, stream), path)
     sys.stdout.write(f"{path}\n")

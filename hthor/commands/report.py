@@ -31,7 +31,7 @@ def report(
 
     study = targets.load(_PAPER)
     counts = {f"{metric} {name}": one for metric in ("sr", "adoption") for name, one in getattr(study, metric).items()}
-    write.report(
+    write.write_report(
         runs,
         out,
         Published(
@@ -81,5 +81,7 @@ def case(
 
     more = inputs.parse_inputs(agent_args or (), readable or ())
     profile = "nice" if nice else "fast"
-    paths = cases.study(runs, task, out, person=person, profile=profile, agents=agent or (), humans=humans, given=more)
+    paths = cases.write_case_study(
+        runs, task, out, person=person, profile=profile, agents=agent or (), humans=humans, given=more
+    )
     output.put_files(paths, json, task=task)

@@ -109,7 +109,7 @@ def view_run(
         output.put_line(f"{len(found.trials)} of {found.done} trials", shape)
     if result is not None and (not trials or shape is Format.TABLE):
         output.put_rich(result_tables.result_table(result), shape)
-        for note in result_tables.notes([result]):
+        for note in result_tables.result_notes([result]):
             output.put_line(note, shape)
     if found.done < found.total:
         output.put_line(f"{found.done} of {found.total} trials are played so far; the numbers are from these.", shape)

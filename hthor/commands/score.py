@@ -44,7 +44,7 @@ def score(
         output.put_rich(result_tables.result_table(result, everything=everything), shape)
         if everything and len(result.by_kind) > 1:
             output.put_rich(result_tables.kinds_table(result), shape)
-    for note in result_tables.notes([result]):
+    for note in result_tables.result_notes([result]):
         say(note)
     missing = plan.trials - result.counts.trials
     if missing:
@@ -57,7 +57,7 @@ def score(
     else:
         say(f"equal to {run / 'result.json'}.")
         return
-    result_file.store(run, result)
+    result_file.store_result(run, result)
 
 
 def _rows(result: RunResult, everything: bool) -> Iterator[dict[str, object]]:

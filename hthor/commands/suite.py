@@ -161,7 +161,7 @@ def _proof() -> Proof:
 def _possible(task: TaskSpec, house: HouseSpec) -> bool:
     from hthor.eval.task_check import proof
 
-    return not proof.examine(task, house).faults
+    return not proof.check_task(task, house).faults
 
 
 def _each(jobs: int | None, total: int) -> MapHouses:

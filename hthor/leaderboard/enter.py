@@ -44,7 +44,7 @@ def add(folder: Path, board: Path, submission: Submission | None = None) -> list
     made: dict[Path, Entry] = {}
     for run in _runs(folder):
         plan = run_config.load_config(run)
-        beside = baseline.place(run, plan)
+        beside = baseline.baseline_folder(run, plan)
         for each in (run, *([beside] if beside else [])):
             made[each] = made.get(each) or of(each, submission if each == run else None)
     added = {entry.id: (entry, board / files.ENTRIES / f"{entry.id}.json") for entry in made.values()}
@@ -67,11 +67,11 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
     if found:
         raise BoardError(overrides.refusal(folder, plan, found))
     records = [msgspec.structs.replace(one, metrics=trial_metrics.measure(one.spec, one.log)) for one in kept]
-    gain = baseline.measure(folder, plan, records)
+    gain = baseline.measure_uplift(folder, plan, records)
     if gain is None and plan.seats:
         raise RunError(f"{folder} has no run without a robot beside it. 'hthor eval' plays it without --no-control.")
     held = run_isolation.load_isolation(folder)
-    result = aggregate.summarise(
+    result = aggregate.make_result(
         plan, lines, records, uplift=gain, isolation=held, replays=session_restarts.count(folder)
     )
     columns = trial_outcomes.of(records, map(trial_outcomes.leaf, lines))

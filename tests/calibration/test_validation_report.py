@@ -381,7 +381,7 @@ def test_the_page_is_whole_and_needs_nothing_else() -> None:
 
 def test_the_same_findings_make_the_same_page() -> None:
     assert page.render(whole(known=False)) == rendered(False)
-    drawings = [matplotlib_svg.svg(diagnostics.contraction(whole().evidence.parameters), "a", "b") for _ in range(2)]  # type: ignore[union-attr]
+    drawings = [matplotlib_svg.to_svg(diagnostics.contraction(whole().evidence.parameters), "a", "b") for _ in range(2)]  # type: ignore[union-attr]
     assert drawings[0] == drawings[1]
 
 

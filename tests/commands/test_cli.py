@@ -245,8 +245,8 @@ def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor,
     monkeypatch.setattr(robot_team, "load_agent_info", introduce)
     drawn: list[str] = []
     hazel = houses.load("hazel")
-    monkeypatch.setattr(render_trial, "house", lambda *_: hazel)
-    monkeypatch.setattr(render_trial, "draw", lambda run, record, path, video: drawn.append(record.key))
+    monkeypatch.setattr(render_trial, "load_house", lambda *_: hazel)
+    monkeypatch.setattr(render_trial, "draw_trial", lambda run, record, path, video: drawn.append(record.key))
     words = ("--suite", "fake", "--out", "my runs/demo", "--jobs", "1")
     said = hthor("eval", "--agent", "none", "--agent", "helper", "--agent", "clumsy", *words)
     single = hthor("eval", "--agent", "helper", "--suite", "fake", "--out", "my runs/one", "--jobs", "1")
@@ -278,7 +278,7 @@ def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_p
     assert hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--quiet").code == 0
     run = next((tmp_path / "runs").iterdir())
     hazel = houses.load("hazel")
-    monkeypatch.setattr(render_trial, "house", lambda *_: hazel)
+    monkeypatch.setattr(render_trial, "load_house", lambda *_: hazel)
     assert hthor("report", str(run), "--out", "rep").code == 0
     told = json.loads((tmp_path / "rep" / "report.json").read_bytes())["origins"][0]["alone"]
     assert html.escape(told, quote=False) in html.unescape((tmp_path / "rep" / "report.html").read_text("utf-8"))

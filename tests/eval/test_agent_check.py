@@ -120,7 +120,7 @@ def test_a_program_is_checked_like_a_file(check: Any) -> None:
 
 def test_what_ships_needs_no_check() -> None:
     with pytest.raises(HthorError, match="'oracle' ships with hthor"):
-        checks.check("oracle")
+        checks.check_agent("oracle")
 
 
 @pytest.mark.parametrize("name", AGENTS)

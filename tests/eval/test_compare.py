@@ -47,7 +47,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_an_agent_cannot_be_told_from_itself_under_another_name(runs: Path):
-    pair = compare.runs([runs / "helper", runs / "twin"]).pairs[0]
+    pair = compare.compare_runs([runs / "helper", runs / "twin"]).pairs[0]
     assert pair.n == 60
     assert pair.better == ""
     assert pair.differences["sr"].p == 1.0
@@ -58,7 +58,7 @@ def test_an_agent_cannot_be_told_from_itself_under_another_name(runs: Path):
 
 
 def test_what_is_better_is_said_to_be_and_by_how_much(runs: Path):
-    found = compare.runs([runs / "leaning" / "alone", runs / "leaning" / "better"])
+    found = compare.compare_runs([runs / "leaning" / "alone", runs / "leaning" / "better"])
     pair = found.pairs[0]
     assert pair.better == "better"
     assert pair.differences["sr"].p < 0.001
@@ -68,12 +68,12 @@ def test_what_is_better_is_said_to_be_and_by_how_much(runs: Path):
     assert set(pair.groups) == {"kind", "scene"}
     assert sum(one.n for one in pair.groups["scene"].values()) == pair.n
     assert not found.worse
-    assert compare.runs([runs / "leaning" / "better", runs / "leaning" / "alone"]).worse
+    assert compare.compare_runs([runs / "leaning" / "better", runs / "leaning" / "alone"]).worse
 
 
 def test_a_comparison_is_the_mirror_of_its_mirror(runs: Path):
     one, other = (runs / "leaning" / name for name in ("alone", "better"))
-    here, there = compare.runs([one, other]).pairs[0], compare.runs([other, one]).pairs[0]
+    here, there = compare.compare_runs([one, other]).pairs[0], compare.compare_runs([other, one]).pairs[0]
     assert here.better == there.better
     for metric, found in here.differences.items():
         turned = there.differences[metric]
@@ -87,12 +87,12 @@ def test_a_comparison_is_the_mirror_of_its_mirror(runs: Path):
 @given(st.integers(0, 60), st.integers(0, 60))
 def test_mcnemar_is_the_binomial_test(one: int, other: int):
     expected = scipy_stats.binomtest(one, one + other).pvalue if one + other else 1.0
-    assert paired_difference.exact(one, other) == pytest.approx(expected, rel=1e-4)
+    assert paired_difference.exact_p_value(one, other) == pytest.approx(expected, rel=1e-4)
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=8))
 def test_holm_is_never_bolder_than_one_test_nor_shyer_than_bonferroni(p: list[float]):
-    adjusted = paired_difference.holm(p)
+    adjusted = paired_difference.holm_adjusted(p)
     for before, after in zip(p, adjusted, strict=True):
         assert before - 1e-6 <= after <= min(1.0, before * len(p)) + 1e-6
     assert sorted(range(len(p)), key=lambda k: (p[k], k)) == sorted(range(len(p)), key=lambda k: (adjusted[k], p[k], k))
@@ -102,7 +102,7 @@ def test_holm_is_never_bolder_than_one_test_nor_shyer_than_bonferroni(p: list[fl
 @given(st.lists(st.tuples(st.booleans(), st.booleans()), min_size=2, max_size=50))
 def test_the_interval_and_p_say_the_same(outcomes: list[tuple[bool, bool]]):
     first, second = (np.array([pair[k] for pair in outcomes], dtype=float) for k in (0, 1))
-    found = paired_difference.between(
+    found = paired_difference.difference_of_values(
         first, second, np.arange(len(first)), np.arange(len(first)) // 10, registry.get("sr"), limit_s=None
     )
     low, high = found.ci95
@@ -111,7 +111,7 @@ def test_the_interval_and_p_say_the_same(outcomes: list[tuple[bool, bool]]):
 
 
 def test_several_runs_are_compared_pair_by_pair(runs: Path):
-    found = compare.runs([runs / "helper", runs / "twin", runs / "helper"])
+    found = compare.compare_runs([runs / "helper", runs / "twin", runs / "helper"])
     assert [party.name for party in found.runs] == ["helper (helper) #1", "twin", "helper (helper) #3"]
     assert len(found.pairs) == 3
     assert all(pair.p_holm == 1.0 for pair in found.pairs)
@@ -120,7 +120,7 @@ def test_several_runs_are_compared_pair_by_pair(runs: Path):
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(0, 1)), min_size=1, max_size=8))
 def test_a_verdict_and_the_level_of_its_interval_say_the_same(differences: list[tuple[float, float]]):
-    for (difference, p), found in zip(differences, better.judge(differences), strict=True):
+    for (difference, p), found in zip(differences, better.verdicts(differences), strict=True):
         assert found.among == len(differences)
         assert found.level >= 0.95
         if abs(p - (1.0 - found.level)) > 1e-5:
@@ -130,7 +130,7 @@ def test_a_verdict_and_the_level_of_its_interval_say_the_same(differences: list[
 
 
 @pytest.fixture(scope="module")
-def four() -> tuple[compare.Read, ...]:
+def four() -> tuple[compare.LoadedRun, ...]:
     """Four runs: of one pair the difference counts alone, but not among six."""
     names = ("none", "one", "two", "three")
     chance = np.random.default_rng(4)
@@ -138,19 +138,19 @@ def four() -> tuple[compare.Read, ...]:
     plan, dealt = fakes.run_of(120)
     kept = [one for session in dealt for one in fakes.player()(session)]
 
-    def run(name: str, rate: float) -> compare.Read:
+    def run(name: str, rate: float) -> compare.LoadedRun:
         met = level + 0.15 * np.random.default_rng(len(name)).normal(size=120) < rate
         records = (
             msgspec.structs.replace(one, metrics=msgspec.structs.replace(one.metrics, sr=int(hit), twsr=0.5 * hit))
             for one, hit in zip(kept, met, strict=True)
         )
-        return compare.Read(name=name, folder=Path(name), plan=plan, records=tuple(records))
+        return compare.LoadedRun(name=name, folder=Path(name), plan=plan, records=tuple(records))
 
     return tuple(run(name, rate) for name, rate in zip(names, (0.5, 0.6, 0.52, 0.51), strict=True))
 
 
-def test_where_the_verdict_is_adjusted_its_interval_is_too_and_both_say_so(four: tuple[compare.Read, ...]):
-    (alone,), among = compare.pairs(four[:2]), compare.pairs(four)
+def test_where_the_verdict_is_adjusted_its_interval_is_too_and_both_say_so(four: tuple[compare.LoadedRun, ...]):
+    (alone,), among = compare.compare_pairs(four[:2]), compare.compare_pairs(four)
     assert alone.better == "one"
     assert (alone.among, alone.level, alone.interval) == (1, 0.95, alone.differences["sr"].ci95)
     pair = next(one for one in among if (one.first, one.second) == ("none", "one"))
@@ -163,26 +163,26 @@ def test_where_the_verdict_is_adjusted_its_interval_is_too_and_both_say_so(four:
         assert bool(one.better) == (one.interval[0] > 0.0 or one.interval[1] < 0.0)
 
 
-def test_ranks_judge_as_comparisons_do(four: tuple[compare.Read, ...]):
+def test_ranks_judge_as_comparisons_do(four: tuple[compare.LoadedRun, ...]):
     tasks, people = np.arange(120), np.arange(120) // 10
     outcomes = np.array([[one.metrics.sr for one in run.records] for run in four], dtype=float)
-    ties = [set(place.ties) for place in ranking.standings(outcomes, tasks, people)]
-    for pair, (one, other) in zip(compare.pairs(four), itertools.combinations(range(4), 2), strict=True):
+    ties = [set(place.ties) for place in ranking.rank_agents(outcomes, tasks, people)]
+    for pair, (one, other) in zip(compare.compare_pairs(four), itertools.combinations(range(4), 2), strict=True):
         assert (other in ties[one]) == (not pair.better)
 
 
-def test_a_comparison_and_a_plan_say_the_same_of_more_tasks(runs: Path, four: tuple[compare.Read, ...]):
+def test_a_comparison_and_a_plan_say_the_same_of_more_tasks(runs: Path, four: tuple[compare.LoadedRun, ...]):
     for one, other in ((four[0], four[2]), (four[1], four[3])):
-        (pair,) = compare.pairs([one, other])
-        with mock.patch.object(compare, "read", return_value=(one, other)):
+        (pair,) = compare.compare_pairs([one, other])
+        with mock.patch.object(compare, "load_runs", return_value=(one, other)):
             plan = sample_size.plan_study([one.folder, other.folder], "", None, None, 0.8)
         assert plan.more == pair.differences["sr"].more_tasks > 0
         assert plan.paired.trials == plan.more + pair.n
-        words = power.about(plan.more)
+        words = power.rounded_count(plan.more)
         assert f"about {words} more tasks" in pair.sentence
         assert f"about {words} more than the {pair.n}" in plan.sentence
     folders = [runs / "leaning" / "alone", runs / "leaning" / "better"]
-    found = compare.runs(folders).pairs[0].differences["sr"]
+    found = compare.compare_runs(folders).pairs[0].differences["sr"]
     assert sample_size.plan_study(folders, "", None, None, 0.8).more == found.more_tasks
 
 
@@ -196,7 +196,7 @@ def test_a_plan_for_another_difference_scales_what_was_measured(runs: Path):
 def test_other_conditions_are_refused_by_name(runs: Path, tmp_path: Path):
     other = _run(tmp_path, "helper", seed=1, count=10)
     with pytest.raises(RunError, match=r"suite\.sha256 is .* other tasks"):
-        compare.runs([runs / "helper", other])
+        compare.compare_runs([runs / "helper", other])
     plan = run_config.load_config(runs / "helper")
     changes = {
         "seed": msgspec.structs.replace(plan, seed=9),
@@ -205,13 +205,13 @@ def test_other_conditions_are_refused_by_name(runs: Path, tmp_path: Path):
         "code_sha256": msgspec.structs.replace(plan, code_sha256="0" * 64),
     }
     for field, changed in changes.items():
-        assert pairing.difference(plan, changed) == field
+        assert pairing.differing_field(plan, changed) == field
 
 
 def test_an_occasion_is_the_trial_without_a_robot():
     with_robot, without = (fakes.run_of(20, absent=absent)[1][1].trials[3] for absent in (False, True))
-    assert pairing.occasion(with_robot) == pairing.occasion(without)
-    assert pairing.occasion(with_robot) != pairing.occasion(msgspec.structs.replace(with_robot, index=4))
+    assert pairing.pairing_key(with_robot) == pairing.pairing_key(without)
+    assert pairing.pairing_key(with_robot) != pairing.pairing_key(msgspec.structs.replace(with_robot, index=4))
 
 
 # ------------------------------------------------------------------------------------------------------------- uplift
@@ -219,12 +219,12 @@ def test_an_occasion_is_the_trial_without_a_robot():
 
 def test_uplift_is_the_comparison_with_the_run_without_a_robot_that_lies_beside(runs: Path):
     folder = runs / "leaning"
-    result = result_file.load(folder / "better")
+    result = result_file.load_result(folder / "better")
     assert result.uplift is not None
-    assert result.uplift.control == result_file.load(folder / "alone").hashes.run
-    assert result.uplift.sr == compare.runs([folder / "alone", folder / "better"]).pairs[0].differences["sr"]
-    assert result_file.load(folder / "alone").uplift is None
-    assert result_file.load(runs / "helper").uplift is None, "nothing without a robot lies beside it"
+    assert result.uplift.control == result_file.load_result(folder / "alone").hashes.run
+    assert result.uplift.sr == compare.compare_runs([folder / "alone", folder / "better"]).pairs[0].differences["sr"]
+    assert result_file.load_result(folder / "alone").uplift is None
+    assert result_file.load_result(runs / "helper").uplift is None, "nothing without a robot lies beside it"
     assert aggregate.rescore(folder / "better")[1] == result
 
 
@@ -237,15 +237,15 @@ def _better(folder: Path) -> Path:
 def test_a_copied_run_keeps_its_uplift_with_a_note_and_loses_the_note_where_its_control_is(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     whole = _better(tmp_path / "runs" / "here")
-    before = result_file.load(whole)
+    before = result_file.load_result(whole)
     moved = shutil.copytree(whole, tmp_path / "far" / "off" / "copy")
     monkeypatch.chdir(moved.parent)
-    result_file.store(moved, aggregate.rescore(moved)[1])
-    kept = result_file.load(moved).uplift
+    result_file.store_result(moved, aggregate.rescore(moved)[1])
+    kept = result_file.load_result(moved).uplift
     assert kept.note == uplift.RECORDED
     assert msgspec.structs.replace(kept, note=msgspec.UNSET) == before.uplift
-    result_file.store(moved, aggregate.rescore(moved)[1])
-    assert result_file.load(moved).uplift == kept, "once more changes nothing"
+    result_file.store_result(moved, aggregate.rescore(moved)[1])
+    assert result_file.load_result(moved).uplift == kept, "once more changes nothing"
     monkeypatch.chdir(tmp_path)
     assert aggregate.rescore(moved)[1].uplift == before.uplift, "found below ./runs, by what it is"
 
@@ -262,48 +262,48 @@ def test_an_older_result_does_not_lose_its_uplift_either(tmp_path: Path, monkeyp
 def test_a_finished_run_that_is_evaluated_again_without_its_control_keeps_its_uplift(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     whole = _better(tmp_path / "runs")
-    before = result_file.load(whole).uplift
+    before = result_file.load_result(whole).uplift
     shutil.rmtree(tmp_path / "runs" / "alone")
     _run(tmp_path / "runs", "better", make=fakes.leaning_player, count=20)
-    assert result_file.load(whole).uplift.sr == before.sr
+    assert result_file.load_result(whole).uplift.sr == before.sr
 
 
 def test_of_several_controls_it_is_the_one_that_the_result_names(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     whole = _better(tmp_path / "runs")
-    named = result_file.load(whole).uplift.control
+    named = result_file.load_result(whole).uplift.control
     other = shutil.copytree(tmp_path / "runs" / "alone", tmp_path / "runs" / "aaa")
     plan = run_config.load_config(other)
     assert plan.sha256 == named
     (other / "run.json").write_bytes(jsonio.pretty(msgspec.structs.replace(plan, versions={"hthor": "another"})))
     assert run_config.load_config(other).sha256 != named
     assert aggregate.rescore(whole)[1].uplift.control == named
-    assert baseline.place(whole, run_config.load_config(whole)).name == "alone"
+    assert baseline.baseline_folder(whole, run_config.load_config(whole)).name == "alone"
 
 
 def test_a_result_of_another_run_lends_no_uplift(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     whole = _better(tmp_path / "runs")
     shutil.rmtree(tmp_path / "runs" / "alone")
-    assert result_file.uplift(whole, run="0" * 64) is None
+    assert result_file.stored_uplift(whole, run="0" * 64) is None
     (whole / "result.json").write_text("[" * 100_000, encoding="utf-8")
-    assert result_file.uplift(whole, run=run_config.load_config(whole).sha256) is None
+    assert result_file.stored_uplift(whole, run=run_config.load_config(whole).sha256) is None
 
 
 def test_half_a_control_is_none(tmp_path: Path):
     folder = _run(tmp_path, "helper", count=20)
     alone = _run(tmp_path, "alone", absent=True, count=20)
-    assert baseline.find(folder, run_config.load_config(folder)) is not None
+    assert baseline.find_baseline(folder, run_config.load_config(folder)) is not None
     lines = (alone / "trials.jsonl").read_bytes().splitlines(keepends=True)
     (alone / "trials.jsonl").write_bytes(b"".join(lines[:-1]))
-    assert baseline.find(folder, run_config.load_config(folder)) is None
+    assert baseline.find_baseline(folder, run_config.load_config(folder)) is None
 
 
 # -------------------------------------------------------------------------------------------------------------- power
 
 
 def test_power_of_textbook_size():
-    found = power.need(0.73, 0.76)
+    found = power.sample_size(0.73, 0.76)
     assert 3_250 <= found.trials <= 3_350
     assert found.people == -(-found.trials // 10)
 
@@ -311,17 +311,17 @@ def test_power_of_textbook_size():
 @settings(max_examples=40, deadline=None)
 @given(st.floats(0.1, 0.9), st.floats(0.02, 0.09), st.floats(0.0, 0.6))
 def test_more_correlation_and_larger_differences_need_less(rate: float, gap: float, correlation: float):
-    plain = power.need(rate, rate + gap)
-    assert power.need(rate, rate + gap, correlation=correlation).trials <= plain.trials
-    assert power.need(rate, rate + gap / 2).trials >= plain.trials
+    plain = power.sample_size(rate, rate + gap)
+    assert power.sample_size(rate, rate + gap, correlation=correlation).trials <= plain.trials
+    assert power.sample_size(rate, rate + gap / 2).trials >= plain.trials
 
 
 def test_what_cannot_be_is_refused():
     for first, second, correlation, said in ((0.5, 1.2, 0.0, "second rate"), (0.1, 0.9, 0.9, "cannot correlate")):
         with pytest.raises(HthorError, match=said):
-            power.need(first, second, correlation=correlation)
+            power.sample_size(first, second, correlation=correlation)
     with pytest.raises(HthorError, match="equal"):
-        power.need(0.5, 0.5)
+        power.sample_size(0.5, 0.5)
     for rates, difference in (("0.73,1.2", None), ("0.73,0.76", 0.4)):
         with pytest.raises(HthorError, match="second rate"):
             sample_size.plan_study((), rates, None, difference, 0.8)
@@ -330,9 +330,9 @@ def test_what_cannot_be_is_refused():
 
 
 def test_a_difference_that_cannot_be_is_not_one_that_could_have_been_seen():
-    shares = [result_tables.least(value, SHARE) for value in (None, 0.0, 0.123, 1.4)]
+    shares = [result_tables.format_detectable(value, SHARE) for value in (None, 0.0, 0.123, 1.4)]
     assert shares == ["–", "–", "12.3", "> 100"]
-    assert result_tables.least(1.4, SECONDS) == "1.4"
+    assert result_tables.format_detectable(1.4, SECONDS) == "1.4"
 
 
 def test_a_plan_from_two_runs_has_their_rates_and_correlation(runs: Path):
@@ -344,4 +344,4 @@ def test_a_plan_from_two_runs_has_their_rates_and_correlation(runs: Path):
 
 @pytest.mark.parametrize("value", [-0.0004, -0.0, 0.0])
 def test_nothing_has_no_minus(value: float) -> None:
-    assert result_tables.signed(value, SHARE) == "+0.0"
+    assert result_tables.format_difference(value, SHARE) == "+0.0"

@@ -7,10 +7,10 @@ import pytest
 
 from hthor.episode import EpisodeLog
 from hthor.eval.agent_check import conduct, criteria
-from hthor.eval.agent_check.probe_trials import Notes
+from hthor.eval.agent_check.probe_trials import ProbeResult
 from hthor.types import HUMAN, Event
 
-NOTES = Notes(
+NOTES = ProbeResult(
     line=b"", faults=(), asked=300, actions=(), thought_s=(0.0004,) * 300, begin_s=0.0, memory_mb=0.0, lasted_s=30.0,
     motions=100, refused=0, spot_s=2.0, sent=1, covered=0, repeated=0, claims=1, unseen=0, output="",
 )  # fmt: skip
@@ -31,19 +31,21 @@ def answered(kind: str, tick: int) -> Event:
 def test_turning_is_standing_and_driving_is_not():
     turning = [(1000, 2000, 100 * step) for step in range(150)]
     driving = [(100 * step, 2000, 0) for step in range(150)]
-    assert conduct.on_one_spot_s(log(turning), "robot") == pytest.approx(29.8)
-    assert conduct.on_one_spot_s(log(driving), "robot") < 1.0
-    assert conduct.on_one_spot_s(log(driving[:50] + [driving[50]] * 100), "robot") == pytest.approx(19.8, abs=0.5)
+    assert conduct.longest_on_one_spot_s(log(turning), "robot") == pytest.approx(29.8)
+    assert conduct.longest_on_one_spot_s(log(driving), "robot") < 1.0
+    assert conduct.longest_on_one_spot_s(log(driving[:50] + [driving[50]] * 100), "robot") == pytest.approx(
+        19.8, abs=0.5
+    )
 
 
 def test_after_a_confirmed_message_it_may_wait():
     path = [(100 * step, 2000, 0) for step in range(50)] + [(5000, 2000, 0)] * 100
-    assert conduct.on_one_spot_s(log(path, answered("confirmed", 100)), "robot") < 1.0
+    assert conduct.longest_on_one_spot_s(log(path, answered("confirmed", 100)), "robot") < 1.0
 
 
 def test_the_same_again_is_a_repetition_unless_it_was_declined():
-    assert conduct.repeated(log([], sent("a"), sent("a", 1), sent("a", 2), sent("b", 3)), "robot") == 2
-    assert conduct.repeated(log([], sent("a"), answered("declined", 5), sent("a", 100)), "robot") == 0
+    assert conduct.count_repeated_messages(log([], sent("a"), sent("a", 1), sent("a", 2), sent("b", 3)), "robot") == 2
+    assert conduct.count_repeated_messages(log([], sent("a"), answered("declined", 5), sent("a", 100)), "robot") == 0
 
 
 @pytest.mark.parametrize(
@@ -70,8 +72,8 @@ def test_warnings_name_what_was_counted(changes: dict[str, object], told: str):
 def test_the_share_of_thinking_is_of_the_trials_time():
     """300 steps of 0.4 ms in 30 s, however long it took to play them."""
     assert criteria.figures(NOTES)["share"] == pytest.approx(0.004)
-    assert "0.4 % of the trial's 30 s" in criteria.speed(NOTES).told
-    assert criteria.speed(msgspec.structs.replace(NOTES, thought_s=(0.2,) * 300)).status == "warning"
+    assert "0.4 % of the trial's 30 s" in criteria.check_speed(NOTES).told
+    assert criteria.check_speed(msgspec.structs.replace(NOTES, thought_s=(0.2,) * 300)).status == "warning"
 
 
 class _Character:

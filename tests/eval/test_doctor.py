@@ -11,8 +11,8 @@ import msgspec
 import pytest
 
 from hthor.eval.doctor import hardware, isolation_levels, libraries, rendering, reproducibility
-from hthor.eval.doctor.rendering import Drawn
-from hthor.eval.doctor.reproducibility import Course
+from hthor.eval.doctor.rendering import RenderingProbe
+from hthor.eval.doctor.reproducibility import TrialFingerprint
 from hthor.eval.doctor.result import CheckResult, DoctorReport
 from hthor.guest import IsolationError
 
@@ -53,7 +53,7 @@ def test_the_reference_is_that_of_this_code(examined) -> None:
     assert one.status == "ok", f"{one.says}: {STALE}"
 
 
-HERE = Course(trial="t", sha256="1", outcome={"met": True}, platform={"cpu": "one"})
+HERE = TrialFingerprint(trial="t", sha256="1", outcome={"met": True}, platform={"cpu": "one"})
 
 
 @pytest.mark.parametrize(
@@ -68,19 +68,22 @@ HERE = Course(trial="t", sha256="1", outcome={"met": True}, platform={"cpu": "on
     ],
 )
 def test_another_platform_may_differ_in_bytes_and_this_one_in_nothing(monkeypatch, changed, status, words) -> None:
-    monkeypatch.setattr(reproducibility, "reference", lambda: HERE)
-    (one,) = reproducibility.findings(msgspec.structs.replace(HERE, **changed))
+    monkeypatch.setattr(reproducibility, "load_reference", lambda: HERE)
+    (one,) = reproducibility.check_reproducibility(msgspec.structs.replace(HERE, **changed))
     assert one.status == status
     assert words in one.says
 
 
 def test_what_crashes_or_is_blank_is_told_with_a_way_out() -> None:
-    assert [one.status for one in reproducibility.findings("it ended with signal 11")] == ["fail"]
-    assert [one.status for one in rendering.findings("it ended with signal 11")] == ["fail"]
-    assert [one.status for one in rendering.findings(Drawn(fast=1, nice=90, backend="egl"))] == ["fail", "ok"]
-    blank, none = Drawn(fast=90, nice=1, backend="egl"), Drawn(fast=90, reason="egl: no library")
+    assert [one.status for one in reproducibility.check_reproducibility("it ended with signal 11")] == ["fail"]
+    assert [one.status for one in rendering.check_rendering("it ended with signal 11")] == ["fail"]
+    assert [one.status for one in rendering.check_rendering(RenderingProbe(fast=1, nice=90, backend="egl"))] == [
+        "fail",
+        "ok",
+    ]
+    blank, none = RenderingProbe(fast=90, nice=1, backend="egl"), RenderingProbe(fast=90, reason="egl: no library")
     for drawn, word in ((blank, "blank"), (none, "no library")):
-        one = rendering.findings(drawn)[1]
+        one = rendering.check_rendering(drawn)[1]
         assert one.status == "warn"
         assert word in one.says
         assert "apt-get install libegl1" in one.fix
@@ -116,7 +119,7 @@ def test_a_level_that_does_not_start_comes_with_its_fix(monkeypatch, level, file
     monkeypatch.setattr(isolation_levels, "_read", lambda path: files.get(path, ""))
     monkeypatch.setattr(isolation_levels.shutil, "which", lambda _: bwrap)
     monkeypatch.setattr(isolation_levels.platform, "release", lambda: kernel)
-    by_name = {one.name: one for one in isolation_levels.findings("L2")}
+    by_name = {one.name: one for one in isolation_levels.check_isolation("L2")}
     assert by_name["isolation L3"].status == "warn"
     assert by_name["isolation L2"].status == "fail"
     assert by_name[f"isolation {level}"].says == "it is forbidden"
@@ -126,8 +129,8 @@ def test_a_level_that_does_not_start_comes_with_its_fix(monkeypatch, level, file
 def test_a_library_of_another_version_fails_or_warns(monkeypatch) -> None:
     real = libraries.metadata.version
     monkeypatch.setattr(libraries.metadata, "version", lambda name: "4.0.0" if name == "mujoco" else real(name))
-    monkeypatch.setattr(libraries, "pinned", lambda: {"numpy": "1.0"})
-    by_name = {one.name: one for one in libraries.findings()}
+    monkeypatch.setattr(libraries, "pinned_versions", lambda: {"numpy": "1.0"})
+    by_name = {one.name: one for one in libraries.check_libraries()}
     assert by_name["mujoco"].status == "fail"
     assert "pip install 'mujoco==" in by_name["mujoco"].fix
     assert by_name["numpy"].status == "warn"
@@ -135,6 +138,6 @@ def test_a_library_of_another_version_fails_or_warns(monkeypatch) -> None:
 
 def test_a_place_that_cannot_be_written_to_fails(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    by_name = {one.name: one for one in hardware.findings(tmp_path / "file" / "runs")}
+    by_name = {one.name: one for one in hardware.check_hardware(tmp_path / "file" / "runs")}
     assert by_name["disk"].status == "fail"
     assert os.listdir(tmp_path) == ["file"]

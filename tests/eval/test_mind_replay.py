@@ -55,13 +55,13 @@ def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[TrialRecor
 
 def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run: Path) -> None:
     one = find.find_trial(run, "1")
-    views = camera_frames.film(run, one, [0, one.ticks])
+    views = camera_frames.render_frames(run, one, [0, one.ticks])
     assert sorted(views) == [0, one.ticks]
     for seen in views.values():
         assert seen.keys() == one.paths.keys()
         assert all(view.shape == (camera_frames.SIZE[1], camera_frames.SIZE[0], 3) for view in seen.values())
     with pytest.raises(RunError, match="went otherwise than it was logged"):
-        camera_frames.film(run, msgspec.structs.replace(one, ticks=one.ticks - 1), [0])
+        camera_frames.render_frames(run, msgspec.structs.replace(one, ticks=one.ticks - 1), [0])
 
 
 def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
@@ -86,7 +86,7 @@ def test_beliefs_and_chances_add_up(heard: list[tuple[TrialRecord, HumanTrace]])
                 places, ahead = human_trace_figure.posterior(event)
                 assert sum(places.values()) + ahead == pytest.approx(1.0)
             elif event.kind == "choice":
-                shares = human_trace_timeline.chances(event, stream.traits["beta"])
+                shares = human_trace_timeline.option_chances(event, stream.traits["beta"])
                 assert sum(shares.values()) == pytest.approx(1.0)
                 assert event.data["chosen"] in shares
                 seen += 1
@@ -110,13 +110,13 @@ def test_trust_at_the_end_is_what_the_next_trial_begins_with(heard: list[tuple[T
 
 def test_it_is_drawn(heard: list[tuple[TrialRecord, HumanTrace]], tmp_path: Path) -> None:
     record, stream = max(heard, key=lambda pair: len(pair[1].events))
-    house = render_trial.house(tmp_path, record)
+    house = render_trial.load_house(tmp_path, record)
     figure = human_trace_figure.figure(record, house, stream)
     figure.savefig(tmp_path / "mind.png", dpi=40)
     assert (tmp_path / "mind.png").read_bytes().startswith(PNG)
     quiet = msgspec.structs.replace(stream, events=tuple(e for e in stream.events if e.kind == "aim"))
     human_trace_figure.figure(record, house, quiet).savefig(tmp_path / "quiet.png", dpi=40)
-    assert human_trace_timeline.lanes(quiet) == ["is about"]
+    assert human_trace_timeline.row_names(quiet) == ["is about"]
 
 
 def test_the_command_prints_thoughts_or_draws_them(run: Path, heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
@@ -168,7 +168,7 @@ def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> N
     assert "clumsy.py" in faulty.faults[0].detail
     assert str(tmp_path) not in faulty.faults[0].detail
     assert human_trace.trace_human(tmp_path / "run", faulty, agents=(str(agent),)).same
-    assert camera_frames.film(tmp_path / "run", faulty, [0], agents=(str(agent),)).keys() == {0}
+    assert camera_frames.render_frames(tmp_path / "run", faulty, [0], agents=(str(agent),)).keys() == {0}
 
 
 def test_forgetting_and_misses_have_their_marks() -> None:
@@ -179,5 +179,5 @@ def test_forgetting_and_misses_have_their_marks() -> None:
         Event(tick=20, seat=HUMAN, kind="attempt", data={"what": "pick", "ok": False, "seconds": 1.0}),
     )
     stream = HumanTrace(key="", same=True, traits={"beta": 1.0}, events=events)
-    assert human_trace_timeline.lanes(stream) == ["hands", "noticed", "is about"]
+    assert human_trace_timeline.row_names(stream) == ["hands", "noticed", "is about"]
     assert human_trace_timeline.offers(stream) == []

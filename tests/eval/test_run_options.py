@@ -98,7 +98,7 @@ def test_a_deadline_is_part_of_the_trials_of_submitted_agents_alone() -> None:
         assert trial.step_limit_s == there
         assert usual.step_limit_s is msgspec.UNSET
         assert (trial_record.key(trial) == trial_record.key(usual)) == (there is msgspec.UNSET)
-        assert pairing.occasion(trial) == pairing.occasion(usual), "the person's day is the same"
+        assert pairing.pairing_key(trial) == pairing.pairing_key(usual), "the person's day is the same"
 
 
 def test_a_worker_is_given_the_time_that_its_agents_have() -> None:

@@ -184,5 +184,5 @@ def test_an_object_in_a_thing_of_the_house_is_named_without_an_engine():
     assert ("objects[0].position", f"'apple' and '{bowl.id}' of the house are in one another") in task_faults(
         broken, house
     )
-    verdict = proof.examine(broken)
+    verdict = proof.check_task(broken)
     assert verdict.faults[0].field == "objects[0].position"

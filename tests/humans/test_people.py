@@ -469,7 +469,7 @@ def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
     )
     done = list(experiment.run_experiment(options, lambda _: Watcher()))
     assert told == [], "it is said at the end"
-    (said,) = result_tables.notes([one.result for one in done])
+    (said,) = result_tables.result_notes([one.result for one in done])
     assert said.startswith("note: the population pop was calibrated on the tasks of the suite paper, not on those of ")
     stored = json.loads((files / "out" / "frontier" / "result.json").read_bytes())
     assert stored["schema"] == result_file.SCHEMA

@@ -51,7 +51,7 @@ def run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, count: 
 def _known_house() -> Iterator[None]:
     plan = houses.load("hazel")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(render_trial, "house", lambda *_: plan)
+        patch.setattr(render_trial, "load_house", lambda *_: plan)
         yield
 
 
@@ -64,12 +64,12 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 @pytest.fixture(scope="module")
 def written(folders: list[Path], tmp_path_factory: pytest.TempPathFactory) -> tuple[Findings, Path]:
     out = tmp_path_factory.mktemp("report")
-    return write.report(folders, out, PUBLISHED), out
+    return write.write_report(folders, out, PUBLISHED), out
 
 
 def _told(*folders: Path) -> tuple[Findings, str]:
     """What a report says of runs, and its page, without the drawings."""
-    found = build.findings(load_runs.with_controls(load_runs.runs(folders)))
+    found = build.build_findings(load_runs.with_baselines(load_runs.load_runs(folders)))
     return found, page.render(found, {})
 
 
@@ -78,7 +78,7 @@ def _bytes(folder: Path) -> dict[str, bytes]:
 
 
 def test_the_same_runs_give_the_same_bytes(written: tuple[Findings, Path], folders: list[Path], tmp_path: Path) -> None:
-    write.report(folders, tmp_path / "again", PUBLISHED)
+    write.write_report(folders, tmp_path / "again", PUBLISHED)
     first, again = _bytes(written[1]), _bytes(tmp_path / "again")
     assert first == again
     assert {"report.html", "report.json", "figures/scores.svg", "figures/time-spent.svg"} <= first.keys()
@@ -111,7 +111,7 @@ def test_every_figure_says_what_it_shows_and_stands_alone(written: tuple[Finding
 
 def test_the_numbers_are_those_of_the_trials(written: tuple[Findings, Path], folders: list[Path]) -> None:
     found = written[0]
-    alone, helper, clumsy = load_runs.runs(folders)
+    alone, helper, clumsy = load_runs.load_runs(folders)
     assert msgspec.json.decode((written[1] / "report.json").read_bytes(), type=Findings) == found
     assert [arm.label for arm in found.arms] == ["no robot", "helper", "clumsy"]
     assert [arm.condition for arm in found.arms] == ["none", "", ""]
@@ -149,9 +149,9 @@ def test_what_is_put_in_is_escaped_and_uncertain_gains_are_not_claimed(written: 
         assert said in text
         assert "<b>" not in text
     many = msgspec.structs.replace(found, comparisons=found.comparisons * 3)
-    assert headline.lead(many).endswith("Section 2 has all pairs.")
+    assert headline.headline(many).endswith("Section 2 has all pairs.")
     nobody = msgspec.structs.replace(found, baseline="", arms=found.arms[1:], comparisons=())
-    assert "no run without a robot" in headline.lead(nobody)
+    assert "no run without a robot" in headline.headline(nobody)
 
 
 def test_runs_that_share_no_trial_are_told_apart_and_not_compared(folders: list[Path], tmp_path: Path) -> None:
@@ -169,7 +169,7 @@ def test_what_is_left_of_an_agent_is_shown_with_the_command_that_plays_it_again(
     folders: list[Path], tmp_path: Path
 ) -> None:
     mine = shutil.copytree(folders[2], tmp_path / "clumsy")
-    first = fault_summary.of(load_runs.runs([mine])[0])[0]
+    first = fault_summary.fault_summary(load_runs.load_runs([mine])[0])[0]
     assert (first.detail.splitlines()[-1], first.output, first.again) == ("ValueError: no", "", "")
     told = {
         "seat": "robot",
@@ -185,7 +185,7 @@ def test_what_is_left_of_an_agent_is_shown_with_the_command_that_plays_it_again(
     for said in ("KeyError: &lt;i&gt;", "last &amp; least", again, first.replay):
         assert said in text
     jsonio.write(mine / "faults" / f"{first.key}.json", b"torn")
-    assert fault_summary.of(load_runs.runs([mine])[0])[0] == first
+    assert fault_summary.fault_summary(load_runs.load_runs([mine])[0])[0] == first
 
 
 def test_what_held_the_agents_and_where_they_were_played_is_told(folders: list[Path], tmp_path: Path) -> None:
@@ -216,14 +216,14 @@ def test_what_held_the_agents_and_where_they_were_played_is_told(folders: list[P
 def test_runs_that_do_not_belong_together_are_refused(folders: list[Path], tmp_path: Path) -> None:
     other = run(tmp_path / "other", "helper", count=30)
     with pytest.raises(RunError, match=r"other/run\.json: suite\.sha256 is not that of .*alone/run\.json"):
-        write.report([folders[0], other], tmp_path / "out")
+        write.write_report([folders[0], other], tmp_path / "out")
     with pytest.raises(RunError, match="are the same run"):
-        write.report([folders[1], folders[1]], tmp_path / "out")
+        write.write_report([folders[1], folders[1]], tmp_path / "out")
     with pytest.raises(RunError, match=r"has no run\.json"):
-        write.report([tmp_path], tmp_path / "out")
+        write.write_report([tmp_path], tmp_path / "out")
     assert not (tmp_path / "out").exists()
     with pytest.raises(HthorError, match="is a file"):
-        write.report(folders, other / "run.json")
+        write.write_report(folders, other / "run.json")
 
 
 def test_a_damaged_run_is_refused_with_file_and_field(folders: list[Path], tmp_path: Path) -> None:
@@ -231,16 +231,16 @@ def test_a_damaged_run_is_refused_with_file_and_field(folders: list[Path], tmp_p
     lines = (broken / "trials.jsonl").read_bytes().replace(b'"met":true', b'"met":null', 1)
     (broken / "trials.jsonl").write_bytes(lines)
     with pytest.raises(RunError, match=r"broken/trials\.jsonl, line \d+: met"):
-        write.report([broken], tmp_path / "out")
+        write.write_report([broken], tmp_path / "out")
     other = shutil.copytree(folders[1], tmp_path / "foreign")
     (other / "trials.jsonl").write_bytes((folders[2] / "trials.jsonl").read_bytes())
     with pytest.raises(RunError, match=r"foreign/trials\.jsonl: trial \w+: spec\.robots is not the one in run\.json"):
-        write.report([other], tmp_path / "out")
+        write.write_report([other], tmp_path / "out")
 
 
 def test_a_report_of_one_run_takes_the_control_that_lies_beside(folders: list[Path], tmp_path: Path) -> None:
     mine = shutil.copytree(folders[1], tmp_path / "mine" / "helper")
-    found = write.report([mine], tmp_path / "one")
+    found = write.write_report([mine], tmp_path / "one")
     assert (found.baseline, found.uplift, found.by_people) == ("", (), None)
     assert all(one.gain_s is None for one in found.shown)
     assert not (tmp_path / "one" / "figures" / "compared.svg").exists()
@@ -265,7 +265,7 @@ def test_several_peoples_have_a_section_of_their_own(folders: list[Path], tmp_pa
         "proxy": ["helper"],
         "slow": ["clumsy"],
     }
-    assert "people" in [one.name for one in figure_index.draw(found, [])]
+    assert "people" in [one.name for one in figure_index.draw_figures(found, [])]
 
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
@@ -291,9 +291,9 @@ def _browsed(file: Path, folder: Path) -> tuple[int, int]:
 
 def test_moments_are_in_order_and_end_at_the_end(folders: list[Path]) -> None:
     house = houses.load("hazel")
-    for one in load_runs.runs(folders):
+    for one in load_runs.load_runs(folders):
         for held in one.records:
-            found = key_moments.of(held, house)
+            found = key_moments.key_moments(held, house)
             ticks = [moment.tick for moment in found]
             assert len(ticks) == key_moments.MANY
             assert min(b - a for a, b in itertools.pairwise([0, *ticks])) >= 10
@@ -312,17 +312,17 @@ def test_a_case_is_drawn_the_same_twice_and_says_who_can_be_drawn(
         grey = np.full((24, 32, 3), 128, np.uint8)
         return {tick: dict.fromkeys(wanted.paths, grey) for tick in ticks}
 
-    monkeypatch.setattr(camera_frames, "film", film)
-    drawn = [case_study.study(folders[:2], "t003", tmp_path / name) for name in ("a", "b")]
+    monkeypatch.setattr(camera_frames, "render_frames", film)
+    drawn = [case_study.write_case_study(folders[:2], "t003", tmp_path / name) for name in ("a", "b")]
     assert _bytes(tmp_path / "a") == _bytes(tmp_path / "b")
     root = ElementTree.fromstring(drawn[0][0].read_text())
     title = root.find("{http://www.w3.org/2000/svg}title")
     assert title is not None
     assert "no robot, helper" in (title.text or "")
     with pytest.raises(UnknownName, match=r"unknown task 't0003'\. Did you mean 't003'"):
-        case_study.study(folders[:2], "t0003", tmp_path)
+        case_study.write_case_study(folders[:2], "t0003", tmp_path)
     with pytest.raises(UnknownName, match="unknown person '99'"):
-        case_study.study(folders[:2], "t003", tmp_path, person=99)
+        case_study.write_case_study(folders[:2], "t003", tmp_path, person=99)
 
 
 def test_the_commands(folders: list[Path], tmp_path: Path) -> None:

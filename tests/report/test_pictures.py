@@ -61,7 +61,7 @@ def log() -> EpisodeLog:
 
 def test_a_picture_names_rooms_target_times_and_messages(spec: TrialSpec, log: EpisodeLog) -> None:
     house = houses.load(TASK.house)
-    sheet = trial_figure.figure(spec, log, house)
+    sheet = trial_figure.trial_figure(spec, log, house)
     texts = [text.get_text() for text in sheet.findobj(Text)]
     for room in house.rooms:
         assert room.name in texts
@@ -75,14 +75,14 @@ def test_a_picture_names_rooms_target_times_and_messages(spec: TrialSpec, log: E
 def test_a_t_star_beyond_the_time_limit_is_not_drawn(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     """Its words would stand a page away and squeeze the picture."""
     short = msgspec.structs.replace(spec, task=msgspec.structs.replace(TASK, time_limit=15.0, t_star=300.0))
-    sheet = trial_figure.figure(short, log, houses.load(TASK.house))
+    sheet = trial_figure.trial_figure(short, log, houses.load(TASK.house))
     assert "T*" not in [text.get_text() for text in sheet.findobj(Text)]
     sheet.savefig(tmp_path / "trial.png", dpi=40)
 
 
 def test_a_film_lasts_as_long_as_the_trial(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     path = tmp_path / "film.webm"
-    trial_video.write(path, spec, log, houses.load(TASK.house))
+    trial_video.write_video(path, spec, log, houses.load(TASK.house))
     film = cv2.VideoCapture(str(path))
     seconds = film.get(cv2.CAP_PROP_FRAME_COUNT) / film.get(cv2.CAP_PROP_FPS)
     assert seconds == pytest.approx(14.1 / trial_video.SPEED + trial_video.HOLD_S, abs=0.1)
@@ -105,12 +105,12 @@ def failed(log: EpisodeLog) -> EpisodeLog:
 def test_words_of_agents_are_no_formulas(spec: TrialSpec, failed: EpisodeLog, tmp_path: Path) -> None:
     house = houses.load(TASK.house)
     for suffix in (".png", ".svg", ".pdf"):
-        lettering.save(trial_figure.figure(spec, failed, house), tmp_path / f"x{suffix}")
+        lettering.save_figure(trial_figure.trial_figure(spec, failed, house), tmp_path / f"x{suffix}")
     one = trial_record.make_record(spec, failed)
-    svg = matplotlib_svg.svg(trial_map.figure(one, house, None), "map", HOSTILE)
+    svg = matplotlib_svg.to_svg(trial_map.figure(one, house, None), "map", HOSTILE)
     assert svg.startswith("<svg")
     short = msgspec.structs.replace(failed, paths={seat: way[:3] for seat, way in failed.paths.items()})
-    trial_video.write(tmp_path / "x.webm", spec, short, house)
+    trial_video.write_video(tmp_path / "x.webm", spec, short, house)
 
 
 def test_no_picture_is_made_without_plain_words(root: Path) -> None:
@@ -123,19 +123,19 @@ def test_no_picture_is_made_without_plain_words(root: Path) -> None:
 
 
 def test_a_robot_that_failed_is_a_cross_and_its_way_ends_there(spec: TrialSpec, failed: EpisodeLog) -> None:
-    sheet = trial_figure.figure(spec, failed, houses.load(TASK.house))
+    sheet = trial_figure.trial_figure(spec, failed, houses.load(TASK.house))
     told = "\n".join(text.get_text() for text in sheet.findobj(Text))
     assert told.count("raised at 3.3 s") == 2, "on the plan and along the clock"
     assert "the agent failed at 3.3 s (raised)" in told
-    shade = to_rgba(trial_trace.colour("robot"))[:3]
+    shade = to_rgba(trial_trace.seat_colour("robot"))[:3]
     ways = [line for line in sheet.axes[0].lines if to_rgba(line.get_color())[:3] == shade]
-    last = trial_trace.at(failed, "robot", 33)[0]
+    last = trial_trace.position_at(failed, "robot", 33)[0]
     assert max(float(line.get_xdata()[-1]) for line in ways) <= last + 1e-9
-    assert trial_trace.at(failed, "robot", 141)[0] > last + 1.0, "the body has gone on, in the log"
+    assert trial_trace.position_at(failed, "robot", 141)[0] > last + 1.0, "the body has gone on, in the log"
 
 
 def test_messages_that_would_hide_one_another_share_a_badge(spec: TrialSpec, failed: EpisodeLog) -> None:
-    sheet = trial_figure.figure(spec, failed, houses.load(TASK.house))
+    sheet = trial_figure.trial_figure(spec, failed, houses.load(TASK.house))
     sheet.canvas.draw()
     for ax in sheet.axes[:2]:
         boxes = [text.get_bbox_patch().get_window_extent() for text in ax.texts if text.get_bbox_patch() is not None]
@@ -149,13 +149,13 @@ def test_messages_that_would_hide_one_another_share_a_badge(spec: TrialSpec, fai
     [([3], "3"), ([1, 2], "1, 2"), ([1, 2, 3], "1–3"), ([1, 2, 3, 7], "1–3, 7"), ([1, 3, 5, 9], "1 … 9")],
 )
 def test_numbers_are_written_as_ranges(numbers: list[int], words: str) -> None:
-    assert trial_trace.ranges(numbers) == words
+    assert trial_trace.number_ranges(numbers) == words
 
 
 def test_a_badge_at_the_edge_takes_no_room_from_the_plan(spec: TrialSpec, log: EpisodeLog) -> None:
     house = houses.load(TASK.house)
     far = {seat: [(-300, y, yaw) for _, y, yaw in way] for seat, way in log.paths.items()}
-    wide = [trial_figure.figure(spec, one, house) for one in (log, msgspec.structs.replace(log, paths=far))]
+    wide = [trial_figure.trial_figure(spec, one, house) for one in (log, msgspec.structs.replace(log, paths=far))]
     for sheet in wide:
         sheet.canvas.draw()
     first, second = (sheet.axes[0].get_position().width for sheet in wide)
@@ -167,7 +167,7 @@ def test_a_rug_is_a_covering_of_the_floor_below_everything(spec: TrialSpec, log:
     rugs = [thing for thing in house.things if floor_plan.is_flat(thing)]
     assert rugs
     assert {thing.kind for thing in rugs} == {"rug"}
-    sheet = trial_figure.figure(spec, log, house)
+    sheet = trial_figure.trial_figure(spec, log, house)
     hatched = [patch for patch in sheet.axes[0].patches if patch.get_hatch()]
     assert len(hatched) == len(rugs)
     solid = [patch for patch in sheet.axes[0].patches if to_rgba(patch.get_facecolor()) == to_rgba("#d9d4cb")]
@@ -178,7 +178,7 @@ def test_a_rug_is_a_covering_of_the_floor_below_everything(spec: TrialSpec, log:
 def test_the_same_trial_gives_the_same_film(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     short = msgspec.structs.replace(log, paths={seat: way[:4] for seat, way in log.paths.items()})
     for name in ("one", "two"):
-        trial_video.write(tmp_path / f"{name}.webm", spec, short, houses.load(TASK.house))
+        trial_video.write_video(tmp_path / f"{name}.webm", spec, short, houses.load(TASK.house))
     one, two = ((tmp_path / f"{name}.webm").read_bytes() for name in ("one", "two"))
     assert one == two
     assert b"V_VP8" in one[:1000], "what browsers play"
@@ -199,7 +199,7 @@ def test_a_films_words_lie_apart_from_the_plan(spec: TrialSpec, failed: EpisodeL
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
 def test_a_browser_plays_a_film(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     short = msgspec.structs.replace(log, paths={seat: way[:10] for seat, way in log.paths.items()})
-    trial_video.write(tmp_path / "film.webm", spec, short, houses.load(TASK.house))
+    trial_video.write_video(tmp_path / "film.webm", spec, short, houses.load(TASK.house))
     (tmp_path / "page.html").write_text(PAGE)
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=20000"]
     options += [f"--user-data-dir={tmp_path / 'browser'}", "--dump-dom", f"file://{tmp_path / 'page.html'}"]
@@ -217,8 +217,8 @@ film.onloadeddata = () => { told.textContent = "shows " + film.videoWidth + " x 
 def test_a_house_is_shown_with_its_rooms_and_a_scale() -> None:
     house = houses.load(TASK.house)
     bare = np.full((300, 320, 3), 128, np.uint8)
-    named = house_labels.captioned(bare, house, (0.0, 0.0, 10.7, 10.0))
-    plain = house_labels.captioned(bare, house, (0.0, 0.0, 10.7, 10.0), named=False)
+    named = house_labels.with_labels(bare, house, (0.0, 0.0, 10.7, 10.0))
+    plain = house_labels.with_labels(bare, house, (0.0, 0.0, 10.7, 10.0), named=False)
     assert named.shape == plain.shape == (334, 320, 3)
     assert (plain[:300] == bare).all()
     assert (named[:300] != bare).any()

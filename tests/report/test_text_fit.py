@@ -29,7 +29,7 @@ from hthor.report.analysis.document import Findings
 from hthor.report.drawing import lettering, render_trial, text_fit, trial_figure, trial_trace
 from hthor.report.html import html, matplotlib_svg
 from hthor.report.page import figure_index, key_moments, write
-from hthor.report.page.figure_index import Scene
+from hthor.report.page.figure_index import MapScene
 from hthor.report.page.figures import case_study, run_styles, trust
 from hthor.types import RobotSeat, TrialSpec
 
@@ -49,19 +49,19 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 def _known_house() -> Iterator[None]:
     plan = houses.load("hazel")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(render_trial, "house", lambda *_: plan)
+        patch.setattr(render_trial, "load_house", lambda *_: plan)
         yield
 
 
 @pytest.fixture(scope="module")
 def found(folders: list[Path]) -> Findings:
-    return build.findings(load_runs.runs(folders), PUBLISHED)
+    return build.build_findings(load_runs.load_runs(folders), PUBLISHED)
 
 
 @pytest.fixture(scope="module")
 def long_trial(folders: list[Path]) -> TrialRecord:
     """A trial of the robot with the long name, which fails in the middle of it."""
-    one = load_runs.runs(folders)[3].records[0]
+    one = load_runs.load_runs(folders)[3].records[0]
     robot = one.spec.robots[0]
     seat = RobotSeat(seat=robot.seat, robot=robot.robot, agent=msgspec.structs.replace(robot.agent, name=WIDE))
     return msgspec.structs.replace(one, spec=msgspec.structs.replace(one.spec, robots=(seat,)))
@@ -92,9 +92,9 @@ def _beyond(axis: Axis) -> list[Tick]:
 
 def test_every_figure_of_a_report_has_its_words_whole(found: Findings, folders: list[Path]) -> None:
     assert all(len(name) == 60 for name in (LONG, WIDE))
-    record = load_runs.runs(folders)[1].records[0]
-    scenes = [Scene(record=record, alone=None, house=houses.load("hazel"))] * 2
-    drawn = {one.name: one.figure for one in figure_index.draw(found, scenes)}
+    record = load_runs.load_runs(folders)[1].records[0]
+    scenes = [MapScene(record=record, alone=None, house=houses.load("hazel"))] * 2
+    drawn = {one.name: one.figure for one in figure_index.draw_figures(found, scenes)}
     assert {"scores", "compared", "time-spent", "trust", "channel", "scenes", "legend"} <= drawn.keys()
     assert {name: cut(made) for name, made in drawn.items()} == {name: [] for name in drawn}
 
@@ -104,7 +104,7 @@ def test_names_of_curves_lie_right_of_all_marks_and_apart(found: Findings) -> No
     made = trust.figure(found.trust, found.arms)
     assert cut(made) == []
     (ax,) = made.axes
-    named = {run_styles.label(name) for name in NAMES}
+    named = {run_styles.axis_label(name) for name in NAMES}
     boxes = [text.get_window_extent() for text in ax.texts if text.get_text() in named]
     assert len(boxes) == len(NAMES)
     to_pixels = ax.transData.transform
@@ -126,24 +126,24 @@ def test_a_picture_and_a_case_have_their_words_whole(long_trial: TrialRecord) ->
     log = msgspec.structs.replace(long_trial.log, events=(event, *others), faults=(fault,))
     assert cut(_pictured(spec, log)) == []
     grey = np.full((24, 32, 3), 128, np.uint8)
-    held = key_moments.of(long_trial, house)
+    held = key_moments.key_moments(long_trial, house)
     views = {moment.tick: dict.fromkeys(long_trial.paths, grey) for moment in held}
     row = case_study.Row(label=WIDE, record=long_trial, moments=held, views=views)
-    assert cut(case_study.figure([row, row], house)) == []
+    assert cut(case_study.case_study_figure([row, row], house)) == []
 
 
 def _pictured(spec: TrialSpec, log: EpisodeLog) -> Figure:
-    with lettering.plain():
-        return trial_figure.figure(spec, log, houses.load("hazel"))
+    with lettering.plain_lettering():
+        return trial_figure.trial_figure(spec, log, houses.load("hazel"))
 
 
 @given(st.text(alphabet="aW_-/ .+:é$\\", max_size=80), st.floats(0.3, 3.0))
 def test_lines_are_as_wide_as_they_may_be_and_lose_no_letter(words: str, inches: float) -> None:
-    lines = text_fit.lines(words, inches, 8.0)
+    lines = text_fit.wrap(words, inches, 8.0)
     assert "".join(lines).replace(" ", "") == words.replace(" ", "")
-    assert all(text_fit.width(line, 8.0) <= inches for line in lines)
-    line = text_fit.shortened(words, inches, 8.0)
-    assert text_fit.width(line, 8.0) <= inches
+    assert all(text_fit.text_width(line, 8.0) <= inches for line in lines)
+    line = text_fit.shorten(words, inches, 8.0)
+    assert text_fit.text_width(line, 8.0) <= inches
     assert line.endswith("…") or line == " ".join(words.split())
 
 
@@ -157,8 +157,8 @@ def test_long_names_may_be_broken_on_a_page_and_are_copied_whole() -> None:
 
 
 def test_letters_in_a_figure_have_a_size_and_no_font_of_their_own(found: Findings) -> None:
-    for one in figure_index.draw(found, []):
-        styles = re.findall(r'<text style="([^"]*)"', matplotlib_svg.svg(one.figure, one.name, one.words))
+    for one in figure_index.draw_figures(found, []):
+        styles = re.findall(r'<text style="([^"]*)"', matplotlib_svg.to_svg(one.figure, one.name, one.words))
         assert styles
         for style in styles:
             parts = [part.strip().partition(":")[0] for part in style.split(";")]
@@ -170,7 +170,7 @@ def test_letters_in_a_figure_have_a_size_and_no_font_of_their_own(found: Finding
 @pytest.mark.parametrize("width", [1280, 700])
 def test_four_runs_fit_a_page(folders: list[Path], tmp_path: Path, width: int) -> None:
     """At 1280 pixels nothing is wider than the page; at 700 tables that are slide within it, and the page does not."""
-    write.report([folders[0], *folders[1:3], folders[3]], tmp_path / "report", PUBLISHED)
+    write.write_report([folders[0], *folders[1:3], folders[3]], tmp_path / "report", PUBLISHED)
     page = (tmp_path / "report" / "report.html").read_text().replace("</body>", f"{PROBE}</body>")
     (tmp_path / "page.html").write_text(page)
     options = [
@@ -222,7 +222,7 @@ def test_hundreds_of_messages_share_few_badges_that_do_not_touch(long_trial: Tri
     ]
     log = msgspec.structs.replace(long_trial.log, events=tuple(events))
     marked = [(n + 1, event, (0.01 * n, 0.0)) for n, event in enumerate(events)]
-    groups = trial_trace.grouped(log, marked, 0.05, 0.2)
+    groups = trial_trace.group_messages(log, marked, 0.05, 0.2)
     assert len(groups) < 40
     for one, other in itertools.combinations(groups, 2):
         wide = 0.5 * 0.05 * sum(1.6 + len(group.words) for group in (one, other))

@@ -174,7 +174,7 @@ def test_that_a_suite_is_sound_is_remembered_until_it_changes(suite: Path, monke
 
 
 def test_a_kind_that_is_not_there_is_a_fault_and_no_end(made: tuple[TaskSpec, ...], home: Path):
-    verdict = proof.examine(msgspec.structs.replace(made[0], kind="nothing"), houses.load(home))
+    verdict = proof.check_task(msgspec.structs.replace(made[0], kind="nothing"), houses.load(home))
     assert [fault.field for fault in verdict.faults] == ["kind"]
     assert proof.repeated([made[0], made[1], made[0]])[0].task == made[0].id
     assert not proof.repeated(made)
@@ -223,7 +223,7 @@ def test_the_part_is_in_the_configuration_and_the_command(tmp_path: Path):
 )
 def test_what_does_not_go_with_a_house_of_ones_own(options: Any, words: str):
     with pytest.raises(HthorError, match=words):
-        custom_houses.resolve(run_options.RunOptions(agents=("frontier",), **options), lambda _: None)
+        custom_houses.resolve_houses(run_options.RunOptions(agents=("frontier",), **options), lambda _: None)
 
 
 def test_a_house_of_ones_own_is_made_into_a_suite_once(
@@ -233,8 +233,8 @@ def test_a_house_of_ones_own_is_made_into_a_suite_once(
     monkeypatch.setattr(custom_houses.proved, "columns", lambda recipe, given, jobs: iter([(0, made)]))
     told: list[str] = []
     options = run_options.RunOptions(agents=("frontier",), houses=(str(home),), jobs=1)
-    first = custom_houses.resolve(options, told.append)
-    assert custom_houses.resolve(options, told.append) == first
+    first = custom_houses.resolve_houses(options, told.append)
+    assert custom_houses.resolve_houses(options, told.append) == first
     assert len(told) == 1
     assert tasks.load_suite(first.suite).tasks == made
     assert first.houses == ()

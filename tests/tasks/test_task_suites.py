@@ -107,7 +107,7 @@ def test_a_slice_is_valid_and_as_difficult_as_it_says(task):
 
 @pytest.mark.parametrize("task", SOME[::4], ids=lambda task: task.id)
 def test_a_slice_can_be_done(task):
-    assert proof.examine(task).faults == ()
+    assert proof.check_task(task).faults == ()
 
 
 # ------------------------------------------------------------------------------------------------------ made again

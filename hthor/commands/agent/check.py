@@ -13,7 +13,7 @@ from hthor.console import output
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hthor.eval.agent_check.checks import Report
+    from hthor.eval.agent_check.checks import AgentCheckReport
     from hthor.eval.replay.rerun import Rerun
     from hthor.eval.runner.fault_report import Failure
 
@@ -99,7 +99,7 @@ def check(
 
     more = inputs.parse_inputs(agent_args or (), readable or ())
     seen = cameras.canonical_name(camera, camera_size)
-    report = checks.check(agent, robot=robot, camera=seen, isolation=isolation, given=more)
+    report = checks.check_agent(agent, robot=robot, camera=seen, isolation=isolation, given=more)
     if json:
         output.put_json(report)
     else:
@@ -108,7 +108,7 @@ def check(
         raise typer.Exit(_BROKEN_EXIT)
 
 
-def _show_check(report: Report) -> None:
+def _show_check(report: AgentCheckReport) -> None:
     rows: list[tuple[str, str, str]] = []
     for one in report.findings:
         rows.append((one.check, one.status, one.told))

@@ -264,7 +264,7 @@ def evaluate(
         agent_args=tuple(agent_args or ()),
         readable=tuple(readable or ()),
     )
-    options = custom_houses.resolve(options, lambda words: None if quiet else output.say(words, talk))
+    options = custom_houses.resolve_houses(options, lambda words: None if quiet else output.say(words, talk))
     if dry_run:
         from hthor.commands.eval.dry_run import show_forecast
 
@@ -290,10 +290,10 @@ def evaluate(
         for one in done:
             whose = f", {one.plan.humans.name} people" if whole is not None else ""
             output.say(f"{one.plan.label}{whose}: {one.folder}/", paper)
-    for note in result_tables.notes(run_results):
+    for note in result_tables.result_notes(run_results):
         output.say(note, paper)
     if json:
-        held = tuple(evaluation.Evaluated(folder=str(one.folder), result=one.result) for one in done)
+        held = tuple(evaluation.EvaluatedRun(folder=str(one.folder), result=one.result) for one in done)
         output.put_json(evaluation.Evaluation(runs=held, peoples=whole))
     if any(one.result.counts.faults > allowed(one.result.counts.trials) for one in done):
         raise typer.Exit(_FAULTS_EXIT)

@@ -61,8 +61,8 @@ def show_populations(console: Console, whole: PopulationMatrix) -> None:
     """Print all scores, the worst population for each agent, and conclusions that differ between populations."""
     from hthor.report.terminal import result_tables
 
-    console.print(result_tables.peoples_table(whole))
-    for line in result_tables.worst_lines(whole):
+    console.print(result_tables.population_table(whole))
+    for line in result_tables.worst_population_lines(whole):
         output.say(line, console)
     for found in sorted(whole.conclusions, key=lambda one: one.verdict != "flips"):
         output.say(f"{'! ' if found.verdict == 'flips' else ''}{found.sentence}", console)

@@ -53,7 +53,7 @@ def _cells(row: Row) -> tuple[object, ...]:
     from hthor.eval.metrics import registry
     from hthor.report.terminal import result_tables
 
-    shown = [result_tables.number(getattr(row, name), registry.get(name).unit) for name in _METRICS]
+    shown = [result_tables.format_mean(getattr(row, name), registry.get(name).unit) for name in _METRICS]
     return (row.ranks.sr.rank if row.ranks else "–", row.name, *shown, row.faults)
 
 

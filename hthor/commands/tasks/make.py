@@ -20,7 +20,7 @@ from hthor.console import output
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hthor.eval.task_check.proof import Fault, Verdict
+    from hthor.eval.task_check.proof import TaskFault, TaskVerdict
     from hthor.tasks import Suite
     from hthor.types import TaskSpec
 
@@ -75,7 +75,7 @@ def make_suite(
     )
     columns: dict[int, tuple[TaskSpec, ...]] = {}
     with _watched(recipe.name, len(given), quiet, "houses") as tell:
-        for number, column in proved.columns(recipe, given, jobs=jobs or len(os.sched_getaffinity(0))):
+        for number, column in proved.make_tasks(recipe, given, jobs=jobs or len(os.sched_getaffinity(0))):
             columns[number] = column
             tell(False)
     made = suite_files.make_files(
@@ -108,12 +108,12 @@ def check_tasks(
     shelves = [_some(library.read_suite(name), name) for name in suites]
     workers = jobs or len(os.sched_getaffinity(0))
     rows: list[dict[str, Any]] = []
-    faults: list[Fault] = []
+    faults: list[TaskFault] = []
     for shelf in shelves:
         began = time.monotonic()
         with _watched(shelf.name, len(shelf.tasks), quiet) as tell:
             own = []
-            for verdict in proof.verdicts(shelf.tasks, jobs=workers, houses=shelf.houses):
+            for verdict in proof.check_tasks(shelf.tasks, jobs=workers, houses=shelf.houses):
                 own.append(verdict)
                 tell(bool(verdict.faults))
         rows.append({**_verdict_row(shelf, own), "wall_s": round(time.monotonic() - began, 1)})
@@ -142,7 +142,7 @@ def _some(suite: Suite, given: str) -> Suite:
     return suite
 
 
-def _verdict_row(suite: Suite, verdicts: Sequence[Verdict]) -> dict[str, Any]:
+def _verdict_row(suite: Suite, verdicts: Sequence[TaskVerdict]) -> dict[str, Any]:
     played = sorted(verdict.seconds for verdict in verdicts if verdict.seconds)
     shares = [verdict.least / verdict.seconds for verdict in verdicts if verdict.seconds]
     return {

@@ -123,7 +123,7 @@ def draw_task(
     world = World(found.houses.load(spec.house), objects=[(one.id, one.kind) for one in spec.objects])
     path = out or Path(spec.id.replace("/", "-") + ".png")
     limit = 10 * spec.time_limit
-    task_figure.draw(spec, world.house, omniscient_solver.solve(world, spec, limit_s=limit), path)
+    task_figure.draw_task(spec, world.house, omniscient_solver.solve(world, spec, limit_s=limit), path)
     output.put_files([path], json, task=spec.id)
 
 

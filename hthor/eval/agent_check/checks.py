@@ -14,7 +14,7 @@ from hthor import code_identity, plugins
 from hthor.errors import AgentError, HthorError
 from hthor.eval.agent_check import criteria
 from hthor.eval.agent_check.criteria import Finding
-from hthor.eval.agent_check.probe_trials import Rehearsal
+from hthor.eval.agent_check.probe_trials import ProbeTrials
 from hthor.eval.config import robot_team
 from hthor.eval.config.robot_team import AgentInfo
 from hthor.guest import AgentInputs, Guest, GuestConfig, Isolation
@@ -25,7 +25,7 @@ SCHEMA = "hthor.check/1"
 CHECKS = ("loads", "files", "begins", "acts", "deterministic", "keeps nothing", "fast enough", "held")
 
 
-class Report(Struct, frozen=True, kw_only=True):
+class AgentCheckReport(Struct, frozen=True, kw_only=True):
     """All that was found of an agent. ``sound`` says that nothing is broken.
 
     ``figures`` are seconds to load and to begin, milliseconds a step, the share of a trial's time that thinking took,
@@ -42,9 +42,9 @@ class Report(Struct, frozen=True, kw_only=True):
     figures: dict[str, float] = {}
 
 
-def check(
+def check_agent(
     agent: str, *, robot: str = "", camera: str = OWN, isolation: str = "auto", given: AgentInputs | None = None
-) -> Report:
+) -> AgentCheckReport:
     """Check an agent's file, ``file.py`` or ``file.py:Class``.
 
     Args:
@@ -66,28 +66,33 @@ def check(
         return _report(agent, [broken], {})
     if character.absent:
         raise HthorError(f"{agent} says that there is no robot at all (absent = True), so there is nothing to check.")
-    rehearsal = Rehearsal(character, robot or (character.bodies[0] if character.bodies else "scout"), camera)
+    rehearsal = ProbeTrials(character, robot or (character.bodies[0] if character.bodies else "scout"), camera)
     with Guest(agent, config=guests) as guest:
         began = time.perf_counter()
         info = guest.load()
         load_s = time.perf_counter() - began
         (first,) = rehearsal.play(guest, [rehearsal.a])
         known = character.manifest
-        later = (
-            agent_files.unlisted_files(guest.take_opened(), known, guest.grounds, guest.reference.path) if known else ()
-        )
-    findings = [criteria.loads(load_s, character), criteria.files(character, later), *criteria.plays(first, agent)]
+        opened = guest.take_opened()
+        later = agent_files.unlisted_files(opened, known, guest.grounds, guest.reference.path) if known else ()
+    findings = [
+        criteria.check_loading(load_s, character),
+        criteria.check_files(character, later),
+        *criteria.check_trial(first, agent),
+    ]
     figures = {"load_s": load_s, **criteria.figures(first)}
     if not first.faults:
         with Guest(agent, config=guests) as guest:
             again, other, last = rehearsal.play(guest, [rehearsal.a, rehearsal.b, rehearsal.a])
         if not other.faults:  # only from the second trial on it has to be imported anew
-            findings[2], figures["begin_s"] = criteria.plays(other, agent)[0], other.begin_s
+            findings[2], figures["begin_s"] = criteria.check_trial(other, agent)[0], other.begin_s
         findings += [
-            criteria.same("deterministic", first, again, "the same trial twice", criteria.VARIES),
-            *([criteria.plays(other, agent)[-1]] if other.faults else []),
-            criteria.same("keeps nothing", again, last, "the same trial before and after another one", criteria.LEAKS),
-            criteria.speed(first),
+            criteria.check_same("deterministic", first, again, "the same trial twice", criteria.VARIES),
+            *([criteria.check_trial(other, agent)[-1]] if other.faults else []),
+            criteria.check_same(
+                "keeps nothing", again, last, "the same trial before and after another one", criteria.LEAKS
+            ),
+            criteria.check_speed(first),
         ]
         findings += criteria.warnings((first, other), character)
     held = info.isolation
@@ -103,12 +108,12 @@ def _report(
     character: AgentInfo | None = None,
     persistent: bool = False,
     held: Isolation | None = None,
-) -> Report:
+) -> AgentCheckReport:
     """In the order of `CHECKS`, what was not come to included; warnings last."""
     found = {one.check for one in findings}
     skipped = [Finding(check=name, status="skipped") for name in CHECKS if name not in found]
     order = {name: place for place, name in enumerate(CHECKS)}
-    return Report(
+    return AgentCheckReport(
         agent=agent,
         sound=all(one.status != "broken" for one in findings),
         findings=tuple(sorted([*findings, *skipped], key=lambda one: order.get(one.check, len(order)))),

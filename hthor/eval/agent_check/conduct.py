@@ -15,7 +15,7 @@ _SPOT_M = 0.25
 """Who stays within this distance is on one spot, whether turning or not."""
 
 
-def on_one_spot_s(log: EpisodeLog, seat: str) -> float:
+def longest_on_one_spot_s(log: EpisodeLog, seat: str) -> float:
     """The longest time [s] that a seat stayed on one spot, up to the first message of any robot that was confirmed.
 
     Later it may wait with good reason: the person knows where to go.
@@ -31,7 +31,7 @@ def on_one_spot_s(log: EpisodeLog, seat: str) -> float:
     return longest * step * rules.TICK_S
 
 
-def repeated(log: EpisodeLog, seat: str) -> int:
+def count_repeated_messages(log: EpisodeLog, seat: str) -> int:
     """How many messages of a seat say what the one before said, although the person had not declined that one."""
     count, last = 0, None
     for event in log.events:

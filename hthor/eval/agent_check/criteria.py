@@ -11,7 +11,7 @@ from msgspec import Struct
 
 from hthor import rules
 from hthor.episode import Fault
-from hthor.eval.agent_check.probe_trials import Notes
+from hthor.eval.agent_check.probe_trials import ProbeResult
 from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.runner import redact
 from hthor.guest import File
@@ -47,7 +47,7 @@ class Finding(Struct, frozen=True, kw_only=True):
     advice: str = ""
 
 
-def loads(seconds: float, character: AgentInfo) -> Finding:
+def check_loading(seconds: float, character: AgentInfo) -> Finding:
     """How long it took to load, and the privileges that it asks for."""
     asked = ", ".join(character.ref.privileges) or "no privileges"
     told = f"in {seconds:.2f} s; asks for {asked}"
@@ -57,7 +57,7 @@ def loads(seconds: float, character: AgentInfo) -> Finding:
     return Finding(check="loads", status="warning", told=told, advice=advice)
 
 
-def files(character: AgentInfo, later: Sequence[File] = ()) -> Finding:
+def check_files(character: AgentInfo, later: Sequence[File] = ()) -> Finding:
     """Which files it consists of.
 
     Args:
@@ -74,7 +74,7 @@ def files(character: AgentInfo, later: Sequence[File] = ()) -> Finding:
     return Finding(check="files", status="ok", told=told)
 
 
-def plays(notes: Notes, agent: str) -> list[Finding]:
+def check_trial(notes: ProbeResult, agent: str) -> list[Finding]:
     """Whether it began, and acted to the trial's end."""
     if notes.faults:
         fault = notes.faults[0]
@@ -108,7 +108,7 @@ VARIES = (
 LEAKS = "Make everything anew in begin: what is kept at the class or the module, or in a file, lasts for other trials."
 
 
-def same(name: str, one: Notes, other: Notes, what: str, advice: str) -> Finding:
+def check_same(name: str, one: ProbeResult, other: ProbeResult, what: str, advice: str) -> Finding:
     """Whether two plays of one trial came out equal, and else where they part."""
     if one.line == other.line and one.actions == other.actions:
         return Finding(check=name, status="ok", told=f"{what}: {len(one.actions)} actions and every byte the same")
@@ -122,7 +122,7 @@ def same(name: str, one: Notes, other: Notes, what: str, advice: str) -> Finding
     return Finding(check=name, status="broken", told=told, advice=advice)
 
 
-def figures(notes: Notes) -> dict[str, float]:
+def figures(notes: ProbeResult) -> dict[str, float]:
     """What a trial took of the agent, in numbers."""
     if not notes.thought_s:
         return {"begin_s": notes.begin_s}
@@ -136,7 +136,7 @@ def figures(notes: Notes) -> dict[str, float]:
     }
 
 
-def speed(notes: Notes) -> Finding:
+def check_speed(notes: ProbeResult) -> Finding:
     """Whether it thought for less time than the trial lasted."""
     found = figures(notes)
     told = (
@@ -151,7 +151,7 @@ def speed(notes: Notes) -> Finding:
     return Finding(check="fast enough", status="warning", told=told, advice=advice)
 
 
-def warnings(trials: tuple[Notes, ...], character: AgentInfo) -> list[Finding]:
+def warnings(trials: tuple[ProbeResult, ...], character: AgentInfo) -> list[Finding]:
     """What keeps to the contract, but is hardly meant."""
     found: list[tuple[str, str]] = []
     if any(len(one.output) > _LOUD for one in trials):
@@ -170,7 +170,7 @@ def warnings(trials: tuple[Notes, ...], character: AgentInfo) -> list[Finding]:
     return [Finding(check="note", status="warning", told=told, advice=advice) for told, advice in found]
 
 
-def _moving(trials: tuple[Notes, ...]) -> list[tuple[str, str]]:
+def _moving(trials: tuple[ProbeResult, ...]) -> list[tuple[str, str]]:
     """Of an agent that leaves its robot where it is."""
     if not any(one.motions for one in trials):
         return [("it never moved", "Return Action(motion=Move(...)) or Rotate(...) when observation.idle.")]
@@ -181,7 +181,7 @@ def _moving(trials: tuple[Notes, ...]) -> list[tuple[str, str]]:
     return [(told, "What it has not seen it cannot tell: go on exploring, and look at observation.outcome.")]
 
 
-def _speaking(trials: tuple[Notes, ...]) -> list[tuple[str, str]]:
+def _speaking(trials: tuple[ProbeResult, ...]) -> list[tuple[str, str]]:
     """Of an agent that never speaks, or more than a person can take."""
     if not any(one.sent for one in trials):
         return [("it never sent a message", "Without Send(text, object, position) the person learns nothing from it.")]

@@ -29,7 +29,7 @@ _LIMIT_S = 30.0
 _LOOK_EVERY = 16
 
 
-class Notes(Struct, frozen=True, kw_only=True):
+class ProbeResult(Struct, frozen=True, kw_only=True):
     """What came of one trial.
 
     Attributes:
@@ -65,7 +65,7 @@ class Notes(Struct, frozen=True, kw_only=True):
     output: str
 
 
-class Rehearsal:
+class ProbeTrials:
     """Two short trials, A and B, for one agent, to be played as often as wanted.
 
     Args:
@@ -82,7 +82,7 @@ class Rehearsal:
         by_task = {trial.task.id: trial for trial in dealt.trials}
         self.a, self.b = (by_task[name] for name in _TASKS)
 
-    def play(self, guest: Guest, trials: Sequence[TrialSpec]) -> list[Notes]:
+    def play(self, guest: Guest, trials: Sequence[TrialSpec]) -> list[ProbeResult]:
         """Play trials one after the other with the same guest, each with a person who knows of no other."""
         found = []
         for number, trial in enumerate(trials, 1):
@@ -90,7 +90,7 @@ class Rehearsal:
             found.append(self._play(guest, trial))
         return found
 
-    def _play(self, guest: Guest, trial: TrialSpec) -> Notes:
+    def _play(self, guest: Guest, trial: TrialSpec) -> ProbeResult:
         human = self._stage.enter(Session(participant=trial.participant, trials=(trial,))).human
         noted, world = _Noted(guest), self._stage.world(trial)
         seat = trial.robots[0].seat
@@ -100,7 +100,7 @@ class Rehearsal:
         about = [(say.object, seen) for say, seen in says if isinstance(say, Send) and say.object]
         ended = [look.outcome for look, _ in noted.looks if look.idle and look.outcome is not None]
         kept = trial_record.make_record(trial, log)
-        return Notes(
+        return ProbeResult(
             line=trial_record.encode(kept),
             faults=log.faults,
             asked=len(noted.looks),
@@ -111,10 +111,10 @@ class Rehearsal:
             lasted_s=log.ticks * rules.TICK_S,
             motions=sum(not isinstance(action.motion, Wait) for _, action in done),
             refused=sum(not outcome.ok for outcome in ended),
-            spot_s=conduct.on_one_spot_s(log, seat),
+            spot_s=conduct.longest_on_one_spot_s(log, seat),
             sent=int(kept.metrics["sent"] or 0),
             covered=int(kept.metrics["covered"] or 0),
-            repeated=conduct.repeated(log, seat),
+            repeated=conduct.count_repeated_messages(log, seat),
             claims=len(about),
             unseen=0 if noted.looked else sum(name not in seen for name, seen in about),
             output=noted.output,

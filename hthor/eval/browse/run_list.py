@@ -45,18 +45,18 @@ class RunSummary(Struct, frozen=True, kw_only=True):
     problem: str = ""
 
 
-class Shelf(Struct, frozen=True, kw_only=True):
+class RunList(Struct, frozen=True, kw_only=True):
     """The document of `hthor runs list`: all runs below a folder, the one that changed last first."""
 
     schema: str = SCHEMA
     runs: tuple[RunSummary, ...]
 
 
-def list_runs(folder: Path) -> Shelf:
+def list_runs(folder: Path) -> RunList:
     """Every run in and below a folder. One that cannot be read is there too, and says why."""
     found = [_seen(run, folder) for run in _folders(folder, _DEPTH)]
     found.sort(key=lambda one: one.folder)
-    return Shelf(runs=tuple(sorted(found, key=lambda one: one.when, reverse=True)))
+    return RunList(runs=tuple(sorted(found, key=lambda one: one.when, reverse=True)))
 
 
 def _folders(folder: Path, depth: int) -> Iterator[Path]:
@@ -101,7 +101,7 @@ def _seen(run: Path, root: Path) -> RunSummary:
 
 def _tally(run: Path, plan: RunConfig) -> tuple[int, float, int]:
     """Trials played, trials in which the goal was met, and trials with a fault: of the result, or else of the log."""
-    result = None if plan.shard or result_file.outdated(run / "result.json") else result_file.load(run)
+    result = None if plan.shard or result_file.is_outdated(run / "result.json") else result_file.load_result(run)
     if result is not None and result.metrics["sr"].mean is not None and result.hashes.run == plan.sha256:
         trials = result.counts.trials
         return trials, result.metrics["sr"].mean * trials, result.counts.faults

@@ -82,7 +82,7 @@ def view_run(folder: Path, wanted: TrialFilter) -> tuple[RunView, RunResult | No
     _, records = reader.digest(folder, plan)
     total = plan.shard.trials if plan.shard else plan.trials
     whole = len(records) >= total
-    stored = None if result_file.outdated(folder / "result.json") else result_file.load(folder)
+    stored = None if result_file.is_outdated(folder / "result.json") else result_file.load_result(folder)
     so_far = stored if whole and stored else aggregate.rescore(folder)[1] if records else None
     lines = tuple(_line(number, one) for number, one in enumerate(records) if wanted.fits(one))
     view = RunView(

@@ -13,7 +13,7 @@ from hthor.eval.results import paired_difference
 from hthor.eval.statistics import intervals
 
 
-class Judgement(Struct, frozen=True, kw_only=True):
+class Verdict(Struct, frozen=True, kw_only=True):
     """The verdict on one difference among several.
 
     Attributes:
@@ -30,12 +30,12 @@ class Judgement(Struct, frozen=True, kw_only=True):
     sign: int
 
 
-def judge(differences: Sequence[tuple[float, float | None]]) -> tuple[Judgement, ...]:
+def verdicts(differences: Sequence[tuple[float, float | None]]) -> tuple[Verdict, ...]:
     """The verdicts on differences that are looked at together, each given with its own p (None when unknown)."""
     own = [1.0 if p is None else p for _, p in differences]
-    adjusted, levels = paired_difference.holm(own), _levels(own)
+    adjusted, levels = paired_difference.holm_adjusted(own), _levels(own)
     return tuple(
-        Judgement(
+        Verdict(
             among=len(own),
             p=p,
             level=level,

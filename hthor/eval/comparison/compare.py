@@ -31,7 +31,7 @@ _BY: dict[str, Callable[[TrialRecord], str]] = {
 _ORDER = ("seen", "new", "easy", "medium", "hard")
 
 
-class Tally(Struct, frozen=True, kw_only=True):
+class WinCounts(Struct, frozen=True, kw_only=True):
     """Trials in which the second robot's time-weighted success was higher, the same, and lower."""
 
     wins: int
@@ -39,7 +39,7 @@ class Tally(Struct, frozen=True, kw_only=True):
     losses: int
 
 
-class Party(Struct, frozen=True, kw_only=True):
+class ComparedRun(Struct, frozen=True, kw_only=True):
     """One of the runs: its name, its folder's name, how many of its trials it has, and the hash of it all."""
 
     name: str
@@ -73,7 +73,7 @@ class Comparison(Struct, frozen=True, kw_only=True):
     people: int
     differences: dict[str, Difference]
     mcnemar: McNemar
-    tally: Tally
+    tally: WinCounts
     groups: dict[str, dict[str, Difference]]
     among: int = 1
     p_holm: float | None
@@ -94,7 +94,7 @@ class Comparisons(Struct, frozen=True, kw_only=True):
     schema: str = SCHEMA
     suite: SuiteRef
     seed: int
-    runs: tuple[Party, ...]
+    runs: tuple[ComparedRun, ...]
     pairs: tuple[Comparison, ...]
 
     @property
@@ -104,7 +104,7 @@ class Comparisons(Struct, frozen=True, kw_only=True):
         return tuple(pair for pair in self.pairs if pair.first == pair.better == baseline)
 
 
-class Read(Struct, frozen=True, kw_only=True):
+class LoadedRun(Struct, frozen=True, kw_only=True):
     """A run as it lies in its folder. ``name`` sets it apart from the others."""
 
     name: str
@@ -113,7 +113,7 @@ class Read(Struct, frozen=True, kw_only=True):
     records: tuple[TrialRecord, ...]
 
 
-def runs(folders: Sequence[Path]) -> Comparisons:
+def compare_runs(folders: Sequence[Path]) -> Comparisons:
     """Compare the runs in these folders, every pair of them.
 
     Raises:
@@ -121,15 +121,15 @@ def runs(folders: Sequence[Path]) -> Comparisons:
     """
     if len(folders) < 2:
         raise RunError("a comparison needs two runs or more: hthor compare RUN RUN.")
-    read_ = read(folders)
+    read_ = load_runs(folders)
     for one, other in itertools.combinations(read_, 2):
-        pairing.check((one.folder, one.plan), (other.folder, other.plan))
+        pairing.check_comparable((one.folder, one.plan), (other.folder, other.plan))
     found = [(_pair(one, other), one, other) for one, other in itertools.combinations(read_, 2)]
     return Comparisons(
         suite=read_[0].plan.suite,
         seed=read_[0].plan.seed,
         runs=tuple(
-            Party(
+            ComparedRun(
                 name=run.name,
                 folder=run.folder.name,
                 trials=len(run.records),
@@ -142,9 +142,11 @@ def runs(folders: Sequence[Path]) -> Comparisons:
     )
 
 
-def pairs(read_: Sequence[Read]) -> tuple[Comparison, ...]:
+def compare_pairs(read_: Sequence[LoadedRun]) -> tuple[Comparison, ...]:
     """Every pair of these runs that can be compared and has trials in common, judged together."""
-    fair = [pair for pair in itertools.combinations(read_, 2) if not pairing.difference(pair[0].plan, pair[1].plan)]
+    fair = [
+        pair for pair in itertools.combinations(read_, 2) if not pairing.differing_field(pair[0].plan, pair[1].plan)
+    ]
     found = []
     for one, other in fair:
         with contextlib.suppress(RunError):  # nothing in common yet
@@ -152,13 +154,13 @@ def pairs(read_: Sequence[Read]) -> tuple[Comparison, ...]:
     return _judged(found)
 
 
-def read(folders: Sequence[Path]) -> tuple[Read, ...]:
+def load_runs(folders: Sequence[Path]) -> tuple[LoadedRun, ...]:
     """The runs in these folders, scored anew from their events, with a name each."""
-    held = [(folder, *aggregate.measured(folder)) for folder in folders]
+    held = [(folder, *aggregate.load_measured(folder)) for folder in folders]
     names = [plan.label for _, plan, _ in held]
     distinct = _names(names, folders)
     return tuple(
-        Read(name=name, folder=folder, plan=plan, records=tuple(records))
+        LoadedRun(name=name, folder=folder, plan=plan, records=tuple(records))
         for name, (folder, plan, records) in zip(distinct, held, strict=True)
     )
 
@@ -174,8 +176,8 @@ def _names(names: Sequence[str], folders: Sequence[Path]) -> list[str]:
     return [f"{name} #{number}" if longer.count(name) > 1 else name for number, name in enumerate(longer, 1)]
 
 
-def _pair(one: Read, other: Read) -> Comparison:
-    joined = pairing.join(one.records, other.records)
+def _pair(one: LoadedRun, other: LoadedRun) -> Comparison:
+    joined = pairing.pair_trials(one.records, other.records)
     pairs = joined.pairs
     if not pairs:
         raise RunError(f"{one.folder} and {other.folder} have no trial in common yet. Finish both runs.")
@@ -197,10 +199,10 @@ def _pair(one: Read, other: Read) -> Comparison:
     )
 
 
-def _tally(pairs: Sequence[Pair]) -> Tally:
+def _tally(pairs: Sequence[Pair]) -> WinCounts:
     first = trial_metrics.column((pair.one.metrics for pair in pairs), "twsr")
     second = trial_metrics.column((pair.other.metrics for pair in pairs), "twsr")
-    return Tally(
+    return WinCounts(
         wins=int((second > first).sum()), ties=int((second == first).sum()), losses=int((second < first).sum())
     )
 
@@ -218,13 +220,15 @@ def _rank(name: str) -> int:
     return _ORDER.index(name) if name in _ORDER else len(_ORDER)
 
 
-def _judged(found: Sequence[tuple[Comparison, Read, Read]]) -> tuple[Comparison, ...]:
+def _judged(found: Sequence[tuple[Comparison, LoadedRun, LoadedRun]]) -> tuple[Comparison, ...]:
     """The same with their verdicts, for which all of them are looked at together."""
     successes = [pair.differences["sr"] for pair, _, _ in found]
     judged = []
-    for (pair, one, other), verdict in zip(found, better.judge([(s.difference, s.p) for s in successes]), strict=True):
+    for (pair, one, other), verdict in zip(
+        found, better.verdicts([(s.difference, s.p) for s in successes]), strict=True
+    ):
         wide = paired_difference.paired_difference(
-            pairing.join(one.records, other.records).pairs, "sr", level=verdict.level
+            pairing.pair_trials(one.records, other.records).pairs, "sr", level=verdict.level
         )
         fair = msgspec.structs.replace(
             pair,
@@ -234,11 +238,11 @@ def _judged(found: Sequence[tuple[Comparison, Read, Read]]) -> tuple[Comparison,
             interval=wide.ci95 if wide is not None else None,
             better={1: pair.second, -1: pair.first}.get(verdict.sign, ""),
         )
-        judged.append(msgspec.structs.replace(fair, sentence=sentence(fair)))
+        judged.append(msgspec.structs.replace(fair, sentence=verdict_sentence(fair)))
     return tuple(judged)
 
 
-def sentence(pair: Comparison) -> str:
+def verdict_sentence(pair: Comparison) -> str:
     """Which run is better and by how much, or that these data cannot tell and how many more tasks would."""
     found = pair.differences["sr"]
     points = 100.0 * found.difference
@@ -265,7 +269,7 @@ def sentence(pair: Comparison) -> str:
     if found.more_tasks == 0:
         return f"{told}; {pair.people} people are too few to tell, however many tasks they do."
     alone = " to a comparison of these two alone" if pair.among > 1 else ""
-    return f"{told}; if it is real, about {power.about(found.more_tasks)} more tasks would show it{alone}."
+    return f"{told}; if it is real, about {power.rounded_count(found.more_tasks)} more tasks would show it{alone}."
 
 
 def _evidence(pair: Comparison, ends: str) -> str:

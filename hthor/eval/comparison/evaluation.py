@@ -10,7 +10,7 @@ from hthor.eval.results.result_file import RunResult
 SCHEMA = "hthor.eval/1"
 
 
-class Evaluated(Struct, frozen=True, kw_only=True):
+class EvaluatedRun(Struct, frozen=True, kw_only=True):
     """A whole run: its folder, and its result as `result.json` has it."""
 
     folder: str
@@ -24,5 +24,5 @@ class Evaluation(Struct, frozen=True, kw_only=True):
     """
 
     schema: str = SCHEMA
-    runs: tuple[Evaluated, ...]
+    runs: tuple[EvaluatedRun, ...]
     peoples: PopulationMatrix | None = None

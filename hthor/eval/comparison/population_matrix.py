@@ -25,7 +25,7 @@ class Cell(Struct, frozen=True, kw_only=True):
     adoption: Estimate
 
 
-class Worst(Struct, frozen=True, kw_only=True):
+class WorstPopulation(Struct, frozen=True, kw_only=True):
     """With whom an agent succeeds least, and by how much less [fraction] than with the ``base``, the first people.
 
     ``peoples`` are several where they are equally bad.
@@ -55,7 +55,7 @@ class PopulationMatrix(Struct, frozen=True, kw_only=True):
     agents: tuple[str, ...]
     peoples: tuple[HumanModelRef, ...]
     cells: dict[str, dict[str, Cell]]
-    worst: dict[str, Worst]
+    worst: dict[str, WorstPopulation]
     conclusions: tuple[Conclusion, ...]
 
 
@@ -80,9 +80,9 @@ def _cell(result: RunResult) -> Cell:
     return Cell(sr=result.metrics["sr"], twsr=result.metrics["twsr"], adoption=result.metrics["adoption"])
 
 
-def _worst(results: Sequence[RunResult]) -> dict[str, Worst]:
+def _worst(results: Sequence[RunResult]) -> dict[str, WorstPopulation]:
     """Of those whom somebody may be like; nobody where there is only one such people."""
-    found: dict[str, Worst] = {}
+    found: dict[str, WorstPopulation] = {}
     for agent in dict.fromkeys(result.name for result in results):
         held = [
             result
@@ -92,7 +92,7 @@ def _worst(results: Sequence[RunResult]) -> dict[str, Worst]:
         if len(held) > 1:
             rates = {result.humans.name: result.metrics["sr"].mean or 0.0 for result in held}
             least, base = min(rates.values()), held[0].humans.name
-            found[agent] = Worst(
+            found[agent] = WorstPopulation(
                 peoples=tuple(name for name, rate in rates.items() if rate == least),
                 sr=least,
                 base=base,
@@ -105,4 +105,4 @@ def _conclusions(by_people: dict[str, list[RunResult]]) -> tuple[Conclusion, ...
     """Where both extremes are there, and somebody between them: what of it holds for all."""
     models = {held[0].humans.model for held in by_people.values()}
     whole = models.issuperset(human_populations.EXTREMES) and len(models) > len(human_populations.EXTREMES)
-    return robustness.conclusions(by_people) if whole else ()
+    return robustness.draw_conclusions(by_people) if whole else ()

@@ -15,13 +15,13 @@ from msgspec import Struct
 
 from hthor.eval.results import paired_difference
 from hthor.eval.statistics import bootstrap, intervals
-from hthor.eval.statistics.variance_components import Spread
+from hthor.eval.statistics.variance_components import MeanSpread
 
 STREAM = "ranking"
 """The name of the bootstrap's chance stream."""
 
 
-class Standing(Struct, frozen=True, kw_only=True):
+class Rank(Struct, frozen=True, kw_only=True):
     """An agent's place: 1 is the best.
 
     Attributes:
@@ -36,7 +36,7 @@ class Standing(Struct, frozen=True, kw_only=True):
     ties: tuple[int, ...]
 
 
-def standings(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> tuple[Standing, ...]:
+def rank_agents(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> tuple[Rank, ...]:
     """The place of each agent.
 
     The interval's ends are 1 and the number of agents that are better, and all less those that are worse, when this
@@ -48,8 +48,8 @@ def standings(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> tu
         outcomes: (A, N), shares from 0 to 1, such as successes. tasks, people: (N,) indices from 0.
     """
     count = len(outcomes)
-    versus = [paired_difference.spread_of(outcomes - one, tasks, people, share=True) for one in outcomes]
-    better = (adjusted(versus) < 1.0 - intervals.LEVEL) & (np.array([found.mean for found in versus]) > 0.0)
+    versus = [paired_difference.difference_spread(outcomes - one, tasks, people, share=True) for one in outcomes]
+    better = (adjusted_p_values(versus) < 1.0 - intervals.LEVEL) & (np.array([found.mean for found in versus]) > 0.0)
     told = better | better.T  # in a row, an agent; in its columns, those that are better than it
     plain = 1 + better.sum(axis=1)
     totals = np.rint(outcomes * 1e6).sum(axis=1)  # whole numbers: equal means are equal
@@ -59,15 +59,15 @@ def standings(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> tu
         rank = int(plain[totals >= totals[one]].max())
         ends = (min(rank, 1 + int(low[one])), max(rank, count - int(high[one])))
         ties = tuple(other for other in range(count) if other != one and not told[one, other])
-        found.append(Standing(rank=rank, interval=ends, ties=ties))
+        found.append(Rank(rank=rank, interval=ends, ties=ties))
     return tuple(found)
 
 
-def adjusted(versus: Sequence[Spread]) -> np.ndarray:
+def adjusted_p_values(versus: Sequence[MeanSpread]) -> np.ndarray:
     """Holm's p of every two agents' difference, (A, A), for the spreads of all less each."""
     pairs = list(itertools.combinations(range(len(versus)), 2))
-    variances = [paired_difference.null(found, share=True) for found in versus]
-    p = paired_difference.holm(
+    variances = [paired_difference.null_variance(found, share=True) for found in versus]
+    p = paired_difference.holm_adjusted(
         [
             paired_difference.p_value(
                 float(versus[one].mean[other]), float(variances[one][other]), float(versus[one].freedom[other])
@@ -82,11 +82,11 @@ def adjusted(versus: Sequence[Spread]) -> np.ndarray:
 
 
 def _excluded(
-    versus: Sequence[Spread], outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray
+    versus: Sequence[MeanSpread], outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """For each agent, how many are better than it, and how many worse, all of which hold together."""
     count = len(outcomes)
-    drawn = bootstrap.means(outcomes, tasks, people, name=STREAM)
+    drawn = bootstrap.bootstrap_means(outcomes, tasks, people, name=STREAM)
     off = drawn - outcomes.mean(axis=1)[:, None]
     better, worse = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
     for one in range(count):
@@ -96,7 +96,7 @@ def _excluded(
         largest = (np.abs(gaps[moving]) / sd[moving, None]).max(axis=0) if moving.any() else np.zeros(1)
         far = max(float(np.quantile(largest, intervals.LEVEL)), intervals.NORMAL)
         level = 1.0 - math.erfc(far / math.sqrt(2.0)) / 2.0
-        least, most = paired_difference.ends(versus[one], share=True, level=level)
+        least, most = paired_difference.interval_ends(versus[one], share=True, level=level)
         others = np.arange(count) != one
         better[one] = int((others & (least > 0.0)).sum())
         worse[one] = int((others & (most < 0.0)).sum())

@@ -27,7 +27,7 @@ METRICS = ("sr", "twsr")
 Verdict = Literal["holds", "vanishes", "flips"]
 
 
-class Gap(Struct, frozen=True, kw_only=True):
+class PopulationGap(Struct, frozen=True, kw_only=True):
     """How much better the one robot did than the other, as a fraction, with these people.
 
     ``ci95`` is a cautious 95 % interval: both runs' own intervals put together as if they had nothing in common
@@ -63,11 +63,11 @@ class Conclusion(Struct, frozen=True, kw_only=True):
     metric: str
     helps: bool
     verdict: Verdict
-    gaps: tuple[Gap, ...]
+    gaps: tuple[PopulationGap, ...]
     sentence: str
 
 
-def conclusions(results: Mapping[str, Sequence[RunResult]]) -> tuple[Conclusion, ...]:
+def draw_conclusions(results: Mapping[str, Sequence[RunResult]]) -> tuple[Conclusion, ...]:
     """Everything that the population's results say of any two robots, in the robots' order.
 
     Args:
@@ -106,7 +106,9 @@ def _check(results: Mapping[str, Sequence[RunResult]]) -> None:
             )
 
 
-def _conclusion(runs: Sequence[RunResult], pair: tuple[int, int], metric: str, gaps: tuple[Gap, ...]) -> Conclusion:
+def _conclusion(
+    runs: Sequence[RunResult], pair: tuple[int, int], metric: str, gaps: tuple[PopulationGap, ...]
+) -> Conclusion:
     better, worse = (runs[k] for k in pair)
     ends = gaps[1:]
     verdict: Verdict = "holds"
@@ -126,13 +128,15 @@ def _conclusion(runs: Sequence[RunResult], pair: tuple[int, int], metric: str, g
     )
 
 
-def _sentence(better: str, worse: str, metric: str, helps: bool, verdict: Verdict, gaps: tuple[Gap, ...]) -> str:
+def _sentence(
+    better: str, worse: str, metric: str, helps: bool, verdict: Verdict, gaps: tuple[PopulationGap, ...]
+) -> str:
     claim = f"{better} helps (over {worse})" if helps else f"{better} is better than {worse}"
     numbers = ", ".join(f"{100 * gap.mean:+z.1f} {gap.people}" for gap in gaps)
     return f"{claim} in {metric}: {numbers} points; {_word(verdict, gaps)}"
 
 
-def _word(verdict: Verdict, gaps: tuple[Gap, ...]) -> str:
+def _word(verdict: Verdict, gaps: tuple[PopulationGap, ...]) -> str:
     if verdict == "holds":
         weak = not all(gap.beyond_noise for gap in gaps)
         return "holds at both ends" + (", though not everywhere beyond chance" if weak else "")
@@ -144,13 +148,13 @@ def _word(verdict: Verdict, gaps: tuple[Gap, ...]) -> str:
     return f"flips with {_and(against)} people{chance}, so it rests on how people are modelled"
 
 
-def _and(gaps: Iterable[Gap]) -> str:
+def _and(gaps: Iterable[PopulationGap]) -> str:
     return " and ".join(gap.people for gap in gaps)
 
 
-def _gap(people: str, runs: Sequence[RunResult], pair: tuple[int, int], metric: str) -> Gap:
+def _gap(people: str, runs: Sequence[RunResult], pair: tuple[int, int], metric: str) -> PopulationGap:
     better, worse = (runs[k] for k in pair)
-    return Gap(
+    return PopulationGap(
         people=people,
         better=_mean(better, metric),
         worse=_mean(worse, metric),

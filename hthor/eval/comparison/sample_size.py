@@ -13,14 +13,14 @@ from hthor.eval.comparison import compare
 from hthor.eval.results import paired_difference, pairing
 from hthor.eval.results.paired_difference import Noise
 from hthor.eval.statistics import power
-from hthor.eval.statistics.power import Need, Scatter
+from hthor.eval.statistics.power import SampleSize, Scatter
 
 SCHEMA = "hthor.power/1"
 USUAL = 0.5
 """Correlation that is taken when nobody knows it; docs/statistics.md has measured ones."""
 
 
-class Plan(Struct, frozen=True, kw_only=True):
+class StudyPlan(Struct, frozen=True, kw_only=True):
     """What it takes to see a difference of two success rates: the same people at the same tasks, and others.
 
     Of two runs, ``shared`` is how many trials they share, and ``more`` how many more tasks would show the difference,
@@ -31,8 +31,8 @@ class Plan(Struct, frozen=True, kw_only=True):
     first: float
     second: float
     measured: bool
-    paired: Need
-    unpaired: Need
+    paired: SampleSize
+    unpaired: SampleSize
     shared: int | None = None
     more: int | None = None
     sentence: str
@@ -50,7 +50,7 @@ class _Known(Struct, frozen=True):
 
 def plan_study(
     folders: Sequence[Path], rates: str, correlation: float | None, difference: float | None, wanted: float
-) -> Plan:
+) -> StudyPlan:
     """The plan for two runs, or for two rates as the user typed them.
 
     Raises:
@@ -60,14 +60,14 @@ def plan_study(
         raise HthorError("name two runs, hthor power RUN RUN, or two rates, hthor power --rates 0.73,0.76; not both.")
     known = _measured(folders) if folders else _rates(rates)
     first, second = known.first, known.second if difference is None else known.first + difference
-    power.possible(first, second)
+    power.check_rates(first, second)
     low, high = power.correlation_range(first, second)
     if correlation is None:
         correlation = min(USUAL, high) if known.correlation is None else min(max(low, known.correlation), high)
     paired, unpaired = _needs(known, first, second, correlation, wanted)
     shared = known.shared
     more = None if shared is None else max(0, paired.trials - shared)
-    return Plan(
+    return StudyPlan(
         first=round(first, 6),
         second=round(second, 6),
         measured=bool(folders),
@@ -88,10 +88,12 @@ def _added(shared: int | None, more: int | None) -> str:
         return ""
     if more == 0:
         return f" The {shared} that these runs share are enough for that."
-    return f" That is about {power.about(more)} more than the {shared} that these runs share."
+    return f" That is about {power.rounded_count(more)} more than the {shared} that these runs share."
 
 
-def _needs(known: _Known, first: float, second: float, correlation: float, wanted: float) -> tuple[Need, Need]:
+def _needs(
+    known: _Known, first: float, second: float, correlation: float, wanted: float
+) -> tuple[SampleSize, SampleSize]:
     """Paired and not; other rates or another correlation than the runs have scale what was measured."""
     paired = unpaired = None
     if known.noise is not None and known.correlation is not None:
@@ -99,8 +101,8 @@ def _needs(known: _Known, first: float, second: float, correlation: float, wante
         paired = _scaled(known.noise.paired, (*there, known.correlation), (*here, correlation))
         unpaired = _scaled(known.noise.unpaired, (*there, 0.0), (*here, 0.0))
     return (
-        power.need(first, second, correlation=correlation, power=wanted, scatter=paired),
-        power.need(first, second, power=wanted, scatter=unpaired),
+        power.sample_size(first, second, correlation=correlation, power=wanted, scatter=paired),
+        power.sample_size(first, second, power=wanted, scatter=unpaired),
     )
 
 
@@ -115,15 +117,17 @@ def _scaled(held: Scatter, measured: tuple[float, float, float], wanted: tuple[f
 
 def _measured(folders: Sequence[Path]) -> _Known:
     """Both rates, their correlation and their scatter, of two runs."""
-    one, other = compare.read(folders)
-    pairing.check((one.folder, one.plan), (other.folder, other.plan))
-    pairs = pairing.join(one.records, other.records).pairs
+    one, other = compare.load_runs(folders)
+    pairing.check_comparable((one.folder, one.plan), (other.folder, other.plan))
+    pairs = pairing.pair_trials(one.records, other.records).pairs
     found = paired_difference.paired_difference(pairs, "sr")
     if found is None:
         raise HthorError(
             f"{one.folder} and {other.folder} have no trials in common yet. Finish both with 'hthor eval'."
         )
-    return _Known(found.first, found.second, found.correlation or 0.0, paired_difference.noise(pairs, "sr"), len(pairs))
+    return _Known(
+        found.first, found.second, found.correlation or 0.0, paired_difference.trial_noise(pairs, "sr"), len(pairs)
+    )
 
 
 def _rates(words: str) -> _Known:

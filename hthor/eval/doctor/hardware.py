@@ -29,7 +29,7 @@ _OTHERWISE = (
 _SLOW = "NUMBA_DISABLE_JIT"
 
 
-def findings(runs: Path) -> list[CheckResult]:
+def check_hardware(runs: Path) -> list[CheckResult]:
     """Look at everything; ``runs`` is where runs are to be written."""
     cores = _cores()
     return [*_disk(runs), _memory(cores), _processors(cores), _environment(), _shm(), _houses()]

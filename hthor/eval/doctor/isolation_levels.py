@@ -15,7 +15,7 @@ _LANDLOCK_SINCE = (5, 13)
 _UNCONFINED = "docker run --security-opt seccomp=unconfined --security-opt apparmor=unconfined ..., or leave it"
 
 
-def check(required: str) -> None:
+def require_level(required: str) -> None:
     """See that there is such a level.
 
     Raises:
@@ -24,7 +24,7 @@ def check(required: str) -> None:
     check_level(required, auto=False)
 
 
-def findings(required: str) -> list[CheckResult]:
+def check_isolation(required: str) -> list[CheckResult]:
     """Start a guest on each level; those up to the required one must come up."""
     return [_finding(level, suffices(required, level)) for level in LEVELS]
 
@@ -35,7 +35,7 @@ def _finding(level: str, needed: bool) -> CheckResult:
         return CheckResult(name=name, says=_layers(in_force(level)))
     except IsolationError as error:
         reason = str(error).partition("this machine: ")[2].partition(". 'hthor eval")[0] or str(error)
-        return CheckResult(name=name, status="fail" if needed else "warn", says=reason, fix=fix(level))
+        return CheckResult(name=name, status="fail" if needed else "warn", says=reason, fix=suggest_fix(level))
 
 
 def _layers(held: Isolation) -> str:
@@ -50,7 +50,7 @@ def _layers(held: Isolation) -> str:
     return "; ".join(layer for layer in layers if layer)
 
 
-def fix(level: str) -> str:
+def suggest_fix(level: str) -> str:
     """What to do where a level does not start, from what this machine says of itself."""
     if platform.system() != "Linux":
         return "run hthor on Linux: a virtual machine will do"

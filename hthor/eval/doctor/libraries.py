@@ -25,7 +25,7 @@ _EXTRAS = {
 _GIT_LIMIT_S = 10.0
 
 
-def findings() -> list[CheckResult]:
+def check_libraries() -> list[CheckResult]:
     """Look at Python, at each library that trials are computed with, at the others, the extras, and the checkout."""
     found = [CheckResult(name="python", says=platform.python_version())]
     try:
@@ -34,7 +34,7 @@ def findings() -> list[CheckResult]:
         says = "hthor is not installed, so what it requires is not known"
         return [*found, CheckResult(name="libraries", status="warn", says=says, fix="pip install -e ."), *_checkout()]
     scoring = [one for one in base if one.name in _SCORING]
-    found += [_library(one, pinned()) for one in scoring]
+    found += [_library(one, pinned_versions()) for one in scoring]
     found.append(_others([one for one in base if one not in scoring]))
     return [*found, *(_extra(name, extras[name]) for name in _EXTRAS if extras.get(name)), *_checkout()]
 
@@ -53,7 +53,7 @@ def _required() -> tuple[list[Requirement], dict[str, list[Requirement]]]:
     return base, {name: [one for one in wanted if one not in base and _of(one, name)] for name in _EXTRAS}
 
 
-def pinned() -> dict[str, str]:
+def pinned_versions() -> dict[str, str]:
     """The versions that this version's own results were made with; empty where hthor is no checkout."""
     path = code_identity.PACKAGE.parent / "constraints.txt"
     if not path.is_file():

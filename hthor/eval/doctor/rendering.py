@@ -15,7 +15,7 @@ _HOUSE = "alder"
 _CURE = "sudo apt-get install libegl1 libgl1-mesa-dri || sudo apt-get install libosmesa6"
 
 
-class Drawn(Struct, frozen=True, kw_only=True):
+class RenderingProbe(Struct, frozen=True, kw_only=True):
     """How many colours each profile's picture has, 0 for none; the OpenGL back end, or why there is none."""
 
     fast: int = 0
@@ -24,7 +24,7 @@ class Drawn(Struct, frozen=True, kw_only=True):
     reason: str = ""
 
 
-def findings(drawn: Drawn | str) -> list[CheckResult]:
+def check_rendering(drawn: RenderingProbe | str) -> list[CheckResult]:
     """Judge what the process drew."""
     if isinstance(drawn, str):
         says = f"the process that draws a frame failed: {drawn}"
@@ -32,14 +32,14 @@ def findings(drawn: Drawn | str) -> list[CheckResult]:
     return [_fast(drawn), _nice(drawn)]
 
 
-def _fast(drawn: Drawn) -> CheckResult:
+def _fast(drawn: RenderingProbe) -> CheckResult:
     name = "robot's camera"
     if drawn.fast > 1:
         return CheckResult(name=name, says=f"draws a frame of {drawn.fast} colours, without OpenGL")
     return CheckResult(name=name, status="fail", says="its frame is blank", fix="pip install --force-reinstall hthor")
 
 
-def _nice(drawn: Drawn) -> CheckResult:
+def _nice(drawn: RenderingProbe) -> CheckResult:
     name = "OpenGL"
     if drawn.nice > 1:
         return CheckResult(name=name, says=f"{drawn.backend} draws a frame of {drawn.nice} colours")
@@ -47,7 +47,7 @@ def _nice(drawn: Drawn) -> CheckResult:
     return CheckResult(name=name, status="warn", says=f"{says} (only pictures in the profile nice need it)", fix=_CURE)
 
 
-def draw() -> Iterator[Drawn]:
+def render_frames() -> Iterator[RenderingProbe]:
     """Draw a frame in each profile; told after each, as a driver may end the process."""
     from hthor.errors import RenderingUnavailable
     from hthor.world import World
@@ -55,16 +55,16 @@ def draw() -> Iterator[Drawn]:
 
     world = World(_HOUSE, robots=["scout"])
     fast = _colours(world.robot.rgb(_SIZE))
-    yield Drawn(fast=fast, reason="the process that draws a frame with OpenGL crashed")
+    yield RenderingProbe(fast=fast, reason="the process that draws a frame with OpenGL crashed")
     try:
         context = opengl_context.context(*_SIZE)
         backend = type(context).__module__.rpartition(".")[2]
         context.free()
         nice = _colours(world.robot.rgb(_SIZE, profile="nice"))
     except RenderingUnavailable as error:
-        yield Drawn(fast=fast, reason=str(error).partition(". ")[0])
+        yield RenderingProbe(fast=fast, reason=str(error).partition(". ")[0])
     else:
-        yield Drawn(fast=fast, nice=nice, backend=backend)
+        yield RenderingProbe(fast=fast, nice=nice, backend=backend)
 
 
 def _colours(picture: object) -> int:
@@ -76,7 +76,7 @@ def _colours(picture: object) -> int:
 if __name__ == "__main__":
     from hthor import jsonio
 
-    for drawn in draw():
+    for drawn in render_frames():
         sys.stdout.write(jsonio.canonical(drawn).decode() + "\n")
         sys.stdout.flush()
     os._exit(0)  # some drivers crash when they are unloaded, after all that was asked is done

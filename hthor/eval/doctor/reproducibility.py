@@ -23,7 +23,7 @@ _NAMES = ("key", "spec")
 """What a record has that is not the course of its trial."""
 
 
-class Course(Struct, frozen=True, kw_only=True):
+class TrialFingerprint(Struct, frozen=True, kw_only=True):
     """How the trial went: the hash of everything in it, what came of it, and the platform that it was played on."""
 
     trial: str
@@ -32,7 +32,7 @@ class Course(Struct, frozen=True, kw_only=True):
     platform: dict[str, str]
 
 
-def play() -> Course:
+def run_reference_trial() -> TrialFingerprint:
     """The first trial of the first person of the suite, with the frontier robot."""
     from hthor import tasks
     from hthor.eval.config import sessions
@@ -44,7 +44,7 @@ def play() -> Course:
     course = msgspec.json.decode(trial_record.encode(done))
     for name in (*_NAMES, "check"):
         del course[name]
-    return Course(
+    return TrialFingerprint(
         trial=done.spec.task.id,
         sha256=jsonio.sha256(course),
         outcome={"met": done.met, "ticks": done.ticks, "trust": done.trust, "events": len(done.events)},
@@ -52,12 +52,12 @@ def play() -> Course:
     )
 
 
-def reference() -> Course:
+def load_reference() -> TrialFingerprint:
     """How it went where the reference was made."""
-    return msgspec.json.decode(REFERENCE.read_bytes(), type=Course)
+    return msgspec.json.decode(REFERENCE.read_bytes(), type=TrialFingerprint)
 
 
-def findings(here: Course | str) -> list[CheckResult]:
+def check_reproducibility(here: TrialFingerprint | str) -> list[CheckResult]:
     """Judge what the process played."""
     name = "determinism"
     if isinstance(here, str):
@@ -65,7 +65,7 @@ def findings(here: Course | str) -> list[CheckResult]:
         return [
             CheckResult(name=name, status="fail", says=says, fix="hthor eval --agent none --participants 1 --jobs 1")
         ]
-    there = reference()
+    there = load_reference()
     if here.sha256 == there.sha256:
         return [CheckResult(name=name, says=f"{here.trial} goes as in the reference, byte for byte")]
     other = platform_fingerprint.platform_differences(there.platform, here.platform)
@@ -84,4 +84,4 @@ def _verdict(same: bool) -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(jsonio.canonical(play()).decode() + "\n")
+    sys.stdout.write(jsonio.canonical(run_reference_trial()).decode() + "\n")

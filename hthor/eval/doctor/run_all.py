@@ -8,7 +8,7 @@ from hthor.eval.doctor import hardware, isolation_levels, libraries, rendering, 
 from hthor.eval.doctor.result import DoctorReport
 
 
-def run_all(runs: Path, required: str = "L1") -> DoctorReport:
+def run_checks(runs: Path, required: str = "L1") -> DoctorReport:
     """Look at everything.
 
     Args:
@@ -18,16 +18,16 @@ def run_all(runs: Path, required: str = "L1") -> DoctorReport:
     Raises:
         UnknownName: when there is no such level.
     """
-    isolation_levels.check(required)
+    isolation_levels.require_level(required)
     with (
-        subprocess_probe.start(rendering.__name__) as picture,
-        subprocess_probe.start(reproducibility.__name__) as course,
+        subprocess_probe.start_probe(rendering.__name__) as picture,
+        subprocess_probe.start_probe(reproducibility.__name__) as course,
     ):
         findings = [
-            *libraries.findings(),
-            *isolation_levels.findings(required),
-            *hardware.findings(runs),
-            *reproducibility.findings(course.answer(reproducibility.Course)),
-            *rendering.findings(picture.answer(rendering.Drawn)),
+            *libraries.check_libraries(),
+            *isolation_levels.check_isolation(required),
+            *hardware.check_hardware(runs),
+            *reproducibility.check_reproducibility(course.answer(reproducibility.TrialFingerprint)),
+            *rendering.check_rendering(picture.answer(rendering.RenderingProbe)),
         ]
     return DoctorReport(well=all(one.status != "fail" for one in findings), findings=tuple(findings))

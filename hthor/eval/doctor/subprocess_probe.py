@@ -41,7 +41,7 @@ class Probe:
 
 
 @contextmanager
-def start(module: str) -> Iterator[Probe]:
+def start_probe(module: str) -> Iterator[Probe]:
     """Run a module as a script, in the environment that workers have; it ends with the block."""
     environment = {**os.environ, **worker.ONE_THREAD, "PYTHONHASHSEED": "0"}
     environment.setdefault("NUMBA_CACHE_DIR", str(code_identity.compiled()))

@@ -53,7 +53,7 @@ def measured_cost(part: RunJob) -> TrialCost | None:
     found = []
     for folder in _run_folders_near(part.folder):
         try:
-            plan, result = run_config.load_config(folder), result_file.load(folder)
+            plan, result = run_config.load_config(folder), result_file.load_result(folder)
         except RunError:
             continue
         if result is None or result.effort is None or not result.effort.trials:

@@ -196,7 +196,7 @@ def _score(out: Path, plan: RunConfig, folders: Sequence[Path]) -> RunResult:
         for folder in folders
         if (folder / EFFORT).is_file()
     ]
-    stored = result_file.load(out)
+    stored = result_file.load_result(out)
     effort = stored.effort if stored else None
     if efforts:
         effort = Effort(
@@ -207,8 +207,8 @@ def _score(out: Path, plan: RunConfig, folders: Sequence[Path]) -> RunResult:
         )
     platform.join(out, folders)
     session_restarts.join(out, folders)
-    beside, held = baseline.beside(out, plan, records), _store_isolation(out, folders)
-    result = aggregate.summarise(
+    beside, held = baseline.uplift_or_stored(out, plan, records), _store_isolation(out, folders)
+    result = aggregate.make_result(
         plan,
         trial_log.fetch(there),
         records,
@@ -217,7 +217,7 @@ def _score(out: Path, plan: RunConfig, folders: Sequence[Path]) -> RunResult:
         isolation=held,
         replays=session_restarts.count(out),
     )
-    result_file.store(out, result)
+    result_file.store_result(out, result)
     return result
 
 

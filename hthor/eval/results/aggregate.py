@@ -17,13 +17,13 @@ from hthor.eval.records import opened_files, reader, run_isolation, session_rest
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline, result_file
 from hthor.eval.results.result_file import Counts, Effort, Hashes, RunResult, Scores
-from hthor.eval.results.uplift import Uplift, kept
+from hthor.eval.results.uplift import Uplift, to_stored
 from hthor.eval.statistics import intervals
 from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import Isolation
 
 
-def summarise(
+def make_result(
     plan: RunConfig,
     lines: Iterable[bytes],
     records: Sequence[TrialRecord],
@@ -42,9 +42,11 @@ def summarise(
     for line in lines:
         trials.update(line)
     kinds = sorted({record.spec.task.kind for record in records})
-    whole = scores(records)
+    whole = estimate_metrics(records)
     by_kind = {
-        kind: whole if len(kinds) == 1 else scores([record for record in records if record.spec.task.kind == kind])
+        kind: whole
+        if len(kinds) == 1
+        else estimate_metrics([record for record in records if record.spec.task.kind == kind])
         for kind in kinds
     }
     return RunResult(
@@ -59,8 +61,8 @@ def summarise(
         participants=plan.participants,
         metrics=whole,
         by_kind=by_kind,
-        trust_by_trial=by_trial(records),
-        uplift=kept(uplift),
+        trust_by_trial=trust_by_trial(records),
+        uplift=to_stored(uplift),
         counts=Counts(
             trials=len(records),
             tasks=len({record.spec.task.id for record in records}),
@@ -88,29 +90,29 @@ def summarise(
     )
 
 
-def scores(records: Sequence[TrialRecord]) -> Scores:
+def estimate_metrics(records: Sequence[TrialRecord]) -> Scores:
     """Means and intervals of every metric; trials for which a metric has no value do not count for it."""
-    single = {metric.name: estimate(records, metric) for metric in registry.SINGLE}
+    single = {metric.name: estimate_metric(records, metric) for metric in registry.SINGLE}
     return Scores(**single, **{metric.name: _by_seat(records, metric) for metric in registry.BY_SEAT})
 
 
-def by_trial(records: Sequence[TrialRecord]) -> tuple[Estimate, ...]:
+def trust_by_trial(records: Sequence[TrialRecord]) -> tuple[Estimate, ...]:
     """Trust after each trial of a session, in their order."""
     rated = [record for record in records if record.metrics["trust"] is not None]
     last = max((record.spec.index for record in rated), default=-1)
     trust = registry.get("trust")
     return tuple(
-        estimate([record for record in rated if record.spec.index == index], trust) for index in range(last + 1)
+        estimate_metric([record for record in rated if record.spec.index == index], trust) for index in range(last + 1)
     )
 
 
 def _by_seat(records: Sequence[TrialRecord], metric: Metric) -> dict[str, Estimate]:
     """An estimate for each seat that the metric has values for, in order of first appearance."""
     seats = dict.fromkeys(seat for record in records for seat in record.metrics.by_seat(metric.name))
-    return {seat: estimate(records, metric, seat) for seat in seats}
+    return {seat: estimate_metric(records, metric, seat) for seat in seats}
 
 
-def estimate(records: Sequence[TrialRecord], metric: Metric, seat: str = "") -> Estimate:
+def estimate_metric(records: Sequence[TrialRecord], metric: Metric, seat: str = "") -> Estimate:
     """The estimate of a metric, of one seat where it has values by seat."""
     values: list[float] = []
     specs = []
@@ -135,14 +137,17 @@ def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
     """
     plan = run_config.load_config(folder)
     lines, kept = reader.records(folder, plan)
-    fresh, stored = _measured(kept), None if result_file.outdated(folder / "result.json") else result_file.load(folder)
+    fresh, stored = (
+        _measured(kept),
+        None if result_file.is_outdated(folder / "result.json") else result_file.load_result(folder),
+    )
     effort = stored.effort if stored else None
-    beside, held = baseline.beside(folder, plan, fresh), run_isolation.load_isolation(folder)
+    beside, held = baseline.uplift_or_stored(folder, plan, fresh), run_isolation.load_isolation(folder)
     again = session_restarts.count(folder)
-    return plan, summarise(plan, lines, fresh, effort, uplift=beside, isolation=held, replays=again), stored
+    return plan, make_result(plan, lines, fresh, effort, uplift=beside, isolation=held, replays=again), stored
 
 
-def measured(folder: Path) -> tuple[RunConfig, list[TrialRecord]]:
+def load_measured(folder: Path) -> tuple[RunConfig, list[TrialRecord]]:
     """A run's configuration and its records, every trial's metrics worked out anew from its events."""
     plan = run_config.load_config(folder)
     return plan, _measured(reader.records(folder, plan)[1])

@@ -15,28 +15,28 @@ from hthor.eval.metrics import trial_metrics
 from hthor.eval.records import trial_log
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import pairing, result_file, uplift
-from hthor.eval.results.uplift import Kept, Uplift
+from hthor.eval.results.uplift import StoredUplift, Uplift
 
 FOLDER = "control"
 """Where a run keeps a control of its own."""
 
 
-def beside(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> Kept | None:
+def uplift_or_stored(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> StoredUplift | None:
     """What the run in a folder adds over its control.
 
     Where no control is at hand, as in a folder that was copied elsewhere, what the run's result has recorded is kept,
     with a note. None where that has nothing either, or the run has no robot.
     """
-    return uplift.kept(measure(folder, plan, records)) or _recorded(folder, plan)
+    return uplift.to_stored(measure_uplift(folder, plan, records)) or _recorded(folder, plan)
 
 
-def measure(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> Uplift | None:
+def measure_uplift(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> Uplift | None:
     """What the run adds, worked out from its control's log; None where it has no robot or no whole control is found."""
     found = next(_whole(folder, plan, _anywhere(folder)), None)
-    return None if found is None else uplift.over(found[2], records, run=found[1].sha256)
+    return None if found is None else uplift.make_uplift(found[2], records, run=found[1].sha256)
 
 
-def find(folder: Path, plan: RunConfig) -> tuple[RunConfig, list[TrialRecord]] | None:
+def find_baseline(folder: Path, plan: RunConfig) -> tuple[RunConfig, list[TrialRecord]] | None:
     """The control of a run and its records: in the run's own folder, or the first in order of names that lies beside.
 
     It counts only when it is whole; its metrics are worked out again from its events.
@@ -44,16 +44,16 @@ def find(folder: Path, plan: RunConfig) -> tuple[RunConfig, list[TrialRecord]] |
     return next(((there, kept) for _, there, kept in _whole(folder, plan, _near(folder))), None)
 
 
-def place(folder: Path, plan: RunConfig) -> Path | None:
+def baseline_folder(folder: Path, plan: RunConfig) -> Path | None:
     """Where the control of a run lies: in its folder, beside it, or anywhere else where runs usually are."""
     return next((candidate for candidate, _, _ in _whole(folder, plan, _anywhere(folder))), None)
 
 
-def _recorded(folder: Path, plan: RunConfig) -> Kept | None:
+def _recorded(folder: Path, plan: RunConfig) -> StoredUplift | None:
     """The uplift that stands in the run's result already."""
     if not plan.seats:
         return None
-    known = result_file.uplift(folder, run=plan.sha256)
+    known = result_file.stored_uplift(folder, run=plan.sha256)
     return None if known is None else msgspec.structs.replace(known, note=uplift.RECORDED)
 
 
@@ -64,7 +64,7 @@ def _whole(
     if not plan.seats:
         return
     fitting = [(candidate, there) for candidate in candidates if (there := _fits(candidate, plan)) is not None]
-    known = result_file.uplift(folder, run=plan.sha256)
+    known = result_file.stored_uplift(folder, run=plan.sha256)
     named = known.control if known is not None else ""
     for candidate, there in sorted(fitting, key=lambda one: one[1].sha256 != named):
         kept = _records(candidate)
@@ -78,7 +78,7 @@ def _fits(candidate: Path, plan: RunConfig) -> RunConfig | None:
         there = run_config.load_config(candidate)
     except RunError:  # of another version, or damaged
         return None
-    fits = not there.seats and not pairing.difference(plan, there) and there.participants >= plan.participants
+    fits = not there.seats and not pairing.differing_field(plan, there) and there.participants >= plan.participants
     return there if fits else None
 
 

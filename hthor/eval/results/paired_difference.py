@@ -13,7 +13,7 @@ from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import Metric, mean_limit
 from hthor.eval.results.pairing import Pair
 from hthor.eval.statistics import intervals, power, variance_components
-from hthor.eval.statistics.variance_components import Spread
+from hthor.eval.statistics.variance_components import MeanSpread
 
 _DIGITS = 6
 
@@ -73,18 +73,18 @@ def paired_difference(pairs: Sequence[Pair], metric: str, *, level: float = inte
     rows = [(one, other, spec) for one, other, spec in values if one is not None and other is not None]
     if not rows:
         return None
-    return between(
+    return difference_of_values(
         np.array([one for one, _, _ in rows], dtype=np.float64),
         np.array([other for _, other, _ in rows], dtype=np.float64),
-        variance_components.codes([spec.task.id for _, _, spec in rows]),
-        variance_components.codes([spec.participant for _, _, spec in rows]),
+        variance_components.group_codes([spec.task.id for _, _, spec in rows]),
+        variance_components.group_codes([spec.participant for _, _, spec in rows]),
         registry.get(metric),
         limit_s=mean_limit([spec.task.time_limit for _, _, spec in rows]),
         level=level,
     )
 
 
-def between(
+def difference_of_values(
     first: np.ndarray,
     second: np.ndarray,
     tasks: np.ndarray,
@@ -101,11 +101,11 @@ def between(
         level: of the interval, two-sided; more than 95 % where it is one of several.
     """
     count, share, room = len(first), metric.is_share, metric.width(limit_s)
-    found = spread_of((second - first)[None], tasks, people, share=share)
+    found = difference_spread((second - first)[None], tasks, people, share=share)
     raw, freedom = float(found.mean[0]), float(found.freedom[0])
     known = math.isfinite(float(found.variance[0]))
-    low, high = (float(end[0]) for end in ends(found, share=share, room=room, level=(1.0 + level) / 2.0))
-    needed = float(intervals.detectable(found, count)[0])
+    low, high = (float(end[0]) for end in interval_ends(found, share=share, room=room, level=(1.0 + level) / 2.0))
+    needed = float(intervals.detectable_difference(found, count)[0])
     gap = _rounded(float(second.mean())) - _rounded(float(first.mean()))  # as `hthor power` reads it
     return Difference(
         n=count,
@@ -113,7 +113,7 @@ def between(
         second=_rounded(float(second.mean())),
         difference=_rounded(raw),
         ci95=(_rounded(min(low, raw)), _rounded(max(high, raw))) if known else None,
-        p=p_value(raw, float(null(found, share=share)[0]), freedom) if known else None,
+        p=p_value(raw, float(null_variance(found, share=share)[0]), freedom) if known else None,
         mde80=_rounded(needed) if known else None,
         correlation=_correlation(first, second),
         gain=_gain(first, second),
@@ -121,7 +121,7 @@ def between(
     )
 
 
-def spread_of(gaps: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, share: bool) -> Spread:
+def difference_spread(gaps: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, share: bool) -> MeanSpread:
     """The spread of the mean of differences, (..., N), as all comparisons take it.
 
     Args:
@@ -129,14 +129,14 @@ def spread_of(gaps: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, share:
             which one robot failed wholly and the other did not at all: two robots that never differed in sixty trials
             are not equal beyond doubt.
     """
-    found, count = variance_components.two_way(gaps, tasks, people, differences=True), gaps.shape[-1]
+    found, count = variance_components.two_way_spread(gaps, tasks, people, differences=True), gaps.shape[-1]
     if not share:
         return found
     variance, single = np.maximum(found.variance, 2.0 / count**2), np.maximum(found.single, 2.0 / count)
     return msgspec.structs.replace(found, variance=variance, single=single)
 
 
-def null(found: Spread, *, share: bool) -> np.ndarray:
+def null_variance(found: MeanSpread, *, share: bool) -> np.ndarray:
     """The variance that a mean difference would have if there were none.
 
     For shares it counts the squares about zero instead of about the mean, so that a few trials that all speak for one
@@ -145,8 +145,8 @@ def null(found: Spread, *, share: bool) -> np.ndarray:
     return found.variance * (1.0 + found.mean**2 / found.single) if share else found.variance
 
 
-def ends(
-    found: Spread, *, share: bool, room: float = 1.0, level: float = (1.0 + intervals.LEVEL) / 2.0
+def interval_ends(
+    found: MeanSpread, *, share: bool, room: float = 1.0, level: float = (1.0 + intervals.LEVEL) / 2.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """The 95 % interval: every true difference from which the one that was found is not told apart.
 
@@ -158,7 +158,7 @@ def ends(
         room: the largest difference that there can be, 1 of shares; infinite where there is no bound.
         level: of the quantile, one-sided.
     """
-    quantile = intervals.student(found.freedom, level)
+    quantile = intervals.student_quantile(found.freedom, level)
     some = quantile**2 * found.variance
     half = np.sqrt(some)
     if share:
@@ -169,7 +169,7 @@ def ends(
 
 
 def _inside(
-    found: Spread, some: np.ndarray, room: float, low: np.ndarray, high: np.ndarray
+    found: MeanSpread, some: np.ndarray, room: float, low: np.ndarray, high: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """The part of an interval in which differences need not vary more than they can: a score interval, as Wilson's."""
     known = np.isfinite(some) & (found.single > 0.0)
@@ -193,17 +193,17 @@ def mcnemar(pairs: Sequence[Pair]) -> McNemar:
     """The exact test of success."""
     only_first = sum(pair.one.met and not pair.other.met for pair in pairs)
     only_second = sum(pair.other.met and not pair.one.met for pair in pairs)
-    return McNemar(only_first=only_first, only_second=only_second, p=exact(only_first, only_second))
+    return McNemar(only_first=only_first, only_second=only_second, p=exact_p_value(only_first, only_second))
 
 
-def exact(one: int, other: int) -> float:
+def exact_p_value(one: int, other: int) -> float:
     """Probability of a split at least as uneven as this when either side is as likely."""
     count, least = one + other, min(one, other)
     below = sum(math.comb(count, k) for k in range(least + 1))
     return float(f"{min(1.0, 2 * below / 2**count):.6g}")  # whole numbers to the end: nothing underflows
 
 
-def holm(p: Sequence[float]) -> list[float]:
+def holm_adjusted(p: Sequence[float]) -> list[float]:
     """Holm's adjusted p-values for several comparisons at once, in the order given."""
     order = sorted(range(len(p)), key=lambda k: (p[k], k))
     adjusted, most = [0.0] * len(p), 0.0
@@ -213,13 +213,13 @@ def holm(p: Sequence[float]) -> list[float]:
     return adjusted
 
 
-def noise(pairs: Sequence[Pair], metric: str) -> Noise:
+def trial_noise(pairs: Sequence[Pair], metric: str) -> Noise:
     """How much single trials of these pairs vary in a metric that all of them have."""
     values = np.array([[one.metrics[metric] for one in (pair.one, pair.other)] for pair in pairs], dtype=float)
-    tasks = variance_components.codes([pair.one.spec.task.id for pair in pairs])
-    people = variance_components.codes([pair.one.spec.participant for pair in pairs])
-    gap = spread_of((values[:, 1] - values[:, 0])[None], tasks, people, share=registry.get(metric).is_share)
-    each = variance_components.two_way(values.T, tasks, people)
+    tasks = variance_components.group_codes([pair.one.spec.task.id for pair in pairs])
+    people = variance_components.group_codes([pair.one.spec.participant for pair in pairs])
+    gap = difference_spread((values[:, 1] - values[:, 0])[None], tasks, people, share=registry.get(metric).is_share)
+    each = variance_components.two_way_spread(values.T, tasks, people)
     count = len(pairs)
     first, second = (count * each.variance).tolist()
     return Noise(
@@ -235,7 +235,7 @@ def _a_trial(freedom: float, count: int) -> float:
 
 def _more(difference: float, variance: float, freedom: float, count: int) -> int | None:
     scatter = power.Scatter(variance=variance, freedom=_a_trial(freedom, count))
-    needed = power.trials_for(difference, scatter)
+    needed = power.trials_needed(difference, scatter)
     return None if needed is None else max(0, needed - count)
 
 

@@ -31,7 +31,7 @@ class Pair(Struct, frozen=True, kw_only=True):
     other: TrialRecord
 
 
-class Joined(Struct, frozen=True, kw_only=True):
+class PairedTrials(Struct, frozen=True, kw_only=True):
     """Two runs' trials side by side, in the order of people and their trials, and how many have no partner."""
 
     pairs: tuple[Pair, ...]
@@ -39,7 +39,7 @@ class Joined(Struct, frozen=True, kw_only=True):
     only_other: int
 
 
-def occasion(spec: TrialSpec) -> str:
+def pairing_key(spec: TrialSpec) -> str:
     """The name of what a trial was but for the robots: this person, on this day, at this task.
 
     It is the key of the trial without a robot. Equal occasions meet equal draws of chance. A furniture pack is left
@@ -49,18 +49,18 @@ def occasion(spec: TrialSpec) -> str:
     return trial_record.key(msgspec.structs.replace(spec, robots=(), assets_sha256="", **of_robots))
 
 
-def difference(one: RunConfig, other: RunConfig) -> str:
+def differing_field(one: RunConfig, other: RunConfig) -> str:
     """The first field in which two runs differ so that their trials cannot be paired; empty when they can."""
     return next((field for field in _SAME if _value(one, field) != _value(other, field)), "")
 
 
-def check(one: tuple[Path, RunConfig], other: tuple[Path, RunConfig]) -> None:
+def check_comparable(one: tuple[Path, RunConfig], other: tuple[Path, RunConfig]) -> None:
     """See that two runs can be compared.
 
     Raises:
         RunError: when they cannot, naming the field.
     """
-    field = difference(one[1], other[1])
+    field = differing_field(one[1], other[1])
     if not field:
         return
     here, there = (_short(_value(plan, field)) for _, plan in (one, other))
@@ -70,10 +70,10 @@ def check(one: tuple[Path, RunConfig], other: tuple[Path, RunConfig]) -> None:
     )
 
 
-def join(one: Sequence[TrialRecord], other: Sequence[TrialRecord]) -> Joined:
+def pair_trials(one: Sequence[TrialRecord], other: Sequence[TrialRecord]) -> PairedTrials:
     """The trials that both have."""
-    first, second = ({occasion(found.spec): found for found in some} for some in (one, other))
-    return Joined(
+    first, second = ({pairing_key(found.spec): found for found in some} for some in (one, other))
+    return PairedTrials(
         pairs=tuple(Pair(one=found, other=second[name]) for name, found in first.items() if name in second),
         only_one=sum(name not in second for name in first),
         only_other=sum(name not in first for name in second),

@@ -14,7 +14,7 @@ from hthor.eval.config import robot_team, run_config
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
 from hthor.eval.metrics import registry
-from hthor.eval.results.uplift import Kept
+from hthor.eval.results.uplift import StoredUplift
 from hthor.eval.statistics.intervals import NOTHING, Estimate
 from hthor.guest import Isolation, Manifest
 from hthor.types import RobotSeat
@@ -119,7 +119,7 @@ class RunResult(Struct, frozen=True, kw_only=True):
     metrics: Scores
     by_kind: dict[str, Scores]
     trust_by_trial: tuple[Estimate, ...] = ()
-    uplift: Kept | None = None
+    uplift: StoredUplift | None = None
     counts: Counts
     versions: dict[str, str]
     hashes: Hashes
@@ -133,7 +133,7 @@ class RunResult(Struct, frozen=True, kw_only=True):
         return robot_team.display_name(self.name, self.robots)
 
 
-def load(folder: Path) -> RunResult | None:
+def load_result(folder: Path) -> RunResult | None:
     """The stored result of a run, None when there is none.
 
     Raises:
@@ -154,10 +154,10 @@ class _Gained(Struct, frozen=True):
     """The part of a result that `uplift` reads, whatever the version of the rest."""
 
     hashes: _Named = _Named()
-    uplift: Kept | None = None
+    uplift: StoredUplift | None = None
 
 
-def uplift(folder: Path, *, run: str) -> Kept | None:
+def stored_uplift(folder: Path, *, run: str) -> StoredUplift | None:
     """The uplift that a run's result has recorded, whatever its version; None where it has none for this run's hash."""
     try:
         held = documents.decode((folder / "result.json").read_bytes(), _Gained)
@@ -166,12 +166,12 @@ def uplift(folder: Path, *, run: str) -> Kept | None:
     return held.uplift if held.hashes.run == run else None
 
 
-def outdated(path: Path) -> bool:
+def is_outdated(path: Path) -> bool:
     """Whether a file is a result of another version of the format."""
     name = documents.schema_of(path)
     return name != SCHEMA and name.startswith(SCHEMA.partition("/")[0])
 
 
-def store(folder: Path, result: RunResult) -> None:
+def store_result(folder: Path, result: RunResult) -> None:
     """Write `result.json`."""
     jsonio.write(folder / "result.json", jsonio.pretty(result))

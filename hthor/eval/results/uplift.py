@@ -28,7 +28,7 @@ class Uplift(Struct, frozen=True, kw_only=True):
     time_s: Difference
 
 
-class Kept(Uplift, frozen=True, kw_only=True):
+class StoredUplift(Uplift, frozen=True, kw_only=True):
     """An uplift as a run's result has it.
 
     ``note`` is there only where the control's log was not at hand when the run was scored, so that the numbers are the
@@ -38,16 +38,16 @@ class Kept(Uplift, frozen=True, kw_only=True):
     note: str | msgspec.UnsetType = msgspec.UNSET
 
 
-def kept(one: Uplift | None) -> Kept | None:
+def to_stored(one: Uplift | None) -> StoredUplift | None:
     """The same as a result has it."""
-    if one is None or isinstance(one, Kept):
+    if one is None or isinstance(one, StoredUplift):
         return one
-    return Kept(control=one.control, sr=one.sr, twsr=one.twsr, time_s=one.time_s)
+    return StoredUplift(control=one.control, sr=one.sr, twsr=one.twsr, time_s=one.time_s)
 
 
-def over(control: Sequence[TrialRecord], records: Sequence[TrialRecord], *, run: str) -> Uplift | None:
+def make_uplift(control: Sequence[TrialRecord], records: Sequence[TrialRecord], *, run: str) -> Uplift | None:
     """The uplift of ``records`` over those of a control whose hash is ``run``; None without a trial in common."""
-    pairs = pairing.join(control, records).pairs
+    pairs = pairing.pair_trials(control, records).pairs
     sr, twsr, time_s = (paired_difference.paired_difference(pairs, metric) for metric in METRICS)
     if sr is None or twsr is None or time_s is None:
         return None

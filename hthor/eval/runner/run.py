@@ -136,17 +136,17 @@ def _finish(folder: Path, plan: RunConfig, effort: Effort | None) -> RunResult:
     if plan.shard:
         if effort is not None:
             jsonio.write(folder / EFFORT, jsonio.pretty(effort))
-        return aggregate.summarise(plan, trial_log.fetch(there), records, effort)
-    stored = result_file.load(folder)
-    result = aggregate.summarise(
+        return aggregate.make_result(plan, trial_log.fetch(there), records, effort)
+    stored = result_file.load_result(folder)
+    result = aggregate.make_result(
         plan,
         trial_log.fetch(there),
         records,
         effort or (stored.effort if stored else None),
-        uplift=baseline.beside(folder, plan, records),
+        uplift=baseline.uplift_or_stored(folder, plan, records),
         isolation=run_isolation.load_isolation(folder),
         replays=session_restarts.count(folder),
     )
     if result != stored:
-        result_file.store(folder, result)
+        result_file.store_result(folder, result)
     return result

@@ -125,7 +125,7 @@ def _controls(options: RunOptions, chosen: TaskSelection, parts: Sequence[RunJob
     crew = robot_team.form_team(["scout"], [robot_team.NO_ROBOT_AGENT])
     found: dict[Path, RunJob] = {}
     for part in parts:
-        if not part.plan.seats or baseline.find(part.folder, part.plan) is not None:
+        if not part.plan.seats or baseline.find_baseline(part.folder, part.plan) is not None:
             continue
         same = [other for other in parts if other.people.sha256 == part.people.sha256]
         asked = next((other for other in same if not other.plan.seats), None)

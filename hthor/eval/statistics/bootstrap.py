@@ -18,7 +18,9 @@ _STEPS = 1e6
 """Values are counted in millionths: sums of whole numbers are the same on every machine."""
 
 
-def means(values: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, name: str, draws: int = DRAWS) -> np.ndarray:
+def bootstrap_means(
+    values: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, name: str, draws: int = DRAWS
+) -> np.ndarray:
     """Means of each row over each sample, (..., at most ``draws``).
 
     Where every task was done once, their spread takes the noise of single trials for three times what it is. How the

@@ -52,12 +52,14 @@ def estimate(values: Sequence[float], tasks: Sequence[str], people: Sequence[int
     """
     if not values:
         return NOTHING
-    found = variance_components.two_way(
-        np.asarray(values, dtype=np.float64)[None], variance_components.codes(tasks), variance_components.codes(people)
+    found = variance_components.two_way_spread(
+        np.asarray(values, dtype=np.float64)[None],
+        variance_components.group_codes(tasks),
+        variance_components.group_codes(people),
     )
     mean = sum(values) / len(values)
-    low, high = (float(end[0]) for end in interval(found, len(values), within))
-    mde = float(detectable(found, len(values), within)[0])
+    low, high = (float(end[0]) for end in confidence_interval(found, len(values), within))
+    mde = float(detectable_difference(found, len(values), within)[0])
     return Estimate(
         mean=round(mean, _DIGITS),
         ci95=(round(min(low, mean), _DIGITS), round(max(high, mean), _DIGITS)) if math.isfinite(high - low) else None,
@@ -66,10 +68,12 @@ def estimate(values: Sequence[float], tasks: Sequence[str], people: Sequence[int
     )
 
 
-def interval(found: variance_components.Spread, count: int, within: Range = ANY) -> tuple[np.ndarray, np.ndarray]:
+def confidence_interval(
+    found: variance_components.MeanSpread, count: int, within: Range = ANY
+) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper ends of the 95 % intervals of means over ``count`` trials."""
     low, high = within
-    quantile = student(_freedom(found, within), (1.0 + LEVEL) / 2.0)
+    quantile = student_quantile(_freedom(found, within), (1.0 + LEVEL) / 2.0)
     if math.isinf(low):
         half = quantile * np.sqrt(found.variance)
         return found.mean - half, found.mean + half
@@ -83,7 +87,7 @@ def interval(found: variance_components.Spread, count: int, within: Range = ANY)
     return low + (high - low) * ends[0], low + (high - low) * ends[1]
 
 
-def _above(found: variance_components.Spread, low: float, quantile: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _above(found: variance_components.MeanSpread, low: float, quantile: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The score interval of an amount that has only a least value: its variance grows with its mean, as a count's."""
     mean = np.maximum(found.mean - low, 0.0)
     known = np.isfinite(found.variance)
@@ -97,7 +101,7 @@ def _above(found: variance_components.Spread, low: float, quantile: np.ndarray) 
     return low + np.where(known, lower, 0.0), np.where(known, low + upper, np.inf)
 
 
-def detectable(found: variance_components.Spread, count: int, within: Range = ANY) -> np.ndarray:
+def detectable_difference(found: variance_components.MeanSpread, count: int, within: Range = ANY) -> np.ndarray:
     """The smallest difference from a given number that is seen with a probability of `POWER`."""
     low, high = within
     variance = found.variance
@@ -106,12 +110,12 @@ def detectable(found: variance_components.Spread, count: int, within: Range = AN
         edge = inner * (1.0 - inner) * (high - low) ** 2 * _inverse_worth(found, count, within)
         variance = np.where(np.isfinite(variance) & (variance > 0.0), variance, edge)
     freedom = _freedom(found, within)
-    factor = student(freedom, (1.0 + LEVEL) / 2.0) + student(freedom, POWER)
+    factor = student_quantile(freedom, (1.0 + LEVEL) / 2.0) + student_quantile(freedom, POWER)
     needed: np.ndarray = factor * np.sqrt(variance)
     return needed
 
 
-def _freedom(found: variance_components.Spread, within: Range) -> np.ndarray:
+def _freedom(found: variance_components.MeanSpread, within: Range) -> np.ndarray:
     """Degrees of freedom. Near a bound, where few trials deviate, what these few trials' tasks and people tell counts.
 
     In the middle between the bounds, unevenness is mostly chance.
@@ -125,7 +129,7 @@ def _freedom(found: variance_components.Spread, within: Range) -> np.ndarray:
     return least
 
 
-def _inverse_worth(found: variance_components.Spread, count: int, within: Range) -> np.ndarray:
+def _inverse_worth(found: variance_components.MeanSpread, count: int, within: Range) -> np.ndarray:
     """One divided by the number of independent trials of yes or no that tell as much as these do."""
     low, high = within
     most = (found.mean - low) * (high - found.mean)
@@ -135,7 +139,7 @@ def _inverse_worth(found: variance_components.Spread, count: int, within: Range)
     return np.where(np.isfinite(worth), worth, plain)
 
 
-def student(freedom: np.ndarray, level: float) -> np.ndarray:
+def student_quantile(freedom: np.ndarray, level: float) -> np.ndarray:
     """The quantile of Student's t."""
     from scipy import special  # comes with the core: scikit-image needs it
 

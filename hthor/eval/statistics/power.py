@@ -14,7 +14,7 @@ from hthor.eval.statistics import intervals
 _MOST = 10**7
 
 
-class Need(Struct, frozen=True, kw_only=True):
+class SampleSize(Struct, frozen=True, kw_only=True):
     """How many it takes for each robot: trials, which are tasks done once each, and people, who do ten each."""
 
     difference: float
@@ -49,7 +49,7 @@ def correlation_range(first: float, second: float) -> tuple[float, float]:
     return ((max(0.0, first + second - 1.0) - first * second) / spread, (min(first, second) - first * second) / spread)
 
 
-def possible(first: float, second: float) -> None:
+def check_rates(first: float, second: float) -> None:
     """Do nothing when these can be rates.
 
     Raises:
@@ -60,14 +60,14 @@ def possible(first: float, second: float) -> None:
             raise HthorError(f"the {name} rate is {rate:g}, but must be from 0 to 1.")
 
 
-def need(
+def sample_size(
     first: float,
     second: float,
     *,
     correlation: float = 0.0,
     power: float = intervals.POWER,
     scatter: Scatter | None = None,
-) -> Need:
+) -> SampleSize:
     """What it takes to tell two success rates apart, two-sided at 5 %, with tasks that are done once each.
 
     Args:
@@ -78,7 +78,7 @@ def need(
     Raises:
         HthorError: when a rate or the correlation is impossible.
     """
-    possible(first, second)
+    check_rates(first, second)
     low, high = correlation_range(first, second)
     if not low - 1e-9 <= correlation <= high + 1e-9:
         raise HthorError(
@@ -86,12 +86,12 @@ def need(
             f"it must be from {low:.2f} to {high:.2f}."
         )
     held = scatter or Scatter(variance=variance_of_difference(first, second, correlation))
-    trials = trials_for(second - first, held, power=power)
+    trials = trials_needed(second - first, held, power=power)
     if trials is None:
         raise HthorError(
             "the two rates are equal, and no number of trials can tell them apart. Give two rates, or --difference."
         )
-    return Need(
+    return SampleSize(
         difference=round(second - first, 6),
         correlation=round(correlation, 6),
         power=power,
@@ -100,7 +100,7 @@ def need(
     )
 
 
-def trials_for(difference: float, scatter: Scatter, *, power: float = intervals.POWER) -> int | None:
+def trials_needed(difference: float, scatter: Scatter, *, power: float = intervals.POWER) -> int | None:
     """Trials whose mean difference is told from 0 with this power; None where there is no difference or no end."""
     if difference == 0.0:
         return None
@@ -115,7 +115,7 @@ def trials_for(difference: float, scatter: Scatter, *, power: float = intervals.
     return many
 
 
-def about(number: int) -> str:
+def rounded_count(number: int) -> str:
     """A forecast in words: two figures are as many as it has."""
     digits = len(str(number)) - 2
     return str(round(number, -digits)) if digits > 0 else str(number)
@@ -123,5 +123,7 @@ def about(number: int) -> str:
 
 def _enough(count: int, difference: float, scatter: Scatter, power: float) -> bool:
     freedom = np.array(max(1.0, count * scatter.freedom - 1.0))
-    factor = float(intervals.student(freedom, (1.0 + intervals.LEVEL) / 2.0) + intervals.student(freedom, power))
+    factor = float(
+        intervals.student_quantile(freedom, (1.0 + intervals.LEVEL) / 2.0) + intervals.student_quantile(freedom, power)
+    )
     return factor * math.sqrt(scatter.variance / count) <= abs(difference)

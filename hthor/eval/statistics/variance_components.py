@@ -19,7 +19,7 @@ _LEAST = 0.8
 """What is left of the variance of independent trials where trials of one task or person hang together negatively."""
 
 
-class Spread(Struct, frozen=True, kw_only=True):
+class MeanSpread(Struct, frozen=True, kw_only=True):
     """Means over trials, one for each row of values, the variances of these means, and their degrees of freedom.
 
     Each is an array of the rows' shape. ``single`` is the variance of single values. ``uneven`` is degrees of freedom
@@ -33,13 +33,15 @@ class Spread(Struct, frozen=True, kw_only=True):
     single: np.ndarray
 
 
-def codes(names: Sequence[object]) -> np.ndarray:
+def group_codes(names: Sequence[object]) -> np.ndarray:
     """Each name's index among the distinct names in order of first appearance."""
     index: dict[object, int] = {}
     return np.array([index.setdefault(name, len(index)) for name in names], dtype=np.int64)
 
 
-def two_way(values: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, differences: bool = False) -> Spread:
+def two_way_spread(
+    values: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, differences: bool = False
+) -> MeanSpread:
     """The spread of a mean for new tasks and new people of the same populations.
 
     Where the variance between tasks or between people comes out negative, it is none, and the largest of what remains
@@ -54,7 +56,7 @@ def two_way(values: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, differ
     mean = values.mean(axis=-1)
     if count < 2:
         one = np.ones_like(mean)
-        return Spread(mean=mean, variance=np.full_like(mean, np.inf), freedom=one, uneven=one, single=one)
+        return MeanSpread(mean=mean, variance=np.full_like(mean, np.inf), freedom=one, uneven=one, single=one)
     rest = values - mean[..., None]
     by = {"e": rest**2, "t": _sums(rest, tasks) ** 2, "p": _sums(rest, people) ** 2}
     squares = {name: found.sum(axis=-1) for name, found in by.items()}
@@ -63,7 +65,7 @@ def two_way(values: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, differ
     some = [held["e"], held["etp"]] if differences else list(held.values())
     variance = np.maximum.reduce(some)
     freedom = _freedom(variance, held, {"e": count, "et": by["t"].shape[-1], "ep": by["p"].shape[-1]})
-    return Spread(
+    return MeanSpread(
         mean=mean,
         variance=np.maximum(held["etp"], _LEAST * held["e"]) if differences else variance,
         freedom=freedom,

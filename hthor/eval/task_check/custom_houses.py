@@ -24,7 +24,7 @@ TASKS = 10
 _FORBIDDEN = re.compile(r"[^A-Za-z0-9_.-]+")
 
 
-def resolve(options: RunOptions, tell: Callable[[str], None]) -> RunOptions:
+def resolve_houses(options: RunOptions, tell: Callable[[str], None]) -> RunOptions:
     """The options with a suite of tasks in the house files that are given; unchanged where none is given.
 
     Args:
@@ -57,7 +57,7 @@ def _suite(options: RunOptions, found: tuple[HouseSource, ...], tell: Callable[[
     if not (folder / suite_files.SUITE).is_file():
         tell(f"making {TASKS} tasks in {', '.join(one.given for one in found)}; they are kept for the next time")
         jobs = options.jobs or len(os.sched_getaffinity(0))
-        made = dict(proved.columns(recipe, found, jobs=jobs))
+        made = dict(proved.make_tasks(recipe, found, jobs=jobs))
         columns = [made[number] for number in range(len(found))]
         suite_files.write_files(folder, suite_files.make_files(recipe.name, custom_suite.VERSION, found, columns))
     return folder

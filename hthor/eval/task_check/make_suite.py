@@ -15,13 +15,13 @@ from hthor.types import HouseSpec, TaskSpec
 CODE_ROOT = "makers"
 
 
-def columns(recipe: Recipe, given: Sequence[HouseSource], *, jobs: int) -> Iterator[tuple[int, tuple[TaskSpec, ...]]]:
+def make_tasks(recipe: Recipe, given: Sequence[HouseSource], *, jobs: int) -> Iterator[tuple[int, tuple[TaskSpec, ...]]]:
     """The tasks of each house with the house's number, as they are ready. Closing the iterator ends the workers.
 
     Raises:
         HthorError: when a house has no room for so many tasks that can be done.
     """
-    yield from proof.shared(functools.partial(_column, recipe), given, jobs=jobs)
+    yield from proof.run_in_workers(functools.partial(_column, recipe), given, jobs=jobs)
 
 
 def _column(recipe: Recipe, source: HouseSource) -> tuple[TaskSpec, ...]:
@@ -29,4 +29,4 @@ def _column(recipe: Recipe, source: HouseSource) -> tuple[TaskSpec, ...]:
 
 
 def _possible(task: TaskSpec, house: HouseSpec) -> bool:
-    return not proof.examine(task, house).faults
+    return not proof.check_task(task, house).faults

@@ -48,7 +48,7 @@ _In = TypeVar("_In")
 _Out = TypeVar("_Out")
 
 
-class Fault(Struct, frozen=True, kw_only=True):
+class TaskFault(Struct, frozen=True, kw_only=True):
     """What is wrong with a task: which field of it says so, and why that is not so."""
 
     task: str
@@ -56,7 +56,7 @@ class Fault(Struct, frozen=True, kw_only=True):
     reason: str
 
 
-class Verdict(Struct, frozen=True, kw_only=True):
+class TaskVerdict(Struct, frozen=True, kw_only=True):
     """What came of one task's check. ``drift`` [m] is the farthest that an object moved when it was woken, ``seconds``
     what the task takes a person who knows everything, ``metres`` how far they walk; 0 where that could not be tried.
     """
@@ -67,22 +67,26 @@ class Verdict(Struct, frozen=True, kw_only=True):
     drift: float = 0.0
     seconds: float = 0.0
     metres: float = 0.0
-    faults: tuple[Fault, ...] = ()
+    faults: tuple[TaskFault, ...] = ()
 
 
-def verdicts(tasks: Sequence[TaskSpec], *, jobs: int, houses: HouseLibrary = OURS) -> Generator[Verdict, None, None]:
+def check_tasks(
+    tasks: Sequence[TaskSpec], *, jobs: int, houses: HouseLibrary = OURS
+) -> Generator[TaskVerdict, None, None]:
     """Check tasks in worker processes; verdicts come as they are ready. Closing the iterator ends the workers.
 
     Args:
         houses: finds the tasks' houses by name.
     """
     work = functools.partial(_examine, houses=houses)
-    with closing(shared(work, _chunks(tasks), jobs=jobs)) as found:
+    with closing(run_in_workers(work, _chunks(tasks), jobs=jobs)) as found:
         for _, own in found:
             yield from own
 
 
-def shared(work: Callable[[_In], _Out], items: Sequence[_In], *, jobs: int) -> Generator[tuple[int, _Out], None, None]:
+def run_in_workers(
+    work: Callable[[_In], _Out], items: Sequence[_In], *, jobs: int
+) -> Generator[tuple[int, _Out], None, None]:
     """Do something to each item in worker processes; results come with the items' numbers as they are ready.
 
     Closing the iterator ends the workers.
@@ -104,7 +108,7 @@ def shared(work: Callable[[_In], _Out], items: Sequence[_In], *, jobs: int) -> G
         os.environ.update(before)
 
 
-def examine(task: TaskSpec, house: HouseSpec | HouseLibrary = OURS) -> Verdict:
+def check_task(task: TaskSpec, house: HouseSpec | HouseLibrary = OURS) -> TaskVerdict:
     """Check one task in this process, in its house or in the one that a library has under its house's name."""
     try:
         house = _house(house, task.house, task.house_sha256) if isinstance(house, HouseLibrary) else house
@@ -119,14 +123,14 @@ def examine(task: TaskSpec, house: HouseSpec | HouseLibrary = OURS) -> Verdict:
         return _unsound(task, [("$", str(error))])
 
 
-def repeated(tasks: Sequence[TaskSpec]) -> list[Fault]:
+def repeated(tasks: Sequence[TaskSpec]) -> list[TaskFault]:
     """A fault for every id that more than one task has."""
     many = Counter(task.id for task in tasks)
     reason = "is the id of {} tasks; ids must be distinct"
-    return [Fault(task=id, field="id", reason=reason.format(count)) for id, count in many.items() if count > 1]
+    return [TaskFault(task=id, field="id", reason=reason.format(count)) for id, count in many.items() if count > 1]
 
 
-def _proved(task: TaskSpec, house: HouseSpec) -> Verdict:
+def _proved(task: TaskSpec, house: HouseSpec) -> TaskVerdict:
     """What came of a task whose record is valid in its house."""
     world = _world(house, tuple((placed.id, placed.kind) for placed in task.objects))
     inside = tuple(_inside(world, task))
@@ -139,9 +143,9 @@ def _proved(task: TaskSpec, house: HouseSpec) -> Verdict:
     return msgspec.structs.replace(verdict, drift=max(drift.values(), default=0.0), seconds=seconds, metres=metres)
 
 
-def _unsound(task: TaskSpec, faults: Sequence[tuple[str, str]]) -> Verdict:
-    rows = tuple(Fault(task=task.id, field=field, reason=reason) for field, reason in faults)
-    return Verdict(task=task.id, house=task.house, least=_least(task), faults=rows)
+def _unsound(task: TaskSpec, faults: Sequence[tuple[str, str]]) -> TaskVerdict:
+    rows = tuple(TaskFault(task=task.id, field=field, reason=reason) for field, reason in faults)
+    return TaskVerdict(task=task.id, house=task.house, least=_least(task), faults=rows)
 
 
 def _least(task: TaskSpec) -> float:
@@ -267,8 +271,8 @@ def _chunks(tasks: Sequence[TaskSpec]) -> list[list[TaskSpec]]:
     return [own[first : first + _CHUNK] for own in by_house.values() for first in range(0, len(own), _CHUNK)]
 
 
-def _examine(tasks: Sequence[TaskSpec], houses: HouseLibrary) -> list[Verdict]:
-    return [examine(task, houses) for task in tasks]
+def _examine(tasks: Sequence[TaskSpec], houses: HouseLibrary) -> list[TaskVerdict]:
+    return [check_task(task, houses) for task in tasks]
 
 
 def _begin(parent: int) -> None:
@@ -290,4 +294,15 @@ def _world(house: HouseSpec, objects: tuple[tuple[str, str], ...]) -> World:
     return World(house, objects=objects)
 
 
-__all__ = ["DRIFT_M", "HUMAN", "WATCHED_S", "Fault", "Verdict", "examine", "repeated", "shared", "verdicts", "woken"]
+__all__ = [
+    "DRIFT_M",
+    "HUMAN",
+    "WATCHED_S",
+    "TaskFault",
+    "TaskVerdict",
+    "check_task",
+    "check_tasks",
+    "repeated",
+    "run_in_workers",
+    "woken",
+]

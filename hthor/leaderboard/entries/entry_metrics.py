@@ -80,7 +80,7 @@ def uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes) -> U
     whose = np.array(people(entry.trials.count, entry.run.participants), dtype=np.int64)
     tasks = np.arange(entry.trials.count, dtype=np.int64)
     found = {
-        metric: paired_difference.between(
+        metric: paired_difference.difference_of_values(
             values(without, metric, alone=True),
             values(held, metric, alone=False),
             tasks,

@@ -10,7 +10,7 @@ from hthor.eval.statistics.intervals import Estimate
 from hthor.leaderboard.entries.verification import ENOUGH, Replayed
 from hthor.leaderboard.ranking.board import Row, Section, Standing
 from hthor.report.html.markup import Markup, Piece, join, link, tag
-from hthor.report.terminal.result_tables import least
+from hthor.report.terminal.result_tables import format_detectable
 
 NOTHING = "–"
 _TIERS = {"V1": "byte for byte", "V2": "by outcomes", "V3": "statistically"}
@@ -143,7 +143,7 @@ def _small(text: str) -> Markup:
 
 def _interval(ends: str, one: Estimate | Difference, unit: Unit) -> Markup:
     """The interval; pointing at it tells how many trials it is of, and what they could have seen."""
-    told = f"n {one.n}, could have seen {least(one.mde80, unit)}"
+    told = f"n {one.n}, could have seen {format_detectable(one.mde80, unit)}"
     return tag("small", ends, class_="soft", title=told)
 
 

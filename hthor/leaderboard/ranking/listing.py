@@ -111,7 +111,7 @@ def _ranks(entries: Sequence[Entry]) -> dict[str, Ranks]:
         rows = np.stack([entry_metrics.values(one, metric, alone=False) for one in held])
         by_metric[metric] = [
             Standing(rank=one.rank, interval=one.interval, ties=tuple(ids[other] for other in one.ties))
-            for one in ranking.standings(rows, tasks, whose)
+            for one in ranking.rank_agents(rows, tasks, whose)
         ]
     return {id: Ranks(sr=by_metric["sr"][place], twsr=by_metric["twsr"][place]) for place, id in enumerate(ids)}
 

@@ -76,8 +76,8 @@ def _welch(
     """Gaps of means and one-sided probabilities, for rows of fresh values (R, M)."""
     from scipy import special  # comes with the core: scikit-image needs it
 
-    there = variance_components.two_way(claimed[None], np.arange(len(claimed)), whose)
-    here = variance_components.two_way(fresh, np.arange(fresh.shape[-1]), people)
+    there = variance_components.two_way_spread(claimed[None], np.arange(len(claimed)), whose)
+    here = variance_components.two_way_spread(fresh, np.arange(fresh.shape[-1]), people)
     edge = 0.25 / fresh.shape[-1] ** 2  # fresh trials that are all alike are not without chance
     one, two = there.variance, np.maximum(here.variance, edge)
     freedom = (one + two) ** 2 / (one**2 / there.freedom + two**2 / here.freedom)

@@ -15,7 +15,7 @@ _LEVELS = ("easy", "medium", "hard")
 _KINDS = "kind of task"
 
 
-def splits(runs: Sequence[Run]) -> tuple[Split, ...]:
+def all_splits(runs: Sequence[Run]) -> tuple[Split, ...]:
     """Every way to part the trials that leaves more than one part, and more than a trial in some of them."""
     found = (
         _split("difficulty", runs, lambda one: one.spec.task.difficulty, _LEVELS),
@@ -31,11 +31,11 @@ def _tells(split: Split) -> bool:
     return any(one.n > 1 for group in split.groups for one in group.sr.values())
 
 
-def by_people(runs: Sequence[Run]) -> Split | None:
+def split_by_population(runs: Sequence[Run]) -> Split | None:
     """Success with each people, in the order in which they come; None where there is only one."""
     names = list(dict.fromkeys(run.plan.humans.name for run in runs))
     groups = tuple(
-        Group(name=name, sr={run.label: rate(run.records) for run in runs if run.plan.humans.name == name})
+        Group(name=name, sr={run.label: success_rate(run.records) for run in runs if run.plan.humans.name == name})
         for name in names
     )
     return Split(word="kind of person", groups=groups) if len(groups) > 1 else None
@@ -45,12 +45,14 @@ def _split(word: str, runs: Sequence[Run], part: Callable[[TrialRecord], str], o
     names = sorted({part(record) for run in runs for record in run.records} - {""})
     names.sort(key=lambda name: order.index(name) if name in order else len(order))
     groups = (
-        Group(name=name, sr={run.label: rate([one for one in run.records if part(one) == name]) for run in runs})
+        Group(
+            name=name, sr={run.label: success_rate([one for one in run.records if part(one) == name]) for run in runs}
+        )
         for name in names
     )
     return Split(word=word, groups=tuple(groups))
 
 
-def rate(records: Sequence[TrialRecord]) -> Estimate:
+def success_rate(records: Sequence[TrialRecord]) -> Estimate:
     """Success rate with its interval."""
-    return aggregate.estimate(records, registry.get("sr"))
+    return aggregate.estimate_metric(records, registry.get("sr"))

@@ -22,7 +22,7 @@ _STUDIED = {"object_goal_navigation", "mobile_manipulation"}
 """Kinds of task that published figures are of."""
 
 
-def findings(runs: Sequence[Run], published: Published | None = None) -> Findings:
+def build_findings(runs: Sequence[Run], published: Published | None = None) -> Findings:
     """The document; the people of most of it are those of the first run.
 
     Args:
@@ -33,7 +33,7 @@ def findings(runs: Sequence[Run], published: Published | None = None) -> Finding
     own = [run for run in runs if run.plan.humans.name == people]
     baseline = next((run for run in own if run.condition == "none"), None)
     each = trial_selection.EACH if len(own) <= _MANY else 1
-    comparisons, apart = pairwise.pairs(baseline, own)
+    comparisons, apart = pairwise.compare_labelled(baseline, own)
     return Findings(
         suite=runs[0].plan.suite,
         people=people,
@@ -42,14 +42,16 @@ def findings(runs: Sequence[Run], published: Published | None = None) -> Finding
         arms=tuple(_arm(run) for run in own),
         comparisons=comparisons,
         apart=apart,
-        spent=tuple(session_statistics.spent(run) for run in own),
-        trust=tuple(curve for run in own if (curve := session_statistics.trust(run)) is not None),
-        splits=breakdown.splits(own),
-        by_people=breakdown.by_people(runs),
-        people_uplift=pairwise.by_people(runs),
-        shown=tuple(one for run in own if run.plan.seats for one in trial_selection.extremes(run, baseline, each)),
-        failures=tuple(one for run in runs for one in fault_summary.of(run)),
-        origins=tuple(run_provenance.of(run) for run in runs),
+        spent=tuple(session_statistics.time_spent(run) for run in own),
+        trust=tuple(curve for run in own if (curve := session_statistics.trust_curve(run)) is not None),
+        splits=breakdown.all_splits(own),
+        by_people=breakdown.split_by_population(runs),
+        people_uplift=pairwise.uplift_by_population(runs),
+        shown=tuple(
+            one for run in own if run.plan.seats for one in trial_selection.best_and_worst(run, baseline, each)
+        ),
+        failures=tuple(one for run in runs for one in fault_summary.fault_summary(run)),
+        origins=tuple(run_provenance.run_provenance(run) for run in runs),
     )
 
 
@@ -67,5 +69,5 @@ def _arm(run: Run) -> Arm:
         people=len({record.spec.participant for record in run.records}),
         tasks=len({record.spec.task.id for record in run.records}),
         unfinished=run.plan.trials - len(run.records),
-        scores=aggregate.scores(run.records),
+        scores=aggregate.estimate_metrics(run.records),
     )

@@ -13,8 +13,8 @@ from hthor.eval.comparison.compare import Comparison
 from hthor.eval.config.run_config import SuiteRef
 from hthor.eval.results.result_file import Scores
 from hthor.eval.statistics.intervals import Estimate
-from hthor.report.analysis.example_trials import Failure, Shown
-from hthor.report.analysis.run_provenance import Origin
+from hthor.report.analysis.example_trials import ExampleTrial, FaultGroup
+from hthor.report.analysis.run_provenance import Provenance
 
 SCHEMA = "hthor.report/3"
 
@@ -65,7 +65,7 @@ class Arm(Struct, frozen=True, kw_only=True):
     scores: Scores
 
 
-class Apart(Struct, frozen=True, kw_only=True):
+class IncomparablePair(Struct, frozen=True, kw_only=True):
     """Two runs that share no trial; ``field`` of their configurations says why, empty where they only lack trials."""
 
     first: str
@@ -73,7 +73,7 @@ class Apart(Struct, frozen=True, kw_only=True):
     field: str
 
 
-class Spent(Struct, frozen=True, kw_only=True):
+class TimeSpent(Struct, frozen=True, kw_only=True):
     """Time spent in one run [s]; an unsolved trial counts with the time limit. ``unsolved`` of ``trials`` did.
 
     ``solved`` is the share of trials that were solved within 0, 1, 2, ... seconds.
@@ -90,7 +90,7 @@ class Spent(Struct, frozen=True, kw_only=True):
     solved: tuple[float, ...]
 
 
-class Curve(Struct, frozen=True, kw_only=True):
+class TrustCurve(Struct, frozen=True, kw_only=True):
     """Trust by trial of the session: means, their 95 % intervals, and how many people rated each.
 
     ``slope`` is the mean over people of the least-squares slope [points a trial], ``slope_se`` its standard error;
@@ -136,15 +136,15 @@ class Findings(Struct, frozen=True, kw_only=True):
     published: Published | None
     arms: tuple[Arm, ...]
     comparisons: tuple[Comparison, ...]
-    apart: tuple[Apart, ...]
-    spent: tuple[Spent, ...]
-    trust: tuple[Curve, ...]
+    apart: tuple[IncomparablePair, ...]
+    spent: tuple[TimeSpent, ...]
+    trust: tuple[TrustCurve, ...]
     splits: tuple[Split, ...]
     by_people: Split | None
     people_uplift: dict[str, tuple[Comparison, ...]]
-    shown: tuple[Shown, ...]
-    failures: tuple[Failure, ...]
-    origins: tuple[Origin, ...]
+    shown: tuple[ExampleTrial, ...]
+    failures: tuple[FaultGroup, ...]
+    origins: tuple[Provenance, ...]
 
     @property
     def uplift(self) -> tuple[Comparison, ...]:

@@ -7,7 +7,7 @@ from typing import Literal
 from msgspec import Struct
 
 
-class Shown(Struct, frozen=True, kw_only=True):
+class ExampleTrial(Struct, frozen=True, kw_only=True):
     """A trial worth a map. ``gain_s`` is the time saved [s] against the same person without a robot, None without one.
 
     ``replay`` is the command that draws it whole.
@@ -30,7 +30,7 @@ class Shown(Struct, frozen=True, kw_only=True):
     replay: str
 
 
-class Failure(Struct, frozen=True, kw_only=True):
+class FaultGroup(Struct, frozen=True, kw_only=True):
     """One way in which a run's robots failed: in how many ``trials`` out of ``whole``, and the first of them.
 
     ``detail`` is the traceback or what the robot's mind did, ``output`` what it printed last, empty where nothing was

@@ -10,7 +10,7 @@ from hthor import documents, rules
 from hthor.eval.config import cli_command
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.analysis import trial_selection
-from hthor.report.analysis.example_trials import Failure
+from hthor.report.analysis.example_trials import FaultGroup
 from hthor.report.analysis.load_runs import Run
 
 _DETAIL_MAX, _OUTPUT_MAX = 4000, 2000
@@ -31,7 +31,7 @@ class _Remains(Struct):
     again: str = ""
 
 
-def of(run: Run) -> list[Failure]:
+def fault_summary(run: Run) -> list[FaultGroup]:
     """One entry for each seat and sort of fault, by the first trial that it came in, the most frequent first."""
     agents = {robot.seat: robot.agent.name for robot in run.plan.seats}
     cases: dict[tuple[str, str], list[TrialRecord]] = {}
@@ -42,12 +42,12 @@ def of(run: Run) -> list[Failure]:
     return sorted(found, key=lambda one: -one.trials)
 
 
-def _failure(run: Run, seat: str, agent: str, kind: str, held: list[TrialRecord]) -> Failure:
+def _failure(run: Run, seat: str, agent: str, kind: str, held: list[TrialRecord]) -> FaultGroup:
     first = held[0]
     fault = next(one for one in first.faults if (one.seat, one.kind) == (seat, kind))
     remains = _remains(run, first)
     left = next((one for one in remains.failures if (one.seat, one.kind) == (seat, kind)), _Left())
-    return Failure(
+    return FaultGroup(
         run=run.name,
         seat=seat,
         agent=agent,
@@ -62,7 +62,7 @@ def _failure(run: Run, seat: str, agent: str, kind: str, held: list[TrialRecord]
         detail=(left.detail or fault.detail).strip()[-_DETAIL_MAX:],
         output=left.output.strip()[-_OUTPUT_MAX:],
         again=_here(remains.again, run),
-        replay=trial_selection.replay(run, first),
+        replay=trial_selection.replay_command(run, first),
     )
 
 

@@ -43,16 +43,16 @@ class Run(Struct, frozen=True, kw_only=True, eq=False):
     @property
     def by_pair(self) -> dict[Pair, TrialRecord]:
         """The trials by what they share with those of other robots."""
-        return {pair(record): record for record in self.records}
+        return {pairing_key(record): record for record in self.records}
 
 
-def pair(record: TrialRecord) -> Pair:
+def pairing_key(record: TrialRecord) -> Pair:
     """What a trial shares with that of the same person at the same task with other robots."""
     spec = record.spec
     return (spec.seed, spec.participant, spec.index, spec.task.id)
 
 
-def runs(folders: Sequence[Path]) -> list[Run]:
+def load_runs(folders: Sequence[Path]) -> list[Run]:
     """Every run, in the order given.
 
     Raises:
@@ -65,13 +65,13 @@ def runs(folders: Sequence[Path]) -> list[Run]:
     return _named(found)
 
 
-def with_controls(found: Sequence[Run]) -> list[Run]:
+def with_baselines(found: Sequence[Run]) -> list[Run]:
     """The same runs; where nobody of some people is without a robot, their control first, if it lies beside."""
     whole: list[Run] = []
     for one in found:
         people = one.plan.humans.name
         if not any(not other.plan.seats and other.plan.humans.name == people for other in (*found, *whole)):
-            place = baseline.place(one.folder, one.plan)
+            place = baseline.baseline_folder(one.folder, one.plan)
             whole += [msgspec.structs.replace(_read(place), beside=True)] if place is not None else []
         whole.append(one)
     return _named(whole) if len(whole) > len(found) else whole

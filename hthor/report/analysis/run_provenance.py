@@ -28,7 +28,7 @@ class Platform(Struct, frozen=True, kw_only=True):
     libc: str = ""
 
 
-class Origin(Struct, frozen=True, kw_only=True):
+class Provenance(Struct, frozen=True, kw_only=True):
     """One run's.
 
     ``name`` is that of its folder. ``beside`` says that the report found it there by itself, as the control of another.
@@ -63,14 +63,14 @@ class Origin(Struct, frozen=True, kw_only=True):
     trials_sha256: str
 
 
-def of(run: Run) -> Origin:
+def run_provenance(run: Run) -> Provenance:
     """Where a run came from.
 
     Raises:
         RunError: when what was noted beside its log cannot be read.
     """
     plan = run.plan
-    return Origin(
+    return Provenance(
         name=run.name,
         label=run.label,
         beside=run.beside,

@@ -9,14 +9,14 @@ import numpy as np
 
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.results import aggregate
-from hthor.report.analysis.document import Curve, Spent
+from hthor.report.analysis.document import TimeSpent, TrustCurve
 from hthor.report.analysis.load_runs import Run
 
 _DIGITS = 6
 _QUARTILES = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 
-def spent(run: Run) -> Spent:
+def time_spent(run: Run) -> TimeSpent:
     """Minimum, quartiles and maximum of the time spent, and how many were done by when."""
     times = trial_metrics.column((record.metrics for record in run.records), "time_s")
     least, lower, median, upper, most = (round(float(value), _DIGITS) for value in np.quantile(times, _QUARTILES))
@@ -24,7 +24,7 @@ def spent(run: Run) -> Spent:
     ends = np.sort(times[[record.met for record in run.records]])
     seconds = np.arange(math.ceil(max(record.spec.task.time_limit for record in run.records)) + 1)
     solved = np.searchsorted(ends, seconds, side="right") / len(times)
-    return Spent(
+    return TimeSpent(
         arm=run.label,
         trials=len(times),
         least=least,
@@ -37,7 +37,7 @@ def spent(run: Run) -> Spent:
     )
 
 
-def trust(run: Run) -> Curve | None:
+def trust_curve(run: Run) -> TrustCurve | None:
     """Trust by trial of the session; None where nobody rated anything."""
     rated = [(one.spec.participant, one.spec.index, one.trust) for one in run.records if one.trust is not None]
     if not run.plan.seats or not rated:
@@ -46,11 +46,11 @@ def trust(run: Run) -> Curve | None:
     by_trial = [[float(value) for _, index, value in rated if index == wanted] for wanted in indices]
     by_person = [[(index, value) for who, index, value in rated if who == person] for person in _people(rated)]
     slopes = [slope for marks in by_person if (slope := _slope(marks)) is not None]
-    return Curve(
+    return TrustCurve(
         arm=run.label,
         trial=tuple(index + 1 for index in indices),
         mean=tuple(round(_mean(values), _DIGITS) for values in by_trial),
-        ci95=tuple(one.ci95 for one in aggregate.by_trial(run.records) if one.ci95 is not None),
+        ci95=tuple(one.ci95 for one in aggregate.trust_by_trial(run.records) if one.ci95 is not None),
         people=tuple(len(values) for values in by_trial),
         slope=round(_mean(slopes), _DIGITS) if len(slopes) > 1 else None,
         slope_se=_error(slopes),

@@ -6,24 +6,24 @@ import shlex
 
 from hthor.eval.config import cli_command
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.report.analysis.example_trials import Shown
-from hthor.report.analysis.load_runs import Run, pair
+from hthor.report.analysis.example_trials import ExampleTrial
+from hthor.report.analysis.load_runs import Run, pairing_key
 
 EACH = 2
 """So many of the best and of the worst."""
 
 
-def extremes(run: Run, alone: Run | None, each: int = EACH) -> list[Shown]:
+def best_and_worst(run: Run, alone: Run | None, each: int = EACH) -> list[ExampleTrial]:
     """The ``each`` best and worst trials of a run with robots, each trial at most once.
 
     Against the same person without a robot where there is such a run: by the time saved, and among equals by
     time-weighted success. Without one by time-weighted success, and among equals by the time spent.
     """
     others = alone.by_pair if alone is not None else {}
-    ranked = [record for record in run.records if alone is None or pair(record) in others]
+    ranked = [record for record in run.records if alone is None or pairing_key(record) in others]
 
     def worth(record: TrialRecord) -> tuple[float, float, str]:
-        other, own = others.get(pair(record)), record.metrics
+        other, own = others.get(pairing_key(record)), record.metrics
         if other is None:
             return (own.number("twsr"), -own.number("time_s"), record.key)
         return (_saved_s(record, other), own.number("twsr"), record.key)
@@ -32,8 +32,8 @@ def extremes(run: Run, alone: Run | None, each: int = EACH) -> list[Shown]:
     each = min(each, len(ranked) // 2)
     worst, best = ranked[:each], ranked[len(ranked) - each :][::-1]
     return [
-        *(_shown(run, "best", record, others.get(pair(record))) for record in best),
-        *(_shown(run, "worst", record, others.get(pair(record))) for record in worst),
+        *(_shown(run, "best", record, others.get(pairing_key(record))) for record in best),
+        *(_shown(run, "worst", record, others.get(pairing_key(record))) for record in worst),
     ]
 
 
@@ -41,9 +41,9 @@ def _saved_s(record: TrialRecord, alone: TrialRecord) -> float:
     return round(alone.metrics.number("time_s") - record.metrics.number("time_s"), 6)
 
 
-def _shown(run: Run, rank: str, record: TrialRecord, other: TrialRecord | None) -> Shown:
+def _shown(run: Run, rank: str, record: TrialRecord, other: TrialRecord | None) -> ExampleTrial:
     task = record.spec.task
-    return Shown(
+    return ExampleTrial(
         arm=run.label,
         rank="best" if rank == "best" else "worst",
         key=record.key,
@@ -58,10 +58,10 @@ def _shown(run: Run, rank: str, record: TrialRecord, other: TrialRecord | None) 
         alone_met=other.met if other is not None else None,
         alone_s=other.metrics.number("time_s") if other is not None else None,
         gain_s=_saved_s(record, other) if other is not None else None,
-        replay=replay(run, record),
+        replay=replay_command(run, record),
     )
 
 
-def replay(run: Run, record: TrialRecord) -> str:
+def replay_command(run: Run, record: TrialRecord) -> str:
     """The command that draws a trial, as it can be typed where the report was written."""
     return shlex.join(["hthor", "replay", str(cli_command.relative_path(run.folder)), record.key])

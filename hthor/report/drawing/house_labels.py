@@ -18,8 +18,10 @@ _TITLE_CHARACTERS = 8.0
 """Pixels that a character of the title takes, about."""
 
 
-@lettering.plain()
-def captioned(picture: Any, house: HouseSpec, bounds: tuple[float, float, float, float], *, named: bool = True) -> Any:
+@lettering.plain_lettering()
+def with_labels(
+    picture: Any, house: HouseSpec, bounds: tuple[float, float, float, float], *, named: bool = True
+) -> Any:
     """The picture with rooms named on their barest floor, and a strip below with a scale and the house's name.
 
     Args:

@@ -39,7 +39,7 @@ _VIEW_M, _VIEW_DEG = 1.1, 97.0
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.0, foreground="white")]
 
 
-@lettering.plain()
+@lettering.plain_lettering()
 def figure(record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> Figure:
     """Draw a mind, 11 inches wide, 14 where the house is deep."""
     moments = _moments(stream.events)
@@ -48,7 +48,7 @@ def figure(record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> Figure:
     inches = _WIDE if columns == 2 else _WIDER
     rows = math.ceil(len(moments) / columns) or 1
     plan_high = max(2.6, inches / columns * deep / wide + 0.45)
-    lanes = human_trace_timeline.height(stream)
+    lanes = human_trace_timeline.timeline_height(stream)
     words = human_trace_timeline.offers(stream)
     told = 0.2 * len(words) + 0.1
     sheet = Figure(figsize=(inches, 0.9 + plan_high * rows + lanes + told), dpi=160, layout="constrained")
@@ -58,11 +58,11 @@ def figure(record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> Figure:
         _draw_moment(ax, record, house, beliefs, choice, stream)
     if not moments:
         _draw_end(sheet.add_subplot(grid[0, :]), record, house, stream)
-    human_trace_timeline.draw(sheet.add_subplot(grid[rows, :]), record, stream)
+    human_trace_timeline.draw_timeline(sheet.add_subplot(grid[rows, :]), record, stream)
     _write(sheet.add_subplot(grid[rows + 1, :]), words)
     spec = record.spec
     whose = f"{spec.task.id}, participant {spec.participant}, trial {spec.index + 1}"
-    title = text_fit.broken(f"“{spec.task.instruction}”   {whose}", inches - _EDGE_IN, _TITLE_PT)
+    title = text_fit.wrapped(f"“{spec.task.instruction}”   {whose}", inches - _EDGE_IN, _TITLE_PT)
     sheet.suptitle(title, fontsize=_TITLE_PT, x=0.01, ha="left", color=trial_trace.INK)
     text_fit.legend(sheet, _legend(), 6, loc="outside lower center")
     return sheet
@@ -89,8 +89,8 @@ def _draw_moment(
             _draw_place(ax, thing, chances[thing.id], exposures[thing.id])
     log, until = record.log, beliefs.tick
     _draw_way(ax, record, until)
-    here = trial_trace.at(log, HUMAN, until)
-    shares = human_trace_timeline.chances(choice, stream.traits["beta"])
+    here = trial_trace.position_at(log, HUMAN, until)
+    shares = human_trace_timeline.option_chances(choice, stream.traits["beta"])
     spots = _spots(house)
     for name, share in shares.items():
         if name in spots and name != choice.data["chosen"] and share >= _NAMED and name.startswith("door "):

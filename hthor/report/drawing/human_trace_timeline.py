@@ -32,18 +32,18 @@ _CHAR, _NAMES = 0.008, 4
 """What share of the time axis a letter takes up; so many names stand in a row."""
 
 
-def lanes(stream: HumanTrace) -> list[str]:
+def row_names(stream: HumanTrace) -> list[str]:
     """The lanes that there is something for, the lowest first."""
     kinds = {event.kind for event in stream.events}
     return [name for name, kind in _LANES.items() if kind in kinds]
 
 
-def height(stream: HumanTrace) -> float:
+def timeline_height(stream: HumanTrace) -> float:
     """Inches that the lanes want."""
-    return _LANE_IN * len(lanes(stream)) + 0.7
+    return _LANE_IN * len(row_names(stream)) + 0.7
 
 
-def chances(choice: Event, beta: float) -> dict[str, float]:
+def option_chances(choice: Event, beta: float) -> dict[str, float]:
     """How likely each option was to be chosen, by name: value^beta, adding up to 1."""
     values = [max(value, 1e-12) for value in choice.data["values"]]
     top = max(values)
@@ -52,10 +52,10 @@ def chances(choice: Event, beta: float) -> dict[str, float]:
     return {name: weight / total for name, weight in zip(choice.data["options"], weights, strict=True)}
 
 
-def draw(ax: Axes, record: TrialRecord, stream: HumanTrace) -> None:
+def draw_timeline(ax: Axes, record: TrialRecord, stream: HumanTrace) -> None:
     """Draw the lanes, trust lowest."""
     events, end, limit = stream.events, record.ticks * rules.TICK_S, record.spec.task.time_limit
-    names = lanes(stream)
+    names = row_names(stream)
     rows = {name: float(row) for row, name in enumerate(names)}
     _draw_aims(ax, [event for event in events if event.kind == "aim"], end, rows["is about"], _CHAR * limit)
     wanted = {job.target for job in record.spec.task.goal.todo}
@@ -122,7 +122,7 @@ def _draw_noticed(ax: Axes, stream: HumanTrace, wanted: set[str], row: float, en
 def _draw_choice(ax: Axes, choice: Event, beta: float, row: float) -> None:
     """A column of chances, the chosen option's filled."""
     x, low = choice.tick * rules.TICK_S, row - 0.36
-    for name, share in chances(choice, beta).items():
+    for name, share in option_chances(choice, beta).items():
         chosen = name == choice.data["chosen"]
         face = trial_trace.TARGET if chosen else "#e6e6e6"
         ax.bar(x, 0.72 * share, bottom=low, width=0.8, color=face, edgecolor="white", lw=0.3, zorder=3)
@@ -147,7 +147,7 @@ def _draw_message(ax: Axes, shown: Event, stream: HumanTrace, end: float, row: f
     until = end if fate is None else fate.tick * rules.TICK_S
     shade = "#dddddd" if fate is None else _ANSWERS[fate.kind]
     ax.barh(row, until - begin, left=begin, height=0.42, color=shade, alpha=0.85, lw=0)
-    trial_trace.badge(ax, (begin, row), str(number + 1), shade if fate is not None else "#999999")
+    trial_trace.draw_badge(ax, (begin, row), str(number + 1), shade if fate is not None else "#999999")
     if fate is not None and fate.kind != "covered":
         ax.text(until + 0.4, row, fate.kind, fontsize=6.5, va="center", color=trial_trace.INK)
 

@@ -20,14 +20,14 @@ SETTINGS = {"text.parse_math": False, "text.usetex": False}
 
 
 @contextmanager
-def plain() -> Iterator[None]:
+def plain_lettering() -> Iterator[None]:
     """Draw words as they are; a decorator, too."""
     with mpl.rc_context(SETTINGS), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=r"(?s)(Glyph|Matplotlib currently does not support) .*")
         yield
 
 
-def save(made: Figure, where: Path | IO[bytes], **more: Any) -> None:
+def save_figure(made: Figure, where: Path | IO[bytes], **more: Any) -> None:
     """Write a figure to a file."""
-    with plain():
+    with plain_lettering():
         made.savefig(where, **more)

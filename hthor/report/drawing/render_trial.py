@@ -13,26 +13,26 @@ from hthor.types import HouseSpec
 PICTURES = (".png", ".svg", ".pdf")
 
 
-def draw(run: Path, record: TrialRecord, path: Path, *, video: bool) -> None:
+def draw_trial(run: Path, record: TrialRecord, path: Path, *, video: bool) -> None:
     """Write the picture or the film of a trial of the run in the folder ``run``.
 
     Raises:
         HthorError: when the file's name does not fit, or the house has changed since.
     """
-    check_name(path, video=video)
-    plan = house(run, record)
+    check_file_name(path, video=video)
+    plan = load_house(run, record)
     path.parent.mkdir(parents=True, exist_ok=True)
     if video:
         from hthor.report.drawing import trial_video as film
 
-        film.write(path, record.spec, record.log, plan)
+        film.write_video(path, record.spec, record.log, plan)
     else:
         from hthor.report.drawing import trial_figure
 
-        lettering.save(trial_figure.figure(record.spec, record.log, plan), path)
+        lettering.save_figure(trial_figure.trial_figure(record.spec, record.log, plan), path)
 
 
-def check_name(path: Path, *, video: bool) -> None:
+def check_file_name(path: Path, *, video: bool) -> None:
     """See that a file's name says what is written into it.
 
     Raises:
@@ -43,7 +43,7 @@ def check_name(path: Path, *, video: bool) -> None:
         raise HthorError(f"{path}: the name of a {'film' if video else 'picture'} must end in {' or '.join(valid)}.")
 
 
-def house(run: Path, record: TrialRecord) -> HouseSpec:
+def load_house(run: Path, record: TrialRecord) -> HouseSpec:
     """The house of a trial of the run in the folder ``run``, as it was then.
 
     Raises:

@@ -27,7 +27,7 @@ _WIDE_IN, _TITLE_PT = 8.0, 10.0
 """Inches of the figure, and points of its title's letters."""
 
 
-def draw(task: TaskSpec, house: HouseSpec, feat: Solution, path: Path) -> None:
+def draw_task(task: TaskSpec, house: HouseSpec, feat: Solution, path: Path) -> None:
     """Write the picture of a task.
 
     Args:
@@ -39,11 +39,11 @@ def draw(task: TaskSpec, house: HouseSpec, feat: Solution, path: Path) -> None:
     if path.suffix.lower() not in PICTURES:
         raise HthorError(f"{path}: the name of a picture must end in {' or '.join(PICTURES)}.")
     path.parent.mkdir(parents=True, exist_ok=True)
-    lettering.save(figure(task, house, feat), path)
+    lettering.save_figure(task_figure(task, house, feat), path)
 
 
-@lettering.plain()
-def figure(task: TaskSpec, house: HouseSpec, feat: Solution) -> Figure:
+@lettering.plain_lettering()
+def task_figure(task: TaskSpec, house: HouseSpec, feat: Solution) -> Figure:
     """Draw a task, about 8 inches wide."""
     xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
     sheet = Figure(figsize=(_WIDE_IN, max(3.6, 6.0 * (max(ys) - min(ys)) / (max(xs) - min(xs)) + 1.0)), dpi=200)
@@ -55,7 +55,7 @@ def figure(task: TaskSpec, house: HouseSpec, feat: Solution) -> Figure:
     _draw_objects(ax, task)
     for number, pose in enumerate((task.human_start, *task.robot_starts)):
         _draw_start(ax, pose, number)
-    title = "\n".join(text_fit.broken(line, _WIDE_IN - 0.3, _TITLE_PT) for line in _headline(task, feat))
+    title = "\n".join(text_fit.wrapped(line, _WIDE_IN - 0.3, _TITLE_PT) for line in _headline(task, feat))
     sheet.suptitle(title, x=0.015, ha="left", fontsize=_TITLE_PT, color=trial_trace.INK)
     _legend(sheet, bool(wanted))
     return sheet

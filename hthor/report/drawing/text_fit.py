@@ -27,42 +27,42 @@ _ENTRY_IN, _EDGE_IN = 3.6, 0.1
 _MORE = " …"
 
 
-def width(words: str, size: float, *, bold: bool = False) -> float:
+def text_width(words: str, size: float, *, bold: bool = False) -> float:
     """How wide a line of words is [in].
 
     Args:
         size: of the letters [pt].
     """
     font = FontProperties(family=_FONT, size=size, weight="bold" if bold else "normal")
-    with lettering.plain():
+    with lettering.plain_lettering():
         points, _, _ = TextToPath().get_text_width_height_descent(words, font, ismath=False)
     return float(points) / _POINTS_AN_INCH
 
 
-def lines(words: str, inches: float, size: float, *, bold: bool = False) -> list[str]:
+def wrap(words: str, inches: float, size: float, *, bold: bool = False) -> list[str]:
     """The words in lines that are no wider than ``inches``, broken between words where that can be."""
     found = [""]
     for piece in _PIECES.findall(words):
-        if found[-1] and width((found[-1] + piece).rstrip(), size, bold=bold) > inches:
+        if found[-1] and text_width((found[-1] + piece).rstrip(), size, bold=bold) > inches:
             found.append("")
         found[-1] += piece
-        while len(found[-1]) > 1 and width(found[-1].rstrip(), size, bold=bold) > inches:
+        while len(found[-1]) > 1 and text_width(found[-1].rstrip(), size, bold=bold) > inches:
             fits = _fitting(found[-1], inches, size, bold=bold)
             found[-1:] = [found[-1][:fits], found[-1][fits:]]
     return [line.rstrip() for line in found]
 
 
-def broken(words: str, inches: float, size: float, *, bold: bool = False) -> str:
+def wrapped(words: str, inches: float, size: float, *, bold: bool = False) -> str:
     """The same as one text, a line below another."""
-    return "\n".join(lines(words, inches, size, bold=bold))
+    return "\n".join(wrap(words, inches, size, bold=bold))
 
 
-def shortened(words: str, inches: float, size: float, *, bold: bool = False) -> str:
+def shorten(words: str, inches: float, size: float, *, bold: bool = False) -> str:
     """One line that is no wider than ``inches``; what does not fit is left out, and an ellipsis says so."""
     line = " ".join(words.split())
-    if width(line, size, bold=bold) <= inches:
+    if text_width(line, size, bold=bold) <= inches:
         return line
-    room = inches - width(_MORE, size, bold=bold)
+    room = inches - text_width(_MORE, size, bold=bold)
     return line[: _fitting(line, room, size, bold=bold)].rstrip() + _MORE
 
 
@@ -71,7 +71,7 @@ def _fitting(words: str, inches: float, size: float, *, bold: bool) -> int:
     low, high = 1, len(words)
     while low < high:
         middle = (low + high + 1) // 2
-        low, high = (middle, high) if width(words[:middle], size, bold=bold) <= inches else (low, middle - 1)
+        low, high = (middle, high) if text_width(words[:middle], size, bold=bold) <= inches else (low, middle - 1)
     return low
 
 
@@ -82,7 +82,7 @@ def legend(made: Figure, handles: Sequence[Artist], columns: int, *, size: float
         columns: side by side at most. size: of the letters [pt]. look: what else matplotlib's legend takes.
     """
     for handle in handles:
-        handle.set_label(broken(str(handle.get_label()), _ENTRY_IN, size))
+        handle.set_label(wrapped(str(handle.get_label()), _ENTRY_IN, size))
     room = (made.get_figwidth() - 2 * _EDGE_IN) * made.dpi
     count = max(1, min(columns, len(handles)))
     while True:

@@ -34,8 +34,8 @@ _LETTER_IN, _BADGE_IN, _BESIDE_M = 0.065, 0.17, 0.15
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.4, foreground="white")]
 
 
-@lettering.plain()
-def figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
+@lettering.plain_lettering()
+def trial_figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
     """Draw a trial, about 8 inches wide: the plan, the timeline below, and the messages' words.
 
     Args:
@@ -56,7 +56,7 @@ def figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
     _draw_acts(above, log)
     title = headline(spec, log, _WIDE_IN - 2 * _EDGE_IN, HEAD_PT)
     sheet.suptitle(title, x=_EDGE_IN / _WIDE_IN, ha="left", fontsize=HEAD_PT, color=trial_trace.INK)
-    _legend(sheet, handles(spec, log, house))
+    _legend(sheet, legend_entries(spec, log, house))
     trial_timeline.draw_timeline(below, spec, log)
     for ax in rest:
         _write_words(ax, words)
@@ -68,8 +68,8 @@ def draw_path(ax: Axes, log: EpisodeLog, seat: str, *, words: bool = True) -> No
 
     Where its mind failed there is a cross instead of an end: from then on it only stood there.
     """
-    way, shade = trial_trace.points(log, seat), trial_trace.colour(seat)
-    fault = trial_trace.failure(log, seat)
+    way, shade = trial_trace.points(log, seat), trial_trace.seat_colour(seat)
+    fault = trial_trace.first_fault(log, seat)
     if fault is not None:
         way = way[: fault.tick // rules.LOG_EVERY_TICKS + 1]
     third = max(1, math.ceil(len(way) / 12))
@@ -159,11 +159,11 @@ def _words(log: EpisodeLog) -> list[tuple[str, str]]:
 
 def _line_of(log: EpisodeLog, number: int, event: Event) -> tuple[str, str]:
     """A message's number, time, sender, words and fate in a line, and its colour."""
-    fate = trial_trace.fate(log, event.data["message"])
+    fate = trial_trace.outcome_of(log, event.data["message"])
     head = f"{number}  {event.tick * rules.TICK_S:.1f} s  {event.seat}: “"
     end = f"” ({'unanswered' if fate in ('sent', 'shown') else fate})"
-    room = _WIDE_IN - 2 * _EDGE_IN - text_fit.width(head + end, WORDS_PT)
-    return (head + text_fit.shortened(event.data["text"], room, WORDS_PT) + end, trial_trace.tint(log, event))
+    room = _WIDE_IN - 2 * _EDGE_IN - text_fit.text_width(head + end, WORDS_PT)
+    return (head + text_fit.shorten(event.data["text"], room, WORDS_PT) + end, trial_trace.message_colour(log, event))
 
 
 def _write_words(ax: Axes, words: Sequence[tuple[str, str]]) -> None:
@@ -181,11 +181,11 @@ def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
     Messages that would hide one another share a badge.
     """
     sent = [
-        (number, event, trial_trace.at(log, event.seat, event.tick))
+        (number, event, trial_trace.position_at(log, event.seat, event.tick))
         for number, event in enumerate(trial_trace.messages(log), 1)
     ]
     strength = 1.0 if len(sent) <= _LINES else 0.45 if len(sent) <= _MANY else 0.15
-    shades, drawn = trial_trace.tints(log), set()
+    shades, drawn = trial_trace.message_colours(log), set()
     for _, event, here in sent if arrows else ():
         claim, shade = event.data.get("position"), shades[event.data["message"]]
         if claim is None or math.dist(claim[:2], here) <= _BESIDE_M:
@@ -198,11 +198,11 @@ def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
             made = ax.annotate("", (claim[0], claim[1]), here, arrowprops=arrow | line, zorder=11)
             made.set_in_layout(False)
     inch = _metres(ax)
-    for group in trial_trace.grouped(log, sent, _LETTER_IN * inch, _BADGE_IN * inch):
-        trial_trace.badge(ax, _on_plan(ax, group, inch), group.words, group.shade)
+    for group in trial_trace.group_messages(log, sent, _LETTER_IN * inch, _BADGE_IN * inch):
+        trial_trace.draw_badge(ax, _on_plan(ax, group, inch), group.words, group.shade)
 
 
-def _on_plan(ax: Axes, group: trial_trace.Group, inch: float) -> Vec2:
+def _on_plan(ax: Axes, group: trial_trace.MessageGroup, inch: float) -> Vec2:
     """Where a badge stands: at its place, or so far from the edge that it is not cut."""
     half = 0.5 * _LETTER_IN * inch * (len(group.words) + 2)
     west, east = ax.get_xlim()
@@ -218,14 +218,14 @@ def _metres(ax: Axes) -> float:
 def _draw_acts(ax: Axes, log: EpisodeLog) -> None:
     for event in log.events:
         if event.kind in trial_trace.ACTS:
-            x, y = trial_trace.at(log, event.seat, event.tick)
+            x, y = trial_trace.position_at(log, event.seat, event.tick)
             marker = trial_trace.ACTS[event.kind][0]
             ax.scatter(
                 x,
                 y,
                 s=40,
                 marker=marker,
-                color=trial_trace.colour(event.seat),
+                color=trial_trace.seat_colour(event.seat),
                 edgecolor="white",
                 linewidths=0.8,
                 zorder=11,
@@ -245,24 +245,24 @@ def headline(spec: TrialSpec, log: EpisodeLog, inches: float, size: float) -> st
         end += f", {100.0 * log.progress:.0f} % of it done"
     lines = [f"“{spec.task.instruction}”", f"{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"]
     for robot in spec.robots:
-        if (fault := trial_trace.failure(log, robot.seat)) is not None:
+        if (fault := trial_trace.first_fault(log, robot.seat)) is not None:
             whose = f"{robot.seat}'s agent" if len(spec.robots) > 1 else "the agent"
             lines.append(f"{whose} failed at {fault.tick * rules.TICK_S:.1f} s ({fault.kind}) and did nothing more")
-    return "\n".join(text_fit.broken(line, inches, size) for line in lines)
+    return "\n".join(text_fit.wrapped(line, inches, size) for line in lines)
 
 
 def _legend(sheet: Figure, entries: list[Artist]) -> None:
     text_fit.legend(sheet, entries, _COLUMNS, loc="outside lower left", handlelength=1.6)
 
 
-def handles(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool = False) -> list[Artist]:
+def legend_entries(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool = False) -> list[Artist]:
     """The legend's entries: everybody and everything that is drawn of this trial.
 
     Args:
         moving: whether it is for a film, which has no marks for starts, ends, deeds and messages.
     """
     found: list[Artist] = [_line(trial_trace.PERSON, "person")]
-    found += [_line(trial_trace.colour(robot.seat), trial_trace.who(robot)) for robot in spec.robots]
+    found += [_line(trial_trace.seat_colour(robot.seat), trial_trace.robot_words(robot)) for robot in spec.robots]
     if not moving:
         found += [_mark("o", "white", "start", edge="#555555"), _mark("o", "#555555", "end")]
     found.append(_mark("*", trial_trace.TARGET, "target at the start", size=9))
@@ -285,7 +285,7 @@ def handles(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool 
 
 def _marks(log: EpisodeLog) -> list[Artist]:
     """What stands for messages and deeds."""
-    shades = set(trial_trace.tints(log).values())
+    shades = set(trial_trace.message_colours(log).values())
     words = {trial_trace.MESSAGE: "confirmed", trial_trace.IDLE_MESSAGE: "not confirmed"}
     found: list[Artist] = [_mark("o", shade, f"message, {words[shade]}", size=7) for shade in words if shade in shades]
     present = {event.kind for event in log.events}

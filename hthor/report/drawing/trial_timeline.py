@@ -33,9 +33,11 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
     rows = len(seats) + (log.progress is not None)
     end, limit = log.ticks * rules.TICK_S, spec.task.time_limit
     for row, seat in enumerate(seats):
-        fault = trial_trace.failure(log, seat)
+        fault = trial_trace.first_fault(log, seat)
         until = end if fault is None else fault.tick * rules.TICK_S
-        ax.plot((0, until), (-row, -row), color=trial_trace.colour(seat), lw=2.2, alpha=0.35, solid_capstyle="butt")
+        ax.plot(
+            (0, until), (-row, -row), color=trial_trace.seat_colour(seat), lw=2.2, alpha=0.35, solid_capstyle="butt"
+        )
         if fault is not None:
             ax.plot((until, end), (-row, -row), color=trial_trace.GONE, lw=1.0, ls=":", solid_capstyle="butt")
         _timeline_marks(ax, log, seat, -row, _WORD * limit)
@@ -90,9 +92,9 @@ def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float, word_s: fl
     sent = [(number, event) for number, event in enumerate(trial_trace.messages(log), 1) if event.seat == seat]
     marks = [(number, event, (event.tick * rules.TICK_S, row)) for number, event in sent]
     letter = _LETTER * word_s / _WORD
-    for group in trial_trace.grouped(log, marks, letter, 1.0):
+    for group in trial_trace.group_messages(log, marks, letter, 1.0):
         half = 0.5 * letter * (len(group.words) + 2)  # so that the seat's name is not covered
-        trial_trace.badge(ax, (max(group.place[0], half), row), group.words, group.shade)
+        trial_trace.draw_badge(ax, (max(group.place[0], half), row), group.words, group.shade)
     words = {
         **{kind: verb for kind, (_, verb) in trial_trace.ACTS.items()},
         "confirmed": "confirms",
@@ -105,7 +107,14 @@ def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float, word_s: fl
         x = event.tick * rules.TICK_S
         marker = trial_trace.ACTS.get(event.kind, ("o", ""))[0]
         ax.scatter(
-            x, row, s=26, marker=marker, color=trial_trace.colour(seat), edgecolor="white", linewidths=0.6, zorder=3
+            x,
+            row,
+            s=26,
+            marker=marker,
+            color=trial_trace.seat_colour(seat),
+            edgecolor="white",
+            linewidths=0.6,
+            zorder=3,
         )
         lift = next((lift for lift in _LIFTS if x - last[lift] > word_s), _LIFTS[-1])
         last[lift] = x

@@ -67,12 +67,12 @@ def destinations(spec: TrialSpec, house: HouseSpec) -> list[str]:
     return found if len(found) <= _MARKED else []
 
 
-def who(robot: RobotSeat) -> str:
+def robot_words(robot: RobotSeat) -> str:
     """A robot's seat, body and mind in words."""
     return f"{robot.seat}: {robot.robot} ({robot.agent.name})"
 
 
-def colour(seat: str) -> str:
+def seat_colour(seat: str) -> str:
     """The colour of a seat's path."""
     if seat == HUMAN:
         return PERSON
@@ -84,7 +84,7 @@ def points(log: EpisodeLog, seat: str) -> np.ndarray:
     return np.array(_path(log, seat), dtype=float)[:, :2] / 1000.0
 
 
-def at(log: EpisodeLog, seat: str, tick: int) -> Vec2:
+def position_at(log: EpisodeLog, seat: str, tick: int) -> Vec2:
     """Where the seat was at ``tick`` [m], to the nearest logged pose."""
     path = _path(log, seat)
     x, y, _ = path[min(tick // rules.LOG_EVERY_TICKS, len(path) - 1)]
@@ -109,25 +109,25 @@ def messages(log: EpisodeLog) -> list[Event]:
     return [event for event in log.events if event.kind == "sent"]
 
 
-def fate(log: EpisodeLog, message: int) -> str:
+def outcome_of(log: EpisodeLog, message: int) -> str:
     """What became of a message: confirmed, declined, covered, shown or sent."""
     kinds = {event.kind for event in log.events if event.data.get("message") == message}
     return next((kind for kind in ("confirmed", "declined", "covered", "shown") if kind in kinds), "sent")
 
 
-def tint(log: EpisodeLog, event: Event) -> str:
+def message_colour(log: EpisodeLog, event: Event) -> str:
     """The colour of a message: strong when the person confirmed it, pale when not."""
-    return tints(log)[event.data["message"]]
+    return message_colours(log)[event.data["message"]]
 
 
-def tints(log: EpisodeLog) -> dict[int, str]:
+def message_colours(log: EpisodeLog) -> dict[int, str]:
     """The colours of all messages that were sent, by their numbers in the log."""
     confirmed = {event.data["message"] for event in log.events if event.kind == "confirmed"}
     sent = (event.data["message"] for event in messages(log))
     return {number: MESSAGE if number in confirmed else IDLE_MESSAGE for number in sent}
 
 
-def failure(log: EpisodeLog, seat: str) -> Fault | None:
+def first_fault(log: EpisodeLog, seat: str) -> Fault | None:
     """The first fault of a seat's mind; from then on the trial went on without it."""
     return next((fault for fault in log.faults if fault.seat == seat), None)
 
@@ -137,7 +137,7 @@ _Joined = tuple[list[_Mark], str]
 """A message's number and place; messages that share a badge, with their numbers in words."""
 
 
-class Group(Struct, frozen=True, kw_only=True):
+class MessageGroup(Struct, frozen=True, kw_only=True):
     """Messages that are drawn as one, as they would hide one another: their numbers in words, one place, one colour."""
 
     words: str
@@ -145,7 +145,9 @@ class Group(Struct, frozen=True, kw_only=True):
     shade: str
 
 
-def grouped(log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], letter: float, high: float) -> list[Group]:
+def group_messages(
+    log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], letter: float, high: float
+) -> list[MessageGroup]:
     """Messages with their numbers and places; those whose badges would touch are joined, at the place of the first.
 
     A group has the colour of a confirmed message when it has one.
@@ -159,7 +161,7 @@ def grouped(log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], letter: f
         wide = sum(_PADDED + len(words) for _, words in (one, other)) * letter / 2.0
         return abs(x - u) < wide and abs(y - v) < high
 
-    shades = tints(log)
+    shades = message_colours(log)
     held: list[_Joined] = []  # no two of them touch, so that there are few, however many messages there are
     for mark in marks:
         one: _Joined = ([mark], _numbers([mark]))
@@ -169,7 +171,7 @@ def grouped(log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], letter: f
             one = (both, _numbers(both))
         held.append(one)
     return [
-        Group(
+        MessageGroup(
             words=words,
             place=some[0][2],
             shade=MESSAGE if any(shades[event.data["message"]] == MESSAGE for _, event, _ in some) else IDLE_MESSAGE,
@@ -179,10 +181,10 @@ def grouped(log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], letter: f
 
 
 def _numbers(marks: Sequence[tuple[int, Event, Vec2]]) -> str:
-    return ranges([number for number, _, _ in marks])
+    return number_ranges([number for number, _, _ in marks])
 
 
-def ranges(numbers: Sequence[int]) -> str:
+def number_ranges(numbers: Sequence[int]) -> str:
     """Rising numbers in words: "1–3, 7"; of more parts than two only the ends, "1 … 9"."""
     parts: list[list[int]] = []
     for number in numbers:
@@ -196,7 +198,7 @@ def ranges(numbers: Sequence[int]) -> str:
     return ", ".join(words) if len(words) <= _PARTS else f"{numbers[0]} … {numbers[-1]}"
 
 
-def badge(ax: Axes, place: Vec2, text: str, shade: str) -> None:
+def draw_badge(ax: Axes, place: Vec2, text: str, shade: str) -> None:
     """Messages' numbers in a disc. It takes no room from the axes, even where it stands at their edge."""
     style = "circle,pad=0.22" if len(text) < _ROUND else "round,pad=0.2,rounding_size=0.6"
     box = {"boxstyle": style, "facecolor": shade, "edgecolor": "white", "lw": 0.8}

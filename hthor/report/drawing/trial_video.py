@@ -43,7 +43,7 @@ _WORDS_MAX = 110
 _TRACK_UID, _TAG_UID, _FIXED_UID = b"\x73\xc5\x88", b"\x63\xc5\x88", bytes(range(1, 9))
 
 
-def write(path: Path, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> None:
+def write_video(path: Path, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> None:
     """Write a WebM film of the trial.
 
     Raises:
@@ -95,7 +95,7 @@ def _steady(path: Path) -> None:
 class _Stage:
     """The empty house as pixels, and where its metres fall on them."""
 
-    @lettering.plain()
+    @lettering.plain_lettering()
     def __init__(self, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> None:
         sheet = Figure(figsize=(_WIDE, _HIGH), dpi=_DPI)
         canvas = FigureCanvasAgg(sheet)
@@ -104,7 +104,7 @@ class _Stage:
         words = trial_figure.headline(spec, log, _TITLE_IN, _TITLE_PT)
         size = _TITLE_PT * min(1.0, _TITLE_LINES / (words.count("\n") + 1))
         sheet.text(0.015, 0.985, words, fontsize=size, color=trial_trace.INK, va="top")
-        handles = trial_figure.handles(spec, log, house, moving=True)
+        handles = trial_figure.legend_entries(spec, log, house, moving=True)
         text_fit.legend(sheet, handles, 6, size=8.0, loc="lower left", columnspacing=1.2)
         canvas.draw()
         self.empty: Any = cv2.cvtColor(np.asarray(canvas.buffer_rgba()), cv2.COLOR_RGBA2BGR)
@@ -143,11 +143,11 @@ class _Stage:
 
     def _draw_seat(self, frame: Any, log: EpisodeLog, index: int, seat: str) -> None:
         """A seat's way so far and where it looks; a robot whose mind failed stays behind as a cross."""
-        fault = trial_trace.failure(log, seat)
+        fault = trial_trace.first_fault(log, seat)
         failed = fault is not None and fault.tick <= index * rules.LOG_EVERY_TICKS
         last = min(index, fault.tick // rules.LOG_EVERY_TICKS) if fault is not None else index
         way = trial_trace.points(log, seat)[: last + 1]
-        shade = _bgr(trial_trace.colour(seat))
+        shade = _bgr(trial_trace.seat_colour(seat))
         pixels = self._pixels(way)
         cv2.polylines(frame, [np.round(pixels * (1 << _SHIFT)).astype(np.int32)], False, shade, 2, cv2.LINE_AA, _SHIFT)
         x, y = (round(part) for part in pixels[-1])
@@ -201,7 +201,7 @@ def _write(frame: Any, text: str, corner: tuple[int, int], shade: str) -> int:
 @lru_cache(maxsize=256)
 def _lettered(text: str, shade: str) -> tuple[Any, int]:
     """Words as RGBA pixels in the font of all pictures, and how far they go below their line."""
-    with lettering.plain():
+    with lettering.plain_lettering():
         sheet = Figure(figsize=(_WIDE, 0.3), dpi=_DPI, facecolor="none")
         canvas = FigureCanvasAgg(sheet)
         drawn = sheet.text(0.0, 0.3, text, fontsize=10, color=shade, weight="bold")

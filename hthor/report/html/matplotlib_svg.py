@@ -92,17 +92,17 @@ _STYLE = {
 @contextmanager
 def style() -> Iterator[None]:
     """Draw in the report's style."""
-    with lettering.plain(), mpl.rc_context(_STYLE):
+    with lettering.plain_lettering(), mpl.rc_context(_STYLE):
         yield
 
 
-def sheet(height: float, width: float = WIDE) -> Figure:
+def new_figure(height: float, width: float = WIDE) -> Figure:
     """An empty figure [in], to be drawn on within `style`."""
     engine = ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06, wspace=0.07, hspace=0.04)
     return Figure(figsize=(width, height), layout=engine, facecolor="none")
 
 
-def bare(ax: Axes, *, grid: Literal["both", "x", "y"] = "x") -> None:
+def quiet_axes(ax: Axes, *, grid: Literal["both", "x", "y"] = "x") -> None:
     """Quiet axes: no box, a thin grid along one axis."""
     ax.set_facecolor("none")
     ax.grid(True, axis=grid)
@@ -111,7 +111,7 @@ def bare(ax: Axes, *, grid: Literal["both", "x", "y"] = "x") -> None:
         side.set_visible(False)
 
 
-def svg(made: Figure, name: str, words: str) -> str:
+def to_svg(made: Figure, name: str, words: str) -> str:
     """The figure as an element of a page: the same bytes for the same drawing.
 
     Args:

@@ -10,7 +10,7 @@ _HEAD = re.compile(r'<svg role="img" viewBox="0 0 ([\d.]+) ([\d.]+)" style="[^"]
 _FONT = "Helvetica, Arial, &quot;DejaVu Sans&quot;, sans-serif"
 
 
-def text(element: str) -> str:
+def svg_document(element: str) -> str:
     """The file's text.
 
     Args:

@@ -29,7 +29,7 @@ Views = dict[int, dict[str, Any]]
 """Pictures (H, W, 3) uint8 by tick and seat."""
 
 
-class Filmed:
+class CameraFrames:
     """A world that keeps what its seats see at some ticks, and is otherwise the one that it is given."""
 
     def __init__(self, world: Any, ticks: Collection[int], profile: str) -> None:
@@ -60,7 +60,7 @@ class Filmed:
             self._kept[world.tick] = {seat: world.frame(seat, size, self._profile) for seat in world.seats}
 
 
-def film(
+def render_frames(
     folder: Path,
     wanted: TrialRecord,
     ticks: Collection[int],
@@ -88,7 +88,7 @@ def film(
     with stage.enter(session) as company:
         for number, trial in enumerate(session.trials, 1):
             activity.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")
-            world = Filmed(stage.world(trial), ticks if trial == spec else (), profile)
+            world = CameraFrames(stage.world(trial), ticks if trial == spec else (), profile)
             done = stage.play(company, trial, world)
         if _course(done) != _course(wanted):
             raise RunError(

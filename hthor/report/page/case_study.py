@@ -21,7 +21,7 @@ from hthor.report.page.figures.case_study import Row
 _DPI = 220
 
 
-def study(
+def write_case_study(
     folders: Sequence[Path],
     task: str,
     out: Path,
@@ -47,26 +47,26 @@ def study(
     """
     if out.exists() and not out.is_dir():
         raise HthorError(f"{out} is a file; --out takes a folder.")
-    runs = load_runs.runs(folders)
+    runs = load_runs.load_runs(folders)
     _same_people(runs)
     chosen = _records(runs, task, person)
-    rows, house = [], render_trial.house(runs[0].folder, chosen[0])
+    rows, house = [], render_trial.load_house(runs[0].folder, chosen[0])
     for run, record in zip(runs, chosen, strict=True):
-        held = key_moments.of(record, house)
+        held = key_moments.key_moments(record, house)
         ticks = [one.tick for one in held]
-        views = camera_frames.film(
+        views = camera_frames.render_frames(
             run.folder, record, ticks, profile=profile, agents=agents, humans=humans, given=given
         )
         rows.append(Row(label=run.label, record=record, moments=held, views=views))
-    made = case_study.figure(rows, house)
+    made = case_study.case_study_figure(rows, house)
     spec = chosen[0].spec
     stem = f"case-{spec.task.id.replace('/', '-')}-{spec.participant}"
     words = f"{spec.task.instruction} One person at this task with: {', '.join(run.label for run in runs)}."
     drawn, seen = out / f"{stem}.svg", out / f"{stem}.png"
-    jsonio.write(drawn, svg_file.text(matplotlib_svg.svg(made, "case", words)).encode())
+    jsonio.write(drawn, svg_file.svg_document(matplotlib_svg.to_svg(made, "case", words)).encode())
     pixels = io.BytesIO()
     with matplotlib_svg.style():
-        lettering.save(made, pixels, format="png", dpi=_DPI, metadata={"Software": None})
+        lettering.save_figure(made, pixels, format="png", dpi=_DPI, metadata={"Software": None})
     jsonio.write(seen, pixels.getvalue())
     return drawn, seen
 

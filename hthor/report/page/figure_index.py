@@ -17,7 +17,7 @@ PAIRS_MOST = 15
 """More comparisons than these are only in the table, and those with no robot in the figure."""
 
 
-class Drawing(Struct, frozen=True, kw_only=True, eq=False):
+class NamedFigure(Struct, frozen=True, kw_only=True, eq=False):
     """A figure, its name as a file's, and what it shows for those who cannot see it."""
 
     name: str
@@ -25,7 +25,7 @@ class Drawing(Struct, frozen=True, kw_only=True, eq=False):
     figure: Figure
 
 
-class Scene(Struct, frozen=True, kw_only=True, eq=False):
+class MapScene(Struct, frozen=True, kw_only=True, eq=False):
     """What a map is drawn of: a trial, the same person's without a robot if there is one, and the house."""
 
     record: TrialRecord
@@ -33,7 +33,7 @@ class Scene(Struct, frozen=True, kw_only=True, eq=False):
     house: HouseSpec
 
 
-def draw(found: Findings, scenes: Sequence[Scene]) -> Iterator[Drawing]:
+def draw_figures(found: Findings, scenes: Sequence[MapScene]) -> Iterator[NamedFigure]:
     """The figures in the page's order; those that would be empty are left out.
 
     Args:
@@ -48,15 +48,15 @@ def draw(found: Findings, scenes: Sequence[Scene]) -> Iterator[Drawing]:
         failed = any(scene.record.faults for scene in scenes)
         words = "What lines and marks on the maps mean"
         legend = trial_map.legend(seats, alone=alone, destined=destined, failed=failed)
-        yield Drawing(name="legend", words=words, figure=legend)
+        yield NamedFigure(name="legend", words=words, figure=legend)
     for number, (one, scene) in enumerate(zip(found.shown, scenes, strict=False), 1):
         words = f"Map of {one.task} with {one.arm}, one of its {one.rank} trials"
         figure = trial_map.figure(scene.record, scene.house, scene.alone)
-        yield Drawing(name=f"map-{number:02d}-{one.key}", words=words, figure=figure)
+        yield NamedFigure(name=f"map-{number:02d}-{one.key}", words=words, figure=figure)
 
 
-def _of_runs(found: Findings) -> Iterator[Drawing]:
-    yield Drawing(
+def _of_runs(found: Findings) -> Iterator[NamedFigure]:
+    yield NamedFigure(
         name="scores",
         words="Success, time-weighted success and adoption of every run, with 95 % intervals",
         figure=scores.figure(found),
@@ -64,26 +64,28 @@ def _of_runs(found: Findings) -> Iterator[Drawing]:
     pairs = found.comparisons if len(found.comparisons) <= PAIRS_MOST else found.uplift
     if pairs:
         words = "Differences between runs over shared trials, with 95 % intervals"
-        yield Drawing(name="compared", words=words, figure=comparison.figure(pairs, found.arms))
+        yield NamedFigure(name="compared", words=words, figure=comparison.figure(pairs, found.arms))
     words = "Box plots of the time spent, and the share of trials solved by each second"
-    yield Drawing(name="time-spent", words=words, figure=time_spent.figure(found.spent, found.arms))
+    yield NamedFigure(name="time-spent", words=words, figure=time_spent.figure(found.spent, found.arms))
     if found.trust:
         words = "Mean trust by trial of the session, with standard errors"
-        yield Drawing(name="trust", words=words, figure=trust.figure(found.trust, found.arms))
+        yield NamedFigure(name="trust", words=words, figure=trust.figure(found.trust, found.arms))
     speaking = [arm for arm in found.arms if (arm.scores["sent"].mean or 0.0) > 0.0]
     if speaking:
         words = "What became of the robots' messages, how soon they were useful, how often they interrupted"
-        yield Drawing(name="channel", words=words, figure=communication.figure(speaking))
+        yield NamedFigure(name="channel", words=words, figure=communication.figure(speaking))
 
 
-def _of_parts(found: Findings) -> Iterator[Drawing]:
+def _of_parts(found: Findings) -> Iterator[NamedFigure]:
     levels = [one for one in found.splits if one.word != "scene"]
     if levels:
         said = " and ".join(one.word for one in levels)
-        yield Drawing(name="difficulty", words=f"Success by {said}", figure=breakdown.figure(levels, found.arms))
+        yield NamedFigure(name="difficulty", words=f"Success by {said}", figure=breakdown.figure(levels, found.arms))
     rooms = [one for one in found.splits if one.word == "scene"]
     if rooms:
-        yield Drawing(name="scenes", words="Success by scene", figure=breakdown.figure(rooms, found.arms, ranked=True))
+        yield NamedFigure(
+            name="scenes", words="Success by scene", figure=breakdown.figure(rooms, found.arms, ranked=True)
+        )
     if found.by_people is not None:
         people = [found.by_people]
-        yield Drawing(name="people", words="Success by kind of person", figure=breakdown.figure(people, found.arms))
+        yield NamedFigure(name="people", words="Success by kind of person", figure=breakdown.figure(people, found.arms))

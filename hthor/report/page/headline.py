@@ -13,7 +13,7 @@ _MANY = 6
 """Of more pairs than these the sentence tells only those of the best robot."""
 
 
-def lead(found: Findings) -> str:
+def headline(found: Findings) -> str:
     """Which robot is better."""
     if not found.comparisons:
         return _alone(found)
@@ -28,7 +28,7 @@ def lead(found: Findings) -> str:
         better = sum(pair.better == pair.second for pair in found.uplift)
         said.append(f"{better or 'None'} of {len(found.uplift)} robots are better than no robot.")
     said += ["Section 2 has all pairs."] if many else []
-    said += [] if found.baseline else [sentences.alone(found)]
+    said += [] if found.baseline else [sentences.without_baseline(found)]
     return " ".join(said)
 
 
@@ -41,10 +41,10 @@ def _alone(found: Findings) -> str:
     if found.baseline and len(found.arms) == 1:
         return f"There is only a run without a robot: people succeed in {rates} of its trials."
     text = f"People succeed with {rates} of the trials."
-    return text if found.apart and found.baseline else f"{text} {sentences.alone(found)}"
+    return text if found.apart and found.baseline else f"{text} {sentences.without_baseline(found)}"
 
 
-def worth_telling(found: Findings) -> Sequence[Comparison]:
+def notable_comparisons(found: Findings) -> Sequence[Comparison]:
     """The comparisons that are told in words below."""
     if len(found.comparisons) <= _MANY:
         return found.comparisons

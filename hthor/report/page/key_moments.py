@@ -27,7 +27,7 @@ class Moment(Struct, frozen=True, kw_only=True):
     words: str
 
 
-def of(record: TrialRecord, house: HouseSpec | None = None) -> list[Moment]:
+def key_moments(record: TrialRecord, house: HouseSpec | None = None) -> list[Moment]:
     """Up to `MANY` moments in order, the last of them the end.
 
     First come the sending of the first message that the person confirmed (else of the first), the answer to it, and the
@@ -49,7 +49,7 @@ def _candidates(record: TrialRecord) -> Iterator[Moment]:
     """What happened, the most telling first."""
     sent = trial_trace.messages(record.log)
     if sent:
-        fates = [trial_trace.fate(record.log, event.data["message"]) for event in sent]
+        fates = [trial_trace.outcome_of(record.log, event.data["message"]) for event in sent]
         number = next((fates.index(fate) for fate in _ANSWERS if fate in fates), 0)
         yield Moment(tick=sent[number].tick, words=f"{sent[number].seat}, message {number + 1}")
         yield from _answer(record, sent[number])
@@ -75,6 +75,6 @@ def _longest_wait(found: list[Moment], least: int) -> int:
 
 
 def _room(record: TrialRecord, tick: int, house: HouseSpec | None) -> str:
-    place = trial_trace.at(record.log, HUMAN, tick)
+    place = trial_trace.position_at(record.log, HUMAN, tick)
     rooms = house.rooms if house is not None else ()
     return next((room.name for room in rooms if plane.inside(place, room.polygon)), "")

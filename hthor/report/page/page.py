@@ -81,10 +81,10 @@ def render(found: Findings, drawings: Mapping[str, str]) -> str:
         html.section(number, name, title, *make(found, drawings))
         for number, (name, (title, make)) in enumerate(_SECTIONS.items(), 1)
     )
-    title = sentences.title(found)
+    title = sentences.page_title(found)
     links = html.navigation({name: title for name, (title, _) in _SECTIONS.items()})
     body = (_head(found, title), links, *sections, _foot(found))
-    return html.page(title, body, style.css(_RULES), headline.lead(found))
+    return html.page(title, body, style.css(_RULES), headline.headline(found))
 
 
 def _head(found: Findings, title: str) -> str:
@@ -92,9 +92,9 @@ def _head(found: Findings, title: str) -> str:
         (
             html.paragraph("hthor report", "over"),
             f"<h1>{html.inside(title)}</h1>",
-            html.paragraph(headline.lead(found), "lead"),
-            html.paragraph(sentences.facts(found), "facts"),
-            *(html.paragraph(note, "note") for note in warnings.of(found)),
+            html.paragraph(headline.headline(found), "lead"),
+            html.paragraph(sentences.page_facts(found), "facts"),
+            *(html.paragraph(note, "note") for note in warnings.warnings(found)),
         )
     )
 

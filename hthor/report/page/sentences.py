@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from hthor.eval.comparison.compare import Comparison
 from hthor.eval.results.paired_difference import Difference
-from hthor.report.analysis.document import Apart, Arm, Curve, Findings, Spent, Split
-from hthor.report.analysis.example_trials import Shown
+from hthor.report.analysis.document import Arm, Findings, IncomparablePair, Split, TimeSpent, TrustCurve
+from hthor.report.analysis.example_trials import ExampleTrial
 from hthor.report.html.numbers import listed, plain, signed
 
 _NAMED = 4
@@ -26,7 +26,7 @@ _APART = {
 }
 
 
-def title(found: Findings) -> str:
+def page_title(found: Findings) -> str:
     """What the page is called."""
     robots = [arm.label for arm in found.arms if arm.label != found.baseline]
     against = " against no robot" if found.baseline and robots else ""
@@ -34,7 +34,7 @@ def title(found: Findings) -> str:
     return f"{_upper(named)}{against}, on the suite {found.suite.name}"
 
 
-def facts(found: Findings) -> str:
+def page_facts(found: Findings) -> str:
     """How much there is of what."""
     trials = sum(one.trials for one in found.origins)
     tasks, people = max(arm.tasks for arm in found.arms), max(arm.people for arm in found.arms)
@@ -43,7 +43,7 @@ def facts(found: Findings) -> str:
     return f"{runs}, {trials} trials: {tasks} tasks, {people} {'person' if people == 1 else 'people'} ({who})."
 
 
-def alone(found: Findings) -> str:
+def without_baseline(found: Findings) -> str:
     """That nothing can be said about help."""
     return (
         "There is no run without a robot among these or beside them, so whether the robots help cannot be said. This "
@@ -51,17 +51,17 @@ def alone(found: Findings) -> str:
     )
 
 
-def apart(one: Apart) -> str:
+def not_comparable(one: IncomparablePair) -> str:
     """Why two runs are not compared."""
     return f"{_upper(one.first)} and {one.second} are not compared trial by trial: {_APART.get(one.field, one.field)}."
 
 
-def sentence(pair: Comparison) -> str:
+def comparison_sentence(pair: Comparison) -> str:
     """What `hthor compare` says of two runs."""
     return _upper(re.sub(r"(?<=[ (])-(?=\d)", "−", pair.sentence))
 
 
-def published(found: Findings) -> str:
+def published_figures(found: Findings) -> str:
     """What the article's figures are, and whether these runs can be set against them."""
     study = found.published
     if study is None:
@@ -78,7 +78,7 @@ def published(found: Findings) -> str:
     )
 
 
-def spent(parts: Sequence[Spent]) -> str:
+def time_spent(parts: Sequence[TimeSpent]) -> str:
     """Where the boxes differ."""
     each = listed(f"{one.arm} {one.median:.1f} s [{one.lower:.1f}, {one.upper:.1f}]" for one in parts)
     text = f"Median [quartiles]: {each}."
@@ -91,12 +91,12 @@ def spent(parts: Sequence[Spent]) -> str:
     return text
 
 
-def trust(curves: Sequence[Curve]) -> str:
+def trust_trend(curves: Sequence[TrustCurve]) -> str:
     """Whether trust rises or falls over a session."""
     return " ".join(_trend(curve) for curve in curves)
 
 
-def _trend(curve: Curve) -> str:
+def _trend(curve: TrustCurve) -> str:
     if curve.slope is None or curve.slope_se is None:
         return f"Trust in {curve.arm}: too few people for a trend."
     size = f"{signed(curve.slope, 3)} points a trial, standard error {plain(curve.slope_se, 3)}"
@@ -105,7 +105,7 @@ def _trend(curve: Curve) -> str:
     return f"Trust in {curve.arm} {'rises' if curve.slope > 0 else 'falls'} ({size})."
 
 
-def channel(arms: Sequence[Arm]) -> str:
+def messages(arms: Sequence[Arm]) -> str:
     """How much robots said, and how much of it was taken."""
     said = []
     for arm in arms:
@@ -119,7 +119,7 @@ def channel(arms: Sequence[Arm]) -> str:
     return " ".join(said)
 
 
-def widest(word: str, gains: Mapping[str, Mapping[str, Difference]]) -> str:
+def extreme_gains(word: str, gains: Mapping[str, Mapping[str, Difference]]) -> str:
     """In which part the robots make the largest difference, and the smallest."""
     each = [(one.difference, label, name, one) for name, by in gains.items() for label, one in by.items()]
     if not each:
@@ -131,7 +131,7 @@ def widest(word: str, gains: Mapping[str, Mapping[str, Difference]]) -> str:
     )
 
 
-def worst_people(split: Split) -> str:
+def worst_population(split: Split) -> str:
     """With which people each robot does worst."""
     said = []
     for label in dict.fromkeys(label for group in split.groups for label in group.sr):
@@ -143,7 +143,7 @@ def worst_people(split: Split) -> str:
     return f"The people who do worst: with {listed(said)}." if said else ""
 
 
-def shown(one: Shown) -> str:
+def example_trial(one: ExampleTrial) -> str:
     """What became of a trial that is drawn."""
     end = f"done in {one.time_s:.1f} s" if one.met else f"not done in {one.time_s:.0f} s"
     text = f"“{one.instruction}” {_upper(end)}"
@@ -152,7 +152,7 @@ def shown(one: Shown) -> str:
     return f"{text}; T*\u00a0{one.t_star:.1f} s. {one.task}, person {one.participant}, trial {one.index + 1}."
 
 
-def gained(one: Shown) -> str:
+def time_gained(one: ExampleTrial) -> str:
     """What the robot was worth in a trial."""
     if one.gain_s is None:
         return "Done." if one.met else "Not done."

@@ -6,7 +6,7 @@ from hthor.report.analysis.document import Findings
 from hthor.report.html.numbers import listed
 
 
-def of(found: Findings) -> list[str]:
+def warnings(found: Findings) -> list[str]:
     """A sentence each."""
     said = [
         f"{one.name} is not finished: {one.whole - one.trials} of {one.whole} trials are missing."

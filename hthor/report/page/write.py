@@ -9,14 +9,14 @@ from hthor import jsonio
 from hthor.errors import HthorError
 from hthor.report.analysis import build, load_runs
 from hthor.report.analysis.document import Findings, Published
-from hthor.report.analysis.load_runs import Run, pair
+from hthor.report.analysis.load_runs import Run, pairing_key
 from hthor.report.drawing import render_trial
 from hthor.report.html import matplotlib_svg, svg_file
 from hthor.report.page import figure_index, page
-from hthor.report.page.figure_index import Scene
+from hthor.report.page.figure_index import MapScene
 
 
-def report(folders: Sequence[Path], out: Path, published: Published | None = None) -> Findings:
+def write_report(folders: Sequence[Path], out: Path, published: Published | None = None) -> Findings:
     """Read the runs, and their control where none of them is without a robot, and write the report into ``out``.
 
     Raises:
@@ -25,24 +25,28 @@ def report(folders: Sequence[Path], out: Path, published: Published | None = Non
     """
     if out.exists() and not out.is_dir():
         raise HthorError(f"{out} is a file; --out takes the report's folder.")
-    runs = load_runs.with_controls(load_runs.runs(folders))
-    found = build.findings(runs, published)
+    runs = load_runs.with_baselines(load_runs.load_runs(folders))
+    found = build.build_findings(runs, published)
     elements: dict[str, str] = {}
-    for one in figure_index.draw(found, list(_scenes(runs, found))):
-        elements[one.name] = matplotlib_svg.svg(one.figure, one.name, one.words)
+    for one in figure_index.draw_figures(found, list(_scenes(runs, found))):
+        elements[one.name] = matplotlib_svg.to_svg(one.figure, one.name, one.words)
     text = page.render(found, elements)
     for name, element in elements.items():
-        jsonio.write(out / "figures" / f"{name}.svg", svg_file.text(element).encode())
+        jsonio.write(out / "figures" / f"{name}.svg", svg_file.svg_document(element).encode())
     jsonio.write(out / "report.json", jsonio.pretty(found))
     jsonio.write(out / "report.html", text.encode())
     return found
 
 
-def _scenes(runs: Sequence[Run], found: Findings) -> Iterator[Scene]:
+def _scenes(runs: Sequence[Run], found: Findings) -> Iterator[MapScene]:
     """What the maps are drawn of, in the findings' order."""
     own = {run.label: run for run in runs if run.plan.humans.name == found.people}
     alone = own[found.baseline].by_pair if found.baseline else {}
     by_arm = {label: {record.key: record for record in run.records} for label, run in own.items()}
     for one in found.shown:
         record = by_arm[one.arm][one.key]
-        yield Scene(record=record, alone=alone.get(pair(record)), house=render_trial.house(own[one.arm].folder, record))
+        yield MapScene(
+            record=record,
+            alone=alone.get(pairing_key(record)),
+            house=render_trial.load_house(own[one.arm].folder, record),
+        )

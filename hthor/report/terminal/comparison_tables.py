@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import SHARE, Unit
 from hthor.eval.results.paired_difference import Difference
-from hthor.report.terminal.result_tables import least, new_table, signed
+from hthor.report.terminal.result_tables import format_detectable, format_difference, new_table
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _HEADINGS = ("difference", "95 % interval", "could have seen", "p", "trials")
 
 
-def table(pair: Comparison) -> Table:
+def comparison_table(pair: Comparison) -> Table:
     """A row a metric."""
     title = f"{pair.second} against {pair.first}: {pair.tasks} tasks, {pair.people} people"
     table = new_table(title, pair.first, pair.second, *_HEADINGS)
@@ -37,7 +37,7 @@ def groups_table(pair: Comparison, by: str) -> Table:
     return table
 
 
-def lines(pair: Comparison) -> Iterator[str]:
+def comparison_lines(pair: Comparison) -> Iterator[str]:
     """The rest in words, the verdict last."""
     mcnemar, tally = pair.mcnemar, pair.tally
     yield (
@@ -58,20 +58,20 @@ def lines(pair: Comparison) -> Iterator[str]:
     yield pair.sentence
 
 
-def difference(found: Difference, unit: Unit) -> str:
+def difference_line(found: Difference, unit: Unit) -> str:
     """A difference with its interval, in one line."""
-    value = f"{signed(found.difference, unit)} {unit.difference}".rstrip()
+    value = f"{format_difference(found.difference, unit)} {unit.difference}".rstrip()
     if found.ci95 is None:
         return value
-    low, high = (signed(end, unit) for end in found.ci95)
+    low, high = (format_difference(end, unit) for end in found.ci95)
     return f"{value} (95 % interval {low} to {high}, {found.n} trials)"
 
 
 def _cells(found: Difference, unit: Unit) -> Iterator[str]:
     yield from (f"{unit.scale * value:.1f}" for value in (found.first, found.second))
-    yield signed(found.difference, unit)
-    yield "–" if found.ci95 is None else " … ".join(signed(end, unit) for end in found.ci95)
-    yield least(found.mde80, unit)
+    yield format_difference(found.difference, unit)
+    yield "–" if found.ci95 is None else " … ".join(format_difference(end, unit) for end in found.ci95)
+    yield format_detectable(found.mde80, unit)
     yield "–" if found.p is None else ("< 0.001" if found.p < 0.001 else f"{found.p:.3f}")
     yield str(found.n)
 

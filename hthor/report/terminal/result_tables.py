@@ -35,17 +35,17 @@ def result_table(result: RunResult, *, everything: bool = False) -> Table:
     later = enumerate(result.trust_by_trial if everything else (), 1)
     rated = ((f"trust after a participant's trial {number}", NUMBER, estimate) for number, estimate in later)
     for title, unit, estimate in (*_rows(result.metrics, everything), *rated):
-        seen = least(estimate.mde80, unit)
-        table.add_row(title, number(estimate, unit), interval(estimate, unit), seen, str(estimate.n))
+        seen = format_detectable(estimate.mde80, unit)
+        table.add_row(title, format_mean(estimate, unit), format_interval(estimate, unit), seen, str(estimate.n))
     for metric in map(registry.get, uplift.METRICS if result.uplift else ()):
         gain: Difference = getattr(result.uplift, metric.name)
-        ends = "–" if gain.ci95 is None else " … ".join(signed(end, metric.unit) for end in gain.ci95)
-        mean = f"{signed(gain.difference, metric.unit)} {metric.unit.difference}"
-        table.add_row(f"uplift: {metric.title}", mean, ends, least(gain.mde80, metric.unit), str(gain.n))
+        ends = "–" if gain.ci95 is None else " … ".join(format_difference(end, metric.unit) for end in gain.ci95)
+        mean = f"{format_difference(gain.difference, metric.unit)} {metric.unit.difference}"
+        table.add_row(f"uplift: {metric.title}", mean, ends, format_detectable(gain.mde80, metric.unit), str(gain.n))
     return table
 
 
-def notes(results: Iterable[RunResult]) -> Iterator[str]:
+def result_notes(results: Iterable[RunResult]) -> Iterator[str]:
     """What a reader of these results' tables has to know beside their numbers, each thing once."""
     held = list(results)
     outside = dict.fromkeys(note for result in held for note in result.humans.notes)
@@ -80,7 +80,7 @@ def comparison_table(results: Sequence[RunResult]) -> Table:
     return table
 
 
-def peoples_table(matrix: PopulationMatrix) -> Table:
+def population_table(matrix: PopulationMatrix) -> Table:
     """Agents with several peoples: a row a people, three columns an agent, the worst of each agent marked."""
     headings = [
         heading
@@ -98,7 +98,7 @@ def peoples_table(matrix: PopulationMatrix) -> Table:
     return table
 
 
-def worst_lines(matrix: PopulationMatrix) -> Iterator[str]:
+def worst_population_lines(matrix: PopulationMatrix) -> Iterator[str]:
     """With whom each agent fares worst, a line an agent."""
     for name, worst in matrix.worst.items():
         agent = _called(name)
@@ -135,12 +135,12 @@ def _rows(scores: Scores, everything: bool) -> Iterator[Row]:
             yield f"{metric.title}: {seat}", metric.unit, estimate
 
 
-def number(estimate: Estimate, unit: Unit) -> str:
+def format_mean(estimate: Estimate, unit: Unit) -> str:
     """The mean with its unit; a dash where there is none."""
     return "–" if estimate.mean is None else f"{unit.scale * estimate.mean:.1f} {unit.name}".rstrip()
 
 
-def interval(estimate: Estimate, unit: Unit) -> str:
+def format_interval(estimate: Estimate, unit: Unit) -> str:
     """The interval without its unit; a dash where there is none."""
     if estimate.ci95 is None:
         return "–"
@@ -148,7 +148,7 @@ def interval(estimate: Estimate, unit: Unit) -> str:
     return f"{unit.scale * low:.1f} … {unit.scale * high:.1f}"
 
 
-def least(mde80: float | None, unit: Unit) -> str:
+def format_detectable(mde80: float | None, unit: Unit) -> str:
     """The smallest difference that so many trials could have seen, as a number.
 
     A dash where the trials are too few to tell, or all alike and no measure of chance. No two shares are further apart
@@ -159,7 +159,7 @@ def least(mde80: float | None, unit: Unit) -> str:
     return "> 100" if unit == SHARE and mde80 > 1.0 else f"{unit.scale * mde80:.1f}"
 
 
-def signed(value: float, unit: Unit) -> str:
+def format_difference(value: float, unit: Unit) -> str:
     """A difference with its sign."""
     return f"{unit.scale * value:+z.1f}"
 
@@ -177,12 +177,12 @@ def new_table(title: str, *headings: str) -> Table:
 
 
 def _cell(estimate: Estimate, unit: Unit) -> str:
-    return "–" if estimate.mean is None else f"{number(estimate, unit)}\n{interval(estimate, unit)}"
+    return "–" if estimate.mean is None else f"{format_mean(estimate, unit)}\n{format_interval(estimate, unit)}"
 
 
 def _uplift_cell(result: RunResult) -> str:
     if result.uplift is None or result.uplift.sr.ci95 is None:
         return "–"
     gain = result.uplift.sr
-    ends = " … ".join(signed(end, SHARE) for end in gain.ci95 or ())
-    return f"{signed(gain.difference, SHARE)} {SHARE.difference}\n{ends}"
+    ends = " … ".join(format_difference(end, SHARE) for end in gain.ci95 or ())
+    return f"{format_difference(gain.difference, SHARE)} {SHARE.difference}\n{ends}"

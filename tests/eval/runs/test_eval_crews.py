@@ -169,7 +169,7 @@ def test_a_trial_of_several_robots_can_be_looked_at(guests: dict[str, str], tmp_
     from hthor import houses
 
     (one,) = played(f"tall:oracle,small:{guests['talker']}")
-    sheet = trial_figure.figure(one.spec, one.log, houses.load(HOUSE))
+    sheet = trial_figure.trial_figure(one.spec, one.log, houses.load(HOUSE))
     words = [text.get_text() for legend in sheet.legends for text in legend.get_texts()]
     assert "robot: tender (oracle)" in words
     assert "robot2: puck (talker)" in words

@@ -96,7 +96,7 @@ def test_the_example_kind_runs_as_it_is(root: Path, few: None, tmp_path: Path):
     lines = (tmp_path / "run" / "trials.jsonl").read_bytes().splitlines(keepends=True)
     records = [trial_record.decode(line) for line in lines]
     assert {one.spec.kind_sha256 for one in records} == {done.plan.kind.sha256}
-    sheet = trial_figure.figure(records[0].spec, records[0].log, houses.load(records[0].spec.task.house))
+    sheet = trial_figure.trial_figure(records[0].spec, records[0].log, houses.load(records[0].spec.task.house))
     assert [tick.get_text() for tick in sheet.axes[1].get_yticklabels()] == ["person", "robot", "progress"]
     names = {text.get_text() for text in sheet.axes[0].texts}
     assert {"tomato", "lettuce", "fridge"} <= names, "both targets and where they are to go"

@@ -265,7 +265,7 @@ def test_without_a_robot_only_what_concerns_the_person_has_a_value():
 
 def test_scores_have_every_seat_and_every_pair():
     trials = fakes.run_of(10, name="tall+small")[1][0].trials
-    found = aggregate.scores([make_record(trial, fakes.episode(trial)) for trial in trials])
+    found = aggregate.estimate_metrics([make_record(trial, fakes.episode(trial)) for trial in trials])
     assert set(found.work) == {HUMAN, "robot", "robot2"}
     assert len(found.hindered_by) == 6
     assert found.work[HUMAN].n == sum(fakes.episode(trial).met for trial in trials)

@@ -68,7 +68,7 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_one_worker_and_two_write_the_same_lines(tmp_path: Path, reference: Path):
-    one = result_file.load(reference)
+    one = result_file.load_result(reference)
     two = _run(tmp_path, jobs=2, count=60)
     assert _lines(tmp_path) == _lines(reference)
     assert one is not None
@@ -159,12 +159,12 @@ def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path
         collector.InternalFailure, match=r"participant 1: ZeroDivisionError.* 10 of 20 trials are missing"
     ):
         list(experiment.run_experiment(options, lambda _: progress.Silent()))
-    assert result_file.load(tmp_path / "frontier").counts.trials == 20
-    assert result_file.load(tmp_path / "none") is None
+    assert result_file.load_result(tmp_path / "frontier").counts.trials == 20
+    assert result_file.load_result(tmp_path / "none") is None
     monkeypatch.setattr(trial_runner, "make_runner", fakes.player)
     done = [one.plan.name for one in experiment.run_experiment(options, lambda _: progress.Silent())]
     assert done == ["none", "frontier"]
-    assert result_file.load(tmp_path / "frontier").uplift is not None
+    assert result_file.load_result(tmp_path / "frontier").uplift is not None
 
 
 def test_a_worker_has_as_long_as_its_agents_deadlines_allow():
@@ -326,7 +326,7 @@ def test_a_run_that_is_killed_again_and_again_ends_up_the_same(tmp_path: Path, r
         _, words = process.communicate(timeout=60)
     assert process.returncode == 0, words
     assert _lines(tmp_path) == _lines(reference)
-    assert result_file.load(tmp_path).metrics == result_file.load(reference).metrics
+    assert result_file.load_result(tmp_path).metrics == result_file.load_result(reference).metrics
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

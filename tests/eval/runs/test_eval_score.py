@@ -55,7 +55,7 @@ def test_a_small_log_worked_out_by_hand():
         (0, 0.0, 0, 90.0, 2),
         (1, 1.0, 0, 4.0, 4),
     ]
-    found = aggregate.scores(made)
+    found = aggregate.estimate_metrics(made)
     assert [getattr(found, name).mean for name in main] == [0.666667, 0.5, 0.333333, 36.666667, 4.0]
     assert found.sr.ci95[0] < 0.2
     assert found.sr.ci95[1] > 0.9
@@ -91,7 +91,7 @@ def test_only_a_robots_confirmed_message_is_adopted():
 def test_without_a_robot_there_is_neither_adoption_nor_trust():
     plan, dealt = fakes.run_of(10, absent=True)
     made = [trial_record.make_record(trial, fakes.episode(trial)) for trial in dealt[0].trials]
-    found = aggregate.summarise(plan, [trial_record.encode(one) for one in made], made)
+    found = aggregate.make_result(plan, [trial_record.encode(one) for one in made], made)
     assert (found.metrics.adoption.mean, found.metrics.adoption.ci95, found.metrics.adoption.n) == (None, None, 0)
     assert found.metrics.trust.n == 0
     assert found.metrics.sr.n == 10

@@ -47,7 +47,9 @@ def test_an_interval_lies_within_the_bounds_and_holds_the_estimate(trials):
 def test_so_does_that_of_a_difference(trials):
     metric, limit, rows, tasks, people = trials
     room = registry.get(metric).width(limit)
-    found = paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, registry.get(metric), limit_s=limit)
+    found = paired_difference.difference_of_values(
+        rows[:, 0], rows[:, 1], tasks, people, registry.get(metric), limit_s=limit
+    )
     least, most = found.ci95
     assert -room - 1e-6 <= least <= found.difference <= most <= room + 1e-6
 
@@ -59,7 +61,9 @@ def test_an_interval_leaves_out_zero_exactly_when_the_test_refuses_it(trials):
     record = registry.get(metric)
     room = record.width(limit)
     for level in (0.95, 0.99):
-        found = paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, record, limit_s=limit, level=level)
+        found = paired_difference.difference_of_values(
+            rows[:, 0], rows[:, 1], tasks, people, record, limit_s=limit, level=level
+        )
         least, most = found.ci95
         if abs(least) > 1e-4 * room and abs(most) > 1e-4 * room and math.isfinite(room):  # no rounding decides it
             assert (least > 0.0 or most < 0.0) == (found.p < 1.0 - level)
@@ -71,7 +75,9 @@ def test_a_surer_interval_is_wider(trials):
     metric, limit, rows, tasks, people = trials
     record = registry.get(metric)
     narrow, wide = (
-        paired_difference.between(rows[:, 0], rows[:, 1], tasks, people, record, limit_s=limit, level=level).ci95
+        paired_difference.difference_of_values(
+            rows[:, 0], rows[:, 1], tasks, people, record, limit_s=limit, level=level
+        ).ci95
         for level in (0.9, 0.99)
     )
     assert wide[0] <= narrow[0] + 1e-6
@@ -84,9 +90,9 @@ def test_turned_about_the_middle_it_is_the_same_interval_turned(trials):
     metric, limit, rows, tasks, people = trials
     low, high = within = registry.get(metric).range(limit)
     one, other = (
-        variance_components.two_way(row[None], tasks, people) for row in (rows[:, 0], low + high - rows[:, 0])
+        variance_components.two_way_spread(row[None], tasks, people) for row in (rows[:, 0], low + high - rows[:, 0])
     )
-    here, there = (intervals.interval(found, len(rows), within) for found in (one, other))
+    here, there = (intervals.confidence_interval(found, len(rows), within) for found in (one, other))
     assert here[0] == pytest.approx(low + high - there[1], abs=1e-6)
     assert here[1] == pytest.approx(low + high - there[0], abs=1e-6)
 
@@ -132,7 +138,7 @@ def test_a_runs_times_are_held_within_their_limits():
         )
         for k, one in enumerate(kept)
     ]
-    low, high = aggregate.scores(slow).time_s.ci95
+    low, high = aggregate.estimate_metrics(slow).time_s.ci95
     assert low < 82.0 < high <= 90.0
 
 
@@ -149,15 +155,15 @@ def test_they_hold_the_truth_as_often_near_a_bound_with_few_people(metric: str, 
     tasks, people = np.arange(60), np.arange(60) // 10
     values = sort.value(next(bounded.latent(tasks, people, level, 800)))
     within, mean = registry.get(metric).range(bounded.LIMIT_S), bounded.truth(sort, level)
-    low, high = intervals.interval(variance_components.two_way(values, tasks, people), 60, within)
+    low, high = intervals.confidence_interval(variance_components.two_way_spread(values, tasks, people), 60, within)
     assert 0.93 <= np.mean((low <= mean) & (mean <= high)) <= 0.98
 
 
 def test_an_amount_of_unknown_variance_has_no_interval_and_no_warning_of_the_library() -> None:
     """As in a run of three trials in which nothing was counted."""
     one = np.ones(2)
-    found = variance_components.Spread(
+    found = variance_components.MeanSpread(
         mean=np.array([0.0, 2.0]), variance=np.inf * one, freedom=one, uneven=one, single=one
     )
-    low, high = intervals.interval(found, 3, (0.0, math.inf))
+    low, high = intervals.confidence_interval(found, 3, (0.0, math.inf))
     assert not np.isfinite(high - low).any()

@@ -69,14 +69,14 @@ def test_everybody_doing_everything_is_the_textbook_analysis_of_variance():
     rest = table - table.mean(1, keepdims=True) - table.mean(0, keepdims=True) + table.mean()
     noise = (rest**2).sum() / (11 * 6)
     tasks, people = np.repeat(np.arange(12), 7), np.tile(np.arange(7), 12)
-    found = variance_components.two_way(table.ravel()[None], tasks, people)
+    found = variance_components.two_way_spread(table.ravel()[None], tasks, people)
     assert found.variance[0] == pytest.approx((by_task + by_person - noise) / 84)
 
 
 def test_every_task_once_is_the_spread_of_peoples_means():
     chance = np.random.default_rng(3)
     table = chance.normal(size=(6, 1)) * 3 + chance.normal(size=(6, 10))
-    found = variance_components.two_way(table.reshape(1, -1), np.arange(60), np.repeat(np.arange(6), 10))
+    found = variance_components.two_way_spread(table.reshape(1, -1), np.arange(60), np.repeat(np.arange(6), 10))
     assert found.variance[0] == pytest.approx(table.mean(1).var(ddof=1) / 6)
     assert found.freedom[0] == 5
 
@@ -103,8 +103,8 @@ def _worlds(design: str, rate: float, repeats: int, seed: int = 7, **sd: float) 
 @pytest.mark.parametrize("design", DESIGNS)
 def test_intervals_hold_the_truth_as_often_as_they_say(design: str):
     tasks, people = DESIGNS[design]
-    found = variance_components.two_way(_worlds(design, 0.75, 1000), tasks, people)
-    low, high = intervals.interval(found, len(tasks), intervals.SHARE)
+    found = variance_components.two_way_spread(_worlds(design, 0.75, 1000), tasks, people)
+    low, high = intervals.confidence_interval(found, len(tasks), intervals.SHARE)
     assert 0.93 <= np.mean((low <= 0.75) & (high >= 0.75)) <= 0.97
 
 
@@ -112,7 +112,9 @@ def test_intervals_hold_the_truth_as_often_as_they_say(design: str):
 def test_two_equal_robots_are_seldom_told_apart(design: str):
     tasks, people = DESIGNS[design]
     one, other = _worlds(design, 0.75, 1000), _worlds(design, 0.75, 1000, seed=8)
-    low, high = paired_difference.ends(paired_difference.spread_of(one - other, tasks, people, share=True), share=True)
+    low, high = paired_difference.interval_ends(
+        paired_difference.difference_spread(one - other, tasks, people, share=True), share=True
+    )
     assert 0.93 <= np.mean((low <= 0.0) & (high >= 0.0)) <= 0.97
 
 

@@ -168,6 +168,6 @@ def test_a_run_says_which_detector_it_used() -> None:
     assert {seat.detector for trial in dealt[0].trials for seat in trial.robots} == {text}
     keys = {trial_record.key(trial) for trial in sessions.make_sessions(suite, agent=crews[0])[0].trials}
     assert keys.isdisjoint(trial_record.key(trial) for trial in dealt[0].trials)
-    assert aggregate.summarise(noisy, [], []).robots[0].detector == text
+    assert aggregate.make_result(noisy, [], []).robots[0].detector == text
     alone = fakes.crew("silent", absent=True)
     assert run_config.build_config(suite, alone, human="proxy", seed=0, participants=None).robots[0].detector == ""

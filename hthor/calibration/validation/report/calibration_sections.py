@@ -26,7 +26,7 @@ def predictive(found: Findings) -> list[str]:
         html.paragraph(phrases.simulated(evidence)) if evidence.simulated_studies else "",
         html.table(tables.PREDICTIVE, tables.predictive(evidence.predictive, found.published.figures)),
         html.figure(
-            matplotlib_svg.svg(
+            matplotlib_svg.to_svg(
                 predictions.before_after(evidence.predictive, found.published.figures),
                 "predictive",
                 "Prior and posterior predictive intervals of the published figures",
@@ -53,7 +53,7 @@ def held_out(found: Findings) -> list[str]:
         html.paragraphs(phrases.held_out(evidence.held_out)),
         html.table(tables.HELD_OUT, tables.held_out(evidence.held_out), "All nine numbers [%]", words=(0, 1, 5)),
         html.figure(
-            matplotlib_svg.svg(
+            matplotlib_svg.to_svg(
                 predictions.held_out(evidence.held_out), "heldout", "Held-out conditions and their predictions"
             ),
             "Each condition as the other two predict it: median and 80 % interval. Diamonds: published.",
@@ -65,7 +65,7 @@ def held_out(found: Findings) -> list[str]:
             words=(0, 1),
         ),
         html.figure(
-            matplotlib_svg.svg(predictions.scores(found), "scores", "Log scores of held-out conditions"),
+            matplotlib_svg.to_svg(predictions.scores(found), "scores", "Log scores of held-out conditions"),
             "Log scores by condition. A gain of one nat makes the published data 2.7 times as likely.",
         ),
     ]
@@ -86,7 +86,9 @@ def parameters(found: Findings) -> list[str]:
             "soft",
         ),
         html.figure(
-            matplotlib_svg.svg(diagnostics.contraction(evidence.parameters), "contraction", "Contraction and recovery"),
+            matplotlib_svg.to_svg(
+                diagnostics.contraction(evidence.parameters), "contraction", "Contraction and recovery"
+            ),
             "Bars: contraction. Rings: correlation of true values and posterior means over simulated studies.",
         ),
         html.table(tables.PARAMETERS, tables.parameters(evidence.parameters), words=(0, 1, 2)),
@@ -100,7 +102,7 @@ def coverage(found: Findings) -> list[str]:
         return _without(found, "there are no intervals to check")
     ranked = [one for one in evidence.parameters if one.ranks]
     drawn = html.figure(
-        matplotlib_svg.svg(diagnostics.ranks(ranked), "ranks", "Ranks of the true values among posterior draws"),
+        matplotlib_svg.to_svg(diagnostics.ranks(ranked), "ranks", "Ranks of the true values among posterior draws"),
         "Simulation-based calibration: ranks of the truth among posterior draws. Flat is right; 95 of 100 bars of an "
         "honest posterior end within the shaded band. A hump means intervals that are too wide, horns too narrow.",
     )
@@ -113,7 +115,7 @@ def emulator(found: Findings) -> list[str]:
     if evidence is None or not evidence.emulated:
         return _without(found, "no emulator was needed")
     drawn = html.figure(
-        matplotlib_svg.svg(
+        matplotlib_svg.to_svg(
             diagnostics.reliability(evidence.emulated), "reliability", "What the emulator said against what came"
         ),
         "Trials that the emulators were not trained on, by the chance that was said. On the dashed line is right.",
@@ -151,7 +153,9 @@ def _draws(found: Findings, evidence: Evidence | None) -> list[str]:
     ]
     home = evidence.rankings[0]
     if home.swings:
-        drawing = matplotlib_svg.svg(diagnostics.swings(home.swings), "swings", "What each parameter does to the gaps")
+        drawing = matplotlib_svg.to_svg(
+            diagnostics.swings(home.swings), "swings", "What each parameter does to the gaps"
+        )
         parts += [
             html.paragraphs(phrases.swings(home, evidence.parameters)),
             html.figure(

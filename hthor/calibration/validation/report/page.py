@@ -105,7 +105,7 @@ def _data(found: Findings) -> list[str]:
 
 
 def _table(found: Findings) -> list[str]:
-    drawing = matplotlib_svg.svg(
+    drawing = matplotlib_svg.to_svg(
         predictions.table(found.table), "table", "Published figures and intervals of simulated study groups"
     )
     return [
@@ -131,7 +131,9 @@ def _sessions(found: Findings) -> list[str]:
         html.paragraph(phrases.quartiles(found.spent, found.differences)),
         html.paragraph(phrases.minima(found.differences)),
         html.figure(
-            matplotlib_svg.svg(sessions.spent(found.spent), "spent", "Box plots of the time spent in each condition"),
+            matplotlib_svg.to_svg(
+                sessions.spent(found.spent), "spent", "Box plots of the time spent in each condition"
+            ),
             "Time spent: minimum, quartiles and maximum over all trials of each condition.",
         ),
         html.table(tables.SPENT, tables.spent(found.spent), "Time spent [s]"),
@@ -144,7 +146,7 @@ def _sessions(found: Findings) -> list[str]:
         *parts,
         html.paragraphs(phrases.trust(found.trust)),
         html.figure(
-            matplotlib_svg.svg(
+            matplotlib_svg.to_svg(
                 sessions.trust(found.trust), "trust", "Mean trust by trial in the frontier robot and in the oracle"
             ),
             "Mean rating by trial, 1 to 7, with bars of one standard error over people.",

@@ -12,7 +12,7 @@ from hthor.report.analysis.document import Arm, Group, Split
 from hthor.report.drawing import text_fit
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.figures import run_styles
-from hthor.report.page.figures.run_styles import Mark
+from hthor.report.page.figures.run_styles import RunStyle
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,13 +40,14 @@ def figure(splits: Sequence[Split], arms: Sequence[Arm], *, ranked: bool = False
     Args:
         ranked: the group in which people do worst first.
     """
-    own = run_styles.of(arms, (label for split in splits for group in split.groups for label in group.sr))
+    own = run_styles.run_styles(arms, (label for split in splits for group in split.groups for label in group.sr))
     lines: list[_Line] = []
     for split in splits:
         lines += [_Line(word=split.word)] if len(splits) > 1 else []
         held = _ranked(split.groups) if ranked else split.groups
         lines += [
-            _Line(word=f"{group.name}, {run_styles.count(list(group.sr.values()))}", group=group) for group in held
+            _Line(word=f"{group.name}, {run_styles.trial_count(list(group.sr.values()))}", group=group)
+            for group in held
         ]
     half = -(-len(lines) // 2) if ranked and len(lines) > _LONG else len(lines)
     columns = [lines[:half], lines[half:]] if half < len(lines) else [lines]
@@ -61,19 +62,19 @@ def figure(splits: Sequence[Split], arms: Sequence[Arm], *, ranked: bool = False
     ]
     with matplotlib_svg.style():
         high = max(_places(column)[1] for column in columns)
-        made = matplotlib_svg.sheet(0.85 + high * (_ROW * len(labels) + 0.12))
+        made = matplotlib_svg.new_figure(0.85 + high * (_ROW * len(labels) + 0.12))
         panels = made.subplots(1, len(columns), sharex=True, squeeze=False)[0]
         for ax, column in zip(panels, columns, strict=True):
             _draw(ax, column, {label: own[label] for label in labels})
             ax.set_ylim(high, 0.0)
             ax.set_xlabel("success rate [%]")
         panels[0].set_xlim(run_styles.window(ends, 10.0, (-1.0, 101.0)))
-        handles = [run_styles.handle(own[label], label) for label in labels]
+        handles = [run_styles.legend_handle(own[label], label) for label in labels]
         text_fit.legend(made, handles, _LEGEND, loc="outside upper left")
     return made
 
 
-def _draw(ax: Axes, lines: Sequence[_Line], own: dict[str, Mark]) -> None:
+def _draw(ax: Axes, lines: Sequence[_Line], own: dict[str, RunStyle]) -> None:
     labels, step = list(own), 0.74 / max(1, len(own))
     shaded, (places, _) = False, _places(lines)
     for y, line in zip(places, lines, strict=True):
@@ -83,7 +84,7 @@ def _draw(ax: Axes, lines: Sequence[_Line], own: dict[str, Mark]) -> None:
         for label, one in line.group.sr.items() if line.group else ():
             shift = step * (labels.index(label) - (len(labels) - 1) / 2)
             run_styles.estimate(ax, y + shift, one, own[label], thin=True)
-    matplotlib_svg.bare(ax)
+    matplotlib_svg.quiet_axes(ax)
     ax.set_yticks(places, [line.word for line in lines])
     for tick, line in zip(ax.get_yticklabels(), lines, strict=True):
         if line.group is None:

@@ -44,7 +44,7 @@ class Row(Struct, frozen=True, kw_only=True, eq=False):
     views: Views
 
 
-def figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
+def case_study_figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
     """Draw the case, about 8 inches wide."""
     xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
     deep = _MAP_WIDE * (max(ys) - min(ys) + 1.0) / (max(xs) - min(xs) + 0.7)
@@ -53,7 +53,7 @@ def figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
     highs = [max(deep, 0.75 * _VIEW_WIDE * len(held) + 0.2) + _HEAD for held in seats]
     wide = _MAP_WIDE + MANY * _VIEW_WIDE
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(sum(highs) + _EDGES, wide)
+        made = matplotlib_svg.new_figure(sum(highs) + _EDGES, wide)
         made.set_facecolor("white")
         bands = made.subfigures(len(rows), 1, height_ratios=highs, squeeze=False)[:, 0]
         for band, row, held in zip(bands, rows, seats, strict=True):
@@ -66,12 +66,12 @@ def figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
                     ax = band.add_subplot(grid[line, column + 1])
                     ax.set_anchor("C" if len(held) == 1 else "S" if line == 0 else "N")
                     _draw_view(ax, view, seat, column, moment, first=line == 0)
-            words = text_fit.shortened(_headline(row), wide - _EDGE_IN, _HEAD_PT, bold=True)
+            words = text_fit.shorten(_headline(row), wide - _EDGE_IN, _HEAD_PT, bold=True)
             band.suptitle(words, x=0.012, ha="left", fontsize=_HEAD_PT, weight="bold", color=matplotlib_svg.INK)
         destined = bool(trial_trace.destinations(rows[0].record.spec, house))
         handles = _legend(rows, destined=destined)
         text_fit.legend(made, handles, len(handles), size=7.0, loc="outside lower left", columnspacing=1.4)
-        task = text_fit.shortened(_task(rows[0].record), wide - _EDGE_IN, _TASK_PT)
+        task = text_fit.shorten(_task(rows[0].record), wide - _EDGE_IN, _TASK_PT)
         made.suptitle(task, x=0.012, ha="left", fontsize=_TASK_PT, color=matplotlib_svg.INK)
     return made
 
@@ -99,7 +99,7 @@ def _is_on_map(ax: Axes, place: Vec2, letters: str, side: Vec2) -> bool:
     """Whether the letters at this corner end before the map does: beyond it they could be cut."""
     (west, east), (south, north) = ax.get_xlim(), ax.get_ylim()
     metres = max((east - west) / _MAP_WIDE, (north - south) / _MAP_HIGH)  # in an inch of the map
-    wide = _BADGE_IN + text_fit.width(letters, _LETTER_PT, bold=True)
+    wide = _BADGE_IN + text_fit.text_width(letters, _LETTER_PT, bold=True)
     x, y = place[0] + side[0] * metres * wide, place[1] + side[1] * metres * 2.0 * _BADGE_IN
     return west <= x <= east and south <= y <= north
 
@@ -117,7 +117,7 @@ def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
     """Where a seat was at the moments; letters of moments at which it was in one place stand together."""
     found: list[tuple[Vec2, str]] = []
     for letter, moment in zip(string.ascii_lowercase, row.moments, strict=False):
-        place = trial_trace.at(row.record.log, seat, moment.tick)
+        place = trial_trace.position_at(row.record.log, seat, moment.tick)
         if found and math.dist(found[-1][0], place) < _NEAR_M:
             found[-1] = (found[-1][0], f"{found[-1][1]} {letter}")
         else:
@@ -145,7 +145,7 @@ def _draw_view(ax: Axes, view: Any, seat: str, column: int, moment: Moment, *, f
     ax.set_xticks([])
     ax.set_yticks([])
     for side in ax.spines.values():
-        side.set(visible=True, color=trial_trace.colour(seat), linewidth=1.4)
+        side.set(visible=True, color=trial_trace.seat_colour(seat), linewidth=1.4)
     letter = string.ascii_lowercase[column]
     ax.annotate(letter, (0.0, 1.0), (6, -6), "axes fraction", "offset points", ha="center", va="center", **_badge(seat))
     if first:
@@ -155,7 +155,7 @@ def _draw_view(ax: Axes, view: Any, seat: str, column: int, moment: Moment, *, f
 
 def _badge(seat: str) -> dict[str, Any]:
     """A letter in a seat's colour, as it stands on the map and on the view."""
-    box = {"boxstyle": "round,pad=0.2,rounding_size=0.5", "fc": trial_trace.colour(seat), "ec": "white", "lw": 0.7}
+    box = {"boxstyle": "round,pad=0.2,rounding_size=0.5", "fc": trial_trace.seat_colour(seat), "ec": "white", "lw": 0.7}
     return {"fontsize": _LETTER_PT, "weight": "bold", "color": "white", "bbox": box, "zorder": 15}
 
 
@@ -166,10 +166,10 @@ def _headline(row: Row) -> str:
     failed = [
         f"{fault.seat} failed at {fault.tick * rules.TICK_S:.1f} s ({fault.kind})"
         for seat in record.paths
-        if (fault := trial_trace.failure(record.log, seat)) is not None
+        if (fault := trial_trace.first_fault(record.log, seat)) is not None
     ]
     said = [
-        f"message {number} of {len(sent)} ({trial_trace.fate(record.log, event.data['message'])}): "
+        f"message {number} of {len(sent)} ({trial_trace.outcome_of(record.log, event.data['message'])}): "
         f"“{event.data['text']}”"
         for number, event in enumerate(sent, 1)
         if any(moment.tick == event.tick for moment in row.moments)
@@ -187,7 +187,7 @@ def _legend(rows: Sequence[Row], *, destined: bool) -> list[Line2D]:
     seats = dict.fromkeys(seat for row in rows for seat in row.record.paths)
     named = {seat: "person" if seat == HUMAN else seat for seat in seats}
     ways = [
-        Line2D([], [], color=trial_trace.colour(seat), lw=2, label=f"{name}, way and view")
+        Line2D([], [], color=trial_trace.seat_colour(seat), lw=2, label=f"{name}, way and view")
         for seat, name in named.items()
     ]
     marks = [

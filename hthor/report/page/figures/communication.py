@@ -28,9 +28,9 @@ def figure(arms: Sequence[Arm]) -> Figure:
     Args:
         arms: those with robots.
     """
-    own, rows = run_styles.of(arms), len(arms)
+    own, rows = run_styles.run_styles(arms), len(arms)
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(1.0 + rows * run_styles.high(arm.label for arm in arms))
+        made = matplotlib_svg.new_figure(1.0 + rows * run_styles.row_height(arm.label for arm in arms))
         bars, *others = made.subplots(1, 1 + len(_PANELS), sharey=True, width_ratios=(1.5, 1.0, 1.0))
         for y, arm in enumerate(arms):
             left = 0.0
@@ -49,8 +49,8 @@ def figure(arms: Sequence[Arm]) -> Figure:
             most = max((end for one in held for end in (one.mean, *(one.ci95 or ())) if end), default=1.0)
             ax.set_xlim(0.0, 1.06 * most)
         for ax in (bars, *others):
-            matplotlib_svg.bare(ax)
-        bars.set_yticks(range(rows), [f"{run_styles.label(arm.label)}\nn = {arm.trials}" for arm in arms])
+            matplotlib_svg.quiet_axes(ax)
+        bars.set_yticks(range(rows), [f"{run_styles.axis_label(arm.label)}\nn = {arm.trials}" for arm in arms])
         bars.set_ylim(rows - 0.45, -0.55)
         handles = [Patch(facecolor=shade, edgecolor="none", label=word) for word, shade in FATES.values()]
         text_fit.legend(made, handles, len(FATES), loc="outside lower left", handlelength=1.0, handleheight=0.9)

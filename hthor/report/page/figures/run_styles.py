@@ -26,35 +26,35 @@ LINE_IN = 0.135
 _MORE = ("v", "P", "X", "p", "h")
 
 
-class Mark(Struct, frozen=True, kw_only=True):
+class RunStyle(Struct, frozen=True, kw_only=True):
     """A run's colour and mark."""
 
     shade: str
     shape: str
 
 
-def of(arms: Sequence[Arm], more: Iterable[str] = ()) -> dict[str, Mark]:
+def run_styles(arms: Sequence[Arm], more: Iterable[str] = ()) -> dict[str, RunStyle]:
     """A mark for each run by its label; the article's three conditions always look alike, the first of each at least.
 
     Args:
         more: labels that may be of none of the runs.
     """
-    found: dict[str, Mark] = {}
+    found: dict[str, RunStyle] = {}
     taken: set[str] = set()
     conditions = {arm.label: arm.condition for arm in arms}
     for label in dict.fromkeys((*conditions, *more)):
         condition = conditions.get(label, "")
         if condition and condition not in taken:
             taken.add(condition)
-            found[label] = Mark(shade=matplotlib_svg.CONDITION[condition], shape=_SHAPES[condition])
+            found[label] = RunStyle(shade=matplotlib_svg.CONDITION[condition], shape=_SHAPES[condition])
         else:
             number = len(found) - len(taken)
-            found[label] = Mark(shade=_OTHERS[number % len(_OTHERS)], shape=_MORE[number % len(_MORE)])
+            found[label] = RunStyle(shade=_OTHERS[number % len(_OTHERS)], shape=_MORE[number % len(_MORE)])
     return found
 
 
 def interval(
-    ax: Axes, y: float, mean: float | None, ci95: Sequence[float] | None, mark: Mark, *, thin: bool = False
+    ax: Axes, y: float, mean: float | None, ci95: Sequence[float] | None, mark: RunStyle, *, thin: bool = False
 ) -> None:
     """A mean with its 95 % interval, lying; the ends are ticked, as a good interval is shorter than its mark."""
     if mean is None:
@@ -66,7 +66,7 @@ def interval(
     ax.plot(mean, y, mark.shape, color=mark.shade, ms=size, mec=matplotlib_svg.PAPER, mew=0.5, zorder=4)
 
 
-def estimate(ax: Axes, y: float, one: Estimate, mark: Mark, scale: float = 100.0, *, thin: bool = False) -> None:
+def estimate(ax: Axes, y: float, one: Estimate, mark: RunStyle, scale: float = 100.0, *, thin: bool = False) -> None:
     """An estimate, as `interval` draws it."""
     if one.mean is not None:
         ends = None if one.ci95 is None else [scale * end for end in one.ci95]
@@ -83,7 +83,7 @@ def window(
     return max(low, most[0]), min(max(high, low + step), most[1])
 
 
-def names(ax: Axes, ends: Sequence[tuple[float, float, str, Mark]], line: float) -> None:
+def draw_names(ax: Axes, ends: Sequence[tuple[float, float, str, RunStyle]], line: float) -> None:
     """Names of curves on the right of all of them, each as near to its curve's end as the others let it be.
 
     The axes' limits of y must be set: no name leaves them.
@@ -95,7 +95,7 @@ def names(ax: Axes, ends: Sequence[tuple[float, float, str, Mark]], line: float)
         return
     right = max(x for x, _, _, _ in ends)  # a name that began at its own curve's end would lie below others' marks
     ordered = sorted(ends, key=lambda end: end[1])
-    words = [label(name) for _, _, name, _ in ordered]
+    words = [axis_label(name) for _, _, name, _ in ordered]
     highs = [line * (text.count("\n") + 1) for text in words]
     places = _apart([y for _, y, _, _ in ordered], highs, ax.get_ylim())
     for (_, _, _, mark), text, y in zip(ordered, words, places, strict=True):
@@ -142,30 +142,30 @@ def _foot(group: tuple[list[float], list[float]], within: tuple[float, float]) -
     return max(within[0], min(foot, within[1] - sum(highs)))
 
 
-def label(name: str) -> str:
+def axis_label(name: str) -> str:
     """A long name in lines that are short enough for an axis."""
-    return text_fit.broken(name, _NAME_IN, _NAME_PT)
+    return text_fit.wrapped(name, _NAME_IN, _NAME_PT)
 
 
-def high(names: Iterable[str], least: float = 0.36) -> float:
+def row_height(names: Iterable[str], least: float = 0.36) -> float:
     """Inches that a row takes whose name has a line for n below."""
-    lines = 1 + max(label(name).count("\n") + 1 for name in names)
+    lines = 1 + max(axis_label(name).count("\n") + 1 for name in names)
     return max(least, LINE_IN * lines + 0.08)
 
 
-def column(names: Iterable[str]) -> float:
+def names_height(names: Iterable[str]) -> float:
     """Inches of all names, one below another."""
-    return sum(LINE_IN * (label(name).count("\n") + 1) for name in names)
+    return sum(LINE_IN * (axis_label(name).count("\n") + 1) for name in names)
 
 
-def handle(mark: Mark, label: str) -> Line2D:
+def legend_handle(mark: RunStyle, label: str) -> Line2D:
     """An entry of a legend."""
     return Line2D(
         [], [], color=mark.shade, lw=1.4, marker=mark.shape, ms=5, mec=matplotlib_svg.PAPER, mew=0.5, label=label
     )
 
 
-def count(estimates: Sequence[Estimate]) -> str:
+def trial_count(estimates: Sequence[Estimate]) -> str:
     """How many trials: "n = 60", or the range where runs differ."""
     counts = sorted({one.n for one in estimates})
     return f"n = {counts[0]}" if len(counts) == 1 else f"n = {counts[0]} to {counts[-1]}"

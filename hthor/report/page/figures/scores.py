@@ -26,14 +26,14 @@ _MANY = 4
 
 def figure(found: Findings) -> Figure:
     """Means with 95 % intervals; diamonds are the article's, with intervals of their own where it tells counts."""
-    own, rows = run_styles.of(found.arms), len(found.arms)
+    own, rows = run_styles.run_styles(found.arms), len(found.arms)
     held = [metric for metric in METRICS if any(arm.scores[metric.name].n for arm in found.arms)]
     study = found.published is not None and any(arm.condition for arm in found.arms)
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(0.95 + rows * run_styles.high(arm.label for arm in found.arms))
+        made = matplotlib_svg.new_figure(0.95 + rows * run_styles.row_height(arm.label for arm in found.arms))
         panels = made.subplots(1, len(held), sharey=True, squeeze=False)[0]
         for ax, metric in zip(panels, held, strict=True):
-            matplotlib_svg.bare(ax)
+            matplotlib_svg.quiet_axes(ax)
             ax.set_title(f"{metric.title if len(held) < _MANY else metric.brief} [%]")
             ax.set_xlim(run_styles.window(_ends(found, metric.name), 10.0, (0.0, 100.0)))
             for y, arm in enumerate(found.arms):
@@ -42,7 +42,9 @@ def figure(found: Findings) -> Figure:
                 if one.mean is None:
                     ax.text(0.5, y, "no robot" if not one.n else "", transform=ax.get_yaxis_transform(), **_QUIET)
                 _publish(ax, y + _SHIFT, f"{metric.name} {arm.condition}", found)
-        panels[0].set_yticks(range(rows), [f"{run_styles.label(arm.label)}\nn = {arm.trials}" for arm in found.arms])
+        panels[0].set_yticks(
+            range(rows), [f"{run_styles.axis_label(arm.label)}\nn = {arm.trials}" for arm in found.arms]
+        )
         panels[0].set_ylim(rows - 0.45, -0.55)
         if study and found.published is not None:
             word = f"published ({found.published.name}), 95 % from its counts where it has any"

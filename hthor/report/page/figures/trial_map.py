@@ -26,7 +26,7 @@ def figure(record: TrialRecord, house: HouseSpec, alone: TrialRecord | None) -> 
         alone: the trial of the same person at the same task without a robot, if there is one.
     """
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(_HIGH, _WIDE)
+        made = matplotlib_svg.new_figure(_HIGH, _WIDE)
         made.set_facecolor("white")  # a plan's colours are those of light paper
         ax = made.subplots()
         floor_plan.draw_house(ax, house, marked=trial_trace.destinations(record.spec, house), small=True)
@@ -57,7 +57,7 @@ def legend(seats: Collection[str], *, alone: bool, destined: bool, failed: bool 
         failed: whether the mind of one of them failed.
     """
     ways = [
-        Line2D([], [], color=trial_trace.colour(seat), lw=2, label="person" if seat == HUMAN else seat)
+        Line2D([], [], color=trial_trace.seat_colour(seat), lw=2, label="person" if seat == HUMAN else seat)
         for seat in seats
     ]
     if alone:
@@ -76,7 +76,7 @@ def legend(seats: Collection[str], *, alone: bool, destined: bool, failed: bool 
     handles = [*ways, *marks]
     columns = -(-len(handles) // 2)
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(0.5)
+        made = matplotlib_svg.new_figure(0.5)
         made.set_facecolor("white")  # as the plans have it
         text_fit.legend(
             made, handles, columns, loc="center left", columnspacing=1.6, handlelength=1.8, labelcolor=trial_trace.INK

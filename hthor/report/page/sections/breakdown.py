@@ -30,7 +30,7 @@ def difficulty(found: Findings, drawings: Mapping[str, str]) -> list[str]:
                 "These tasks name no difficulty, and are all of one kind and split; or there is one trial of each."
             )
         ]
-    said = [sentences.widest(one.word, _gains(found, one)) for one in held if one.word == "difficulty"]
+    said = [sentences.extreme_gains(one.word, _gains(found, one)) for one in held if one.word == "difficulty"]
     by = listed(one.word for one in held)
     return _made(found, held, said, drawings, "difficulty", f"Success rates by {by} with 95 % intervals.")
 
@@ -40,7 +40,7 @@ def scenes(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     held = [one for one in found.splits if one.word == "scene"]
     if not held:
         return [html.paragraph("All trials are in one scene, or there is one trial in each.")]
-    said = [sentences.widest(one.word, _gains(found, one)) for one in held]
+    said = [sentences.extreme_gains(one.word, _gains(found, one)) for one in held]
     caption = "Success rates by scene with 95 % intervals, the scenes in which people do worst first."
     return _made(found, held, said, drawings, "scenes", caption)
 
@@ -54,7 +54,10 @@ def people(found: Findings, drawings: Mapping[str, str]) -> list[str]:
                 "kinds' makes them, are set side by side here."
             )
         ]
-    said = [sentences.worst_people(found.by_people), sentences.widest("kind of person", _gains(found, found.by_people))]
+    said = [
+        sentences.worst_population(found.by_people),
+        sentences.extreme_gains("kind of person", _gains(found, found.by_people)),
+    ]
     caption = "Success rates with each kind of people, with 95 % intervals."
     return _made(found, [found.by_people], said, drawings, "people", caption)
 

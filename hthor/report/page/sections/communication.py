@@ -20,7 +20,7 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     if not robots:
         return [html.paragraph("There is no robot in these runs.")]
     return [
-        html.paragraph(sentences.channel(robots)),
+        html.paragraph(sentences.messages(robots)),
         html.drawn(
             drawings,
             "channel",

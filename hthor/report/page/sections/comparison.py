@@ -26,13 +26,13 @@ _HEAD = ("", *(registry.get(name).gain for name in uplift.METRICS), "won : lost"
 
 def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """Of what the section is made."""
-    said = [html.paragraph(sentences.alone(found))] if not found.baseline else []
-    apart = [html.bullets([sentences.apart(one) for one in found.apart])] if found.apart else []
+    said = [html.paragraph(sentences.without_baseline(found))] if not found.baseline else []
+    apart = [html.bullets([sentences.not_comparable(one) for one in found.apart])] if found.apart else []
     if not found.comparisons:
         return [*said, *apart]
     return [
         *said,
-        html.bullets([sentences.sentence(pair) for pair in headline.worth_telling(found)]),
+        html.bullets([sentences.comparison_sentence(pair) for pair in headline.notable_comparisons(found)]),
         html.drawn(
             drawings,
             "compared",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from hthor.report.analysis.document import Findings
-from hthor.report.analysis.example_trials import Failure
+from hthor.report.analysis.example_trials import FaultGroup
 from hthor.report.html import html
 from hthor.report.html.html import Code, Mark, Piece
 
@@ -38,7 +38,7 @@ def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
     ]
 
 
-def _first(one: Failure) -> list[str]:
+def _first(one: FaultGroup) -> list[str]:
     """What is known of the first of a kind."""
     where = f"{one.task}, person {one.participant}, trial {one.index + 1}, after {one.after_s:.1f} s"
     commands = [command for command in (one.again, one.replay) if command]

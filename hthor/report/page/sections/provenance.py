@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from hthor.eval.config.cli_command import BUILT_IN_AGENTS
 from hthor.guest import Isolation
 from hthor.report.analysis.document import Findings
-from hthor.report.analysis.run_provenance import Origin, Platform
+from hthor.report.analysis.run_provenance import Platform, Provenance
 from hthor.report.html import html
 from hthor.report.html.html import Code, Piece
 
@@ -37,11 +37,11 @@ def _own(found: Findings) -> str:
     return "" if ours else ", typed where the agents' files lie"
 
 
-def _robots(one: Origin) -> str:
+def _robots(one: Provenance) -> str:
     return "; ".join(f"{robot.robot} with {robot.agent.name}" if robot.robot else "no robot" for robot in one.robots)
 
 
-def _agents(one: Origin) -> Piece:
+def _agents(one: Provenance) -> Piece:
     return Code(" ".join(dict.fromkeys(robot.agent.sha256[:12] for robot in one.robots)))
 
 
@@ -66,27 +66,27 @@ def _platforms(held: Sequence[Platform]) -> str:
     return "; ".join(dict.fromkeys(words)) or "not noted"
 
 
-def _suite(one: Origin) -> str:
+def _suite(one: Provenance) -> str:
     kind = f", only {one.kind.name}" if one.kind is not None else ""
     return f"{one.suite.name}, version {one.suite.version}{kind}"
 
 
-def _trials(one: Origin) -> str:
+def _trials(one: Provenance) -> str:
     whole = str(one.trials) if one.trials == one.whole else f"{one.trials} of {one.whole}, not finished"
     return f"{whole}; {one.faulty} with a fault"
 
 
-def _people(one: Origin) -> str:
+def _people(one: Provenance) -> str:
     drawn = f" out of the population {one.humans.population}" if one.humans.population else ""
     return f"{one.participants} {one.humans.name}{drawn}, model {one.humans.model}"
 
 
-def _versions(one: Origin) -> str:
+def _versions(one: Provenance) -> str:
     first = sorted(one.versions, key=lambda name: name != "hthor")
     return ", ".join(f"{name} {one.versions[name]}" for name in first)
 
 
-_FIELDS: dict[str, Callable[[Origin], Piece]] = {
+_FIELDS: dict[str, Callable[[Provenance], Piece]] = {
     "robots": _robots,
     "suite": _suite,
     "people": _people,

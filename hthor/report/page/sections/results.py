@@ -27,7 +27,7 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     head = ("robot", *(metric.heading for metric in metrics))
     return [
         html.table(head, rows, f"Means over trials. {table_cells.NOTE}"),
-        html.paragraph(sentences.published(found)),
+        html.paragraph(sentences.published_figures(found)),
         html.drawn(
             drawings,
             "scores",

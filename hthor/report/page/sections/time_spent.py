@@ -24,7 +24,7 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         for one in found.spent
     ]
     return [
-        html.paragraph(sentences.spent(found.spent)),
+        html.paragraph(sentences.time_spent(found.spent)),
         html.drawn(
             drawings,
             "time-spent",

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from html import escape
 
 from hthor.report.analysis.document import Findings
-from hthor.report.analysis.example_trials import Shown
+from hthor.report.analysis.example_trials import ExampleTrial
 from hthor.report.html import html
 from hthor.report.html.html import Code, Mark, Piece
 from hthor.report.page import sentences
@@ -35,6 +35,6 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     return held
 
 
-def _card(one: Shown, drawing: str) -> str:
-    caption: list[Piece] = [Mark(sentences.gained(one), "plain"), sentences.shown(one), Code(one.replay)]
+def _card(one: ExampleTrial, drawing: str) -> str:
+    caption: list[Piece] = [Mark(sentences.time_gained(one), "plain"), sentences.example_trial(one), Code(one.replay)]
     return html.figure(drawing, caption, "map")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from hthor import rules
-from hthor.report.analysis.document import Curve, Findings
+from hthor.report.analysis.document import Findings, TrustCurve
 from hthor.report.html import html
 from hthor.report.html.html import Piece, Value
 from hthor.report.html.numbers import plain, signed
@@ -36,7 +36,7 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         else " The axis shows a part of the scale."
     )
     return [
-        html.paragraph(sentences.trust(found.trust)),
+        html.paragraph(sentences.trust_trend(found.trust)),
         html.drawn(
             drawings, "trust", f"Mean rating after each trial of a session; bars and bands are 95 % intervals.{cut}"
         ),
@@ -44,5 +44,5 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     ]
 
 
-def _with_interval(one: Curve, which: int) -> Value:
+def _with_interval(one: TrustCurve, which: int) -> Value:
     return Value(plain(one.mean[which]), f"[{', '.join(plain(end) for end in one.ci95[which])}]")

@@ -30,7 +30,7 @@ _SHADES = {
 def contraction(parameters: Sequence[ParameterFinding]) -> Figure:
     """How much narrower than its prior each parameter's posterior is, and whether simulated studies recover it."""
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(0.6 + 0.165 * len(parameters), 6.2)
+        made = matplotlib_svg.new_figure(0.6 + 0.165 * len(parameters), 6.2)
         ax = made.subplots()
         for y, one in enumerate(parameters):
             ax.barh(y, max(0.0, one.contraction), height=0.62, color=_SHADES[phrases.identified(one)])
@@ -42,7 +42,7 @@ def contraction(parameters: Sequence[ParameterFinding]) -> Figure:
         ax.set_ylim(len(parameters) - 0.4, -0.6)
         ax.set_xlim(0.0, 1.0)
         ax.set_xlabel("contraction (bar), recovery r (ring)")
-        matplotlib_svg.bare(ax)
+        matplotlib_svg.quiet_axes(ax)
         rings = Line2D(
             [], [], ls="", marker="o", mfc=matplotlib_svg.PAPER, mec=matplotlib_svg.INK, ms=3.8, label="recovery r"
         )
@@ -57,7 +57,7 @@ def ranks(parameters: Sequence[ParameterFinding]) -> Figure:
     rows = max(1, math.ceil(len(shown) / 5))
     columns = max(1, math.ceil(len(shown) / rows))
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(0.45 + 0.95 * rows)
+        made = matplotlib_svg.new_figure(0.45 + 0.95 * rows)
         panels = made.subplots(rows, columns, squeeze=False, sharey=True).ravel()
         for ax, one in zip(panels, shown, strict=False):
             _histogram(ax, one)
@@ -77,14 +77,14 @@ def _histogram(axes: Axes, one: ParameterFinding) -> None:
     axes.axhline(mean, color=matplotlib_svg.SOFT, lw=0.7)
     axes.set_title(one.name, family="monospace", fontsize=7.5)
     axes.set_xticks([])
-    matplotlib_svg.bare(axes, grid="y")
+    matplotlib_svg.quiet_axes(axes, grid="y")
 
 
 def reliability(parts: Sequence[Emulated]) -> Figure:
     """Chances that the emulators said against how often it came so, on trials that they had not seen."""
     outcomes = list(dict.fromkeys(one.outcome for one in parts if one.bins))
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(2.5, min(matplotlib_svg.WIDE, 2.5 * max(1, len(outcomes)) + 0.3))
+        made = matplotlib_svg.new_figure(2.5, min(matplotlib_svg.WIDE, 2.5 * max(1, len(outcomes)) + 0.3))
         panels = made.subplots(1, max(1, len(outcomes)), squeeze=False, sharey=True)[0]
         for ax, outcome in zip(panels, outcomes, strict=True):
             ax.plot((0, 100), (0, 100), color=matplotlib_svg.SOFT, lw=0.7, ls=(0, (4, 3)))
@@ -101,7 +101,7 @@ def reliability(parts: Sequence[Emulated]) -> Figure:
                         label=CONDITION[one.condition],
                     )
             ax.set(xlim=(-2, 102), ylim=(-2, 102), aspect="equal", title=outcome, xlabel="said [%]")
-            matplotlib_svg.bare(ax, grid="both")
+            matplotlib_svg.quiet_axes(ax, grid="both")
         panels[0].set_ylabel("came [%]")
         handles = {
             name: Line2D([], [], color=matplotlib_svg.CONDITION[name], marker="o", ms=3.2, label=CONDITION[name])
@@ -119,7 +119,7 @@ def swings(parts: Sequence[Swing]) -> Figure:
         widest[one.name] = max(widest.get(one.name, 0.0), abs(one.high - one.low))
     names = sorted(widest, key=lambda name: -widest[name])
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(0.75 + 0.165 * len(names))
+        made = matplotlib_svg.new_figure(0.75 + 0.165 * len(names))
         panels = made.subplots(1, len(pairs), sharey=True, squeeze=False)[0]
         for ax, (better, worse) in zip(panels, pairs, strict=True):
             ax.axvline(0.0, color=matplotlib_svg.SOFT, lw=0.8)
@@ -140,7 +140,7 @@ def swings(parts: Sequence[Swing]) -> Figure:
                     ax.plot(100 * one.high, y, "o", color=matplotlib_svg.ORACLE, ms=4.6, zorder=4)
             ax.set_title(f"SR, {CONDITION[better]} less {CONDITION[worse]} [points]")
             ax.set_yticks(range(len(names)), names, family="monospace", fontsize=7)
-            matplotlib_svg.bare(ax)
+            matplotlib_svg.quiet_axes(ax)
         panels[0].set_ylim(len(names) - 0.4, -0.6)
         ends = [
             Line2D(

@@ -88,7 +88,7 @@ def scores(findings: Findings) -> Figure:
     """Log scores of each condition's published data: held out, prior, and simple human models."""
     assert findings.evidence is not None
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(1.9)
+        made = matplotlib_svg.new_figure(1.9)
         panels = made.subplots(1, len(findings.evidence.held_out), sharex=True, sharey=True, squeeze=False)[0]
         for ax, part in zip(panels, findings.evidence.held_out, strict=True):
             named = {
@@ -111,7 +111,7 @@ def scores(findings: Findings) -> Figure:
             ax.set_yticks(range(len(named)), list(named))
             ax.set_title(f"{CONDITION[part.condition]} held out")
             ax.set_xlabel("log score [nats], higher is better")
-            matplotlib_svg.bare(ax)
+            matplotlib_svg.quiet_axes(ax)
             ax.set_xlim(1.3 * min(0.0, *named.values()), 0.0)
         panels[0].invert_yaxis()
     return made
@@ -120,10 +120,10 @@ def scores(findings: Findings) -> Figure:
 def _panels(height: float, bands: Sequence[Band]) -> tuple[Figure, dict[str, Axes]]:
     """Three axes that share a scale, from the ten below the lowest band on."""
     first = 10 * int(10.0 * min([0.5, *(band.low for band in bands)]))
-    made = matplotlib_svg.sheet(height)
+    made = matplotlib_svg.new_figure(height)
     panels = made.subplots(1, 3, sharey=True)
     for ax, (metric, title) in zip(panels, METRICS.items(), strict=True):
-        matplotlib_svg.bare(ax)
+        matplotlib_svg.quiet_axes(ax)
         ax.set_title(f"{title} [%]")
         ax.set_xlim(first, 100)
         ax.set_ylim(2.6, -0.6)

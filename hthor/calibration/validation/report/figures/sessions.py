@@ -15,7 +15,7 @@ from hthor.report.html import matplotlib_svg
 def spent(parts: Sequence[Spent]) -> Figure:
     """Box plots of the time spent: minimum, quartiles, maximum."""
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(0.7 + 0.36 * len(parts), 6.2)
+        made = matplotlib_svg.new_figure(0.7 + 0.36 * len(parts), 6.2)
         ax = made.subplots()
         for y, one in enumerate(parts):
             shade = matplotlib_svg.CONDITION[one.condition]
@@ -38,14 +38,14 @@ def spent(parts: Sequence[Spent]) -> Figure:
         ax.set_ylim(len(parts) - 0.45, -0.55)
         ax.set_xlim(0.0, 1.02 * rules.TIME_LIMIT_S)
         ax.set_xlabel("time spent [s]; unsolved trials count with the limit")
-        matplotlib_svg.bare(ax)
+        matplotlib_svg.quiet_axes(ax)
     return made
 
 
 def trust(found: Trust) -> Figure:
     """Mean trust by trial, bars of one standard error."""
     with matplotlib_svg.style():
-        made = matplotlib_svg.sheet(2.5, 5.2)
+        made = matplotlib_svg.new_figure(2.5, 5.2)
         ax = made.subplots()
         for shift, curve in zip((-0.06, 0.06), found.curves, strict=False):
             shade = matplotlib_svg.CONDITION[curve.condition]
@@ -66,5 +66,5 @@ def trust(found: Trust) -> Figure:
         ax.set_ylim(rules.TRUST_MIN, rules.TRUST_MAX)
         ax.set_xlabel("trial of the session")
         ax.set_ylabel("trust, 1 to 7")
-        matplotlib_svg.bare(ax, grid="y")
+        matplotlib_svg.quiet_axes(ax, grid="y")
     return made
