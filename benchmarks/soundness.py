@@ -20,8 +20,8 @@ from pathlib import Path
 
 from hthor import code_identity, houses, jsonio
 from hthor.eval.task_check import make_suite as proved
-from hthor.eval.task_check import proof
-from hthor.eval.task_check.proof import TaskVerdict
+from hthor.eval.task_check import solvability
+from hthor.eval.task_check.solvability import TaskVerdict
 from hthor.houses import HouseLibrary
 from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
@@ -59,19 +59,19 @@ def _measure(given: argparse.Namespace, folder: Path) -> None:
     )
     tasks = [task for column in columns for task in column]
     library = HouseLibrary(folder=path.with_suffix(".houses"))
-    _count("made", list(proof.check_tasks(tasks, jobs=given.jobs, houses=library)))
+    _count("made", list(solvability.check_tasks(tasks, jobs=given.jobs, houses=library)))
     if given.agent != "-":
         _play(path, given, folder / "run")
 
 
 def _shared(work: object, recipe: Recipe, found: tuple[HouseSource, ...], jobs: int) -> object:
-    return proof.run_in_workers(functools.partial(work, recipe), found, jobs=jobs)  # type: ignore[arg-type]
+    return solvability.run_in_workers(functools.partial(work, recipe), found, jobs=jobs)  # type: ignore[arg-type]
 
 
 def _first(recipe: Recipe, source: HouseSource) -> list[TaskVerdict]:
     """Verdicts on the first draws in one house."""
     house = houses.load(source.given)
-    return [proof.check_task(task, house) for task in custom_suite.make_tasks(recipe, house)]
+    return [solvability.check_task(task, house) for task in custom_suite.make_tasks(recipe, house)]
 
 
 def _generated(given: argparse.Namespace, folder: Path) -> list[str]:

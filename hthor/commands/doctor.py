@@ -12,7 +12,7 @@ from hthor.commands.options import Json
 from hthor.console import output
 
 if TYPE_CHECKING:
-    from hthor.eval.doctor.result import DoctorReport
+    from hthor.eval.doctor.check_result import DoctorReport
 
 _FAILED_EXIT = 5
 _STYLES = {"ok": "green", "warn": "yellow", "fail": "bold red"}
@@ -35,9 +35,9 @@ def doctor(
     if write_reference:
         _renew(json)
         return
-    from hthor.eval.doctor import run_all
+    from hthor.eval.doctor import run_checks
 
-    found = run_all.run_checks(out, require_isolation)
+    found = run_checks.run_checks(out, require_isolation)
     if json:
         output.put_json(found)
     else:

@@ -27,11 +27,11 @@ def report(
     """
     from hthor.calibration import targets
     from hthor.report.analysis.document import Published, Share
-    from hthor.report.page import write
+    from hthor.report.page import write_report
 
     study = targets.load(_PAPER)
     counts = {f"{metric} {name}": one for metric in ("sr", "adoption") for name, one in getattr(study, metric).items()}
-    write.write_report(
+    write_report.write_report(
         runs,
         out,
         Published(

@@ -159,9 +159,9 @@ def _proof() -> Proof:
 
 
 def _possible(task: TaskSpec, house: HouseSpec) -> bool:
-    from hthor.eval.task_check import proof
+    from hthor.eval.task_check import solvability
 
-    return not proof.check_task(task, house).faults
+    return not solvability.check_task(task, house).faults
 
 
 def _each(jobs: int | None, total: int) -> MapHouses:

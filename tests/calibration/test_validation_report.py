@@ -37,7 +37,7 @@ from hthor.calibration.validation.report.findings import Findings, Setting, Subj
 from hthor.cli import app as cli
 from hthor.errors import HthorError, RunError
 from hthor.humans.population import resolve
-from hthor.report.html import html, matplotlib_svg
+from hthor.report.html import elements, matplotlib_svg
 
 PUBLISHED = published.of(targets.load("paper"))
 
@@ -418,7 +418,7 @@ def test_names_cannot_break_the_page() -> None:
     text = page.render(found)
     assert "<b>&" not in text
     assert "&lt;b&gt;&amp;" in text
-    assert html.table(("<i>",), [("&",)]).count("&amp;") == 1
+    assert elements.table(("<i>",), [("&",)]).count("&amp;") == 1
 
 
 def test_findings_travel_as_json() -> None:

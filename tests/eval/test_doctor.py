@@ -11,9 +11,9 @@ import msgspec
 import pytest
 
 from hthor.eval.doctor import hardware, isolation_levels, libraries, rendering, reproducibility
+from hthor.eval.doctor.check_result import CheckResult, DoctorReport
 from hthor.eval.doctor.rendering import RenderingProbe
 from hthor.eval.doctor.reproducibility import TrialFingerprint
-from hthor.eval.doctor.result import CheckResult, DoctorReport
 from hthor.guest import IsolationError
 
 STALE = "trials go otherwise than before: if that is meant, renew the reference with 'hthor doctor --write-reference'"

@@ -9,7 +9,7 @@ import pytest
 
 from hthor import houses, plugins, rules, tasks
 from hthor.catalog import priors
-from hthor.eval.task_check import omniscient_solver, proof
+from hthor.eval.task_check import omniscient_solver
 from hthor.tasks.arrangement import scene_graph
 from hthor.tasks.generation import generate
 from hthor.types import Goal, Job, Pose
@@ -38,11 +38,11 @@ def task():
 
 
 def faults(task):
-    return [(fault.field, fault.reason) for fault in proof.check_task(task).faults]
+    return [(fault.field, fault.reason) for fault in solvability.check_task(task).faults]
 
 
 def test_a_sound_task_passes_and_tells_what_it_takes(task):
-    verdict = proof.check_task(task)
+    verdict = solvability.check_task(task)
     assert verdict.faults == ()
     assert 0.0 < verdict.drift < 0.005
     assert 0.0 < verdict.least <= verdict.seconds <= task.time_limit
@@ -56,9 +56,9 @@ def test_an_object_that_would_fall_is_found(task):
     x, y, z = mug.position
     world = World("juniper")
     world.reset(with_object(task, "mug", position=(x, y, z + 0.3)))
-    drift, _ = proof.woken(world, with_object(task, "mug", position=(x, y, z + 0.3)))
-    assert drift["mug"] > proof.DRIFT_M
-    assert all(way <= proof.DRIFT_M for id, way in drift.items() if id != "mug")
+    drift, _ = solvability.woken(world, with_object(task, "mug", position=(x, y, z + 0.3)))
+    assert drift["mug"] > solvability.DRIFT_M
+    assert all(way <= solvability.DRIFT_M for id, way in drift.items() if id != "mug")
 
 
 def test_what_the_record_says_of_places_is_measured(task):
@@ -101,9 +101,9 @@ def test_houses_and_records_that_are_wrong_are_told_first(task):
 
 def test_workers_check_what_one_process_checks(task):
     some = [task, changed(task, id="late", time_limit=2.0)]
-    found = {verdict.task: verdict for verdict in proof.check_tasks(some, jobs=2)}
+    found = {verdict.task: verdict for verdict in solvability.check_tasks(some, jobs=2)}
     assert set(found) == {task.id, "late"}
-    assert found[task.id] == proof.check_task(task)
+    assert found[task.id] == solvability.check_task(task)
     assert found["late"].faults
 
 
@@ -129,4 +129,4 @@ def test_several_jobs_are_done_one_after_the_other_and_what_takes_two_is_left(ta
     assert feat.met
     heavy = changed(task, goal=changed(task.goal, jobs=(changed(jobs[0], hands=2),)))
     assert "2 bodies" in omniscient_solver.solve(world, heavy).reason
-    assert proof.check_task(heavy).seconds == 0.0
+    assert solvability.check_task(heavy).seconds == 0.0

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hthor import catalog, houses, plugins
-from hthor.eval.task_check import proof
+from hthor.eval.task_check import solvability
 from hthor.houses import laying, loader
 from hthor.houses.checks import thing_rules
 from hthor.tasks.arrangement.placement import SupportSurfaces
@@ -184,5 +184,5 @@ def test_an_object_in_a_thing_of_the_house_is_named_without_an_engine():
     assert ("objects[0].position", f"'apple' and '{bowl.id}' of the house are in one another") in task_faults(
         broken, house
     )
-    verdict = proof.check_task(broken)
+    verdict = solvability.check_task(broken)
     assert verdict.faults[0].field == "objects[0].position"

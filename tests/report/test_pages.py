@@ -25,7 +25,7 @@ from hthor.report.analysis import build, fault_summary, load_runs
 from hthor.report.analysis.document import Findings, Published, Share
 from hthor.report.drawing import render_trial
 from hthor.report.html import matplotlib_svg
-from hthor.report.page import camera_frames, case_study, figure_index, headline, key_moments, page, write
+from hthor.report.page import camera_frames, case_study, figure_index, headline, key_moments, page, write_report
 
 PUBLISHED = Published(
     name="study",
@@ -64,7 +64,7 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 @pytest.fixture(scope="module")
 def written(folders: list[Path], tmp_path_factory: pytest.TempPathFactory) -> tuple[Findings, Path]:
     out = tmp_path_factory.mktemp("report")
-    return write.write_report(folders, out, PUBLISHED), out
+    return write_report.write_report(folders, out, PUBLISHED), out
 
 
 def _told(*folders: Path) -> tuple[Findings, str]:
@@ -78,7 +78,7 @@ def _bytes(folder: Path) -> dict[str, bytes]:
 
 
 def test_the_same_runs_give_the_same_bytes(written: tuple[Findings, Path], folders: list[Path], tmp_path: Path) -> None:
-    write.write_report(folders, tmp_path / "again", PUBLISHED)
+    write_report.write_report(folders, tmp_path / "again", PUBLISHED)
     first, again = _bytes(written[1]), _bytes(tmp_path / "again")
     assert first == again
     assert {"report.html", "report.json", "figures/scores.svg", "figures/time-spent.svg"} <= first.keys()
@@ -216,14 +216,14 @@ def test_what_held_the_agents_and_where_they_were_played_is_told(folders: list[P
 def test_runs_that_do_not_belong_together_are_refused(folders: list[Path], tmp_path: Path) -> None:
     other = run(tmp_path / "other", "helper", count=30)
     with pytest.raises(RunError, match=r"other/run\.json: suite\.sha256 is not that of .*alone/run\.json"):
-        write.write_report([folders[0], other], tmp_path / "out")
+        write_report.write_report([folders[0], other], tmp_path / "out")
     with pytest.raises(RunError, match="are the same run"):
-        write.write_report([folders[1], folders[1]], tmp_path / "out")
+        write_report.write_report([folders[1], folders[1]], tmp_path / "out")
     with pytest.raises(RunError, match=r"has no run\.json"):
-        write.write_report([tmp_path], tmp_path / "out")
+        write_report.write_report([tmp_path], tmp_path / "out")
     assert not (tmp_path / "out").exists()
     with pytest.raises(HthorError, match="is a file"):
-        write.write_report(folders, other / "run.json")
+        write_report.write_report(folders, other / "run.json")
 
 
 def test_a_damaged_run_is_refused_with_file_and_field(folders: list[Path], tmp_path: Path) -> None:
@@ -231,16 +231,16 @@ def test_a_damaged_run_is_refused_with_file_and_field(folders: list[Path], tmp_p
     lines = (broken / "trials.jsonl").read_bytes().replace(b'"met":true', b'"met":null', 1)
     (broken / "trials.jsonl").write_bytes(lines)
     with pytest.raises(RunError, match=r"broken/trials\.jsonl, line \d+: met"):
-        write.write_report([broken], tmp_path / "out")
+        write_report.write_report([broken], tmp_path / "out")
     other = shutil.copytree(folders[1], tmp_path / "foreign")
     (other / "trials.jsonl").write_bytes((folders[2] / "trials.jsonl").read_bytes())
     with pytest.raises(RunError, match=r"foreign/trials\.jsonl: trial \w+: spec\.robots is not the one in run\.json"):
-        write.write_report([other], tmp_path / "out")
+        write_report.write_report([other], tmp_path / "out")
 
 
 def test_a_report_of_one_run_takes_the_control_that_lies_beside(folders: list[Path], tmp_path: Path) -> None:
     mine = shutil.copytree(folders[1], tmp_path / "mine" / "helper")
-    found = write.write_report([mine], tmp_path / "one")
+    found = write_report.write_report([mine], tmp_path / "one")
     assert (found.baseline, found.uplift, found.by_people) == ("", (), None)
     assert all(one.gain_s is None for one in found.shown)
     assert not (tmp_path / "one" / "figures" / "compared.svg").exists()

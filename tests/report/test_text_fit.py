@@ -27,8 +27,8 @@ from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.analysis import build, load_runs
 from hthor.report.analysis.document import Findings
 from hthor.report.drawing import lettering, render_trial, text_fit, trial_figure, trial_trace
-from hthor.report.html import html, matplotlib_svg
-from hthor.report.page import figure_index, key_moments, write
+from hthor.report.html import elements, matplotlib_svg
+from hthor.report.page import figure_index, key_moments, write_report
 from hthor.report.page.figure_index import MapScene
 from hthor.report.page.figures import case_study, run_styles, trust
 from hthor.types import RobotSeat, TrialSpec
@@ -148,7 +148,7 @@ def test_lines_are_as_wide_as_they_may_be_and_lose_no_letter(words: str, inches:
 
 
 def test_long_names_may_be_broken_on_a_page_and_are_copied_whole() -> None:
-    broken = html.paragraph(f"<{LONG}> helps 12 % of people at smoke/maple/01")
+    broken = elements.paragraph(f"<{LONG}> helps 12 % of people at smoke/maple/01")
     assert "a_<wbr>policy_<wbr>whose_" in broken
     assert "smoke/maple/01" in broken
     assert unescape(re.sub(r"</?p>|<wbr>", "", broken)).replace("\xa0", " ") == (
@@ -170,7 +170,7 @@ def test_letters_in_a_figure_have_a_size_and_no_font_of_their_own(found: Finding
 @pytest.mark.parametrize("width", [1280, 700])
 def test_four_runs_fit_a_page(folders: list[Path], tmp_path: Path, width: int) -> None:
     """At 1280 pixels nothing is wider than the page; at 700 tables that are slide within it, and the page does not."""
-    write.write_report([folders[0], *folders[1:3], folders[3]], tmp_path / "report", PUBLISHED)
+    write_report.write_report([folders[0], *folders[1:3], folders[3]], tmp_path / "report", PUBLISHED)
     page = (tmp_path / "report" / "report.html").read_text().replace("</body>", f"{PROBE}</body>")
     (tmp_path / "page.html").write_text(page)
     options = [

@@ -15,7 +15,7 @@ from hthor import cli, houses, tasks
 from hthor.errors import HthorError, TaskError, UnknownName
 from hthor.eval.config import cli_command, run_config, suite_check, task_selection
 from hthor.eval.runner import run_options
-from hthor.eval.task_check import custom_houses, proof
+from hthor.eval.task_check import custom_houses
 from hthor.houses.assets import DATABASE
 from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
@@ -174,10 +174,10 @@ def test_that_a_suite_is_sound_is_remembered_until_it_changes(suite: Path, monke
 
 
 def test_a_kind_that_is_not_there_is_a_fault_and_no_end(made: tuple[TaskSpec, ...], home: Path):
-    verdict = proof.check_task(msgspec.structs.replace(made[0], kind="nothing"), houses.load(home))
+    verdict = solvability.check_task(msgspec.structs.replace(made[0], kind="nothing"), houses.load(home))
     assert [fault.field for fault in verdict.faults] == ["kind"]
-    assert proof.repeated([made[0], made[1], made[0]])[0].task == made[0].id
-    assert not proof.repeated(made)
+    assert solvability.repeated([made[0], made[1], made[0]])[0].task == made[0].id
+    assert not solvability.repeated(made)
 
 
 # -------------------------------------------------------------------------------------------------------------- a part

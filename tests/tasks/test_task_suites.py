@@ -13,7 +13,7 @@ import pytest
 from hthor import catalog, cli, houses, jsonio, plugins, tasks
 from hthor.catalog import priors
 from hthor.errors import UnknownName
-from hthor.eval.task_check import proof
+from hthor.eval.task_check import solvability
 from hthor.tasks.arrangement import scene_graph
 from hthor.tasks.generation import difficulty, generate, suite_specs
 from hthor.tasks.kind import TaskKind
@@ -107,7 +107,7 @@ def test_a_slice_is_valid_and_as_difficult_as_it_says(task):
 
 @pytest.mark.parametrize("task", SOME[::4], ids=lambda task: task.id)
 def test_a_slice_can_be_done(task):
-    assert proof.check_task(task).faults == ()
+    assert solvability.check_task(task).faults == ()
 
 
 # ------------------------------------------------------------------------------------------------------ made again

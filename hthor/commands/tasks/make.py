@@ -20,7 +20,7 @@ from hthor.console import output
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hthor.eval.task_check.proof import TaskFault, TaskVerdict
+    from hthor.eval.task_check.solvability import TaskFault, TaskVerdict
     from hthor.tasks import Suite
     from hthor.types import TaskSpec
 
@@ -102,7 +102,7 @@ def check_tasks(
     Each task is set up in the physics engine. Objects must stay where they are put and be where the task says, and an
     omniscient person must reach the goal within the time limit and in no less than the least time.
     """
-    from hthor.eval.task_check import proof
+    from hthor.eval.task_check import solvability
     from hthor.tasks.suites import library
 
     shelves = [_some(library.read_suite(name), name) for name in suites]
@@ -113,12 +113,12 @@ def check_tasks(
         began = time.monotonic()
         with _watched(shelf.name, len(shelf.tasks), quiet) as tell:
             own = []
-            for verdict in proof.check_tasks(shelf.tasks, jobs=workers, houses=shelf.houses):
+            for verdict in solvability.check_tasks(shelf.tasks, jobs=workers, houses=shelf.houses):
                 own.append(verdict)
                 tell(bool(verdict.faults))
         rows.append({**_verdict_row(shelf, own), "wall_s": round(time.monotonic() - began, 1)})
         order = {task.id: number for number, task in enumerate(shelf.tasks)}
-        faults += proof.repeated(shelf.tasks)
+        faults += solvability.repeated(shelf.tasks)
         unsound = sorted((one for one in own if one.faults), key=lambda one: order[one.task])
         faults += [fault for verdict in unsound for fault in verdict.faults]
     if json:

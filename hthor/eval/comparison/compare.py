@@ -11,7 +11,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor.errors import RunError
-from hthor.eval.comparison import better
+from hthor.eval.comparison import verdict
 from hthor.eval.config.run_config import RunConfig, SuiteRef
 from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.records.trial_record import TrialRecord
@@ -221,22 +221,20 @@ def _rank(name: str) -> int:
 
 
 def _judged(found: Sequence[tuple[Comparison, LoadedRun, LoadedRun]]) -> tuple[Comparison, ...]:
-    """The same with their verdicts, for which all of them are looked at together."""
+    """The same with their verdicts, which are judged together."""
     successes = [pair.differences["sr"] for pair, _, _ in found]
+    verdicts = verdict.verdicts([(success.difference, success.p) for success in successes])
     judged = []
-    for (pair, one, other), verdict in zip(
-        found, better.verdicts([(s.difference, s.p) for s in successes]), strict=True
-    ):
-        wide = paired_difference.paired_difference(
-            pairing.pair_trials(one.records, other.records).pairs, "sr", level=verdict.level
-        )
+    for (pair, one, other), own in zip(found, verdicts, strict=True):
+        pairs = pairing.pair_trials(one.records, other.records).pairs
+        wide = paired_difference.paired_difference(pairs, "sr", level=own.level)
         fair = msgspec.structs.replace(
             pair,
-            among=verdict.among,
-            p_holm=verdict.p,
-            level=verdict.level,
+            among=own.among,
+            p_holm=own.p,
+            level=own.level,
             interval=wide.ci95 if wide is not None else None,
-            better={1: pair.second, -1: pair.first}.get(verdict.sign, ""),
+            better={1: pair.second, -1: pair.first}.get(own.sign, ""),
         )
         judged.append(msgspec.structs.replace(fair, sentence=verdict_sentence(fair)))
     return tuple(judged)

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from importlib import util
 from pathlib import Path
 
-from hthor.eval.doctor.result import CheckResult
+from hthor.eval.doctor.check_result import CheckResult
 
 _MB = 1e6
 _ROOM_MB, _ROOM_LEAST_MB = 1000.0, 100.0

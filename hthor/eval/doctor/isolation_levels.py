@@ -7,7 +7,7 @@ import platform
 import shutil
 from pathlib import Path
 
-from hthor.eval.doctor.result import CheckResult
+from hthor.eval.doctor.check_result import CheckResult
 from hthor.guest import Isolation, IsolationError, in_force
 from hthor.guest.confinement import LEVELS, check_level, suffices
 

@@ -11,7 +11,7 @@ from importlib import metadata
 from packaging.requirements import Requirement
 
 from hthor import code_identity, installation
-from hthor.eval.doctor.result import CheckResult
+from hthor.eval.doctor.check_result import CheckResult
 
 _SCORING = ("mujoco", "dm-control", "numba", "numpy")
 """What trials are computed with."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from msgspec import Struct
 
-from hthor.eval.doctor.result import CheckResult
+from hthor.eval.doctor.check_result import CheckResult
 
 _SIZE = (64, 64)
 _HOUSE = "alder"

@@ -14,7 +14,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor import jsonio
-from hthor.eval.doctor.result import CheckResult
+from hthor.eval.doctor.check_result import CheckResult
 from hthor.eval.records import platform_fingerprint
 
 REFERENCE = Path(__file__).with_name("reference.json")

@@ -6,7 +6,7 @@ import functools
 from collections.abc import Iterator, Sequence
 
 from hthor import houses
-from hthor.eval.task_check import proof
+from hthor.eval.task_check import solvability
 from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
 from hthor.tasks.suites.suite_files import HouseSource
@@ -21,7 +21,7 @@ def make_tasks(recipe: Recipe, given: Sequence[HouseSource], *, jobs: int) -> It
     Raises:
         HthorError: when a house has no room for so many tasks that can be done.
     """
-    yield from proof.run_in_workers(functools.partial(_column, recipe), given, jobs=jobs)
+    yield from solvability.run_in_workers(functools.partial(_column, recipe), given, jobs=jobs)
 
 
 def _column(recipe: Recipe, source: HouseSource) -> tuple[TaskSpec, ...]:
@@ -29,4 +29,4 @@ def _column(recipe: Recipe, source: HouseSource) -> tuple[TaskSpec, ...]:
 
 
 def _possible(task: TaskSpec, house: HouseSpec) -> bool:
-    return not proof.check_task(task, house).faults
+    return not solvability.check_task(task, house).faults

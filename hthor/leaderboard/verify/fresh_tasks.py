@@ -19,7 +19,7 @@ from hthor.eval.config import sessions, task_selection
 from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.metrics.metric import DIGITS
 from hthor.eval.statistics import intervals
-from hthor.eval.task_check import proof
+from hthor.eval.task_check import solvability
 from hthor.guest import AgentInputs
 from hthor.humans.population import resolve
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
@@ -112,14 +112,16 @@ def _draw(entry: Entry, board: Path, word: str, count: int, folder: Path, jobs: 
 
     homes = max(1, min(season.houses, count // _HOUSE_TASKS))
     order = secret_suites.SuiteOrder(name=f"fresh-{lot[:10]}", houses=homes, tasks=count)
-    judges = secret_suites.Proof(house=check_soundness, task=lambda task, house: not proof.check_task(task, house).faults)
+    judges = secret_suites.Proof(house=check_soundness, task=lambda task, house: not solvability.check_task(task, house).faults)
     for path, data in secret_suites.make_files(order, Salt(lot), judges).items():
         jsonio.write(folder / path, data)
 
 
 def _possible(drafts: Sequence[TaskSpec], jobs: int | None) -> list[bool]:
     """Whether each can be done, as by 'hthor tasks check'."""
-    found = {one.task: not one.faults for one in proof.check_tasks(drafts, jobs=jobs or len(os.sched_getaffinity(0)))}
+    found = {
+        one.task: not one.faults for one in solvability.check_tasks(drafts, jobs=jobs or len(os.sched_getaffinity(0)))
+    }
     return [found[task.id] for task in drafts]
 
 

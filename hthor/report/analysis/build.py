@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from hthor.eval.results import aggregate
 from hthor.report.analysis import (
     breakdown,
+    comparisons,
     fault_summary,
-    pairwise,
     run_provenance,
     session_statistics,
     trial_selection,
@@ -33,20 +33,20 @@ def build_findings(runs: Sequence[Run], published: Published | None = None) -> F
     own = [run for run in runs if run.plan.humans.name == people]
     baseline = next((run for run in own if run.condition == "none"), None)
     each = trial_selection.EACH if len(own) <= _MANY else 1
-    comparisons, apart = pairwise.compare_labelled(baseline, own)
+    compared, incomparable = comparisons.compare_labelled(baseline, own)
     return Findings(
         suite=runs[0].plan.suite,
         people=people,
         baseline=baseline.label if baseline is not None else "",
         published=published if _studied(runs) else None,
         arms=tuple(_arm(run) for run in own),
-        comparisons=comparisons,
-        apart=apart,
+        comparisons=compared,
+        apart=incomparable,
         spent=tuple(session_statistics.time_spent(run) for run in own),
         trust=tuple(curve for run in own if (curve := session_statistics.trust_curve(run)) is not None),
         splits=breakdown.all_splits(own),
         by_people=breakdown.split_by_population(runs),
-        people_uplift=pairwise.uplift_by_population(runs),
+        people_uplift=comparisons.uplift_by_population(runs),
         shown=tuple(
             one for run in own if run.plan.seats for one in trial_selection.best_and_worst(run, baseline, each)
         ),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from hthor.eval.comparison.compare import Comparison
 from hthor.report.analysis.document import Findings
-from hthor.report.html.numbers import listed, signed
+from hthor.report.html.number_format import listed, signed
 from hthor.report.page import sentences
 
 _MANY = 6

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from html import escape
 
 from hthor.report.analysis.document import Findings
-from hthor.report.html import html, style
+from hthor.report.html import elements, style
 from hthor.report.page import headline, sentences, warnings
 from hthor.report.page.sections import (
     breakdown,
@@ -78,23 +78,23 @@ def render(found: Findings, drawings: Mapping[str, str]) -> str:
         drawings: elements of the page by the names that `hthor.report.page.figure_index` gives.
     """
     sections = (
-        html.section(number, name, title, *make(found, drawings))
+        elements.section(number, name, title, *make(found, drawings))
         for number, (name, (title, make)) in enumerate(_SECTIONS.items(), 1)
     )
     title = sentences.page_title(found)
-    links = html.navigation({name: title for name, (title, _) in _SECTIONS.items()})
+    links = elements.navigation({name: title for name, (title, _) in _SECTIONS.items()})
     body = (_head(found, title), links, *sections, _foot(found))
-    return html.page(title, body, style.css(_RULES), headline.headline(found))
+    return elements.page(title, body, style.css(_RULES), headline.headline(found))
 
 
 def _head(found: Findings, title: str) -> str:
     return "\n".join(
         (
-            html.paragraph("hthor report", "over"),
-            f"<h1>{html.inside(title)}</h1>",
-            html.paragraph(headline.headline(found), "lead"),
-            html.paragraph(sentences.page_facts(found), "facts"),
-            *(html.paragraph(note, "note") for note in warnings.warnings(found)),
+            elements.paragraph("hthor report", "over"),
+            f"<h1>{elements.inside(title)}</h1>",
+            elements.paragraph(headline.headline(found), "lead"),
+            elements.paragraph(sentences.page_facts(found), "facts"),
+            *(elements.paragraph(note, "note") for note in warnings.warnings(found)),
         )
     )
 

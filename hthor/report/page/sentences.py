@@ -9,7 +9,7 @@ from hthor.eval.comparison.compare import Comparison
 from hthor.eval.results.paired_difference import Difference
 from hthor.report.analysis.document import Arm, Findings, IncomparablePair, Split, TimeSpent, TrustCurve
 from hthor.report.analysis.example_trials import ExampleTrial
-from hthor.report.html.numbers import listed, plain, signed
+from hthor.report.html.number_format import listed, plain, signed
 
 _NAMED = 4
 """So many robots are named in the title."""

@@ -6,8 +6,8 @@ from hthor.eval.metrics.metric import SHARE, Metric, Unit
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import Estimate
 from hthor.report.analysis.document import Arm, Share
-from hthor.report.html.html import Piece, Value
-from hthor.report.html.numbers import plain, signed
+from hthor.report.html.elements import Piece, Value
+from hthor.report.html.number_format import plain, signed
 
 NOTE = (
     "In brackets: 95 % interval, for new tasks and new people of the same populations. Below: n, the number of trials "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hthor.report.analysis.document import Findings
-from hthor.report.html.numbers import listed
+from hthor.report.html.number_format import listed
 
 
 def warnings(found: Findings) -> list[str]:

@@ -9,7 +9,7 @@ from hthor.calibration.simulation.trial_table import CONDITIONS
 from hthor.calibration.validation.report import phrases, tables
 from hthor.calibration.validation.report.figures import diagnostics, predictions
 from hthor.calibration.validation.report.findings import Findings
-from hthor.report.html import html, matplotlib_svg
+from hthor.report.html import elements, matplotlib_svg
 
 
 def predictive(found: Findings) -> list[str]:
@@ -18,14 +18,14 @@ def predictive(found: Findings) -> list[str]:
     if evidence is None or not evidence.predictive:
         return _without(found, "there is no before and after")
     return [
-        html.paragraph(
+        elements.paragraph(
             "What study groups of six show when their population is drawn from the prior, and from the posterior. "
             "Unlike those of section 2, each of these groups has one population of its own, so that what is not known "
             "of the population is in the intervals too."
         ),
-        html.paragraph(phrases.simulated(evidence)) if evidence.simulated_studies else "",
-        html.table(tables.PREDICTIVE, tables.predictive(evidence.predictive, found.published.figures)),
-        html.figure(
+        elements.paragraph(phrases.simulated(evidence)) if evidence.simulated_studies else "",
+        elements.table(tables.PREDICTIVE, tables.predictive(evidence.predictive, found.published.figures)),
+        elements.figure(
             matplotlib_svg.to_svg(
                 predictions.before_after(evidence.predictive, found.published.figures),
                 "predictive",
@@ -46,25 +46,25 @@ def held_out(found: Findings) -> list[str]:
         heads = ("human model", *(phrases.CONDITION[name] for name in known))
         return [
             *_without(found, "no condition can be left out of a fit"),
-            html.table(heads, scores, "Log score of the published counts and ratios [nats], higher is better"),
+            elements.table(heads, scores, "Log score of the published counts and ratios [nats], higher is better"),
         ]
     rivals = sorted({name for part in evidence.held_out for name in part.rivals})
     return [
-        html.paragraphs(phrases.held_out(evidence.held_out)),
-        html.table(tables.HELD_OUT, tables.held_out(evidence.held_out), "All nine numbers [%]", words=(0, 1, 5)),
-        html.figure(
+        elements.paragraphs(phrases.held_out(evidence.held_out)),
+        elements.table(tables.HELD_OUT, tables.held_out(evidence.held_out), "All nine numbers [%]", words=(0, 1, 5)),
+        elements.figure(
             matplotlib_svg.to_svg(
                 predictions.held_out(evidence.held_out), "heldout", "Held-out conditions and their predictions"
             ),
             "Each condition as the other two predict it: median and 80 % interval. Diamonds: published.",
         ),
-        html.table(
+        elements.table(
             (*tables.SCORES, *(f"over {name}" for name in rivals)),
             tables.scores(evidence.held_out, rivals),
             "Log predictive density of the published counts and ratio [nats]",
             words=(0, 1),
         ),
-        html.figure(
+        elements.figure(
             matplotlib_svg.to_svg(predictions.scores(found), "scores", "Log scores of held-out conditions"),
             "Log scores by condition. A gain of one nat makes the published data 2.7 times as likely.",
         ),
@@ -77,21 +77,21 @@ def parameters(found: Findings) -> list[str]:
     if evidence is None or not evidence.parameters:
         return _without(found, "no parameter was fitted")
     return [
-        html.paragraphs(phrases.parameters(evidence.parameters)),
-        html.paragraph(
+        elements.paragraphs(phrases.parameters(evidence.parameters)),
+        elements.paragraph(
             f"A parameter counts as {phrases.IDENTIFIED} when its posterior contracts by {phrases.CONTRACTS} or more "
             "(1 − posterior variance / prior variance, on the prior's own scale) and simulated studies recover it with "
             f"r of {phrases.RECOVERS} or more; as {phrases.WEAKLY} from {phrases.CONTRACTS_WEAKLY} and "
             f"{phrases.RECOVERS_WEAKLY}.",
             "soft",
         ),
-        html.figure(
+        elements.figure(
             matplotlib_svg.to_svg(
                 diagnostics.contraction(evidence.parameters), "contraction", "Contraction and recovery"
             ),
             "Bars: contraction. Rings: correlation of true values and posterior means over simulated studies.",
         ),
-        html.table(tables.PARAMETERS, tables.parameters(evidence.parameters), words=(0, 1, 2)),
+        elements.table(tables.PARAMETERS, tables.parameters(evidence.parameters), words=(0, 1, 2)),
     ]
 
 
@@ -101,12 +101,12 @@ def coverage(found: Findings) -> list[str]:
     if evidence is None or evidence.coverage is None:
         return _without(found, "there are no intervals to check")
     ranked = [one for one in evidence.parameters if one.ranks]
-    drawn = html.figure(
+    drawn = elements.figure(
         matplotlib_svg.to_svg(diagnostics.ranks(ranked), "ranks", "Ranks of the true values among posterior draws"),
         "Simulation-based calibration: ranks of the truth among posterior draws. Flat is right; 95 of 100 bars of an "
         "honest posterior end within the shaded band. A hump means intervals that are too wide, horns too narrow.",
     )
-    return [html.paragraph(phrases.coverage(evidence.coverage)), drawn if ranked else ""]
+    return [elements.paragraph(phrases.coverage(evidence.coverage)), drawn if ranked else ""]
 
 
 def emulator(found: Findings) -> list[str]:
@@ -114,23 +114,23 @@ def emulator(found: Findings) -> list[str]:
     evidence = found.evidence
     if evidence is None or not evidence.emulated:
         return _without(found, "no emulator was needed")
-    drawn = html.figure(
+    drawn = elements.figure(
         matplotlib_svg.to_svg(
             diagnostics.reliability(evidence.emulated), "reliability", "What the emulator said against what came"
         ),
         "Trials that the emulators were not trained on, by the chance that was said. On the dashed line is right.",
     )
     return [
-        html.paragraph(phrases.emulator(evidence)),
-        html.table(
+        elements.paragraph(phrases.emulator(evidence)),
+        elements.table(
             tables.EMULATED,
             tables.emulated(evidence.emulated),
             "z sd: of errors on whole studies. Log score: a held-out trial [nats]; baseline: always saying the mean",
             words=(0, 1),
         ),
         drawn if any(one.bins for one in evidence.emulated) else "",
-        html.paragraph(phrases.cross_check(evidence.abc)) if evidence.abc else "",
-        html.table(
+        elements.paragraph(phrases.cross_check(evidence.abc)) if evidence.abc else "",
+        elements.table(
             ("parameter", "shift of the median [posterior sd]", "standard error"),
             [[one.name, phrases.signed(one.shift, 2), phrases.plain(one.error)] for one in evidence.abc],
         )
@@ -148,8 +148,8 @@ def _draws(found: Findings, evidence: Evidence | None) -> list[str]:
     if evidence is None or not evidence.rankings:
         return _without(found, "there are no draws to rank the robots by")
     parts = [
-        html.paragraphs(phrases.ranking(one) for one in evidence.rankings),
-        html.table(tables.RANKINGS, tables.rankings(evidence.rankings)),
+        elements.paragraphs(phrases.ranking(one) for one in evidence.rankings),
+        elements.table(tables.RANKINGS, tables.rankings(evidence.rankings)),
     ]
     home = evidence.rankings[0]
     if home.swings:
@@ -157,13 +157,13 @@ def _draws(found: Findings, evidence: Evidence | None) -> list[str]:
             diagnostics.swings(home.swings), "swings", "What each parameter does to the gaps"
         )
         parts += [
-            html.paragraphs(phrases.swings(home, evidence.parameters)),
-            html.figure(
+            elements.paragraphs(phrases.swings(home, evidence.parameters)),
+            elements.figure(
                 drawing,
                 "Mean gap in success between two robots with one parameter at the low and at the high end of its prior "
                 "and the others at posterior draws.",
             ),
-            html.table(
+            elements.table(
                 ("parameter", "", *(f"SR {a} less {b}" for a, b in tables.pairs(home.swings)), "worst order [%]"),
                 tables.swings(home.swings, evidence.parameters),
                 "From the low to the high end of the prior [points]; share of draws in order at the worst end",
@@ -178,8 +178,8 @@ def _suites(found: Findings) -> list[str]:
         return []
     return [
         "<h3>By suite</h3>",
-        html.paragraph(phrases.suites(found)),
-        html.table(
+        elements.paragraph(phrases.suites(found)),
+        elements.table(
             ("suite", *tables.MODELS[1:]),
             tables.models((msgspec.structs.replace(found.own.played, name=found.setting.suite), *found.suites)),
             "Means [%]",
@@ -192,11 +192,11 @@ def _kinds(found: Findings) -> list[str]:
         return []
     return [
         "<h3>By kind of people</h3>",
-        html.paragraph(phrases.kinds(found)),
-        html.table(tables.MODELS, tables.models(found.kinds), "Means [%]"),
+        elements.paragraph(phrases.kinds(found)),
+        elements.table(tables.MODELS, tables.models(found.kinds), "Means [%]"),
     ]
 
 
 def _without(found: Findings, so: str) -> list[str]:
     why = found.evidence_missing or "The calibration says nothing of this."
-    return [html.paragraph(f"{why} So {so}.", "note")]
+    return [elements.paragraph(f"{why} So {so}.", "note")]

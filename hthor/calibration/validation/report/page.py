@@ -12,7 +12,7 @@ from hthor.calibration.simulation.trial_table import CONDITIONS
 from hthor.calibration.validation.report import calibration_sections, phrases, tables
 from hthor.calibration.validation.report.figures import predictions, sessions
 from hthor.calibration.validation.report.findings import Findings
-from hthor.report.html import html, matplotlib_svg, style
+from hthor.report.html import elements, matplotlib_svg, style
 
 _TITLES = {
     "data": "Data",
@@ -41,15 +41,17 @@ def render(found: Findings) -> str:
         calibration_sections.emulator(found),
         _sessions(found),
         calibration_sections.ranking(found),
-        [html.bullets(found.misfits) if found.misfits else html.paragraph("None that the numbers show.")],
-        [html.paragraph(found.scope, "lead")],
+        [elements.bullets(found.misfits) if found.misfits else elements.paragraph("None that the numbers show.")],
+        [elements.paragraph(found.scope, "lead")],
     )
     sections = (
-        html.section(number, name, title, *body)
+        elements.section(number, name, title, *body)
         for number, ((name, title), body) in enumerate(zip(_TITLES.items(), bodies, strict=True), 1)
     )
     title = f"Validation of {found.subject.name}"
-    return html.page(title, (_head(found, title), html.navigation(_TITLES), *sections, _foot(found)), style.css())
+    return elements.page(
+        title, (_head(found, title), elements.navigation(_TITLES), *sections, _foot(found)), style.css()
+    )
 
 
 def _head(found: Findings, title: str) -> str:
@@ -76,11 +78,11 @@ def _head(found: Findings, title: str) -> str:
     return "\n".join(
         (
             f"<h1>{escape(title)}</h1>",
-            html.paragraph(found.scope, "soft"),
+            elements.paragraph(found.scope, "soft"),
             f"<dl>{listed}</dl>",
-            html.paragraph(said, "lead"),
-            *(html.paragraph(note, "note") for note in notes),
-            html.table(tables.GATES, tables.gates(found.gates), words=range(4)),
+            elements.paragraph(said, "lead"),
+            *(elements.paragraph(note, "note") for note in notes),
+            elements.table(tables.GATES, tables.gates(found.gates), words=range(4)),
         )
     )
 
@@ -92,15 +94,15 @@ def _data(found: Findings) -> list[str]:
     )
     says = [f"{about}: {text}" for about, text in published.verbal]
     return [
-        html.paragraph(f"Source: {published.source}. Targets “{published.name}”, {published.sha256[:10]}."),
-        html.paragraph(f"Design: {published.design}") if published.design else "",
-        html.table(tables.COUNTS, tables.counts(published), words=(0, 3, 4)),
-        html.paragraph(
+        elements.paragraph(f"Source: {published.source}. Targets “{published.name}”, {published.sha256[:10]}."),
+        elements.paragraph(f"Design: {published.design}") if published.design else "",
+        elements.table(tables.COUNTS, tables.counts(published), words=(0, 3, 4)),
+        elements.paragraph(
             f"TWSR is used as its ratio to SR ({ratios}), because the two are not independent. Each figure of the "
             "study is that of one group of six people, so a model is compared with groups of six, not with its own "
             "mean alone."
         ),
-        "<h3>What the article says in words</h3>" + html.bullets(says) if says else "",
+        "<h3>What the article says in words</h3>" + elements.bullets(says) if says else "",
     ]
 
 
@@ -109,16 +111,16 @@ def _table(found: Findings) -> list[str]:
         predictions.table(found.table), "table", "Published figures and intervals of simulated study groups"
     )
     return [
-        html.paragraph(phrases.verdict(found), "lead"),
-        html.table(tables.TABLE, tables.table(found.table)),
-        html.figure(
+        elements.paragraph(phrases.verdict(found), "lead"),
+        elements.table(tables.TABLE, tables.table(found.table)),
+        elements.figure(
             drawing,
             "Diamonds: the published figures, with the distance allowed to the median shaded. Dots and lines: median "
             "and 90 % interval of simulated study groups of six people, with as many trials as the study counted.",
         ),
-        html.paragraph(phrases.reach(found.reach)) if found.reach else "",
+        elements.paragraph(phrases.reach(found.reach)) if found.reach else "",
         "<h3>Against simple human models</h3>"
-        + html.table(
+        + elements.table(
             tables.MODELS, tables.models([found.own.played, *(one.played for one in found.rivals)]), "Means [%]"
         )
         if found.rivals
@@ -128,30 +130,30 @@ def _table(found: Findings) -> list[str]:
 
 def _sessions(found: Findings) -> list[str]:
     parts = [
-        html.paragraph(phrases.quartiles(found.spent, found.differences)),
-        html.paragraph(phrases.minima(found.differences)),
-        html.figure(
+        elements.paragraph(phrases.quartiles(found.spent, found.differences)),
+        elements.paragraph(phrases.minima(found.differences)),
+        elements.figure(
             matplotlib_svg.to_svg(
                 sessions.spent(found.spent), "spent", "Box plots of the time spent in each condition"
             ),
             "Time spent: minimum, quartiles and maximum over all trials of each condition.",
         ),
-        html.table(tables.SPENT, tables.spent(found.spent), "Time spent [s]"),
-        html.table(tables.DIFFERENCES, tables.differences(found.differences)),
+        elements.table(tables.SPENT, tables.spent(found.spent), "Time spent [s]"),
+        elements.table(tables.DIFFERENCES, tables.differences(found.differences)),
         "<h3>Trust</h3>",
     ]
     if found.trust is None:
-        return [*parts, html.paragraph("These people rate no robot, so there is nothing to say of trust.")]
+        return [*parts, elements.paragraph("These people rate no robot, so there is nothing to say of trust.")]
     return [
         *parts,
-        html.paragraphs(phrases.trust(found.trust)),
-        html.figure(
+        elements.paragraphs(phrases.trust(found.trust)),
+        elements.figure(
             matplotlib_svg.to_svg(
                 sessions.trust(found.trust), "trust", "Mean trust by trial in the frontier robot and in the oracle"
             ),
             "Mean rating by trial, 1 to 7, with bars of one standard error over people.",
         ),
-        html.table(tables.CURVES, tables.curves(found.trust.curves), "Mean ± standard error"),
+        elements.table(tables.CURVES, tables.curves(found.trust.curves), "Mean ± standard error"),
     ]
 
 

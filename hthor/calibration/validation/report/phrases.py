@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 from hthor.calibration.pipeline.evidence import Band, Coverage, Evidence, HeldOut, ParameterFinding, Ranking, Shift
 from hthor.calibration.validation.report.findings import QUARTILE_S, Difference, Findings, Played, Reach, Spent, Trust
-from hthor.report.html.numbers import listed as listed
-from hthor.report.html.numbers import percent as percent
-from hthor.report.html.numbers import plain as plain
-from hthor.report.html.numbers import signed as signed
+from hthor.report.html.number_format import listed as listed
+from hthor.report.html.number_format import percent as percent
+from hthor.report.html.number_format import plain as plain
+from hthor.report.html.number_format import signed as signed
 
 IDENTIFIED, WEAKLY, NOT = "identified", "weakly identified", "not identified"
 CONTRACTS, CONTRACTS_WEAKLY = 0.4, 0.1

@@ -16,7 +16,7 @@ from hthor.calibration.pipeline.evidence import (
 )
 from hthor.calibration.validation.report import phrases
 from hthor.calibration.validation.report.findings import Curve, Difference, Gate, Played, Predicted, Published, Spent
-from hthor.report.html.html import Cell, Mark, mark
+from hthor.report.html.elements import Cell, Mark, mark
 
 Rows = list[list[Cell]]
 GATES = ("bar", "asks", "found", "verdict")

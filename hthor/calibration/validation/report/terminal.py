@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hthor.calibration.validation.report import tables
 from hthor.calibration.validation.report.findings import Findings
-from hthor.report.html.html import Cell, Mark
+from hthor.report.html.elements import Cell, Mark
 
 if TYPE_CHECKING:
     from rich.table import Table

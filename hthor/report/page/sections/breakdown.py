@@ -8,9 +8,9 @@ from hthor.eval.metrics import registry
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import NOTHING
 from hthor.report.analysis.document import Findings, Split
-from hthor.report.html import html
-from hthor.report.html.html import Band, Piece
-from hthor.report.html.numbers import listed
+from hthor.report.html import elements
+from hthor.report.html.elements import Band, Piece
+from hthor.report.html.number_format import listed
 from hthor.report.page import sentences, table_cells
 
 DIFFICULTY, SCENES, PEOPLE = "By difficulty and kind of task", "By scene", "By kind of person"
@@ -26,7 +26,7 @@ def difficulty(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     held = [one for one in found.splits if one.word != "scene"]
     if not held:
         return [
-            html.paragraph(
+            elements.paragraph(
                 "These tasks name no difficulty, and are all of one kind and split; or there is one trial of each."
             )
         ]
@@ -39,7 +39,7 @@ def scenes(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """Of what the section by scene is made."""
     held = [one for one in found.splits if one.word == "scene"]
     if not held:
-        return [html.paragraph("All trials are in one scene, or there is one trial in each.")]
+        return [elements.paragraph("All trials are in one scene, or there is one trial in each.")]
     said = [sentences.extreme_gains(one.word, _gains(found, one)) for one in held]
     caption = "Success rates by scene with 95 % intervals, the scenes in which people do worst first."
     return _made(found, held, said, drawings, "scenes", caption)
@@ -49,7 +49,7 @@ def people(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """Of what the section by kind of person is made."""
     if found.by_people is None:
         return [
-            html.paragraph(
+            elements.paragraph(
                 f"Everybody in these runs is of one people, '{found.people}'. Runs of several, as 'hthor eval --humans "
                 "kinds' makes them, are set side by side here."
             )
@@ -79,11 +79,11 @@ def _made(
             rows.append([group.name, *rates, *(table_cells.difference(own.get(one), success) for one in helped)])
     long = any(len(one.groups) > _LONG for one in held)
     told = "Success rates [%]" + (", and gains over no robot [points], trial by trial" if helped else "")
-    table = html.table(head, rows, f"{told}. {table_cells.NOTE}")
+    table = elements.table(head, rows, f"{told}. {table_cells.NOTE}")
     return [
-        *(html.paragraph(text) for text in said if text),
-        html.drawn(drawings, name, caption),
-        html.folded(f"The same in numbers, {len(rows)} rows", table) if long else table,
+        *(elements.paragraph(text) for text in said if text),
+        elements.drawn(drawings, name, caption),
+        elements.folded(f"The same in numbers, {len(rows)} rows", table) if long else table,
     ]
 
 

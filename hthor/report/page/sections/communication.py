@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from hthor.eval.metrics import registry
 from hthor.eval.statistics.intervals import NOTHING
 from hthor.report.analysis.document import Arm, Findings
-from hthor.report.html import html
-from hthor.report.html.html import Band, Piece
+from hthor.report.html import elements
+from hthor.report.html.elements import Band, Piece
 from hthor.report.page import sentences, table_cells
 
 TITLE = "Communication, and being in the way"
@@ -18,22 +18,22 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """Of what the section is made."""
     robots = table_cells.robots(found.arms)
     if not robots:
-        return [html.paragraph("There is no robot in these runs.")]
+        return [elements.paragraph("There is no robot in these runs.")]
     return [
-        html.paragraph(sentences.messages(robots)),
-        html.drawn(
+        elements.paragraph(sentences.messages(robots)),
+        elements.drawn(
             drawings,
             "channel",
             "Left: messages a trial by what became of them. Middle: when the first message was sent that was true and "
             "that the person confirmed, over the trials that had one. Right: messages that came up before the person's "
             "eyes. Bars: 95 % intervals.",
         ),
-        html.table(
+        elements.table(
             ("messages", *(arm.label for arm in robots)),
             _rows(robots, "messages"),
             f"The robots' messages as a channel; means over trials. {table_cells.NOTE}",
         ),
-        html.table(
+        elements.table(
             ("", *(arm.label for arm in found.arms)),
             [*_rows(found.arms, "bodies"), *_rows_by_seat(found.arms)],
             "Idle time of the person, and how much people and robots were in each other's way; means over trials, "

@@ -8,8 +8,8 @@ from hthor.eval.comparison.compare import Comparison
 from hthor.eval.metrics import registry
 from hthor.eval.results import uplift
 from hthor.report.analysis.document import Findings
-from hthor.report.html import html
-from hthor.report.html.html import Piece, Value
+from hthor.report.html import elements
+from hthor.report.html.elements import Piece, Value
 from hthor.report.page import headline, sentences, table_cells
 
 TITLE = "Paired comparisons"
@@ -26,20 +26,20 @@ _HEAD = ("", *(registry.get(name).gain for name in uplift.METRICS), "won : lost"
 
 def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """Of what the section is made."""
-    said = [html.paragraph(sentences.without_baseline(found))] if not found.baseline else []
-    apart = [html.bullets([sentences.not_comparable(one) for one in found.apart])] if found.apart else []
+    said = [elements.paragraph(sentences.without_baseline(found))] if not found.baseline else []
+    apart = [elements.bullets([sentences.not_comparable(one) for one in found.apart])] if found.apart else []
     if not found.comparisons:
         return [*said, *apart]
     return [
         *said,
-        html.bullets([sentences.comparison_sentence(pair) for pair in headline.notable_comparisons(found)]),
-        html.drawn(
+        elements.bullets([sentences.comparison_sentence(pair) for pair in headline.notable_comparisons(found)]),
+        elements.drawn(
             drawings,
             "compared",
             "Differences trial by trial: the same person, on the same day, at the same task. Right of the line the "
             f"robot that is named first is better. Bars: {_bars(found)}.",
         ),
-        html.table(
+        elements.table(
             _HEAD, [_row(pair) for pair in found.comparisons], f"The same in numbers. {_intervals(found)} {_COLUMNS}"
         ),
         *apart,

@@ -8,8 +8,8 @@ from hthor.eval.config.cli_command import BUILT_IN_AGENTS
 from hthor.guest import Isolation
 from hthor.report.analysis.document import Findings
 from hthor.report.analysis.run_provenance import Platform, Provenance
-from hthor.report.html import html
-from hthor.report.html.html import Code, Piece
+from hthor.report.html import elements
+from hthor.report.html.elements import Code, Piece
 
 TITLE = "Where the runs come from"
 
@@ -22,12 +22,12 @@ def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
     rows = [[title, *(value(one) for one in found.origins)] for title, value in _FIELDS.items()]
     beside = [one.name for one in found.origins if one.beside]
     return [
-        html.table(
+        elements.table(
             ("", *(one.name for one in found.origins)), rows, f"{said}same bytes.", words=range(len(found.origins) + 1)
         ),
-        html.paragraph(f"{', '.join(beside)} was not named, but found beside as a control.") if beside else "",
-        html.paragraph(f"The commands that play these runs again{_own(found)}:"),
-        html.block("\n".join(one.command for one in found.origins)),
+        elements.paragraph(f"{', '.join(beside)} was not named, but found beside as a control.") if beside else "",
+        elements.paragraph(f"The commands that play these runs again{_own(found)}:"),
+        elements.block("\n".join(one.command for one in found.origins)),
     ]
 
 

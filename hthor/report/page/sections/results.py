@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 
 from hthor.eval.metrics import registry
 from hthor.report.analysis.document import Findings
-from hthor.report.html import html
-from hthor.report.html.html import Band, Piece
+from hthor.report.html import elements
+from hthor.report.html.elements import Band, Piece
 from hthor.report.page import sentences, table_cells
 
 TITLE = "Results"
@@ -26,9 +26,9 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     rows += _published(found, [metric.name for metric in metrics])
     head = ("robot", *(metric.heading for metric in metrics))
     return [
-        html.table(head, rows, f"Means over trials. {table_cells.NOTE}"),
-        html.paragraph(sentences.published_figures(found)),
-        html.drawn(
+        elements.table(head, rows, f"Means over trials. {table_cells.NOTE}"),
+        elements.paragraph(sentences.published_figures(found)),
+        elements.drawn(
             drawings,
             "scores",
             "Success, time-weighted success and adoption, with 95 % intervals. "

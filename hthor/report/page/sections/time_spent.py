@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from hthor.report.analysis.document import Findings
-from hthor.report.html import html
+from hthor.report.html import elements
 from hthor.report.page import sentences
 
 TITLE = "Time spent"
@@ -24,12 +24,12 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         for one in found.spent
     ]
     return [
-        html.paragraph(sentences.time_spent(found.spent)),
-        html.drawn(
+        elements.paragraph(sentences.time_spent(found.spent)),
+        elements.drawn(
             drawings,
             "time-spent",
             "Left: minimum, quartiles and maximum of the time spent. Right: share of all trials that were solved by "
             "each second; it ends at the success rate.",
         ),
-        html.table(_HEAD, rows, "Time spent [s]; an unsolved trial counts with its time limit."),
+        elements.table(_HEAD, rows, "Time spent [s]; an unsolved trial counts with its time limit."),
     ]

@@ -7,8 +7,8 @@ from html import escape
 
 from hthor.report.analysis.document import Findings
 from hthor.report.analysis.example_trials import ExampleTrial
-from hthor.report.html import html
-from hthor.report.html.html import Code, Mark, Piece
+from hthor.report.html import elements
+from hthor.report.html.elements import Code, Mark, Piece
 from hthor.report.page import sentences
 
 TITLE = "Best and worst trials"
@@ -18,12 +18,12 @@ _RANKS = {"best": "Best trials", "worst": "Worst trials"}
 def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """Of what the section is made."""
     if not found.shown:
-        return [html.paragraph("There is no robot to tell of.")]
+        return [elements.paragraph("There is no robot to tell of.")]
     by = "the time saved against the same person without a robot" if found.baseline else "time-weighted success"
-    held = [html.paragraph(f"Ranked by {by}: extremes of many trials, not typical ones.")]
+    held = [elements.paragraph(f"Ranked by {by}: extremes of many trials, not typical ones.")]
     if "legend" in drawings:
         told = "The house from above. Lines darken with time, with a dot every ten seconds; a number stands where "
-        held.append(html.drawn(drawings, "legend", f"{told}a robot sent a message."))
+        held.append(elements.drawn(drawings, "legend", f"{told}a robot sent a message."))
     names = [name for name in drawings if name.startswith("map-")]
     drawn = {(one.arm, one.key): name for one, name in zip(found.shown, names, strict=False)}
     for arm in dict.fromkeys(one.arm for one in found.shown):
@@ -37,4 +37,4 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
 
 def _card(one: ExampleTrial, drawing: str) -> str:
     caption: list[Piece] = [Mark(sentences.time_gained(one), "plain"), sentences.example_trial(one), Code(one.replay)]
-    return html.figure(drawing, caption, "map")
+    return elements.figure(drawing, caption, "map")

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 from hthor import rules
 from hthor.report.analysis.document import Findings, TrustCurve
-from hthor.report.html import html
-from hthor.report.html.html import Piece, Value
-from hthor.report.html.numbers import plain, signed
+from hthor.report.html import elements
+from hthor.report.html.elements import Piece, Value
+from hthor.report.html.number_format import plain, signed
 from hthor.report.page import sentences
 from hthor.report.page.figures import trust
 
@@ -19,7 +19,7 @@ _HEAD = ("robot", "people", "after the first trial", "after the last trial", "sl
 def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """Of what the section is made."""
     if not found.trust:
-        return [html.paragraph("Nobody rated a robot in these runs.")]
+        return [elements.paragraph("Nobody rated a robot in these runs.")]
     rows: list[list[Piece]] = [
         [
             one.arm,
@@ -36,11 +36,13 @@ def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         else " The axis shows a part of the scale."
     )
     return [
-        html.paragraph(sentences.trust_trend(found.trust)),
-        html.drawn(
+        elements.paragraph(sentences.trust_trend(found.trust)),
+        elements.drawn(
             drawings, "trust", f"Mean rating after each trial of a session; bars and bands are 95 % intervals.{cut}"
         ),
-        html.table(_HEAD, rows, "Trust from 1 to 7: means over people with 95 % intervals; slopes ± standard error."),
+        elements.table(
+            _HEAD, rows, "Trust from 1 to 7: means over people with 95 % intervals; slopes ± standard error."
+        ),
     ]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from hthor.eval.doctor import hardware, isolation_levels, libraries, rendering, reproducibility, subprocess_probe
-from hthor.eval.doctor.result import DoctorReport
+from hthor.eval.doctor.check_result import DoctorReport
 
 
 def run_checks(runs: Path, required: str = "L1") -> DoctorReport:
