@@ -9,7 +9,7 @@ import pytest
 
 from hthor import houses, plugins, rules, tasks
 from hthor.catalog import priors
-from hthor.eval.task_check import omniscient_solver
+from hthor.eval.task_check import omniscient_solver, solvability
 from hthor.tasks.arrangement import scene_graph
 from hthor.tasks.generation import generate
 from hthor.types import Goal, Job, Pose

@@ -15,7 +15,7 @@ from hthor import cli, houses, tasks
 from hthor.errors import HthorError, TaskError, UnknownName
 from hthor.eval.config import cli_command, run_config, suite_check, task_selection
 from hthor.eval.runner import run_options
-from hthor.eval.task_check import custom_houses
+from hthor.eval.task_check import custom_houses, solvability
 from hthor.houses.assets import DATABASE
 from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
