@@ -52,7 +52,7 @@ def typed(*words):
     said = CliRunner().invoke(app, [str(word) for word in words], env={"COLUMNS": "200"}, catch_exceptions=False)
     assert said.exit_code == 0, said.output
     return said.output
-found = build.findings(load_runs.runs([alone, helper]))
+found = build.build_findings(load_runs.load_runs([alone, helper]))
 print(json.dumps({
     "score": typed("score", helper),
     "compare": typed("compare", alone, helper),

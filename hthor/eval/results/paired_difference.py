@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 from msgspec import Struct
 
-from hthor.eval.metrics import registry
+from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.metrics.metric import Metric, mean_limit
 from hthor.eval.results.pairing import Pair
 from hthor.eval.statistics import intervals, power, variance_components
@@ -191,8 +191,9 @@ def p_value(centre: float, variance: float, freedom: float) -> float:
 
 def mcnemar(pairs: Sequence[Pair]) -> McNemar:
     """The exact test of success."""
-    only_first = sum(pair.one.met and not pair.other.met for pair in pairs)
-    only_second = sum(pair.other.met and not pair.one.met for pair in pairs)
+    first = trial_metrics.column((pair.one.metrics for pair in pairs), "sr")
+    second = trial_metrics.column((pair.other.metrics for pair in pairs), "sr")
+    only_first, only_second = int((first > second).sum()), int((first < second).sum())
     return McNemar(only_first=only_first, only_second=only_second, p=exact_p_value(only_first, only_second))
 
 
