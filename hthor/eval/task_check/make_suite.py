@@ -15,7 +15,9 @@ from hthor.types import HouseSpec, TaskSpec
 CODE_ROOT = "makers"
 
 
-def make_tasks(recipe: Recipe, given: Sequence[HouseSource], *, jobs: int) -> Iterator[tuple[int, tuple[TaskSpec, ...]]]:
+def make_tasks(
+    recipe: Recipe, given: Sequence[HouseSource], *, jobs: int
+) -> Iterator[tuple[int, tuple[TaskSpec, ...]]]:
     """The tasks of each house with the house's number, as they are ready. Closing the iterator ends the workers.
 
     Raises:

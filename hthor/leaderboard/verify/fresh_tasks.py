@@ -112,7 +112,9 @@ def _draw(entry: Entry, board: Path, word: str, count: int, folder: Path, jobs: 
 
     homes = max(1, min(season.houses, count // _HOUSE_TASKS))
     order = secret_suites.SuiteOrder(name=f"fresh-{lot[:10]}", houses=homes, tasks=count)
-    judges = secret_suites.Proof(house=check_soundness, task=lambda task, house: not solvability.check_task(task, house).faults)
+    judges = secret_suites.Proof(
+        house=check_soundness, task=lambda task, house: not solvability.check_task(task, house).faults
+    )
     for path, data in secret_suites.make_files(order, Salt(lot), judges).items():
         jsonio.write(folder / path, data)
 
