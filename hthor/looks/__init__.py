@@ -12,15 +12,7 @@ from hthor.types import Vec3
 
 CODE_PART = "pictures"
 
-__all__ = ["VERSION", "Material", "Mesh", "Piece", "fingerprint", "look", "textures"]
-
-VERSION = 2
-"""Counts up whenever a mesh or a texture changes."""
-
-
-def fingerprint() -> tuple[str, str]:
-    """Name and version of the looks that come with the package: what a run's result calls its pack."""
-    return ("procedural", str(VERSION))
+__all__ = ["Material", "Mesh", "Piece", "look", "textures"]
 
 
 @lru_cache(maxsize=2048)

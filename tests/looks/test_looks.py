@@ -169,10 +169,6 @@ def test_an_unknown_kind_is_refused() -> None:
         looks.look("unicorn")
 
 
-def test_the_embedded_pack_has_a_name() -> None:
-    assert looks.fingerprint() == ("procedural", str(looks.VERSION))
-
-
 # ------------------------------------------------------------------------------------------------------------ shapes
 
 
@@ -214,11 +210,10 @@ def test_solids_are_closed_and_face_outward(shape: str) -> None:
 @settings(max_examples=30, deadline=None)
 def test_turning_and_stretching_keep_a_mesh_sound(angle: float, axis: str, factors: Vec3) -> None:
     mesh = solids.ball((0.2, 0.1, 0.3), (1.0, 1.0, 1.0), 12)
-    for changed in (shaping.turned(mesh, axis, angle), shaping.stretched(mesh, *factors), shaping.mirrored(mesh)):
+    for changed in (shaping.turned(mesh, axis, angle), shaping.stretched(mesh, *factors)):
         check_mesh(changed, 0.0)
     assert volume(shaping.turned(mesh, axis, angle)) == pytest.approx(volume(mesh), rel=1e-3)
     assert volume(shaping.stretched(mesh, *factors)) == pytest.approx(volume(mesh) * math.prod(factors), rel=1e-3)
-    assert volume(shaping.mirrored(mesh)) == pytest.approx(volume(mesh), rel=1e-3)
 
 
 @pytest.mark.parametrize("axis", "xyz")
@@ -242,11 +237,6 @@ def test_pictures_stand_upright_for_who_looks_at_them() -> None:
 PARTS = {
     "door_leaf": (building.door_leaf(0.85, 2.05), (-0.425, None, 0.0), (0.425, None, 2.05)),
     "oak door_leaf": (building.door_leaf(0.8, 2.0, colors.OAK, 3), (-0.4, None, 0.0), (0.4, None, 2.0)),
-    "door_frame": (building.door_frame(0.9, 2.1, 0.12), (-0.51, -0.072, 0.0), (0.51, 0.072, 2.16)),
-    "window_frame": (building.window_frame(1.5, 1.2, 0.12), (None, -0.072, None), (None, 0.14, 1.26)),
-    "baseboard": (building.baseboard(3.0), (-1.5, 0.0, 0.0), (1.5, 0.012, 0.09)),
-    "curtain_rod": (building.curtain_rod(1.6), (-0.8, 0.0, None), (0.8, None, None)),
-    "threshold": (building.threshold(0.9, 0.12), (-0.45, -0.06, 0.0), (0.45, 0.06, 0.006)),
     "ceiling_lamp": (building.ceiling_lamp(0.2), (None, None, -0.1), (None, None, 0.0)),
 }  # fmt: skip
 

@@ -13,7 +13,7 @@ from hthor.geometry import plane
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import house_geodesics
 from hthor.houses.space.grid_kernel import are_free_points
-from hthor.houses.space.visibility import LinesOfSight
+from hthor.houses.space.visibility import LinesOfSight, with_all_open
 from hthor.navigation.waiting_spots import park
 from hthor.types import BodySpec, HouseSpec, Room, Thing, Vec2, Vec3
 
@@ -34,7 +34,7 @@ def _passes(a: Vec2, b: Vec2, point: Vec2, radius: float) -> bool:
 @functools.lru_cache(maxsize=8)
 def _sight(house: HouseSpec) -> LinesOfSight:
     """Lines of sight through a house, worked out once a process."""
-    return LinesOfSight(house)
+    return with_all_open(house)
 
 
 class Routes:

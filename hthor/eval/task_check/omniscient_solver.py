@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from hthor import catalog, plugins, rules
 from hthor.geometry import plane
-from hthor.tasks.arrangement.occlusion import LinesOfSight
-from hthor.tasks.arrangement.reachability import ReachableFloor
+from hthor.houses.space.visibility import LinesOfSight
+from hthor.tasks.arrangement.reachability import ReachableFloor, lines_of_sight
 from hthor.types import HUMAN, Drop, Job, Motion, Move, Open, Outcome, Pick, Place, Rotate, TaskSpec, Thing, Vec2, Vec3
 
 if TYPE_CHECKING:
@@ -207,7 +207,7 @@ class _Performance:
         return near
 
     def _sight(self, opened: frozenset[str]) -> LinesOfSight:
-        return LinesOfSight.of(self.house, opened)
+        return lines_of_sight(self.house, opened)
 
     def _eyes(self, cells: Floats) -> Floats:
         return np.column_stack((cells, np.full(len(cells), self.body.eye)))

@@ -19,7 +19,7 @@ from hthor.houses.checks import plan_rules, thing_rules
 from hthor.houses.checks.findings import Finding, error, is_sound, readable_kind, warning
 from hthor.houses.space import boxes
 from hthor.houses.space.free_space import Bools, FreeSpace
-from hthor.houses.space.visibility import LinesOfSight
+from hthor.houses.space.visibility import with_all_open
 from hthor.types import HouseSpec, Thing, Vec3
 
 CODE_PART = "tools"
@@ -128,7 +128,7 @@ def _objects(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Fin
     On the plan, that is, but for the benchmark's target kinds: a search for one of these ends only when it is so near
     to the eyes.
     """
-    things, sight, places = {thing.id: thing for thing in house.things}, LinesOfSight(house), space.centres(reached)
+    things, sight, places = {thing.id: thing for thing in house.things}, with_all_open(house), space.centres(reached)
     for thing in house.things:
         if not (thing.parent or catalog.kind(thing.kind).pickable):
             continue

@@ -1,4 +1,4 @@
-"""What is built into a house: door leaves and frames, windows, baseboards, rods, ceiling lamps.
+"""What is built into a house: door leaves and ceiling lamps.
 
 Every function returns pieces in one local frame: x runs along the wall with 0 in the middle of the opening, y is across
 the wall with 0 in the middle of its thickness and the room that is looked from towards +y, z is up from the floor (from
@@ -16,14 +16,9 @@ from hthor.looks.meshes.mesh import Material, Mesh, Piece
 from hthor.types import Rgba
 
 TRIM: Rgba = (0.94, 0.93, 0.91, 1.0)
-"""The colour of frames and baseboards."""
+"""The color of doors and their frames."""
 LEAF_M = 0.04
 """How thick a door leaf is."""
-CASING_M = 0.06
-"""How broad the trim around an opening is."""
-BASEBOARD_M = 0.09
-"""How high a baseboard is."""
-_PROUD_M = 0.012
 _TRIM = materials.paint(TRIM, 0.3)
 
 
@@ -70,86 +65,6 @@ def _levers(x: float, z: float) -> list[Piece]:
         )
         shapes.append(sweeps.tube(path, 0.008))
     return _plain(*shapes, of=materials.chrome())
-
-
-def door_frame(width: float, height: float, depth: float, rgba: Rgba = TRIM) -> list[Piece]:
-    """Lining and trim of a clear opening ``width`` by ``height`` through a wall ``depth`` thick.
-
-    The lining takes 1.2 cm inside the opening; the trim lies `CASING_M` broad around it, 1.2 cm proud of both faces.
-    """
-    x, y, t, e, b = width / 2, depth / 2 + _PROUD_M, 0.012, CASING_M, 0.003
-    coat = materials.wood(rgba) if materials.wooden(rgba) else materials.paint(rgba, 0.3)
-    shapes = [
-        solids.box((-x, -y, 0.0), (t - x, y, height), b),
-        solids.box((x - t, -y, 0.0), (x, y, height), b),
-        solids.box((-x, -y, height - t), (x, y, height), b),
-    ]
-    for low, high in ((depth / 2 - 0.001, y), (-y, 0.001 - depth / 2)):
-        shapes += [
-            solids.box((-x - e, low, 0.0), (-x, high, height + e), b),
-            solids.box((x, low, 0.0), (x + e, high, height + e), b),
-            solids.box((-x, low, height), (x, high, height + e), b),
-        ]
-    return _plain(*shapes, of=coat)
-
-
-def window_frame(width: float, height: float, depth: float, columns: int = 0, rows: int = 0) -> list[Piece]:
-    """Lining, trim, sash, mullions, pane and sill of a window in a wall ``depth`` thick; z from 0 to ``height``.
-
-    ``columns`` and ``rows`` of panes default to what suits the size. The sill juts 8 cm into the room (+y).
-    """
-    across, up = columns or max(1, round(width / 0.75)), rows or (2 if height > 1.0 else 1)
-    x, y, e, b, s = width / 2, depth / 2 + _PROUD_M, CASING_M, 0.003, 0.045
-    shapes = []
-    for lo, hi in (((-x, -y, 0.0), (0.012 - x, y, height)), ((x - 0.012, -y, 0.0), (x, y, height)),
-        ((-x, -y, height - 0.012), (x, y, height)), ((-x, -y, 0.0), (x, y, 0.012))):  # fmt: skip
-        shapes.append(solids.box(lo, hi, b))
-    for low, high in ((depth / 2 - 0.001, y), (-y, 0.001 - depth / 2)):
-        for lo, hi in (((-x - e, low, -e), (-x, high, height + e)), ((x, low, -e), (x + e, high, height + e)),
-            ((-x, low, height), (x, high, height + e)), ((-x, low, -e), (x, high, 0.0))):  # fmt: skip
-            shapes.append(solids.box(lo, hi, b))
-    for lo, hi in (((-x, -0.02, 0.0), (s - x, 0.02, height)), ((x - s, -0.02, 0.0), (x, 0.02, height)),
-        ((-x, -0.02, 0.0), (x, 0.02, s)), ((-x, -0.02, height - s), (x, 0.02, height))):  # fmt: skip
-        shapes.append(solids.box(lo, hi, b))
-    for k in range(1, across):
-        at = -x + width * k / across
-        shapes.append(solids.box((at - 0.014, -0.016, s), (at + 0.014, 0.016, height - s), b))
-    for k in range(1, up):
-        at = height * k / up
-        shapes.append(solids.box((s - x, -0.016, at - 0.014), (x - s, 0.016, at + 0.014), b))
-    shapes.append(solids.box((-x - e - 0.02, depth / 2, -0.035), (x + e + 0.02, depth / 2 + 0.08, 0.0), 0.006))
-    pane = solids.box((s - x, -0.003, s), (x - s, 0.003, height - s), 0.0, 0)
-    return [*_plain(*shapes), *_plain(pane, of=materials.glass((0.80, 0.90, 0.95, 0.16)))]
-
-
-def baseboard(length: float, rgba: Rgba = TRIM) -> list[Piece]:
-    """A board along a wall: x from -length/2 to length/2, its back at y = 0, z from 0 to `BASEBOARD_M`."""
-    x, t, h = length / 2, _PROUD_M, BASEBOARD_M
-    outline = ((0.0, 0.0), (t, 0.0), (t, 0.75 * h), (0.7 * t, 0.84 * h), (0.45 * t, 0.9 * h), (0.4 * t, h), (0.0, h))
-    return _plain(_board(outline, x), of=materials.paint(rgba, 0.3))
-
-
-def _board(outline: tuple[tuple[float, float], ...], x: float) -> Mesh:
-    """A profile in y and z, drawn out along x from -x to x."""
-    prism = sweeps.extruded(outline, -x, x)
-    swap = [2, 0, 1]
-    return prism._replace(vertices=prism.vertices[:, swap], normals=prism.normals[:, swap])
-
-
-def curtain_rod(length: float) -> list[Piece]:
-    """A rod with knobs at its ends and two brackets: x from -length/2, its axis 8 cm in front of y = 0, at z = 0."""
-    x, y = length / 2, 0.08
-    shapes = [solids.cylinder((0.0, y, 0.0), 0.011, length - 0.05, "x", 10)]
-    for side in (-1.0, 1.0):
-        shapes.append(solids.ball((side * (x - 0.025), y, 0.0), (0.025, 0.025, 0.025), 12))
-        shapes.append(solids.box((side * (x - 0.12) - 0.008, 0.0, -0.02), (side * (x - 0.12) + 0.008, y, 0.01), 0.003))
-    return _plain(*shapes, of=materials.metal(c.IRON))
-
-
-def threshold(width: float, depth: float, rgba: Rgba = c.OAK) -> list[Piece]:
-    """A flat strip across a doorway's floor, 6 mm high."""
-    shape = solids.box((-width / 2, -depth / 2, 0.0), (width / 2, depth / 2, 0.006), 0.003)
-    return _plain(shape, of=materials.wood(rgba))
 
 
 def ceiling_lamp(radius: float = 0.19) -> list[Piece]:

@@ -81,12 +81,6 @@ def turned(shape: Mesh, axis: str, angle: float) -> Mesh:
     return mesh(shape.vertices @ matrix.T, shape.faces, shape.uv, shape.normals @ matrix.T)
 
 
-def mirrored(shape: Mesh) -> Mesh:
-    """The mesh with left and right exchanged."""
-    flip = np.array((-1.0, 1.0, 1.0))
-    return mesh(shape.vertices * flip, shape.faces[:, ::-1], shape.uv, shape.normals * flip)
-
-
 def merged(*shapes: Mesh) -> Mesh:
     """One mesh of several, which must be at least one."""
     starts = np.cumsum([0, *(len(shape.vertices) for shape in shapes[:-1])])

@@ -15,10 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from hthor import catalog, rules
 from hthor.geometry.plane import to_house
+from hthor.houses.space import boxes, visibility
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import DistanceField, Geodesics
 from hthor.tasks.arrangement.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
-from hthor.tasks.arrangement.occlusion import LinesOfSight
 from hthor.types import HouseSpec, Placement, Thing, Vec2, Vec3
 
 Bools = NDArray[np.bool_]
@@ -58,7 +58,7 @@ class ReachableFloor:
         places = self.space.centres(mask)
         eyes = np.column_stack((places, np.full(len(places), EYE_M)))
         lit = np.linalg.norm(eyes - placement.position, axis=1) <= reach_m + SLACK_M
-        lit[lit] = LinesOfSight.of(self.house, opened).seen(eyes[lit], _samples(placement))
+        lit[lit] = lines_of_sight(self.house, opened).seen(eyes[lit], _samples(placement))
         mask[mask] = lit
         return mask
 
@@ -152,3 +152,19 @@ def entry_cells(mask: Bools, free: Bools) -> Bools:
     out[:, 1:] |= outside[:, :-1]
     out[:, :-1] |= outside[:, 1:]
     return out & mask
+
+
+@functools.lru_cache(maxsize=64)
+def lines_of_sight(house: HouseSpec, opened: frozenset[str]) -> visibility.LinesOfSight:
+    """Lines of sight past every opaque part of the house's walls and things, worked out once a process.
+
+    Args:
+        opened: ids of things whose doors are left out, as if they were open.
+    """
+    parts = [
+        box
+        for thing in house.things
+        for part, box in boxes.boxes_of(thing)
+        if part.rgba[3] >= 1.0 and not (part.moves and thing.id in opened)
+    ]
+    return visibility.LinesOfSight([*visibility.wall_boxes(house), *parts])
