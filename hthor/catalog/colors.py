@@ -1,4 +1,4 @@
-"""The paint box: colours (red, green, blue, opacity), each 0 to 1."""
+"""The paint box: colors (red, green, blue, opacity), each 0 to 1."""
 
 from __future__ import annotations
 

@@ -34,9 +34,9 @@ def _small(name: str, size: Vec3, mass: float, shape: Shape, title: str = "", fi
     return _kind(name, size, mass, shape, title, finishes=finishes, pickable=True)
 
 
-def _paints(keyword: str, *colours: Rgba) -> Finishes:
-    """Finishes that change one colour."""
-    return tuple({keyword: rgba} for rgba in colours)
+def _paints(keyword: str, *colors: Rgba) -> Finishes:
+    """Finishes that change one color."""
+    return tuple({keyword: rgba} for rgba in colors)
 
 
 _SEATS: Finishes = (

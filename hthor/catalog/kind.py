@@ -20,14 +20,14 @@ class Form(Struct, frozen=True, kw_only=True):
 
 
 Shape = Callable[..., Form]
-"""Makes the form of a thing from its (width, depth, height) [m], and colours by keyword."""
+"""Makes the form of a thing from its (width, depth, height) [m], and colors by keyword."""
 
 Family = Literal["receptacle", "target", "background"]
 
 
 @lru_cache(maxsize=4096)
-def _form(shape: Shape, size: Vec3, colours: tuple[tuple[str, Rgba], ...]) -> Form:
-    return shape(size, **dict(colours))
+def _form(shape: Shape, size: Vec3, colors: tuple[tuple[str, Rgba], ...]) -> Form:
+    return shape(size, **dict(colors))
 
 
 class Kind(Struct, frozen=True, kw_only=True):
@@ -35,8 +35,8 @@ class Kind(Struct, frozen=True, kw_only=True):
 
     ``size`` [m] is what a thing of this kind measures unless its house says otherwise: (width, depth, height) along
     the local x, y and z axes, front towards +y. ``mass`` [kg] belongs to that size. ``relation`` is how an object
-    lies there: in a fridge or a sink, on anything else. ``finishes`` are the colours of its variants: what each changes
-    of the shape's own colours; variant 0 is the shape as it is. ``handles`` says that it has one at either end of its
+    lies there: in a fridge or a sink, on anything else. ``finishes`` are the colors of its variants: what each changes
+    of the shape's own colors; variant 0 is the shape as it is. ``handles`` says that it has one at either end of its
     width, by which several can carry what is too heavy for one.
     """
 
@@ -53,7 +53,7 @@ class Kind(Struct, frozen=True, kw_only=True):
     handles: bool = False
 
     def form(self, size: Vec3 | None = None, variant: int = 0) -> Form:
-        """Parts, surfaces and joints at ``size`` [m], or at the kind's own size; ``variant`` only picks colours."""
+        """Parts, surfaces and joints at ``size`` [m], or at the kind's own size; ``variant`` only picks colors."""
         looks = ({}, *self.finishes)[variant % (1 + len(self.finishes))]
         return _form(self.shape, self.size if size is None else size, tuple(sorted(looks.items())))
 

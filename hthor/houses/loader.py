@@ -82,8 +82,8 @@ def _wall(row: WallRow) -> Wall:
     a, b = structure.wall_line(row)
     low, high = structure.wall_heights(row)
     material = row.material if row.material is not None else schema.Material()
-    colour = material.color
-    rgb: Vec3 | None = None if colour is None else (colour.r, colour.g, colour.b)
+    color = material.color
+    rgb: Vec3 | None = None if color is None else (color.r, color.g, color.b)
     # ProcTHOR gives the outer face of an outer wall the id of the room behind it; only its own id tells.
     room = EXTERIOR if row.id.startswith(f"wall|{EXTERIOR}|") else row.room_id
     return Wall(id=row.id, room=room, a=a, b=b, height=high - low, material=material.name, rgb=rgb)

@@ -37,13 +37,13 @@ class Draft(NamedTuple):
             variant,
         )
 
-    def colours(self) -> tuple[Rgba, ...]:
-        """The colours of its parts, each once, in the order of the parts."""
+    def colors(self) -> tuple[Rgba, ...]:
+        """The colors of its parts, each once, in the order of the parts."""
         return tuple(dict.fromkeys(part.rgba for part in self.parts))
 
-    def colour(self, index: int = 0) -> Rgba:
-        """Its colour of that number, or its last one when it has fewer."""
-        every = self.colours()
+    def color(self, index: int = 0) -> Rgba:
+        """Its color of that number, or its last one when it has fewer."""
+        every = self.colors()
         return every[min(index, len(every) - 1)]
 
     def top(self) -> float:

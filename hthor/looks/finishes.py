@@ -1,4 +1,4 @@
-"""What the names that houses give floors and walls stand for, a texture and a colour."""
+"""What the names that houses give floors and walls stand for, a texture and a color."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import lru_cache
 from hthor.types import Vec3
 
 Finish = tuple[str, Vec3]
-"""Name of a texture, and the colour that it has on the whole."""
+"""Name of a texture, and the color that it has on the whole."""
 
 _FLOORS: tuple[tuple[str, str, Vec3], ...] = (
     ("checker", "checker", (1.0, 1.0, 1.0)),
@@ -116,4 +116,4 @@ def wall(name: str) -> Finish:
 
 def _row(table: tuple[tuple[str, str, Vec3], ...], name: str) -> Finish:
     key = "".join(letter for letter in name.lower() if letter.isalpha())
-    return next((texture, colour) for word, texture, colour in table if word in key)
+    return next((texture, color) for word, texture, color in table if word in key)

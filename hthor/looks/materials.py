@@ -32,7 +32,7 @@ _OTHERS = {"CARDBOARD": "cardboard", "LINEN": "linen", "WICKER": "wicker", "CORK
 
 
 def tinted(texture: str, rgba: Rgba, specular: float = 0.1, shininess: float = 0.2) -> Material:
-    """``texture`` coloured so that on the whole it looks ``rgba``, as far as it can be that bright."""
+    """``texture`` colored so that on the whole it looks ``rgba``, as far as it can be that bright."""
     mean = textures.mean(texture)
     r, g, b = (round(min(1.0, channel / max(m, 0.05)), 4) for channel, m in zip(rgba, mean, strict=False))
     return Material(rgba=(r, g, b, rgba[3]), texture=texture, specular=specular, shininess=shininess)
@@ -44,32 +44,32 @@ def paint(rgba: Rgba, gloss: float = 0.25) -> Material:
 
 
 def wood(rgba: Rgba) -> Material:
-    """Lacquered wood of that colour."""
+    """Lacquered wood of that color."""
     return tinted("wood", rgba, 0.18, 0.35)
 
 
 def cloth(rgba: Rgba, weave: str = "weave") -> Material:
-    """A textile of that colour."""
+    """A textile of that color."""
     return tinted(weave, rgba, 0.02, 0.05)
 
 
 def leather(rgba: Rgba) -> Material:
-    """Leather of that colour."""
+    """Leather of that color."""
     return tinted("leather", rgba, 0.25, 0.35)
 
 
 def metal(rgba: Rgba) -> Material:
-    """Brushed metal of that colour."""
+    """Brushed metal of that color."""
     return tinted("brushed", rgba, 0.6, 0.6)
 
 
 def chrome(rgba: Rgba = colors.STEEL) -> Material:
-    """Polished metal of that colour."""
+    """Polished metal of that color."""
     return Material(rgba=rgba, specular=0.9, shininess=0.85)
 
 
 def ceramic(rgba: Rgba) -> Material:
-    """Glazed ware of that colour."""
+    """Glazed ware of that color."""
     return Material(rgba=rgba, specular=0.55, shininess=0.75)
 
 
@@ -79,7 +79,7 @@ def glass(rgba: Rgba = colors.GLASS) -> Material:
 
 
 def stone(rgba: Rgba) -> Material:
-    """A polished worktop of that colour."""
+    """A polished worktop of that color."""
     return tinted("granite", rgba, 0.4, 0.6)
 
 
@@ -89,7 +89,7 @@ def glow(rgba: Rgba, strength: float = 0.75) -> Material:
 
 
 def picture(texture: str, emission: float = 0.0) -> Material:
-    """A picture in its own colours; a screen has some ``emission``."""
+    """A picture in its own colors; a screen has some ``emission``."""
     return Material(texture=texture, specular=0.15 if emission == 0.0 else 0.3, emission=emission)
 
 
@@ -98,7 +98,7 @@ _NAMES = {value: name for name, value in reversed(list(vars(colors).items())) if
 
 @lru_cache(maxsize=1024)
 def guess(rgba: Rgba) -> Material:
-    """The material that a colour of the catalog speaks of: oak is wood, steel is metal; others are paint."""
+    """The material that a color of the catalog speaks of: oak is wood, steel is metal; others are paint."""
     name = _NAMES.get(rgba, "")
     if rgba[3] < 0.99:
         return glass(rgba)
@@ -112,7 +112,7 @@ def guess(rgba: Rgba) -> Material:
 
 
 def wooden(rgba: Rgba) -> bool:
-    """Whether a colour is that of some wood."""
+    """Whether a color is that of some wood."""
     return guess(rgba).texture == "wood"
 
 
@@ -140,7 +140,7 @@ def floor(name: str) -> Material:
 
 @lru_cache(maxsize=256)
 def wall(name: str, rgb: Vec3 | None = None) -> Material:
-    """A wall's or a ceiling's material by its name, in its own colour where the house gives one."""
+    """A wall's or a ceiling's material by its name, in its own color where the house gives one."""
     texture, (r, g, b) = finishes.wall(name)
     own = (r, g, b) if rgb is None else rgb
     shine = 0.3 if texture.startswith(("tile", "subway", "marble", "checker")) else 0.03

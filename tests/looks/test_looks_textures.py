@@ -61,13 +61,13 @@ def test_walls_by_name(name: str, texture: str) -> None:
     assert materials.wall(name).texture == texture
 
 
-def test_a_wall_takes_the_colour_that_its_house_gives() -> None:
+def test_a_wall_takes_the_color_that_its_house_gives() -> None:
     green = materials.wall("PureWhite", (0.2, 0.6, 0.3))
     shown = np.array(green.rgba[:3]) * textures.mean(green.texture)
     assert shown == pytest.approx((0.2, 0.6, 0.3), abs=0.01)
 
 
-def test_colours_of_the_catalog_speak_of_materials() -> None:
+def test_colors_of_the_catalog_speak_of_materials() -> None:
     assert materials.guess(colors.OAK).texture == "wood"
     assert materials.guess(colors.STEEL).texture == "brushed"
     assert materials.guess(colors.STONE).texture == "granite"

@@ -266,7 +266,7 @@ def test_an_observation_is_of_one_profile(drawn: World) -> None:
         assert (picture != other).any()
 
 
-def test_labels_and_depth_end_where_colours_do(drawn: World) -> None:
+def test_labels_and_depth_end_where_colors_do(drawn: World) -> None:
     drawn.teleport(HUMAN, Pose(x=4.3, y=3.4, yaw=-math.pi / 2, pitch=-0.9))
     view = drawn.look(HUMAN, (192, 192), "nice")
     grey, owner = view.rgb.astype(float).mean(axis=2), view.segmentation

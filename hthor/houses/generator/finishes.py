@@ -1,4 +1,4 @@
-"""Materials, colours, lights and the ceiling's height."""
+"""Materials, colors, lights and the ceiling's height."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class Finish:
 
 
 def material(name: str, rgb: Rgb) -> dict[str, Any]:
-    """A wall's material with its colour."""
+    """A wall's material with its color."""
     return {"name": name, "color": dict(zip("rgb", rgb, strict=True))}
 
 

@@ -76,7 +76,7 @@ def _windowed(draft: Draft, part: Part) -> list[Piece]:
     e = 0.14 * min(x1 - x0, z1 - z0)
     frame = solids.box((x0, y0, z0), (x1, face, z1), 0.006)
     pane = solids.box((x0 + e, face - 0.004, z0 + e), (x1 - e, face + 0.5 * proud, z1 - e), 0.002)
-    body = materials.metal(c.STEEL) if draft.colour(0) != c.WHITE else materials.paint(c.WHITE, 0.5)
+    body = materials.metal(c.STEEL) if draft.color(0) != c.WHITE else materials.paint(c.WHITE, 0.5)
     found = [
         materials.piece(frame, body if draft.name != "safe" else materials.paint(part.rgba, 0.3), part.moves),
         materials.piece(
@@ -138,7 +138,7 @@ def range_hood(draft: Draft) -> list[Piece]:
     ]
     walls = [shaping.surface(np.stack([[loops[0][k], loops[1][k]], [loops[0][k + 1], loops[1][k + 1]]]),
         np.array([[(0.0, 0.0), (0.0, 0.4)], [(0.6, 0.0), (0.6, 0.4)]])) for k in range(4) ]  # fmt: skip
-    steel = materials.metal(draft.colour(0))
+    steel = materials.metal(draft.color(0))
     shapes = [
         solids.box((-x, -y, 0.0), (x, y, low), 0.006),
         solids.box((-half, -y, mid - 0.002), (half, min(y, 2 * half - y), h), 0.004),

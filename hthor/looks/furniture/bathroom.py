@@ -32,7 +32,7 @@ def toilet(draft: Draft) -> list[Piece]:
     """A tank with a button, an egg-shaped bowl on a foot, and a closed lid."""
     w, d, h = draft.size
     x, y, tank, seat = w / 2, d / 2, 0.28 * d, 0.50 * h
-    white = materials.ceramic(draft.colour(0))
+    white = materials.ceramic(draft.color(0))
     back = tank - y
     bowl = _oval([(0.0, back, 0.5 * back, 0.0), (0.58 * x, back - 0.05, 0.50 * y, 0.0),
         (0.56 * x, back - 0.05, 0.50 * y, 0.10 * h), (0.60 * x, back - 0.05, 0.58 * y, 0.22 * h),
@@ -54,7 +54,7 @@ def bathtub(draft: Draft) -> list[Piece]:
     w, d, h = draft.size
     x, y, rest = w / 2, d / 2, draft.surfaces[0]
     floor, half, long = rest.centre[2], rest.half[0], rest.half[1]
-    white = materials.ceramic(draft.colour(0))
+    white = materials.ceramic(draft.color(0))
     outer = _rounded(x, y, 0.03, h - 0.012), _rounded(x, y, 0.03, h)
     rows = [(_rounded(x - 0.012, y - 0.012, 0.03, 0.0)), _rounded(x - 0.012, y - 0.012, 0.03, h - 0.05),
         _rounded(x, y, 0.03, h - 0.045), outer[0], _rounded(x - 0.006, y - 0.006, 0.03, h),
@@ -96,7 +96,7 @@ def shower(draft: Draft) -> list[Piece]:
     w, d, h = draft.size
     x, y = w / 2, d / 2
     low = 0.05 * h
-    white, steel = materials.ceramic(draft.colour(0)), materials.chrome()
+    white, steel = materials.ceramic(draft.color(0)), materials.chrome()
     found = [
         materials.piece(solids.box((-x, -y, 0.0), (x, y, low), 0.02, 2), white),
         materials.piece(solids.cylinder((0.0, 0.0, low), 0.045, 0.003, "z", 20), steel),
@@ -176,7 +176,7 @@ def towel(draft: Draft) -> list[Piece]:
     front = np.stack([u * w / 2 * (1.0 - 0.02 * np.sin(np.pi * v)), bend - 0.05 * d + wave, h - v * h], -1)
     back = front * (1.0, -0.9, 1.0) + (0.0, -0.04 * d, 0.0)
     uv = np.stack([front[..., 0], -front[..., 2]], -1)
-    coat = materials.cloth(draft.colour(0), "terry")
+    coat = materials.cloth(draft.color(0), "terry")
     sheets = [
         sweeps.sheet(front[::-1].copy(), uv[::-1], 0.006),
         sweeps.sheet(back, uv, 0.006),
@@ -184,9 +184,9 @@ def towel(draft: Draft) -> list[Piece]:
     stripe = front[::-1, 11:13] + (0.0, 0.0012, 0.0)
     pale = materials.cloth(
         (
-            min(1.0, draft.colour(0)[0] + 0.25),
-            min(1.0, draft.colour(0)[1] + 0.25),
-            min(1.0, draft.colour(0)[2] + 0.25),
+            min(1.0, draft.color(0)[0] + 0.25),
+            min(1.0, draft.color(0)[1] + 0.25),
+            min(1.0, draft.color(0)[2] + 0.25),
             1.0,
         ),
         "terry",
@@ -202,7 +202,7 @@ def toilet_paper(draft: Draft) -> list[Piece]:
     core = [(0.40 * r, 0.99 * h), (0.36 * r, 0.99 * h), (0.36 * r, 0.01 * h)]
     return filled(
         [
-            materials.piece(solids.lathe(paper, 24), materials.cloth(draft.colour(0), "felt")),
+            materials.piece(solids.lathe(paper, 24), materials.cloth(draft.color(0), "felt")),
             materials.piece(solids.lathe(core, 16), materials.tinted("cardboard", c.CARDBOARD)),
         ],
         draft,
@@ -214,5 +214,5 @@ def soap(draft: Draft) -> list[Piece]:
     w, d, h = draft.size
     shape = solids.box((-w / 2, -d / 2, 0.0), (w / 2, d / 2, h), 0.42 * h, 3)
     mark = sweeps.ring((0.0, 0.0, 0.985 * h), 0.22 * w, 0.03 * h, "z", 18, 5)
-    coat = materials.paint(draft.colour(0), 0.4)
+    coat = materials.paint(draft.color(0), 0.4)
     return filled([materials.piece(shape, coat), materials.piece(shaping.stretched(mark, 1.2, 0.8, 1.0), coat)], draft)

@@ -81,14 +81,14 @@ def pillow(draft: Draft) -> list[Piece]:
     """A plump pillow with a seam."""
     w, d, h = draft.size
     shape = solids.cushion((0.0, 0.0, h / 2), (w, d, h), 14, 3.2)
-    weave = "linen" if draft.colour(0) in (c.CREAM, c.WHITE) else "canvas"
-    return [materials.piece(shape, materials.cloth(draft.colour(0), weave))]
+    weave = "linen" if draft.color(0) in (c.CREAM, c.WHITE) else "canvas"
+    return [materials.piece(shape, materials.cloth(draft.color(0), weave))]
 
 
 def dog_bed(draft: Draft) -> list[Piece]:
     """A padded ring around a cushion, lower in front."""
     w, d, h = draft.size
-    coat, inner = materials.cloth(draft.colour(0), "felt"), materials.cloth(c.CREAM, "terry")
+    coat, inner = materials.cloth(draft.color(0), "felt"), materials.cloth(c.CREAM, "terry")
     r = 0.5 * h
     angle = np.linspace(0.0, 2 * math.pi, 36, endpoint=False)
     wide, deep = (

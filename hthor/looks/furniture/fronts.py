@@ -45,7 +45,7 @@ def cabinet(draft: Draft) -> list[Piece]:
     """A closed cabinet on feet: what stands for furniture of no particular kind."""
     w, d, h = draft.size
     x, y, foot, lip = w / 2, d / 2, min(0.08, 0.1 * h), min(0.02, 0.05 * d)
-    coat, wood = materials.paint(draft.colour(0), 0.2), materials.wood(c.OAK)
+    coat, wood = materials.paint(draft.color(0), 0.2), materials.wood(c.OAK)
     body = solids.box((0.005 - x, -y, foot), (x - 0.005, y - lip, h - 0.02), 0.004)
     found = [materials.piece(body, coat), materials.piece(solids.box((-x, -y, h - 0.025), (x, y, h)), wood)]
     for s in (-1.0, 1.0):

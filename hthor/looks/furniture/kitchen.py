@@ -38,10 +38,10 @@ def fridge(draft: Draft) -> list[Piece]:
 
 
 def _liner(draft: Draft, part: Part) -> list[Mesh]:
-    """A white sheet on the inside of a wall that has the body's colour."""
+    """A white sheet on the inside of a wall that has the body's color."""
     (x0, y0, z0), (x1, y1, z1) = fronts.corners(part)
     thin, low, high = 0.002, z0 + 0.05, z1 - 0.05
-    if part.rgba != draft.colour(0) or part.half[2] < 0.3 * draft.size[2]:
+    if part.rgba != draft.color(0) or part.half[2] < 0.3 * draft.size[2]:
         return []
     if part.half[0] < part.half[1]:
         inner = x1 if part.centre[0] < 0.0 else x0 - thin
@@ -59,7 +59,7 @@ def coffee_machine(draft: Draft) -> list[Piece]:
     """A tank behind, a head with keys over a drip tray, a glass jug with coffee in it between them."""
     w, d, h = draft.size
     x, y = w / 2, d / 2
-    body, steel = materials.paint(draft.colour(0), 0.4), materials.metal(c.STEEL)
+    body, steel = materials.paint(draft.color(0), 0.4), materials.metal(c.STEEL)
     r, at = 0.30 * min(w, d), y - 0.30 * d
     jug = [
         (0.0, 0.115 * h),
@@ -96,7 +96,7 @@ def toaster(draft: Draft) -> list[Piece]:
     """A round-shouldered box with two slots, toast in one, and a lever."""
     w, d, h = draft.size
     x, y, edge = w / 2, d / 2, 0.94
-    dark, steel = materials.paint(c.BLACK, 0.3), materials.chrome(draft.colour(0))
+    dark, steel = materials.paint(c.BLACK, 0.3), materials.chrome(draft.color(0))
     found = [
         materials.piece(solids.box((-edge * x, -y, 0.012), (edge * x, y, 0.96 * h), 0.035, 3), steel),
         materials.piece(solids.box((-0.96 * x, 0.02 - y, 0.0), (0.96 * x, y - 0.02, 0.02), 0.004), dark),

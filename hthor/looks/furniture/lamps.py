@@ -24,7 +24,7 @@ def table_lamp(draft: Draft) -> list[Piece]:
     belly = [(0.0, 0.0), (0.44 * r, 0.0), (0.46 * r, 0.02 * h), (0.36 * r, 0.05 * h), (0.54 * r, 0.16 * h),
         (0.58 * r, 0.24 * h), (0.46 * r, 0.34 * h), (0.20 * r, 0.40 * h), (0.12 * r, 0.42 * h), (0.12 * r, 0.46 * h),
         (0.0, 0.46 * h)]  # fmt: skip
-    shade = Material(rgba=draft.colours()[-1], texture="linen", emission=0.55, specular=0.0)
+    shade = Material(rgba=draft.colors()[-1], texture="linen", emission=0.55, specular=0.0)
     return filled(
         [
             materials.piece(solids.lathe(belly, 24), materials.ceramic(c.TEAL)),
@@ -53,8 +53,8 @@ def floor_lamp(draft: Draft) -> list[Piece]:
         (0.0, 0.05),
     ]
     pole = solids.cylinder((0.0, 0.0, 0.5 * low), 0.011, low, "z", 12)
-    shade = Material(rgba=draft.colours()[-1], texture="linen", emission=0.55, specular=0.0)
-    iron = materials.metal(draft.colour(0))
+    shade = Material(rgba=draft.colors()[-1], texture="linen", emission=0.55, specular=0.0)
+    iron = materials.metal(draft.color(0))
     return filled(
         [
             materials.piece(solids.lathe(foot, 28), iron),
@@ -84,7 +84,7 @@ def candle(draft: Draft) -> list[Piece]:
     wick = sweeps.tube([(0.0, 0.0, 0.84 * h), (0.0, 0.0, 0.93 * h), (0.06 * r, 0.0, h)], 0.04 * r, 6)
     return filled(
         [
-            materials.piece(solids.lathe(wax, 20), Material(rgba=draft.colour(0), emission=0.12, specular=0.3)),
+            materials.piece(solids.lathe(wax, 20), Material(rgba=draft.color(0), emission=0.12, specular=0.3)),
             materials.piece(wick, materials.paint(c.BLACK, 0.0)),
         ],
         draft,
@@ -95,7 +95,7 @@ def vacuum_cleaner(draft: Draft) -> list[Piece]:
     """An upright one: a broad nozzle, a body with a dust bin, a slim handle."""
     w, d, h = draft.size
     x, y = w / 2, d / 2
-    coat, dark = materials.paint(draft.colours()[-1], 0.5), materials.paint(c.IRON, 0.4)
+    coat, dark = materials.paint(draft.colors()[-1], 0.5), materials.paint(c.IRON, 0.4)
     path = sweeps.bend(
         (0.0, -0.12 * d, 0.48 * h),
         (0.0, -0.30 * d, 0.80 * h),
@@ -136,7 +136,7 @@ def brush(draft: Draft) -> list[Piece]:
         (0.80 * r, 0.34 * h),
         (0.0, 0.30 * h),
     ]
-    white = materials.ceramic(draft.colour(0))
+    white = materials.ceramic(draft.color(0))
     return filled(
         [
             materials.piece(solids.lathe(holder, 24), white),

@@ -1,4 +1,4 @@
-"""The look of last resort: a kind's own solids with rounded edges, in what their colours speak of."""
+"""The look of last resort: a kind's own solids with rounded edges, in what their colors speak of."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def plain_pieces(parts: Iterable[Part]) -> list[Piece]:
 
 
 def piece(part: Part, material: Material | None = None) -> Piece:
-    """A part as a piece, of ``material`` or of what its colour speaks of."""
+    """A part as a piece, of ``material`` or of what its color speaks of."""
     return materials.piece(solid(part), materials.guess(part.rgba) if material is None else material, part.moves)
 
 

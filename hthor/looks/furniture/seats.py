@@ -26,7 +26,7 @@ def sofa(draft: Draft) -> list[Piece]:
     seat = draft.surfaces[0]
     top, e = seat.centre[2], min(0.03, 0.05 * d)
     arm, back = w / 2 - seat.half[0] - e, d / 2 + seat.centre[1] - seat.half[1] - e
-    seats = max(1, sum(part.rgba == draft.colour(1) for part in draft.parts)) if len(draft.colours()) > 1 else 1
+    seats = max(1, sum(part.rgba == draft.color(1) for part in draft.parts)) if len(draft.colors()) > 1 else 1
     base, rail, feet = 0.58 * top, 0.74 * h, 0.05 * h
     x, y, r = w / 2, d / 2, min(0.05, 0.4 * arm, 0.25 * back)
     shell = 0.55 * back
@@ -42,8 +42,8 @@ def sofa(draft: Draft) -> list[Piece]:
         soft.append(solids.soft((low, back - y - 0.03, base), (high, y - 0.004, top), 0.03, 0.005))
         soft.append(solids.soft((low, shell - y - 0.03, top - 0.01), (high, back - y + 0.015, 0.97 * h), 0.05, 0.02))
     return [
-        *(materials.piece(shape, materials.cloth(draft.colour(0))) for shape in frame),
-        *(materials.piece(shape, materials.cloth(draft.colour(1), "canvas")) for shape in soft),
+        *(materials.piece(shape, materials.cloth(draft.color(0))) for shape in frame),
+        *(materials.piece(shape, materials.cloth(draft.color(1), "canvas")) for shape in soft),
         *(materials.piece(shape, materials.wood(c.WALNUT)) for shape in _feet(draft, 1.3 * feet, 0.06)),
     ]
 
@@ -84,16 +84,16 @@ def chair(draft: Draft) -> list[Piece]:
         frame.append(sweeps.tube([(at, r - y + 0.72 * lean, low), (at, r - y + 0.08 * lean, high)], 0.009, 8))
     frame.append(solids.box((2 * r - x, 2 * r - y, top - t - 0.045), (x - 2 * r, y - 2.5 * r, top - t), 0.004))
     seat = solids.soft((-x, -y, top - t), (x, y, top), min(0.014, 0.45 * t), 0.0, 2, 1)
-    wood, plank = materials.guess(draft.parts[-1].rgba), materials.guess(draft.colour(0))
+    wood, plank = materials.guess(draft.parts[-1].rgba), materials.guess(draft.color(0))
     if not plank.texture:
-        plank = materials.leather(draft.colour(0))
+        plank = materials.leather(draft.color(0))
     return [*(materials.piece(shape, wood) for shape in frame), materials.piece(seat, plank)]
 
 
 def stool(draft: Draft) -> list[Piece]:
     """A round padded seat on three splayed legs with a ring."""
     w, d, h = draft.size
-    seat, legs = materials.guess(draft.colour(0)), materials.guess(draft.colour(1))
+    seat, legs = materials.guess(draft.color(0)), materials.guess(draft.color(1))
     t, r = min(0.05, 0.25 * h), min(w, d) / 2
     plate = [(0.0, h - t), (0.82 * r, h - t), (0.97 * r, h - 0.8 * t), (r, h - 0.5 * t), (0.985 * r, h - 0.18 * t),
         (0.93 * r, h), (0.0, h)]  # fmt: skip

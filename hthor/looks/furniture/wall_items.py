@@ -43,7 +43,7 @@ def painting(draft: Draft) -> list[Piece]:
     card = solids.box((broad - w / 2, -d / 2, broad), (w / 2 - broad, y, h - broad), 0.0, 0)
     show = sweeps.panel((0.0, y + 0.0008, h / 2), w - 2 * (broad + mat), h - 2 * (broad + mat))
     return [
-        *(materials.piece(shape, materials.guess(draft.colour(0))) for shape in _frame(w, d, h, broad)),
+        *(materials.piece(shape, materials.guess(draft.color(0))) for shape in _frame(w, d, h, broad)),
         materials.piece(card, materials.paint(c.PAPER, 0.02)),
         materials.piece(show, materials.picture(_of(draft, _ART))),
     ]
@@ -57,7 +57,7 @@ def mirror(draft: Draft) -> list[Piece]:
     show = sweeps.panel((0.0, 0.1 * d + 0.0008, h / 2), w - 2 * broad, h - 2 * broad)
     glass = Material(rgba=(0.92, 0.96, 1.0, 1.0), texture="glaze", specular=1.0, shininess=0.95, emission=0.12)
     return [
-        *(materials.piece(shape, materials.guess(draft.colour(0))) for shape in _frame(w, d, h, broad)),
+        *(materials.piece(shape, materials.guess(draft.color(0))) for shape in _frame(w, d, h, broad)),
         materials.piece(pane, materials.paint(c.GREY, 0.2)),
         materials.piece(show, glass),
     ]
@@ -82,7 +82,7 @@ def clock(draft: Draft) -> list[Piece]:
     uv = np.stack([0.5 - 0.5 * disc[..., 0], 0.5 - 0.5 * disc[..., 1]], -1)
     face = shaping.surface(points, uv)
     pieces = [
-        materials.piece(solids.along(solids.lathe(rim, 32), "y"), materials.paint(draft.colour(0), 0.5)),
+        materials.piece(solids.along(solids.lathe(rim, 32), "y"), materials.paint(draft.color(0), 0.5)),
         materials.piece(face, materials.picture("dial")),
     ]
     return filled(pieces, draft)
@@ -91,7 +91,7 @@ def clock(draft: Draft) -> list[Piece]:
 def curtain(draft: Draft) -> list[Piece]:
     """Two pleated panels drawn a little aside, one where it is narrow, on a rod with knobs."""
     w, d, h = draft.size
-    coat, iron = Material(rgba=draft.colour(0), specular=0.0, shininess=0.0), materials.metal(c.IRON)
+    coat, iron = Material(rgba=draft.color(0), specular=0.0, shininess=0.0), materials.metal(c.IRON)
     found = [materials.piece(sweeps.tube([(-0.49 * w, 0.0, h - 0.03), (0.49 * w, 0.0, h - 0.03)], 0.010, 10), iron)]
     found += [
         materials.piece(solids.ball((s * (w / 2 - 0.02), 0.0, h - 0.03), (0.02, 0.02, 0.02), 12), iron)
@@ -130,7 +130,7 @@ def rug(draft: Draft) -> list[Piece]:
             )
             for s in (-1, 1)
         ]
-    tint = draft.colour(0)
+    tint = draft.color(0)
     named = {c.RUST: "rug_red", c.TERRACOTTA: "rug_red", c.RED: "rug_red", c.BLUE: "rug_blue", c.SKY: "rug_blue",
         c.TEAL: "rug_blue", c.SAGE: "rug_green", c.LEAF: "rug_green", c.LINEN: "rug_bands", c.GREY: "rug_bands",
         c.CREAM: "rug_bands"}  # fmt: skip
@@ -148,7 +148,7 @@ def rug(draft: Draft) -> list[Piece]:
 def light_switch(draft: Draft) -> list[Piece]:
     """A plate with a rocker."""
     w, d, h = draft.size
-    white = materials.paint(draft.colour(0), 0.4)
+    white = materials.paint(draft.color(0), 0.4)
     plate = solids.box((-w / 2, -d / 2, 0.0), (w / 2, 0.1 * d, h), 0.003)
     rocker = shaping.turned(
         solids.box((-0.24 * w, -0.3 * d, -0.26 * h), (0.24 * w, 0.3 * d, 0.26 * h), 0.002), "x", 0.06

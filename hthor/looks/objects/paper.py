@@ -28,7 +28,7 @@ def book(draft: Draft) -> list[Piece]:
     """A hardback lying on its back: a printed cover, a rounded spine on the left, leaves that show at three edges."""
     w, d, h = draft.size
     x, y, t = w / 2, d / 2, min(0.0035, 0.12 * h)
-    cloth = materials.paint(draft.colour(0), 0.12)
+    cloth = materials.paint(draft.color(0), 0.12)
     # Seen from the front of the thing, y towards the reader, the spine is on the left: at +x.
     boards = [solids.box((-x, -y, 0.0), (x, y, t), 0.001), solids.box((-x, -y, h - t), (x, y, h), 0.001)]
     angle = np.linspace(-math.pi / 2, math.pi / 2, 9)
@@ -39,7 +39,7 @@ def book(draft: Draft) -> list[Piece]:
     )
     leaves = solids.box((-x + 0.004, -y + 0.004, t - 0.0005), (x - 0.006, y - 0.004, h - t + 0.0005), 0.0, 0)
     front = sweeps.lying((-0.001, 0.0, h + 0.0003), w - 0.012, d - 0.002)
-    name = _COVERS.get(draft.colour(0), "cover_1")
+    name = _COVERS.get(draft.color(0), "cover_1")
     return [
         *(materials.piece(shape, cloth) for shape in (*boards, back)),
         materials.piece(leaves, Material(texture="pages", specular=0.0)),
@@ -65,7 +65,7 @@ def carton(draft: Draft) -> list[Piece]:
     body = solids.box((-x + 0.001, -y + 0.001, 0.0), (x - 0.001, y - 0.001, h - 0.001), 0.003)
     tape = [solids.box((-x, -0.03, h - 0.09), (x, 0.03, h), 0.0, 0)]
     flaps = solids.box((-x, -y, h - 0.004), (x, y, h - 0.0006), 0.0, 0)
-    tint = draft.colour(0)
+    tint = draft.color(0)
     board = materials.tinted("cardboard", tint)
     return [
         *(materials.piece(s, board) for s in (body, flaps)),
@@ -91,7 +91,7 @@ def tissue_box(draft: Draft) -> list[Piece]:
     tissue = sweeps.sheet(points, np.stack([u, v], -1) * 0.1, 0.001)
     return filled(
         [
-            materials.piece(box, materials.tinted("dots", draft.colour(0))),
+            materials.piece(box, materials.tinted("dots", draft.color(0))),
             materials.piece(shaping.stretched(slot, 1.5, 0.8, 1.0), materials.paint(c.IRON, 0.0)),
             materials.piece(tissue, materials.paint(c.WHITE, 0.02)),
         ],
@@ -104,7 +104,7 @@ def paper_roll(draft: Draft) -> list[Piece]:
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     paper = [(0.30 * r, 0.0), (0.97 * r, 0.0), (r, 0.01 * h), (r, 0.99 * h), (0.97 * r, h), (0.30 * r, h)]
     core = [(0.30 * r, h), (0.26 * r, h), (0.26 * r, 0.0)]
-    return filled([materials.piece(solids.lathe(paper, 24), materials.cloth(draft.colour(0), "quilt")),
+    return filled([materials.piece(solids.lathe(paper, 24), materials.cloth(draft.color(0), "quilt")),
         materials.piece(solids.lathe(core, 14), materials.tinted("cardboard", c.CARDBOARD))], draft)  # fmt: skip
 
 
@@ -119,7 +119,7 @@ def cloth(draft: Draft) -> list[Piece]:
                 (e - w / 2, e - d / 2, k * h / 3), (w / 2 - e, d / 2 - e, (k + 1) * h / 3), 0.45 * h / 3, 0.0, 2, 1
             )
         )
-    return [materials.piece(shape, materials.cloth(draft.colour(0), "plaid")) for shape in layers]
+    return [materials.piece(shape, materials.cloth(draft.color(0), "plaid")) for shape in layers]
 
 
 def sponge(draft: Draft) -> list[Piece]:
@@ -128,6 +128,6 @@ def sponge(draft: Draft) -> list[Piece]:
     foam = solids.box((-w / 2, -d / 2, 0.0), (w / 2, d / 2, 0.72 * h), 0.005, 2)
     pad = solids.box((-w / 2, -d / 2, 0.70 * h), (w / 2, d / 2, h), 0.004, 2)
     return [
-        materials.piece(foam, materials.cloth(draft.colour(0), "felt")),
+        materials.piece(foam, materials.cloth(draft.color(0), "felt")),
         materials.piece(pad, materials.cloth(c.LEAF, "felt")),
     ]

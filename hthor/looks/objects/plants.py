@@ -40,7 +40,7 @@ def house_plant(draft: Draft) -> list[Piece]:
     green = Material(texture="leaf", specular=0.25, shininess=0.3)
     return filled(
         [
-            materials.piece(solids.lathe([*outer, *lip], 28), materials.guess(draft.colour(0))),
+            materials.piece(solids.lathe([*outer, *lip], 28), materials.guess(draft.color(0))),
             materials.piece(solids.lathe(soil, 20), Material(texture="soil", specular=0.0)),
             *(materials.piece(shape, materials.paint(_STEM, 0.05)) for shape in stems),
             *(materials.piece(shape, green) for shape in blades),

@@ -33,7 +33,7 @@ def _screen(w: float, low: float, high: float, back: float, front: float, pictur
 def television(draft: Draft) -> list[Piece]:
     """A flat screen with a picture on it, on two splayed feet."""
     w, d, h = draft.size
-    body = draft.colour(0)
+    body = draft.color(0)
     low, y = 0.075 * h, 0.08 * d
     feet: list[Mesh] = []
     for s in (-1.0, 1.0):
@@ -57,7 +57,7 @@ def computer(draft: Draft) -> list[Piece]:
     foot = solids.box((-0.24 * w, -d / 2, 0.0), (0.24 * w, d / 2, 0.012), 0.005)
     neck = sweeps.tube([(0.0, -0.22 * d, 0.01), (0.0, -0.16 * d, 0.6 * h)], 0.018, 10)
     return [
-        *_screen(w, low, h, -0.16 * d, 0.02 * d, "desktop", draft.colour(0)),
+        *_screen(w, low, h, -0.16 * d, 0.02 * d, "desktop", draft.color(0)),
         *(materials.piece(shape, materials.metal(c.STEEL)) for shape in (foot, neck)),
     ]
 
@@ -66,7 +66,7 @@ def laptop(draft: Draft) -> list[Piece]:
     """An open laptop: keys and a touchpad below, a lit screen that leans back a little."""
     w, d, h = draft.size
     t = min(0.016, 0.1 * h)
-    shell, dark = materials.metal(draft.colour(0)), materials.paint(c.BLACK, 0.4)
+    shell, dark = materials.metal(draft.color(0)), materials.paint(c.BLACK, 0.4)
     lean = min(0.03, 0.1 * d)
     base = solids.box((-w / 2, lean - d / 2, 0.0), (w / 2, d / 2, t), 0.005)
     keys = sweeps.lying((0.0, lean - d / 2 + 0.36 * d, t + 0.0005), 0.86 * w, 0.40 * d)
@@ -100,7 +100,7 @@ def phone(draft: Draft) -> list[Piece]:
     slab = solids.box((-w / 2, -d / 2, 0.0), (w / 2, d / 2, h), 0.45 * h, 2)
     show = sweeps.lying((0.0, 0.0, h + 0.0003), 0.90 * w, 0.92 * d)
     return [
-        materials.piece(slab, materials.paint(draft.colour(0), 0.7)),
+        materials.piece(slab, materials.paint(draft.color(0), 0.7)),
         materials.piece(show, materials.picture("desktop", 0.35)),
     ]
 
@@ -109,12 +109,12 @@ def remote_control(draft: Draft) -> list[Piece]:
     """A slim remote control: rounded ends, a red key, a round pad, rows of small keys."""
     w, d, h = draft.size
     low = 0.82 * h
-    body, keys = materials.paint(draft.colour(0), 0.3), materials.paint(c.GREY, 0.2)
+    body, keys = materials.paint(draft.color(0), 0.3), materials.paint(c.GREY, 0.2)
     slab = solids.box((-w / 2, -d / 2, 0.0), (w / 2, d / 2, low), 0.48 * low, 2)
     power = solids.cylinder((-0.28 * w, 0.42 * d, 0.5 * (low + h)), 0.10 * w, h - low + 0.004, "z", 12)
     found = [
         materials.piece(slab, body),
-        materials.piece(power, materials.paint(draft.colour(1), 0.3)),
+        materials.piece(power, materials.paint(draft.color(1), 0.3)),
         materials.piece(sweeps.ring((0.0, 0.14 * d, low), 0.27 * w, 0.05 * w, "z", 20, 6), keys),
         materials.piece(solids.cylinder((0.0, 0.14 * d, low), 0.12 * w, 0.003, "z", 12), materials.paint(c.STEEL, 0.4)),
         materials.piece(solids.box((0.12 * w, 0.395 * d, low - 0.001), (0.36 * w, 0.445 * d, h), 0.001), keys),

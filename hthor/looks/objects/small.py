@@ -18,7 +18,7 @@ def alarm_clock(draft: Draft) -> list[Piece]:
     """Twin bells over a round dial on two feet."""
     _, d, h = draft.size
     r, z = 0.40 * h, 0.46 * h
-    coat, steel = materials.paint(draft.colour(0), 0.5), materials.chrome()
+    coat, steel = materials.paint(draft.color(0), 0.5), materials.chrome()
     drum = solids.cylinder((0.0, 0.0, z), r, 0.86 * d, "y", 24)
     face = sweeps.panel((0.0, 0.44 * d, z), 1.30 * r, 1.30 * r)
     plate = solids.cylinder((0.0, 0.0, z), 0.9 * r, 0.875 * d, "y", 24)
@@ -53,9 +53,7 @@ def bin_(draft: Draft) -> list[Piece]:
     """An open waste bin with a rim."""
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     outer = [(0.0, 0.0), (0.74 * r, 0.0), (0.77 * r, 0.02 * h), (0.95 * r, 0.93 * h), (r, 0.935 * h), (r, 0.985 * h)]
-    return filled(
-        [materials.piece(hollow(outer, 0.05 * r, 0.03 * h, 28), materials.paint(draft.colour(0), 0.3))], draft
-    )
+    return filled([materials.piece(hollow(outer, 0.05 * r, 0.03 * h, 28), materials.paint(draft.color(0), 0.3))], draft)
 
 
 def hamper(draft: Draft) -> list[Piece]:
@@ -70,7 +68,7 @@ def hamper(draft: Draft) -> list[Piece]:
     return filled(
         [
             materials.piece(body, wicker),
-            materials.piece(liner, materials.cloth(draft.colour(0), "linen")),
+            materials.piece(liner, materials.cloth(draft.color(0), "linen")),
             materials.piece(lid, wicker),
             materials.piece(shaping.moved(knob, 0.0, 0.0, -0.2 * h), materials.leather(c.WALNUT)),
         ],
@@ -81,7 +79,7 @@ def hamper(draft: Draft) -> list[Piece]:
 def boots(draft: Draft) -> list[Piece]:
     """A pair of ankle boots side by side."""
     w, d, h = draft.size
-    coat, sole = materials.leather(draft.colour(0)), materials.paint(c.BLACK, 0.1)
+    coat, sole = materials.leather(draft.color(0)), materials.paint(c.BLACK, 0.1)
     found = []
     for s in (-1.0, 1.0):
         at, half = s * 0.26 * w, 0.21 * w
@@ -151,7 +149,7 @@ def watch(draft: Draft) -> list[Piece]:
     strap = shaping.moved(shaping.merged(*band), z=h / 2)
     case = solids.cylinder((0.0, 0.0, h - 0.0035), d / 2, 0.007, "z", 22)
     face = sweeps.lying((0.0, 0.0, h + 0.0003), 0.66 * d, 0.66 * d)
-    return filled([materials.piece(strap, materials.leather(draft.colour(0))),
+    return filled([materials.piece(strap, materials.leather(draft.color(0))),
         materials.piece(case, materials.chrome()), materials.piece(face, materials.picture("dial_dark"))],
         draft)  # fmt: skip
 
@@ -172,7 +170,7 @@ def pen(draft: Draft) -> list[Piece]:
     ]
     clip = solids.box((-0.25 * r, 0.18 * d, 0.8 * r), (0.25 * r, 0.42 * d, r), 0.0, 0)
     tip = solids.box((-r, 0.0, -r), (r, 0.012, 0.8 * r), 0.4 * r)
-    return filled([materials.piece(solids.along(solids.lathe(body, 10), "y"), materials.paint(draft.colour(0), 0.5)),
+    return filled([materials.piece(solids.along(solids.lathe(body, 10), "y"), materials.paint(draft.color(0), 0.5)),
         materials.piece(clip, materials.chrome()), materials.piece(tip, materials.chrome())], draft)  # fmt: skip
 
 

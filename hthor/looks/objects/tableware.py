@@ -34,7 +34,7 @@ def mug(draft: Draft) -> list[Piece]:
     """A hollow cylinder with a handle to the right."""
     w, d, h = draft.size
     r = min(w, d) / 2
-    glaze, x = materials.ceramic(draft.colour(0)), r - w / 2
+    glaze, x = materials.ceramic(draft.color(0)), r - w / 2
     outer = [(0.0, 0.0), (0.80 * r, 0.0), (0.93 * r, 0.02 * h), (r, 0.10 * h), (r, 0.97 * h)]
     cup = shaping.moved(hollow(outer, 0.10 * r, 0.07 * h), x)
     found = [materials.piece(cup, glaze)]
@@ -49,7 +49,7 @@ def cup(draft: Draft) -> list[Piece]:
     """A tumbler."""
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     outer = [(0.0, 0.0), (0.66 * r, 0.0), (0.72 * r, 0.03 * h), (0.90 * r, 0.5 * h), (r, 0.97 * h)]
-    return filled([materials.piece(hollow(outer, 0.08 * r, 0.08 * h), materials.ceramic(draft.colour(0)))], draft)
+    return filled([materials.piece(hollow(outer, 0.08 * r, 0.08 * h), materials.ceramic(draft.color(0)))], draft)
 
 
 def bowl(draft: Draft) -> list[Piece]:
@@ -60,7 +60,7 @@ def bowl(draft: Draft) -> list[Piece]:
     inside = [(0.99 * r, 0.985 * h), (0.90 * r, 0.68 * h), (0.76 * r, 0.40 * h), (0.55 * r, 0.19 * h), (0.0, 0.12 * h)]
     return filled(
         [
-            materials.piece(hollow(outer, 0.05 * r, 0.10 * h), materials.ceramic(draft.colour(0))),
+            materials.piece(hollow(outer, 0.05 * r, 0.10 * h), materials.ceramic(draft.color(0))),
             materials.piece(solids.lathe(inside, 24), materials.ceramic(c.CREAM)),
         ],
         draft,
@@ -68,14 +68,14 @@ def bowl(draft: Draft) -> list[Piece]:
 
 
 def plate(draft: Draft) -> list[Piece]:
-    """A shallow well in a broad rim with a coloured line."""
+    """A shallow well in a broad rim with a colored line."""
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     profile = [(0.0, 0.0), (0.56 * r, 0.0), (0.60 * r, 0.10 * h), (0.80 * r, 0.50 * h), (r, 0.94 * h), (0.99 * r, h),
         (0.82 * r, 0.86 * h), (0.66 * r, 0.82 * h), (0.0, 0.82 * h)]  # fmt: skip
     line = [(0.95 * r, 0.985 * h), (0.90 * r, 0.955 * h)]
     return filled(
         [
-            materials.piece(solids.lathe(profile, 32), materials.ceramic(draft.colour(0))),
+            materials.piece(solids.lathe(profile, 32), materials.ceramic(draft.color(0))),
             materials.piece(shaping.moved(solids.lathe(line, 32), z=0.0004), materials.ceramic(c.TEAL)),
         ],
         draft,
@@ -116,7 +116,7 @@ def pan(draft: Draft) -> list[Piece]:
     handle = shaping.stretched(sweeps.tube(path, [0.008] * 4 + [0.010] * 5, 8), 1.3, 1.0, 1.0)
     return filled(
         [
-            materials.piece(body, materials.metal(draft.colour(0))),
+            materials.piece(body, materials.metal(draft.color(0))),
             materials.piece(handle, materials.paint(c.BLACK, 0.3)),
         ],
         draft,
@@ -136,7 +136,7 @@ def kettle(draft: Draft) -> list[Piece]:
     )
     over = sweeps.bend((0.0, -0.62 * r, 0.56 * h), (0.0, -0.60 * r, 0.90 * h), (0.0, 0.0, 0.97 * h),
         (0.0, 0.6 * r, 0.90 * h), (0.0, 0.62 * r, 0.56 * h), steps=4)  # fmt: skip
-    steel, dark = materials.chrome(draft.colour(0)), materials.paint(c.BLACK, 0.4)
+    steel, dark = materials.chrome(draft.color(0)), materials.paint(c.BLACK, 0.4)
     return filled(
         [
             *(materials.piece(shape, steel) for shape in (solids.lathe(belly, 28), spout)),
@@ -154,12 +154,12 @@ def bottle(draft: Draft) -> list[Piece]:
         (0.0, 0.91 * h)]  # fmt: skip
     cap = [(0.0, 0.90 * h), (0.41 * r, 0.90 * h), (0.41 * r, 0.985 * h), (0.36 * r, h), (0.0, h)]
     label = [(1.006 * r, 0.16 * h), (1.006 * r, 0.46 * h)]
-    tint = draft.colour(0)
+    tint = draft.color(0)
     return filled(
         [
             materials.piece(solids.lathe(body, 24), Material(rgba=tint, specular=0.9, shininess=0.9)),
             materials.piece(solids.lathe(label, 24), materials.paint(c.PAPER, 0.1)),
-            materials.piece(solids.lathe(cap, 16), materials.paint(draft.colour(1), 0.4)),
+            materials.piece(solids.lathe(cap, 16), materials.paint(draft.color(1), 0.4)),
         ],
         draft,
     )
@@ -181,10 +181,10 @@ def dispenser(draft: Draft) -> list[Piece]:
     pump = [(0.40 * r, 0.69 * h), (0.40 * r, 0.77 * h), (0.16 * r, 0.78 * h), (0.16 * r, 0.93 * h),
         (0.36 * r, 0.94 * h), (0.36 * r, h), (0.0, h)]  # fmt: skip
     nozzle = sweeps.tube([(0.0, 0.0, 0.965 * h), (0.0, 0.8 * r, 0.965 * h), (0.0, 0.92 * r, 0.92 * h)], 0.11 * r, 8)
-    white = materials.paint(draft.colour(1), 0.5)
+    white = materials.paint(draft.color(1), 0.5)
     return filled(
         [
-            materials.piece(solids.lathe(body, 24), Material(rgba=draft.colour(0), specular=0.6, shininess=0.7)),
+            materials.piece(solids.lathe(body, 24), Material(rgba=draft.color(0), specular=0.6, shininess=0.7)),
             materials.piece(solids.lathe(pump, 14), white),
             materials.piece(nozzle, white),
             materials.piece(
@@ -202,7 +202,7 @@ def shaker(draft: Draft) -> list[Piece]:
     top = [(0.84 * r, 0.67 * h), (0.84 * r, 0.80 * h), (0.70 * r, 0.92 * h), (0.36 * r, 0.985 * h), (0.0, h)]
     return filled(
         [
-            materials.piece(solids.lathe(body, 18), materials.ceramic(draft.colour(0))),
+            materials.piece(solids.lathe(body, 18), materials.ceramic(draft.color(0))),
             materials.piece(solids.lathe(top, 18), materials.chrome()),
         ],
         draft,
@@ -219,7 +219,7 @@ def vase(draft: Draft) -> list[Piece]:
             (r * (0.56 + 0.44 * math.sin(math.pi * min(t * 1.12, 1.0)) ** 0.9 - 0.08 * t), h * (0.02 + 0.86 * t))
         )
     outer += [(0.42 * r, 0.93 * h), (0.56 * r, 0.985 * h)]
-    return filled([materials.piece(hollow(outer, 0.08 * r, 0.10 * h, 28), materials.ceramic(draft.colour(0)))], draft)
+    return filled([materials.piece(hollow(outer, 0.08 * r, 0.10 * h, 28), materials.ceramic(draft.color(0)))], draft)
 
 
 def cutlery(draft: Draft) -> list[Piece]:
@@ -262,6 +262,6 @@ def spoon(draft: Draft) -> list[Piece]:
     bowl = solids.ball((0.0, 0.5 * d - 0.42 * w * 1.4, 0.4 * h), (w / 2, 0.7 * w, 0.4 * h), 16)
     path = np.array([(0.0, -d / 2, 0.4 * h), (0.0, 0.0, 0.5 * h), (0.0, 0.5 * d - w, 0.5 * h)])
     return filled(
-        [materials.piece(shape, materials.wood(draft.colour(0))) for shape in (bowl, sweeps.tube(path, 0.006, 8))],
+        [materials.piece(shape, materials.wood(draft.color(0))) for shape in (bowl, sweeps.tube(path, 0.006, 8))],
         draft,
     )

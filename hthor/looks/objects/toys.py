@@ -22,7 +22,7 @@ def basketball(draft: Draft) -> list[Piece]:
 
 def teddy_bear(draft: Draft) -> list[Piece]:
     """A sitting bear."""
-    fur, pale, dark = (materials.cloth(rgba, "felt") for rgba in (draft.colour(0), c.SHELL, c.BLACK))
+    fur, pale, dark = (materials.cloth(rgba, "felt") for rgba in (draft.color(0), c.SHELL, c.BLACK))
     limbs = [((0.0, 0.0, 0.34), (0.26, 0.22, 0.28)), ((0.0, 0.02, 0.74), (0.22, 0.19, 0.19))]
     for s in (-1.0, 1.0):
         limbs += [((s * 0.20, 0.26, 0.11), (0.10, 0.24, 0.11)), ((s * 0.29, 0.12, 0.44), (0.10, 0.14, 0.18)),
@@ -39,7 +39,7 @@ def teddy_bear(draft: Draft) -> list[Piece]:
 
 def statue(draft: Draft) -> list[Piece]:
     """A bust on a plinth."""
-    stone = materials.tinted("marble", draft.colour(0), 0.4, 0.5)
+    stone = materials.tinted("marble", draft.color(0), 0.4, 0.5)
     plinth = [
         (0.0, 0.0),
         (0.42, 0.0),
@@ -75,7 +75,7 @@ def bat(draft: Draft) -> list[Piece]:
         (0.38 * r, -0.15 * d), (0.72 * r, 0.12 * d), (r, 0.32 * d), (r, 0.47 * d), (0.8 * r, 0.5 * d),
         (0.0, 0.5 * d)]  # fmt: skip
     tape = [(0.40 * r, -0.46 * d), (0.42 * r, -0.20 * d)]
-    pieces = [materials.piece(solids.along(solids.lathe(body, 16), "y"), materials.wood(draft.colour(0))),
+    pieces = [materials.piece(solids.along(solids.lathe(body, 16), "y"), materials.wood(draft.color(0))),
         materials.piece(solids.along(solids.lathe(tape, 16), "y"), materials.leather(c.IRON))]  # fmt: skip
     return filled(pieces, draft)
 
@@ -101,7 +101,7 @@ def racket(draft: Draft) -> list[Piece]:
     return filled(
         [
             *(materials.piece(shape, frame) for shape in (rim, *throat)),
-            materials.piece(grip, materials.leather(draft.colours()[-1])),
+            materials.piece(grip, materials.leather(draft.colors()[-1])),
             *(materials.piece(shape, materials.paint(c.PAPER, 0.1)) for shape in strings),
         ],
         draft,
@@ -128,7 +128,7 @@ def dumbbell(draft: Draft) -> list[Piece]:
             ),
             "y",
         )
-        found.append(materials.piece(shaping.moved(head, 0.0, s * 0.35 * d, z), materials.paint(draft.colour(0), 0.3)))
+        found.append(materials.piece(shaping.moved(head, 0.0, s * 0.35 * d, z), materials.paint(draft.color(0), 0.3)))
     return filled(found, draft)
 
 
@@ -167,7 +167,7 @@ def watering_can(draft: Draft) -> list[Piece]:
         0.009,
         8,
     )
-    coat = materials.paint(draft.colour(0), 0.5)
+    coat = materials.paint(draft.color(0), 0.5)
     return filled(
         [materials.piece(shape, coat) for shape in (shaping.moved(solids.lathe(body, 24), 0.0, at), spout, rose, bow)],
         draft,

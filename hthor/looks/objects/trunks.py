@@ -20,7 +20,7 @@ def trunk(draft: Draft) -> list[Piece]:
     body = solids.box((-x, -y, low), (x, y, _RIM * h), 0.012)
     lid = solids.box((-x - 0.006, -y - 0.006, (_RIM + 0.008) * h), (x + 0.006, y + 0.006, 0.965 * h), 0.03, 2)
     wood, brass = materials.wood(c.OAK), materials.metal((0.80, 0.62, 0.30, 1.0))
-    leather, canvas = materials.leather(draft.colours()[-1]), materials.cloth(draft.colour(0), "canvas")
+    leather, canvas = materials.leather(draft.colors()[-1]), materials.cloth(draft.color(0), "canvas")
     return filled(
         [
             materials.piece(body, canvas),

@@ -12,7 +12,7 @@ Corner = tuple[int, int, int]
 
 
 class Paint(NamedTuple):
-    """A material: colour and opacity 0 to 1, name of its picture (empty for none), specular 0 to 1."""
+    """A material: color and opacity 0 to 1, name of its picture (empty for none), specular 0 to 1."""
 
     rgba: tuple[float, float, float, float] = (0.7, 0.7, 0.7, 1.0)
     picture: str = ""

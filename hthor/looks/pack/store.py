@@ -36,7 +36,7 @@ class PackError(HthorError):
 
 
 class Surface(Struct, frozen=True, kw_only=True):
-    """What one part of a model is made of; ``texture`` is a file in ``textures``, empty for plain colour."""
+    """What one part of a model is made of; ``texture`` is a file in ``textures``, empty for plain color."""
 
     rgba: Rgba
     texture: str = ""

@@ -1,7 +1,7 @@
 """Pictures made by numbers alone, for surfaces of every sort.
 
 Each is (H, W, 3) uint8 and at most 512 pixels a side; row 0 lies at v = 0, column 0 at u = 0. Those with a `scale`
-repeat without a seam and are near white, to be multiplied by a colour; the others fill what they are on.
+repeat without a seam and are near white, to be multiplied by a color; the others fill what they are on.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def scale(name: str) -> float:
 
 @lru_cache(maxsize=128)
 def mean(name: str) -> tuple[float, float, float]:
-    """The mean colour, each channel 0 to 1."""
+    """The mean color, each channel 0 to 1."""
     r, g, b = (float(channel) / 255.0 for channel in image(name).reshape(-1, 3).mean(axis=0))
     return (r, g, b)
 

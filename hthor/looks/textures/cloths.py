@@ -91,16 +91,16 @@ def _rug(seed: int, ground: tuple[float, float, float], accent: tuple[float, flo
     far = np.abs(x - 0.5) * 1.5 + np.abs(y - 0.5)
     lozenge = (np.abs((x * 18) % 1.0 - 0.5) + np.abs((y * 12) % 1.0 - 0.5)) < 0.28
     picture = mix(lozenge.astype(float) * 0.6, ground, accent)
-    for low, high, colour in (
+    for low, high, color in (
         (0.0, 0.38, cream),
         (0.0, 0.34, accent),
         (0.0, 0.24, ground),
         (0.0, 0.14, cream),
         (0.0, 0.08, night),
     ):
-        picture[(far >= low) & (far < high)] = colour
-    for limit, colour in ((0.13, cream), (0.115, night), (0.055, accent), (0.04, cream), (0.025, ground)):
-        picture[edge < limit] = colour
+        picture[(far >= low) & (far < high)] = color
+    for limit, color in ((0.13, cream), (0.115, night), (0.055, accent), (0.04, cream), (0.025, ground)):
+        picture[edge < limit] = color
     beads = (edge > 0.06) & (edge < 0.11) & (np.sin(x * 2 * np.pi * 24) * np.sin(y * 2 * np.pi * 16) > 0.35)
     picture[beads] = ground
     wear = 0.80 + 0.16 * field((256, 384), 1, seed) + 0.08 * fractal((256, 384), 40, seed + 1, 3)
@@ -108,14 +108,14 @@ def _rug(seed: int, ground: tuple[float, float, float], accent: tuple[float, flo
 
 
 def _rug_bands(seed: int) -> Any:
-    """A flat-woven rug in bands of colour."""
+    """A flat-woven rug in bands of color."""
     y, x = places((256, 384))
-    colours = np.array(
+    colors = np.array(
         [(0.86, 0.82, 0.74), (0.36, 0.45, 0.52), (0.86, 0.82, 0.74), (0.76, 0.52, 0.36), (0.30, 0.33, 0.36)]
     )
     band = (np.floor(x * 22) * 7 // 3 % 5).astype(int)
     zig = (np.abs((x * 22) % 1.0 - 0.5) + 0.35 * np.abs((y * 20) % 1.0 - 0.5)) < 0.22
-    picture = colours[np.where(zig, (band + 2) % 5, band)]
+    picture = colors[np.where(zig, (band + 2) % 5, band)]
     return np.clip(picture * (0.82 + 0.18 * field((256, 384), (1, 3), seed))[..., None], 0.0, 1.0)
 
 

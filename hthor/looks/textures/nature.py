@@ -131,7 +131,7 @@ def _basketball() -> Any:
 
 
 def _candy(first: tuple[float, float, float], second: tuple[float, float, float]) -> Any:
-    """Rings of two colours, from top to bottom: a ceramic glaze that was dipped."""
+    """Rings of two colors, from top to bottom: a ceramic glaze that was dipped."""
     y, _ = places((128, 128))
     edge = 0.40 + 0.03 * (field((128, 128), (40, 9), 237) - 0.5)
     return mix(np.clip((y - edge) * 60, 0.0, 1.0), first, second) * (0.96 + 0.04 * field((128, 128), 1, 238))[..., None]

@@ -1,4 +1,4 @@
-"""Smooth random fields that repeat without a seam, and mixing of colours by them."""
+"""Smooth random fields that repeat without a seam, and mixing of colors by them."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def fractal(size: tuple[int, int], blur: float, seed: int, octaves: int = 4) -> 
 
 
 def mix(share: Any, first: Vec3, second: Vec3) -> Any:
-    """Colours (..., 3): ``first`` where ``share`` is 0, ``second`` where it is 1."""
+    """Colors (..., 3): ``first`` where ``share`` is 0, ``second`` where it is 1."""
     part = np.clip(share, 0.0, 1.0)[..., None]
     return np.array(first) * (1.0 - part) + np.array(second) * part
 

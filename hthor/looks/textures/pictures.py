@@ -30,11 +30,11 @@ def _landscape(seed: int, sky: tuple[Vec3, Vec3], hills: tuple[Vec3, ...], sun: 
     at = 0.2 + 0.6 * float(dice(seed + 1).uniform())
     glow = np.exp(-((np.hypot((x - at) * 1.33, y - 0.3) / 0.10) ** 2))
     picture += glow[..., None] * (np.array(sun) - picture)
-    for index, colour in enumerate(hills):
+    for index, color in enumerate(hills):
         line = _ridge(x[0], seed + 10 + index, 0.52 + 0.14 * index, 0.20)
         shade = 0.86 + 0.28 * fractal(_SIZE, 14, seed + 20 + index, 3)
         land = y > line[None, :]
-        picture = np.where(land[..., None], np.array(colour) * shade[..., None], picture)
+        picture = np.where(land[..., None], np.array(color) * shade[..., None], picture)
     if water:
         lake = y > 0.72
         mirror = picture[::-1][np.clip((np.arange(_SIZE[0]) * 0.9 - 30).astype(int), 0, _SIZE[0] - 1)]
@@ -43,15 +43,15 @@ def _landscape(seed: int, sky: tuple[Vec3, Vec3], hills: tuple[Vec3, ...], sun: 
     return np.clip(picture * (0.92 + 0.14 * field(_SIZE, (1, 4), seed + 31))[..., None], 0.0, 1.0)
 
 
-def _abstract(seed: int, colours: tuple[Vec3, ...]) -> Any:
+def _abstract(seed: int, colors: tuple[Vec3, ...]) -> Any:
     """Overlapping discs and bands on a pale ground."""
     y, x = places(_SIZE)
     chance = dice(seed)
     picture = np.broadcast_to(np.array((0.93, 0.90, 0.84)), (*_SIZE, 3)).copy()
-    for colour in colours * 2:
+    for color in colors * 2:
         cx, cy, r = chance.uniform(0.1, 0.9), chance.uniform(0.1, 0.9), chance.uniform(0.10, 0.30)
         inside = np.hypot((x - cx) * 1.33, y - cy) < r if chance.uniform() < 0.6 else np.abs(y - cy) < r * 0.3
-        picture = np.where(inside[..., None], 0.82 * np.array(colour) + 0.18 * picture, picture)
+        picture = np.where(inside[..., None], 0.82 * np.array(color) + 0.18 * picture, picture)
     return np.clip(picture * (0.92 + 0.10 * field(_SIZE, 1.5, seed + 1))[..., None], 0.0, 1.0)
 
 
@@ -72,14 +72,14 @@ def _still_life() -> Any:
 
 
 def _bars(picture: Any, boxes: list[tuple[float, float, float, float, Vec3]]) -> Any:
-    """Rectangles (left, top, right, bottom, colour), as shares of the picture."""
+    """Rectangles (left, top, right, bottom, color), as shares of the picture."""
     height, width = picture.shape[:2]
-    for left, top, right, bottom, colour in boxes:
+    for left, top, right, bottom, color in boxes:
         rows, columns = (
             slice(round(top * height), round(bottom * height)),
             slice(round(left * width), round(right * width)),
         )
-        picture[rows, columns] = colour
+        picture[rows, columns] = color
     return picture
 
 

@@ -57,8 +57,8 @@ def _granite() -> Any:
 def _terrazzo() -> Any:
     size = (256, 256)
     base = grey(0.93 + 0.04 * field(size, 4, 91))
-    for seed, colour in ((92, (0.62, 0.55, 0.50)), (93, (0.85, 0.66, 0.52)), (94, (0.50, 0.56, 0.60))):
-        base[field(size, 3.2, seed) > 0.74] = colour
+    for seed, color in ((92, (0.62, 0.55, 0.50)), (93, (0.85, 0.66, 0.52)), (94, (0.50, 0.56, 0.60))):
+        base[field(size, 3.2, seed) > 0.74] = color
     return base
 
 

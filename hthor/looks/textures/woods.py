@@ -1,4 +1,4 @@
-"""Wood: grain for furniture, and boards for floors, in tones to be coloured."""
+"""Wood: grain for furniture, and boards for floors, in tones to be colored."""
 
 from __future__ import annotations
 
