@@ -21,7 +21,7 @@ _ASSET = re.compile(r"hthor_([a-z_]+?)(?:_(\d+)x(\d+)x(\d+))?(?:_v(\d+))?")
 
 
 def names() -> tuple[str, ...]:
-    """Every kind's name: receptacles, targets, background."""
+    """The name of every kind: receptacles, targets, then all other household things."""
     return tuple(_KINDS)
 
 

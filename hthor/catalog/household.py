@@ -1,4 +1,7 @@
-"""Everything else a home holds, one row a kind: furniture, fixtures, then small things."""
+"""Household things that are neither benchmark receptacles nor targets, one row a kind.
+
+To add a kind, add a row: a look of its own (`hthor.looks.build`) is optional, and without one its solids are drawn.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ Finishes = tuple[dict[str, Rgba], ...]
 
 def _kind(name: str, size: Vec3, mass: float, shape: Shape, title: str, **more: Any) -> Kind:
     words = title or name.replace("_", " ")
-    return Kind(name=name, title=words, family="background", size=size, mass=mass, shape=shape, **more)
+    return Kind(name=name, title=words, family="household", size=size, mass=mass, shape=shape, **more)
 
 
 def _stands(name: str, size: Vec3, mass: float, shape: Shape, title: str = "", finishes: Finishes = ()) -> Kind:
@@ -141,7 +144,7 @@ _FIXTURES = (
     Kind(
         name="kitchen_cabinet",
         title="kitchen cabinet",
-        family="background",
+        family="household",
         size=(0.8, 0.35, 0.7),
         mass=18.0,
         shape=partial(cabinets.wall_cabinet, body=c.SAGE, inner=c.WHITE),
@@ -227,7 +230,7 @@ _HEAVY = (
     Kind(
         name="trunk",
         title="trunk",
-        family="background",
+        family="household",
         size=(0.8, 0.4, 0.4),
         mass=26.0,
         shape=partial(props.trunk, body=c.TEAL, lid=c.OAK, handle=c.WALNUT),

@@ -22,7 +22,7 @@ class Form(Struct, frozen=True, kw_only=True):
 Shape = Callable[..., Form]
 """Makes the form of a thing from its (width, depth, height) [m], and colors by keyword."""
 
-Family = Literal["receptacle", "target", "background"]
+Family = Literal["receptacle", "target", "household"]
 
 
 @lru_cache(maxsize=4096)

@@ -18,10 +18,9 @@ import functools
 import math
 from abc import abstractmethod
 from collections.abc import Collection, Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from hthor import catalog, rules
 from hthor.geometry import plane
@@ -81,7 +80,7 @@ class JobKind(TaskKind):
         longest = max((carrying_time(house, there[job.target], job) for job in todo), default=0.0)
         walks = [ground.walk([ground.touching(there[job.target])]) for job in todo]
 
-        def times(starts: Any) -> NDArray[np.float64]:
+        def times(starts: ArrayLike) -> NDArray[np.float64]:
             places = np.asarray(starts, dtype=float).reshape(-1, 2)
             reached = np.all([np.isfinite(walk.lengths(places)) for walk in walks], axis=0)
             return np.where(reached, longest, np.inf)

@@ -3,14 +3,15 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
+from functools import partial
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hthor import catalog
-from hthor.catalog import priors, procthor
+from hthor import catalog, looks
+from hthor.catalog import colors, household, priors, procthor, props
 from hthor.catalog.kind import Form, Kind
 from hthor.errors import HouseError, UnknownName
 from hthor.geometry.plane import turn
@@ -232,3 +233,12 @@ def test_a_drawer_s_floor_moves_with_it_and_stays_inside_when_pulled() -> None:
         assert kind.rests() == tuple(surface for surface in kind.surfaces() if not surface.inside)
         assert not kind.hides
     assert [kind.name for kind in KINDS if kind.hides] == ["fridge"]
+
+
+def test_a_new_kind_is_one_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    row = household._small("gadget", (0.1, 0.2, 0.05), 0.3, partial(props.block, rgba=colors.RED))
+    monkeypatch.setitem(catalog._KINDS, "gadget", row)
+    assert catalog.kind("gadget").indefinite == "a gadget"
+    assert catalog.own_asset("hthor_gadget") == (row, row.size, 0)
+    (piece,) = looks.look.__wrapped__("gadget")  # not cached: the row is gone after this test
+    assert piece.mesh.vertices.max(0) == pytest.approx((0.05, 0.1, 0.025))

@@ -158,7 +158,7 @@ def _spec(
         goal=goal,
         instruction=kind.instruction(goal, objects),
         time_limit=kind.time_limit,
-        t_star=kind.judged(start.least),
+        t_star=kind.t_star_of(start.least),
     )
 
 
