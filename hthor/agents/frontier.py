@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hthor.agents.skills.message_timing import APART_M, ASIDE_M, Offers, sighting, spot
+from hthor.agents.skills.message_timing import APART_M, ASIDE_M, MessageTiming, find_detection, sighting_text
 from hthor.agents.skills.subgoals import PAPER_KINDS
 from hthor.types import HUMAN, Action, Briefing, Detection, Motion, Observation, Send, Wait
 
 if TYPE_CHECKING:
     from hthor.agents.skills.explorer import Explorer
-    from hthor.agents.skills.multi_object_frontier import Gatherer
+    from hthor.agents.skills.multi_object_frontier import MultiObjectFrontier
     from hthor.navigation.yielding import Courtesy
 
 
@@ -30,14 +30,14 @@ class Agent:
         from hthor.navigation.yielding import Courtesy
 
         self.briefing = briefing
-        self.gatherer: Gatherer | None = None
+        self.gatherer: MultiObjectFrontier | None = None
         carries = "pick" in briefing.body.capabilities and briefing.relation != "find"
         if carries or briefing.kind not in PAPER_KINDS:
-            from hthor.agents.skills.multi_object_frontier import Gatherer
+            from hthor.agents.skills.multi_object_frontier import MultiObjectFrontier
 
-            self.gatherer = Gatherer(briefing)
+            self.gatherer = MultiObjectFrontier(briefing)
             return
-        self.offers = Offers(briefing, most=2)
+        self.offers = MessageTiming(briefing, most=2)
         self.explorer: Explorer = Explorer(briefing.body)
         self.courtesy: Courtesy = Courtesy(briefing.body, self.explorer.fits)
         self.target: Detection | None = None
@@ -50,7 +50,7 @@ class Agent:
             return self.gatherer.act(observation)
         self.explorer.see(observation)
         self.kinds.update((thing.id, thing.kind) for thing in observation.detections)
-        seen = spot(observation, self.briefing.target)
+        seen = find_detection(observation, self.briefing.target)
         if seen is not None:
             self.target = seen
         say = self._say(observation, seen)
@@ -67,7 +67,7 @@ class Agent:
         if seen is None or seen.held_by == HUMAN or not self.offers.due(observation.tick, observation.receipt):
             return None
         self.offers.note(observation.tick)
-        return Send(text=sighting(seen, self.kinds), object=seen.id, position=seen.position)
+        return Send(text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position)
 
     def _watch(self, observation: Observation) -> Motion:
         """Wait where it is in nobody's way, facing the target; come back when there is reason to speak again."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from hthor.navigation import grid_search_kernel
 from hthor.navigation.grid_map import CELL_M, GridMap
-from hthor.navigation.search_window import ESCAPE_CELLS, SearchWindow, price
+from hthor.navigation.search_window import ESCAPE_CELLS, SearchWindow, path_cost
 from hthor.types import Vec2
 
 Pull = Callable[[SearchWindow, int, Vec2 | None], tuple[Vec2, ...]]
@@ -46,7 +46,7 @@ class Field:
         news = sum(window.watch(spot) for spot in spots if spot >= 0)
         endless = math.isinf(most)
         if news:
-            window.spread(news, price(most))
+            window.spread(news, path_cost(most))
         found = []
         for point, spot in zip(points, spots, strict=True):
             if spot >= 0 and window.settled(spot):

@@ -58,7 +58,9 @@ class Survey:
             self._names: NDArray[np.int16] = np.zeros((2, window.state.size), dtype=np.int16)
             mask: NDArray[np.uint8] = np.zeros(grid.cells.shape, dtype=np.uint8)
             cells: NDArray[np.int32] = np.empty(mask.size, dtype=np.int32)
-            count = frontier_kernel.mark(grid.cells, planner.levels, grid.beside, grid.near, grid.bounds, mask, cells)
+            count = frontier_kernel.mark_cells(
+                grid.cells, planner.levels, grid.beside, grid.near, grid.bounds, mask, cells
+            )
             self._gather(grid, mask, cells[:count], _EDGE, least)
             self._gather(grid, mask, cells[:count], _UNVISITED, least)
         self._known: NDArray[np.uint8] = np.zeros(len(self._groups) + 1, dtype=np.uint8)
@@ -108,10 +110,12 @@ class Survey:
         assert window is not None
         out: NDArray[np.int64] = np.empty((_MOST, 4), dtype=np.int64)
         members: NDArray[np.int32] = np.empty(len(marked), dtype=np.int32)
-        count = frontier_kernel.clusters(mask, marked, bit, members, out)
+        count = frontier_kernel.group_cells(mask, marked, bit, members, out)
         names, columns, offset = self._names[bit - 1], grid.cells.shape[1], window.flat(0, 0)
         frame, number = (columns, window.width, offset), len(self._groups)
-        count = frontier_kernel.watch(members, out, count, CELL_M, least - 1e-9, *frame, window.state, names, number)
+        count = frontier_kernel.watch_groups(
+            members, out, count, CELL_M, least - 1e-9, *frame, window.state, names, number
+        )
         for row, column, first, last in out[:count].tolist():
             self._groups.append(_Group((row, column), last - first, bit == _EDGE))
 

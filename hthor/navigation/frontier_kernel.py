@@ -17,7 +17,7 @@ _STRETCH = 32
     "int64(uint8[:,::1], uint8[:,::1], uint8[:,::1], uint8[:,::1], int64[::1], uint8[:,::1], int32[::1])",
     cache=True,
 )
-def mark(cells: Any, level: Any, beside: Any, near: Any, bounds: Any, mask: Any, marked: Any) -> int:
+def mark_cells(cells: Any, level: Any, beside: Any, near: Any, bounds: Any, mask: Any, marked: Any) -> int:
     """Mark free cells where a body has room: 1 those next to the unknown, 2 those along furniture never seen close.
 
     Args:
@@ -53,7 +53,7 @@ def mark(cells: Any, level: Any, beside: Any, near: Any, bounds: Any, mask: Any,
 
 
 @numba.njit("int64(uint8[:,::1], int32[::1], uint8, int32[::1], int64[:,::1])", cache=True)
-def clusters(mask: Any, marked: Any, bit: int, members: Any, out: Any) -> int:
+def group_cells(mask: Any, marked: Any, bit: int, members: Any, out: Any) -> int:
     """Group the ``marked`` cells with ``bit`` in the mask; returns how many groups, in the order of their first cells.
 
     The bit is used up. Every row of ``out`` is row, column, first and last + 1 index of the group's ``members``, which
@@ -98,7 +98,7 @@ def clusters(mask: Any, marked: Any, bit: int, members: Any, out: Any) -> int:
     "int64(int32[::1], int64[:,::1], int64, float64, float64, int64, int64, int64, uint8[::1], int16[::1], int64)",
     cache=True,
 )
-def watch(
+def watch_groups(
     members: Any,
     groups: Any,
     count: int,
@@ -143,7 +143,7 @@ def watch(
     " int32[::1], int64[::1])",
     cache=True,
 )
-def reach(
+def reach_group(
     names: Any,
     known: Any,
     goal: int,

@@ -38,7 +38,7 @@ def line_cost(cells: Any, level: Any, optimistic: bool, ax: float, ay: float, bx
     cache=True,
     error_model="numpy",
 )
-def pull(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep: Any) -> int:
+def pull_string(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep: Any) -> int:
     """Pull the string tight: indices of the points to keep; a shortcut is taken when it costs no more.
 
     ``points`` (N, 2) [cells], ``cost`` (N,) the cost up to each, ``keep`` out; returns how many are kept.
@@ -72,8 +72,8 @@ def straighten(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any,
     """Pull the string from both ends, and take the cheapest way over the bends of both; as `pull`."""
     n = len(points)
     forth, back = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
-    n_forth = pull(cells, level, optimistic, points, cost, forth)
-    n_back = pull(cells, level, optimistic, points[::-1].copy(), cost[n - 1] - cost[::-1], back)
+    n_forth = pull_string(cells, level, optimistic, points, cost, forth)
+    n_back = pull_string(cells, level, optimistic, points[::-1].copy(), cost[n - 1] - cost[::-1], back)
     bends = np.zeros(n, dtype=np.int64)  # bit 1: a bend of either; bit 2: of the way forth
     for k in range(n_back):
         bends[n - 1 - back[k]] = 1

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hthor.navigation import grid_search_kernel, path_smoothing_kernel, scan_kernel
 from hthor.navigation.distance_field import Field
 from hthor.navigation.grid_map import CELL_M, GridMap
-from hthor.navigation.search_window import ESCAPE_CELLS, SearchWindow, price
+from hthor.navigation.search_window import ESCAPE_CELLS, SearchWindow, path_cost
 from hthor.types import Vec2
 
 _HARD_M = 0.026
@@ -59,13 +59,13 @@ class Planner:
         apart = abs(start[1] - math.floor(goal[0])), abs(start[0] - math.floor(goal[1]))
         key = grid_search_kernel.rank(*apart, within / CELL_M)
         window = SearchWindow(self._cells, self._level, self.optimistic, self._window(start, (a, b)), start, key)
-        end = window.seek(*goal, within / CELL_M, price(most))
+        end = window.seek(*goal, within / CELL_M, path_cost(most))
         return None if end < 0 else self._pulled(window, end, a, None if snapped else b, escape)
 
     def distance(self, a: Vec2, b: Vec2, within: float = 0.0) -> float:
         """Length [m] of `path`; infinite when there is none."""
         way = self.path(a, b, within)
-        return math.inf if way is None else length(way)
+        return math.inf if way is None else path_length(way)
 
     def field(self, a: Vec2, cover: Sequence[Vec2] = ()) -> Field:
         """Shortest ways from ``a`` to every cell of the known map and of the box around ``cover`` [m]."""
@@ -212,7 +212,7 @@ class Planner:
         return tuple(way)
 
 
-def length(way: Sequence[Vec2]) -> float:
+def path_length(way: Sequence[Vec2]) -> float:
     """Length [m] of a way."""
     return math.fsum(math.dist(way[k], way[k + 1]) for k in range(len(way) - 1))
 

@@ -15,7 +15,7 @@ ESCAPE_CELLS = 14
 _LONGEST = 8192
 
 
-def price(metres: float) -> int:
+def path_cost(metres: float) -> int:
     """What a path of so many metres through clear cells costs, rounded up."""
     return grid_search_kernel.FAR if math.isinf(metres) else math.floor(metres / CELL_M * grid_search_kernel.STEP) + 1
 
@@ -95,7 +95,7 @@ class SearchWindow:
     def reach(self, names: NDArray[np.int16], known: NDArray[np.uint8], goal: int) -> int:
         """Go on to the watched cell ``goal``, or to one of a group not ``known``, see `grouping.reach`; -1 for none."""
         arrays = self.state, self.cost, self.came, self.width
-        return int(frontier_kernel.reach(names, known, goal, *arrays, *self._queue))
+        return int(frontier_kernel.reach_group(names, known, goal, *arrays, *self._queue))
 
     def open(self, flat: int) -> bool:
         """Whether there could be a way to this cell."""

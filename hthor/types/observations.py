@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 from msgspec import Struct
 
 from hthor.types.house import HouseSpec, Pose, Vec3
-from hthor.types.specs import BodySpec, Job
+from hthor.types.specs import RELATIONS, BodySpec, Job
 
 if TYPE_CHECKING:
     import numpy as np
@@ -257,3 +257,12 @@ class Briefing(Struct, frozen=True, kw_only=True):
     kind: str = ""
     jobs: tuple[Job, ...] = ()
     crew: dict[str, BodySpec] = {}
+
+    @property
+    def todo(self) -> tuple[Job, ...]:
+        """All there is to do; a briefing without a list of jobs stands for a single one."""
+        if self.jobs:
+            return self.jobs
+        destinations = (self.destination,) if self.destination else ()
+        relation = next((known for known in RELATIONS if known == self.relation), RELATIONS[0])
+        return (Job(target=self.target, relation=relation, destinations=destinations),)

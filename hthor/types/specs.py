@@ -9,6 +9,10 @@ from msgspec import Struct
 
 from hthor.types.house import Pose, Vec2, Vec3
 
+Relation = Literal["find", "on", "in", "at"]
+"""How an object has to lie to what a job names: anywhere, once found; on or in a thing; or at a place."""
+RELATIONS: tuple[Relation, ...] = ("find", "on", "in", "at")
+
 
 class BodySpec(Struct, frozen=True, kw_only=True):
     """What a body can do, of a robot or of the person's avatar.
@@ -80,7 +84,7 @@ class Job(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """
 
     target: str
-    relation: Literal["find", "on", "in", "at"]
+    relation: Relation
     destinations: tuple[str, ...] = ()
     place: Vec3 | None = None
     hands: int = 1
@@ -93,7 +97,7 @@ class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """
 
     target: str
-    relation: Literal["find", "on", "in", "at"]
+    relation: Relation
     destination: str = ""
     jobs: tuple[Job, ...] = ()
 

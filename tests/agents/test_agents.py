@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from hthor import agents, houses, plugins
-from hthor.agents.skills.message_timing import Offers, place, sighting
+from hthor.agents.skills.message_timing import MessageTiming, place_phrase, sighting_text
 from hthor.errors import AgentError
 from hthor.geometry.plane import wrap
 from hthor.guest import load_info
@@ -343,7 +343,7 @@ def test_the_oracle_offers_three_times_at_most(oracle: Any) -> None:
 
 
 def test_offers_wait_ten_seconds() -> None:
-    offers = Offers(briefing(), most=2)
+    offers = MessageTiming(briefing(), most=2)
     assert offers.due(0, None)
     offers.note(0)
     declined = Receipt(message=0, status="declined", tick=5)
@@ -355,13 +355,13 @@ def test_offers_wait_ten_seconds() -> None:
 
 
 def test_words() -> None:
-    assert place("fridge") == "in the fridge"
-    assert place("coffee_table") == "on the coffee table"
+    assert place_phrase("fridge") == "in the fridge"
+    assert place_phrase("coffee_table") == "on the coffee table"
     flat = Flat()
     flat.pose = Pose(x=4.5, y=1.6)
     apple = flat.detections()[0]
-    assert sighting(apple, {}) == "I found the apple in front of me."
-    assert sighting(apple, {"table": "dining_table"}) == "I found the apple on the dining table in front of me."
+    assert sighting_text(apple, {}) == "I found the apple in front of me."
+    assert sighting_text(apple, {"table": "dining_table"}) == "I found the apple on the dining table in front of me."
 
 
 def test_runs_are_repeated_exactly() -> None:

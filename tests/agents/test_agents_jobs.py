@@ -12,10 +12,10 @@ import pytest
 
 from hthor import catalog, houses, plugins
 from hthor.agents.skills import viewpoints
-from hthor.agents.skills.message_timing import lend_a_hand, please_look
-from hthor.agents.skills.routes import Routes
-from hthor.agents.skills.subgoals import Knowledge, resting
-from hthor.agents.skills.task_allocation import Crew
+from hthor.agents.skills.message_timing import help_carry_text, look_inside_text
+from hthor.agents.skills.routes import HouseRoutes
+from hthor.agents.skills.subgoals import Knowledge, resting_points
+from hthor.agents.skills.task_allocation import TaskAllocation
 from hthor.episode import EpisodeLog, run_episode
 from hthor.geometry import plane
 from hthor.types import (
@@ -241,9 +241,9 @@ def test_two_robots_carry_what_is_too_heavy_for_one() -> None:
 
 def test_one_robot_asks_for_a_hand() -> None:
     log, _ = run(a_task("collaborative_carrying", 40.0), "porter:oracle")
-    assert said(log) == [lend_a_hand("trunk", held=False)]
+    assert said(log) == [help_carry_text("trunk", held=False)]
     log, _ = run(a_task("collaborative_carrying", 60.0), "porter:frontier")
-    assert said(log) == [lend_a_hand("trunk", held=True)]
+    assert said(log) == [help_carry_text("trunk", held=True)]
 
 
 # ------------------------------------------------------------------------------------------------------------- telling
@@ -270,7 +270,7 @@ def test_the_frontier_robot_asks_for_what_it_has_not_seen() -> None:
     made = task("multi_robot_collection", *apples(("fridge", 1)), limit=15.0)
     made = starting(made, Pose(x=1.3, y=4.1, yaw=math.pi))
     log, _ = run(made, "puck:frontier")
-    assert please_look("fridge", ("apple",)) in said(log)
+    assert look_inside_text("fridge", ("apple",)) in said(log)
     event = next(event for event in log.events if event.kind == "sent")
     assert event.data["object"] == "fridge", "it does not claim that the apple is there"
 
@@ -293,7 +293,7 @@ def body(name: str, *capabilities: Any) -> BodySpec:
     return BodySpec(**fields | {"name": name, "capabilities": frozenset(("navigate", *capabilities))})
 
 
-def crew(me: str, *places: tuple[str, float], **bodies: BodySpec) -> tuple[Crew, Knowledge, tuple[Job, ...]]:
+def crew(me: str, *places: tuple[str, float], **bodies: BodySpec) -> tuple[TaskAllocation, Knowledge, tuple[Job, ...]]:
     """Apples on a line, by name and x, to be brought to x = 0."""
     knowledge = Knowledge()
     knowledge.states = {
@@ -312,7 +312,7 @@ def crew(me: str, *places: tuple[str, float], **bodies: BodySpec) -> tuple[Crew,
         jobs=jobs,
         crew=bodies,
     )
-    return Crew(told, lambda here, place: math.dist(here, place[:2])), knowledge, jobs
+    return TaskAllocation(told, lambda here, place: math.dist(here, place[:2])), knowledge, jobs
 
 
 def test_everybody_gets_another_job() -> None:
@@ -343,7 +343,7 @@ def test_the_person_is_left_what_is_nearest_to_its_place_where_somebody_can_tell
 
 def test_points_to_put_things_on_lie_on_the_thing() -> None:
     table = thing("dining_table")
-    points = resting(table, 0.1)
+    points = resting_points(table, 0.1)
     assert len(points) > 20
     for x, y, z in points:
         u, v, _ = plane.to_local((x, y, z), table.centre, table.yaw)
@@ -354,29 +354,32 @@ def test_points_to_put_things_on_lie_on_the_thing() -> None:
 
 def test_the_closest_thing_is_the_one_with_the_shortest_way() -> None:
     house = houses.load(HOUSE)
-    routes = Routes(house, body("tall"))
-    tables = [thing for thing in house.things if resting(thing, 0.0)]
+    routes = HouseRoutes(house, body("tall"))
+    tables = [thing for thing in house.things if resting_points(thing, 0.0)]
     starts = [(room.polygon[0][0] + 1.0, room.polygon[0][1] + 1.0) for room in house.rooms]
     chosen = set()
     for here in [*starts, tables[0].centre[:2]]:  # the last one is no place to stand: no way begins there
-        ways = [viewpoints.route(routes, here, resting(thing, 0.0), 0.8, thing) for thing in tables]
-        far = [(viewpoints.length(way) if way else math.inf, thing.id) for way, thing in zip(ways, tables, strict=True)]
-        closest = viewpoints.closest(routes, here, tables, lambda thing: resting(thing, 0.0), 0.8)
+        ways = [viewpoints.path_to_reach(routes, here, resting_points(thing, 0.0), 0.8, thing) for thing in tables]
+        far = [
+            (viewpoints.path_length(way) if way else math.inf, thing.id)
+            for way, thing in zip(ways, tables, strict=True)
+        ]
+        closest = viewpoints.closest_thing(routes, here, tables, lambda thing: resting_points(thing, 0.0), 0.8)
         assert closest.id == min(far)[1]
         chosen.add(closest.id)
     assert len(chosen) > 2
 
 
 def test_the_closest_of_things_without_a_way_is_the_first_by_id() -> None:
-    routes = Routes(houses.load(HOUSE), body("tall"))
+    routes = HouseRoutes(houses.load(HOUSE), body("tall"))
     outside = [msgspec.structs.replace(thing("dining_table"), id=id, centre=(-50.0, 0.0, 0.4)) for id in ("b", "a")]
-    closest = viewpoints.closest(
-        routes, routes.space.nearest_free(2.0, 2.0), outside, lambda one: resting(one, 0.0), 0.8
+    closest = viewpoints.closest_thing(
+        routes, routes.space.nearest_free(2.0, 2.0), outside, lambda one: resting_points(one, 0.0), 0.8
     )
     assert closest.id == "a"
 
 
 def test_seats_are_sorted_as_they_are_numbered() -> None:
-    from hthor.agents.skills.task_allocation import rank
+    from hthor.agents.skills.task_allocation import seat_order
 
-    assert sorted(["robot10", "robot2", HUMAN, "robot"], key=rank) == [HUMAN, "robot", "robot2", "robot10"]
+    assert sorted(["robot10", "robot2", HUMAN, "robot"], key=seat_order) == [HUMAN, "robot", "robot2", "robot10"]

@@ -16,7 +16,7 @@ from hthor.houses.space.geodesic import Geodesics
 from hthor.navigation import Courtesy, Follower, GridMap, Planner, Survey, face, frontiers, park, unvisited
 from hthor.navigation.grid_map import CELL_M, FREE, OCCUPIED, UNKNOWN
 from hthor.navigation.path_follower import shift, toward
-from hthor.navigation.planner import length
+from hthor.navigation.planner import path_length
 from hthor.types import BodySpec, Detection, Move, Observation, Outcome, Pose, Rotate, Scan, Wait
 
 RADIUS = 0.2
@@ -163,7 +163,7 @@ def test_paths_there_and_back_are_about_equal_and_field_agrees(a: tuple[float, f
     assert lattice <= 1.3 * there + 0.3
     walked = planner.field(a).path(b)
     assert walked is not None
-    assert length(walked) == pytest.approx(there, rel=0.05, abs=0.1)
+    assert path_length(walked) == pytest.approx(there, rel=0.05, abs=0.1)
 
 
 @settings(max_examples=30, deadline=None)
@@ -217,7 +217,7 @@ def test_a_place_on_the_table_is_reached_within_arms_length(known: GridMap) -> N
     assert planner.path((1.0, 1.0), apple, within=0.3) is None
     assert math.isinf(planner.distance((1.0, 1.0), apple, within=0.3))
     field = planner.field((1.0, 1.0))
-    assert field.distance(apple, within=0.8) == pytest.approx(length(path), rel=0.1)
+    assert field.distance(apple, within=0.8) == pytest.approx(path_length(path), rel=0.1)
     assert math.isinf(field.distance(apple, within=0.3))
 
 
@@ -256,7 +256,7 @@ def test_a_frontier_is_found_behind_the_door_and_none_in_a_known_flat(known: Gri
     assert survey.frontiers == found
     path = survey.path(found[0])
     assert path is not None
-    assert length(path) <= found[0].distance + 2.0
+    assert path_length(path) <= found[0].distance + 2.0
     assert frontiers(known, Planner(known, RADIUS), Pose(x=1.0, y=1.0)) == []
 
 
@@ -417,7 +417,7 @@ def test_paths_are_at_most_eight_percent_longer_than_the_shortest(real: FreeSpac
             if best > 1.0:
                 path = planner.path(a, b)
                 assert path is not None
-                ratios.append(length(path) / best)
+                ratios.append(path_length(path) / best)
     assert len(ratios) > 50
     assert np.mean(ratios) < 1.03
     assert np.quantile(ratios, 0.95) < 1.08

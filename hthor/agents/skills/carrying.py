@@ -10,11 +10,11 @@ import math
 from typing import Protocol
 
 from hthor.agents.skills import viewpoints
-from hthor.agents.skills.manipulation import Errand, Worker, stride
+from hthor.agents.skills.manipulation import ManipulationGoal, Manipulator, whole_tick_move
 from hthor.agents.skills.subgoals import Knowledge
-from hthor.agents.skills.task_allocation import Crew, able, rank
-from hthor.agents.skills.viewpoints import Ways
-from hthor.agents.skills.yielding import bumped
+from hthor.agents.skills.task_allocation import TaskAllocation, can_do, seat_order
+from hthor.agents.skills.viewpoints import Routes
+from hthor.agents.skills.yielding import seat_bumped
 from hthor.geometry import plane
 from hthor.navigation.path_follower import Follower, face, shift
 from hthor.types import HUMAN, Briefing, Drop, Job, Motion, Observation, Pick, ThingState, Vec2, Vec3, Wait
@@ -32,18 +32,20 @@ _STUCK = 4
 _REST_S = 6.0
 
 
-class Drawn(Ways, Protocol):
+class TowingRoutes(Routes, Protocol):
     """Ways for whoever draws something along."""
 
     def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]: ...
 
 
-class Hauler:
+class Carrier:
     """One body's part in carrying one thing; ``waits`` says whether it lets a person take hold first."""
 
-    def __init__(self, briefing: Briefing, ways: Drawn, worker: Worker, crew: Crew, waits: bool = True) -> None:
+    def __init__(
+        self, briefing: Briefing, ways: TowingRoutes, worker: Manipulator, crew: TaskAllocation, waits: bool = True
+    ) -> None:
         self.briefing, self.body, self.ways, self.worker, self.crew = briefing, briefing.body, ways, worker, crew
-        self.follower = Follower(step=stride(briefing.body, briefing.tick_s))
+        self.follower = Follower(step=whole_tick_move(briefing.body, briefing.tick_s))
         self._waits = waits
         self._yaw: float | None = None
         self._half = 0.4
@@ -88,16 +90,16 @@ class Hauler:
         out = math.atan2(handle[1] - state.position[1], handle[0] - state.position[0])
         apart = self.body.radius + _BESIDE_M
         stand = (handle[0] + apart * math.cos(out), handle[1] + apart * math.sin(out), handle[2])
-        if bumped(observation) and not self._squeezed:
+        if seat_bumped(observation) and not self._squeezed:
             self._squeezed = True
             self.worker.drop()
         free = self._yaw is not None and not self._squeezed
-        errand = Errand(job.target, (handle,), Pick(object=job.target), stand=stand if free else None)
+        errand = ManipulationGoal(job.target, (handle,), Pick(object=job.target), stand=stand if free else None)
         return self.worker.pursue(observation, errand) or Wait(seconds=0.3)
 
     def _counts_on_person(self, state: ThingState, job: Job) -> bool:
         """Whether it takes the person, as there are not enough robots with hands."""
-        robots = [seat for seat, body in self.crew.bodies.items() if seat != HUMAN and able(body, state.kind, job)]
+        robots = [seat for seat, body in self.crew.bodies.items() if seat != HUMAN and can_do(body, state.kind, job)]
         return HUMAN in self.crew.bodies and len(robots) < job.hands
 
     def _await(self, observation: Observation, state: ThingState) -> Motion:
@@ -108,7 +110,9 @@ class Hauler:
         stopped = outcome is not None and not outcome.ok and outcome.motion == "move"
         if goal != self._goal or stopped:
             self._goal, self._parked = goal, False
-            self.follower.take(viewpoints.route(self.ways, here, (place,), _BY_M, but=[here] if stopped else []))
+            self.follower.take(
+                viewpoints.path_to_reach(self.ways, here, (place,), _BY_M, but=[here] if stopped else [])
+            )
         step = self.follower.next(observation.pose)
         if step is None and not self._parked:
             self._parked = True
@@ -138,7 +142,7 @@ class Hauler:
     def _led_by(self, state: ThingState) -> str:
         """Who goes first: of the robots the one whose seat comes first; they know the way."""
         robots = [seat for seat in state.bearers if seat != HUMAN]
-        return min(robots, key=rank, default=HUMAN)
+        return min(robots, key=seat_order, default=HUMAN)
 
     def _lead(self, observation: Observation, state: ThingState, place: Vec3) -> Motion:
         """Draw it to its place and put it down there."""

@@ -82,7 +82,7 @@ class Explorer:
 
     def _look_around(self, pose: Pose) -> Motion:
         self._turns -= 1
-        return Rotate(yaw=0.9 * self.body.fov[0], pitch=gaze(self.body) - pose.pitch)
+        return Rotate(yaw=0.9 * self.body.fov[0], pitch=exploring_pitch(self.body) - pose.pitch)
 
     def _has_moved(self, pose: Pose) -> bool:
         """Whether it has come so far since its last choice that it pays to think again."""
@@ -130,7 +130,7 @@ class Explorer:
         self.drop()
 
 
-def gaze(body: BodySpec) -> float:
+def exploring_pitch(body: BodySpec) -> float:
     """Camera pitch [rad] that keeps the tops of tables in view from a metre away."""
     low, high = (math.atan2(height - body.eye, _ASIDE_M) for height in (_LOW_M, _HIGH_M))
     return max(-body.pitch_limit, min(body.pitch_limit, (low + high) / 2.0))

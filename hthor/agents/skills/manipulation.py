@@ -9,9 +9,9 @@ from msgspec import Struct
 
 from hthor import catalog, rules
 from hthor.agents.skills import viewpoints
-from hthor.agents.skills.subgoals import Knowledge, hides, resting
-from hthor.agents.skills.viewpoints import Ways
-from hthor.agents.skills.yielding import Passing, bumped
+from hthor.agents.skills.subgoals import Knowledge, has_door, resting_points
+from hthor.agents.skills.viewpoints import Routes
+from hthor.agents.skills.yielding import Yielding, seat_bumped
 from hthor.geometry import plane
 from hthor.navigation.path_follower import Follower, face
 from hthor.types import BodySpec, Job, Motion, Observation, Open, Pick, Place, Thing, Vec2, Vec3, Wait
@@ -29,7 +29,7 @@ _AT_M = 0.2
 """How close one comes to a spot where one ought to stand."""
 
 
-class Errand(Struct, frozen=True):
+class ManipulationGoal(Struct, frozen=True):
     """Where to go and what to do there: have one of the ``points`` [m] in reach, face it, then ``act``.
 
     ``stand`` [m] is where to stand for it, if that matters.
@@ -42,15 +42,15 @@ class Errand(Struct, frozen=True):
     stand: Vec3 | None = None
 
 
-class Worker:
+class Manipulator:
     """Carries one object after the other. What fails several times is left alone for a while.
 
     ``follower`` holds the way that it is on.
     """
 
-    def __init__(self, body: BodySpec, ways: Ways, passing: Passing, tick_s: float) -> None:
+    def __init__(self, body: BodySpec, ways: Routes, passing: Yielding, tick_s: float) -> None:
         self.body, self.ways, self.passing = body, ways, passing
-        self.follower = Follower(step=stride(body, tick_s), turn_rad=_TURN_RAD, arrived_m=0.01)
+        self.follower = Follower(step=whole_tick_move(body, tick_s), turn_rad=_TURN_RAD, arrived_m=0.01)
         self._again = round(AGAIN_S / tick_s)
         self._left_alone: dict[str, int] = {}
         self._errand, self._at = "", (0.0, 0.0, 0.0)
@@ -77,7 +77,7 @@ class Worker:
         if not self.can_try(thing.id, observation.tick):
             return None
         x, y, z = plane.to_house((0.0, thing.size[1] / 2, 0.0), thing.centre, thing.yaw)
-        return self.pursue(observation, Errand(thing.id, ((x, y, z),), Open(thing=thing.id), thing))
+        return self.pursue(observation, ManipulationGoal(thing.id, ((x, y, z),), Open(thing=thing.id), thing))
 
     def drop(self) -> None:
         """Forget where it was going."""
@@ -86,15 +86,15 @@ class Worker:
 
     # ---------------------------------------------------------------------------------------------- what is to be done
 
-    def _fetching(self, knowledge: Knowledge, job: Job) -> Errand | None:
+    def _fetching(self, knowledge: Knowledge, job: Job) -> ManipulationGoal | None:
         state = knowledge.states.get(job.target)
         if state is None or state.held_by:
             return None
         holder = knowledge.things.get(state.support)
         act: Motion = Open(thing=state.support) if knowledge.is_shut(state.support) else Pick(object=job.target)
-        return Errand(job.target, (state.position,), act, holder)
+        return ManipulationGoal(job.target, (state.position,), act, holder)
 
-    def _delivery(self, observation: Observation, knowledge: Knowledge, job: Job) -> Errand | None:
+    def _delivery(self, observation: Observation, knowledge: Knowledge, job: Job) -> ManipulationGoal | None:
         thing = self._bearer(observation, knowledge, job)
         if thing is None:
             return None
@@ -102,7 +102,7 @@ class Worker:
         if knowledge.is_shut(thing.id):
             act = Open(thing=thing.id)
         points = (job.place,) if job.place is not None else self._room_for(job, thing, knowledge)
-        return Errand(_at(job, thing), points, act, thing)
+        return ManipulationGoal(_at(job, thing), points, act, thing)
 
     def _bearer(self, observation: Observation, knowledge: Knowledge, job: Job) -> Thing | None:
         """What to put it on: what one is going to already, or else the nearest that was not given up."""
@@ -118,7 +118,9 @@ class Worker:
         if len(things) < 2:
             return things[0] if things else None
         here = (observation.pose.x, observation.pose.y)
-        return viewpoints.closest(self.ways, here, things, lambda thing: self._in_reach(thing, 0.0), self.body.reach)
+        return viewpoints.closest_thing(
+            self.ways, here, things, lambda thing: self._in_reach(thing, 0.0), self.body.reach
+        )
 
     def _in_reach(self, thing: Thing, inset_m: float) -> tuple[Vec3, ...]:
         """Points of the thing's surfaces at heights that the arm gets to."""
@@ -135,7 +137,7 @@ class Worker:
 
     # ------------------------------------------------------------------------------------------------------- doing it
 
-    def pursue(self, observation: Observation, errand: Errand) -> Motion | None:
+    def pursue(self, observation: Observation, errand: ManipulationGoal) -> Motion | None:
         """Go, face, act; from another spot when that was refused."""
         outcome, here = observation.outcome, (observation.pose.x, observation.pose.y)
         moved = len(errand.points) == 1 and math.dist(errand.points[0], self._at) > _MOVED_M
@@ -144,7 +146,7 @@ class Worker:
             if not self._set_out(here, errand):
                 return self._give_up(observation)
         elif outcome is not None and not outcome.ok:
-            if bumped(observation) and not self._is_taken(observation):
+            if seat_bumped(observation) and not self._is_taken(observation):
                 if not self._gets_past(observation):
                     return Wait(seconds=_PAUSE_S)
             elif not self._recover(observation, errand):
@@ -152,10 +154,12 @@ class Worker:
         step = self.follower.next(observation.pose)
         if step is not None:
             return step
-        turn = face(observation.pose, viewpoints.nearest(errand.points, here), self.body.eye, self.body.pitch_limit)
+        turn = face(
+            observation.pose, viewpoints.nearest_point(errand.points, here), self.body.eye, self.body.pitch_limit
+        )
         return turn if turn is not None and abs(turn.yaw) > _TURN_RAD else errand.act
 
-    def _recover(self, observation: Observation, errand: Errand) -> bool:
+    def _recover(self, observation: Observation, errand: ManipulationGoal) -> bool:
         """After a failure: from another spot, or out of a tight corner first. False when all was tried."""
         outcome, here = observation.outcome, (observation.pose.x, observation.pose.y)
         assert outcome is not None
@@ -163,7 +167,7 @@ class Worker:
             self._misses.append(here)
             return len(self._misses) <= _TRIES and self._set_out(here, errand)
         goal = self.follower.goal
-        if bumped(observation):
+        if seat_bumped(observation):
             if goal is not None:
                 self._misses.append(goal)
             return len(self._misses) <= _TRIES and self._set_out(here, errand)
@@ -186,18 +190,20 @@ class Worker:
             self.follower.take(way)
         return bool(way)
 
-    def _set_out(self, here: Vec2, errand: Errand) -> bool:
+    def _set_out(self, here: Vec2, errand: ManipulationGoal) -> bool:
         """Take the way to a spot; False when there is none."""
         if errand.stand is not None:
-            way = viewpoints.route(self.ways, here, (errand.stand,), _AT_M, but=self._misses, grid_m=_AT_M / 3.0)
+            way = viewpoints.path_to_reach(
+                self.ways, here, (errand.stand,), _AT_M, but=self._misses, grid_m=_AT_M / 3.0
+            )
             if way:
                 self.follower.take(way)
                 return True
         holder = errand.holder
-        front = holder is not None and hides(holder)
+        front = holder is not None and has_door(holder)
         for share, grid_m in _REACHES:
             reach = share * self.body.reach
-            way = viewpoints.route(self.ways, here, errand.points, reach, holder, front, self._misses, grid_m)
+            way = viewpoints.path_to_reach(self.ways, here, errand.points, reach, holder, front, self._misses, grid_m)
             if way:
                 self.follower.take(way)
                 return True
@@ -209,7 +215,7 @@ class Worker:
         return Wait(seconds=2.0 if observation.holding else 0.3)
 
 
-def stride(body: BodySpec, tick_s: float) -> float:
+def whole_tick_move(body: BodySpec, tick_s: float) -> float:
     """The longest move [m] of an action that takes whole ticks at full speed: none of its time is lost."""
     tick_m = body.speed * tick_s
     return tick_m * math.floor(rules.MOVE_MAX_M / tick_m + 1e-9) if tick_m < rules.MOVE_MAX_M else rules.MOVE_MAX_M
@@ -227,4 +233,4 @@ def _at(job: Job, thing: Thing) -> str:
 @functools.lru_cache(maxsize=1024)
 def _between(thing: Thing, inset_m: float, low: float, high: float) -> tuple[Vec3, ...]:
     """Points of the thing's surfaces between two heights [m]."""
-    return tuple(point for point in resting(thing, inset_m) if low <= point[2] <= high)
+    return tuple(point for point in resting_points(thing, inset_m) if low <= point[2] <= high)

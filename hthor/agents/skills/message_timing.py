@@ -15,7 +15,7 @@ APART_M = 1.3
 _HOLLOW = ("bathtub", "fridge", "garbage_can", "sink")
 
 
-class Offers:
+class MessageTiming:
     """Counts what was said about one thing: once, and again some time after it was turned down."""
 
     def __init__(self, briefing: Briefing, most: int) -> None:
@@ -37,33 +37,33 @@ class Offers:
         self.sent, self._mark = self.sent + 1, tick
 
 
-def title(kind: str) -> str:
+def kind_title(kind: str) -> str:
     """A kind's name in a sentence, such as "the dining table"."""
     return "the " + kind.replace("_", " ")
 
 
-def place(kind: str) -> str:
+def place_phrase(kind: str) -> str:
     """Where something is that rests on or in a thing of this kind, such as "on the dining table"."""
-    return f"{'in' if kind in _HOLLOW else 'on'} {title(kind)}"
+    return f"{'in' if kind in _HOLLOW else 'on'} {kind_title(kind)}"
 
 
-def sighting(seen: Detection, kinds: Mapping[str, str]) -> str:
+def sighting_text(seen: Detection, kinds: Mapping[str, str]) -> str:
     """What a robot says of an object in its view; ``kinds`` gives the kind of each piece of furniture it knows."""
-    where = f" {place(kinds[seen.support])}" if seen.support in kinds else ""
-    return f"I found {title(seen.kind)}{where} in front of me."
+    where = f" {place_phrase(kinds[seen.support])}" if seen.support in kinds else ""
+    return f"I found {kind_title(seen.kind)}{where} in front of me."
 
 
-def spot(observation: Observation, name: str) -> Detection | None:
+def find_detection(observation: Observation, name: str) -> Detection | None:
     """The object of this id, when it is in view."""
     return next((seen for seen in observation.detections if seen.id == name and seen.family == "object"), None)
 
 
-def please_look(kind: str, wanted: Sequence[str]) -> str:
+def look_inside_text(kind: str, wanted: Sequence[str]) -> str:
     """What a robot without a hand for doors says in front of a closed one, such as of a "fridge"; ``wanted`` kinds."""
-    things = " and ".join(dict.fromkeys(title(name) for name in wanted))
-    return f"I cannot open {title(kind)} in front of me. Please look inside for {things}."
+    things = " and ".join(dict.fromkeys(kind_title(name) for name in wanted))
+    return f"I cannot open {kind_title(kind)} in front of me. Please look inside for {things}."
 
 
-def lend_a_hand(kind: str, held: bool) -> str:
+def help_carry_text(kind: str, held: bool) -> str:
     """What a robot says of a thing of this kind, which is too heavy for it; ``held``: it has one end already."""
-    return f"Please help me carry {title(kind)}: {'I have one end' if held else 'take one end, I take the other'}."
+    return f"Please help me carry {kind_title(kind)}: {'I have one end' if held else 'take one end, I take the other'}."

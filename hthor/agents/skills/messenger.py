@@ -7,14 +7,23 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hthor import rules
-from hthor.agents.skills.message_timing import ASIDE_M, Offers, lend_a_hand, place, please_look, sighting, spot, title
+from hthor.agents.skills.message_timing import (
+    ASIDE_M,
+    MessageTiming,
+    find_detection,
+    help_carry_text,
+    kind_title,
+    look_inside_text,
+    place_phrase,
+    sighting_text,
+)
 from hthor.agents.skills.subgoals import PAPER_KINDS, Knowledge
 from hthor.geometry import plane
 from hthor.types import HUMAN, Briefing, Job, Motion, Observation, Receipt, Send, Thing, ThingState, Vec2, Vec3, Wait
 
 if TYPE_CHECKING:
-    from hthor.agents.skills.routes import Routes
-    from hthor.agents.skills.yielding import Passing
+    from hthor.agents.skills.routes import HouseRoutes
+    from hthor.agents.skills.yielding import Yielding
     from hthor.navigation.path_follower import Follower
 
 _LOOKS = 3
@@ -24,20 +33,25 @@ _UNANSWERED_S, _CONFIRMED_S = 8.0, 20.0
 """How long to stay with an object that was told of, while no answer comes, and while the person may be on the way."""
 
 
-class Teller:
+class Messenger:
     """Tells of one job at a time: of the object, and once the person has it in hand, of where it belongs.
 
     Speaks only when close enough to detect. Behind a closed door it cannot detect: it says so in front of the door.
     """
 
     def __init__(
-        self, briefing: Briefing, routes: Routes, follower: Follower, knowledge: Knowledge, passing: Passing | None
+        self,
+        briefing: Briefing,
+        routes: HouseRoutes,
+        follower: Follower,
+        knowledge: Knowledge,
+        passing: Yielding | None,
     ) -> None:
         """``passing`` is None where there is one job and no other robot, as in the paper."""
         self.briefing, self.routes, self.follower = briefing, routes, follower
         self.knowledge, self.passing, self.many = knowledge, passing, passing is not None
         self.kinds = {thing.id: thing.kind for thing in knowledge.things.values()}
-        self._offers: dict[tuple[str, str], Offers] = {}
+        self._offers: dict[tuple[str, str], MessageTiming] = {}
         self._answers: dict[tuple[str, str], Receipt] = {}
         self.spoken_about = ("", "")
         self.target = ""
@@ -58,9 +72,9 @@ class Teller:
             self._anew()
             self.follower.take(None)
 
-    def offers(self, job: Job, errand: str) -> Offers:
+    def offers(self, job: Job, errand: str) -> MessageTiming:
         """What was said of the job's "target" or "destination"."""
-        return self._offers.setdefault((job.target, errand), Offers(self.briefing, most=_MOST[errand]))
+        return self._offers.setdefault((job.target, errand), MessageTiming(self.briefing, most=_MOST[errand]))
 
     # ------------------------------------------------------------------------------------------------ what to tell of
 
@@ -128,9 +142,9 @@ class Teller:
 
     def mention(self, observation: Observation, job: Job) -> Send | None:
         """A message about an object in view."""
-        seen = spot(observation, job.target)
+        seen = find_detection(observation, job.target)
         assert seen is not None
-        message = Send(text=sighting(seen, self.kinds), object=seen.id, position=seen.position)
+        message = Send(text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position)
         return self._note(observation, job, "target", message)
 
     def ask_for_help(self, observation: Observation, job: Job) -> Send | None:
@@ -138,7 +152,7 @@ class Teller:
         state = self.knowledge.states[job.target]
         if not self.is_due(observation, job, "help"):
             return None
-        message = Send(text=lend_a_hand(state.kind, bool(state.bearers)), object=state.id, position=state.position)
+        message = Send(text=help_carry_text(state.kind, bool(state.bearers)), object=state.id, position=state.position)
         return self._note(observation, job, "help", message)
 
     def report(self, observation: Observation, job: Job) -> Send | None:
@@ -147,7 +161,7 @@ class Teller:
         thing = self.knowledge.things.get(state.support)
         if thing is None or not self.is_due(observation, job, "done"):
             return None
-        text = f"I put {title(state.kind)} {place(thing.kind)}."
+        text = f"I put {kind_title(state.kind)} {place_phrase(thing.kind)}."
         return self._note(observation, job, "done", Send(text=text, object=state.id, position=state.position))
 
     def _note(self, observation: Observation, job: Job, errand: str, message: Send | None) -> Send | None:
@@ -157,18 +171,18 @@ class Teller:
         return message
 
     def _found(self, observation: Observation, target: ThingState) -> Send | None:
-        seen = spot(observation, target.id)
+        seen = find_detection(observation, target.id)
         if seen is not None and seen.held_by != HUMAN:
-            return Send(text=sighting(seen, self.kinds), object=seen.id, position=seen.position)
+            return Send(text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position)
         support = self.knowledge.things.get(target.support)
         if support is None or not self._is_close(observation, support):
             return None
         shut = self._is_shut(support.id)
         if len(self.misses) < _LOOKS and not shut:
             return None
-        text = f"{title(target.kind).capitalize()} is {place(support.kind)}."
+        text = f"{kind_title(target.kind).capitalize()} is {place_phrase(support.kind)}."
         if shut and self.briefing.kind not in PAPER_KINDS and "open" not in self.briefing.body.capabilities:
-            text = please_look(support.kind, (target.kind,))
+            text = look_inside_text(support.kind, (target.kind,))
         return Send(text=text, object=target.id, position=target.position)
 
     def _is_shut(self, name: str) -> bool:
@@ -180,7 +194,7 @@ class Teller:
         found = self._belongs(job, target)
         if found is None or not self._is_close(observation, found[0]):
             return None
-        return Send(text=f"{title(found[0].kind).capitalize()} is here.", object=found[0].id, position=where)
+        return Send(text=f"{kind_title(found[0].kind).capitalize()} is here.", object=found[0].id, position=where)
 
     def _is_close(self, observation: Observation, thing: Thing) -> bool:
         """Whether the robot is within the detector's range of a thing's outline, in the same room."""

@@ -5,15 +5,21 @@ from __future__ import annotations
 import math
 
 from hthor import rules
-from hthor.agents.skills.carrying import Hauler
+from hthor.agents.skills.carrying import Carrier
 from hthor.agents.skills.explorer import Explorer
-from hthor.agents.skills.manipulation import Worker
-from hthor.agents.skills.message_timing import Offers, lend_a_hand, please_look, sighting, spot
-from hthor.agents.skills.observed_map import Found, Seen
-from hthor.agents.skills.subgoals import Knowledge, todo
-from hthor.agents.skills.task_allocation import Crew, able
-from hthor.agents.skills.viewpoints import gap
-from hthor.agents.skills.yielding import Passing
+from hthor.agents.skills.manipulation import Manipulator
+from hthor.agents.skills.message_timing import (
+    MessageTiming,
+    find_detection,
+    help_carry_text,
+    look_inside_text,
+    sighting_text,
+)
+from hthor.agents.skills.observed_map import ObservedKnowledge, ObservedRoutes
+from hthor.agents.skills.subgoals import Knowledge
+from hthor.agents.skills.task_allocation import TaskAllocation, can_do
+from hthor.agents.skills.viewpoints import outline_distance
+from hthor.agents.skills.yielding import Yielding
 from hthor.navigation.yielding import Courtesy
 from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Place, Receipt, Send, ThingState, Vec3
 
@@ -21,22 +27,22 @@ _MOST = 2
 _LATER_S = 15.0
 
 
-class Gatherer:
+class MultiObjectFrontier:
     """One robot's mind for one trial."""
 
     def __init__(self, briefing: Briefing) -> None:
-        self.briefing, self.jobs = briefing, todo(briefing)
-        self.seen = Seen()
+        self.briefing, self.jobs = briefing, briefing.todo
+        self.seen = ObservedKnowledge()
         self.explorer = Explorer(briefing.body)
-        ways = Found(self.explorer)
+        ways = ObservedRoutes(self.explorer)
         self.courtesy = Courtesy(briefing.body, self.explorer.fits)
-        self.passing = Passing(briefing, ways)
-        self.worker = Worker(briefing.body, ways, self.passing, briefing.tick_s)
-        self.crew = Crew(briefing, lambda here, place: math.dist(here, place[:2]))
-        self.hauler = Hauler(briefing, ways, self.worker, self.crew, waits=False)
+        self.passing = Yielding(briefing, ways)
+        self.worker = Manipulator(briefing.body, ways, self.passing, briefing.tick_s)
+        self.crew = TaskAllocation(briefing, lambda here, place: math.dist(here, place[:2]))
+        self.hauler = Carrier(briefing, ways, self.worker, self.crew, waits=False)
         self.mine: Job | None = None
         self.placing: Place | None = None
-        self._offers: dict[str, Offers] = {}
+        self._offers: dict[str, MessageTiming] = {}
         self._answers: dict[str, Receipt] = {}
         self._spoken = ""
 
@@ -99,7 +105,7 @@ class Gatherer:
         if state is None or job.relation == "find" or not self.worker.can_try(job.target, observation.tick):
             return False
         shut = self.seen.is_shut(state.support)
-        return able(self.briefing.body, state.kind, job, shut) and (job.hands > 1 or bool(self.seen.bearers(job)))
+        return can_do(self.briefing.body, state.kind, job, shut) and (job.hands > 1 or bool(self.seen.bearers(job)))
 
     def _waits(self, job: Job) -> ThingState | None:
         """The object, when it was seen, in nobody's hand and not where it belongs."""
@@ -137,11 +143,13 @@ class Gatherer:
         if self.mine is not None and self.mine.hands > 1:
             return self._ask_for_help(observation, self.mine)
         for job in self.jobs:
-            seen = spot(observation, job.target)
+            seen = find_detection(observation, job.target)
             if seen is None or seen.held_by or job is self.mine or self.seen.is_done(job):
                 continue
             if self._is_due(observation, job.target):
-                return self._note(observation, job.target, sighting(seen, _kinds(self.seen)), seen.id, seen.position)
+                return self._note(
+                    observation, job.target, sighting_text(seen, _kinds(self.seen)), seen.id, seen.position
+                )
         return self._ask(observation)
 
     def _ask_for_help(self, observation: Observation, job: Job) -> Send | None:
@@ -149,7 +157,7 @@ class Gatherer:
         state, name = self.seen.states[job.target], f"help {job.target}"
         if observation.holding != job.target or state.held_by or not self._is_due(observation, name):
             return None
-        return self._note(observation, name, lend_a_hand(state.kind, held=True), job.target, state.position)
+        return self._note(observation, name, help_carry_text(state.kind, held=True), job.target, state.position)
 
     def _ask(self, observation: Observation) -> Send | None:
         """Please look inside: in front of a closed door that it cannot open, while something is missing."""
@@ -159,14 +167,14 @@ class Gatherer:
         here = (observation.pose.x, observation.pose.y)
         in_view = {seen.id for seen in observation.detections}
         for thing in self.seen.shut():
-            is_near = gap(thing, here) <= rules.DETECTOR_RANGE_M
+            is_near = outline_distance(thing, here) <= rules.DETECTOR_RANGE_M
             if is_near and thing.id in in_view and self._is_due(observation, thing.id):
-                text = please_look(thing.kind, tuple(_kind(job.target) for job in missing))
+                text = look_inside_text(thing.kind, tuple(_kind(job.target) for job in missing))
                 return self._note(observation, thing.id, text, thing.id, thing.centre)
         return None
 
     def _is_due(self, observation: Observation, name: str) -> bool:
-        offers = self._offers.setdefault(name, Offers(self.briefing, most=_MOST))
+        offers = self._offers.setdefault(name, MessageTiming(self.briefing, most=_MOST))
         return offers.due(observation.tick, self._answers.get(name))
 
     def _note(self, observation: Observation, name: str, text: str, about: str, position: Vec3) -> Send:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hthor.agents.skills.explorer import Explorer
-from hthor.agents.skills.subgoals import Knowledge, hides
+from hthor.agents.skills.subgoals import Knowledge, has_door
 from hthor.navigation.waiting_spots import retreat
 from hthor.types import Observation, Place, Thing, ThingState, Vec2, Vec3
 
 _WALL_M = 0.12
 
 
-class Seen(Knowledge):
+class ObservedKnowledge(Knowledge):
     """Knowledge from detections alone: things where they were seen last."""
 
     def __init__(self) -> None:
@@ -50,10 +50,10 @@ class Seen(Knowledge):
 
     def shut(self) -> list[Thing]:
         """Furniture whose inside was not seen yet, because its door is closed."""
-        return [thing for thing in self.things.values() if hides(thing) and self.is_shut(thing.id)]
+        return [thing for thing in self.things.values() if has_door(thing) and self.is_shut(thing.id)]
 
 
-class Found:
+class ObservedRoutes:
     """The ways of a robot through what it knows of a house, for `hthor.agents.skills.viewpoints`."""
 
     def __init__(self, explorer: Explorer) -> None:

@@ -37,7 +37,7 @@ def _sight(house: HouseSpec) -> LinesOfSight:
     return with_all_open(house)
 
 
-class Routes:
+class HouseRoutes:
     """Ways of one body through one house."""
 
     def __init__(self, house: HouseSpec, body: BodySpec) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from hthor import catalog
 from hthor.geometry import plane
-from hthor.types import Briefing, Job, Room, Thing, ThingState, Vec3
+from hthor.types import Job, Room, Thing, ThingState, Vec3
 
 PAPER_KINDS = ("", "mobile_manipulation", "object_goal_navigation")
 """The two kinds of the paper, in which robots say and do what the paper's robots did; "" is an unnamed kind."""
@@ -15,15 +15,6 @@ CLOSE_M, TOGETHER_M = 0.25, 0.7
 """An object this close to where it belongs is left alone, and one that takes several to carry."""
 
 _STEP_M = 0.15
-
-
-def todo(briefing: Briefing) -> tuple[Job, ...]:
-    """All there is to do; a briefing without a list of jobs tells of one."""
-    if briefing.jobs:
-        return briefing.jobs
-    destinations = (briefing.destination,) if briefing.destination else ()
-    relation = briefing.relation if briefing.relation in ("on", "in", "at") else "find"
-    return (Job(target=briefing.target, relation=relation, destinations=destinations),)  # type: ignore[arg-type]
 
 
 class Knowledge:
@@ -59,7 +50,7 @@ class Knowledge:
     def is_shut(self, id: str) -> bool:
         """Whether this is a thing with a door in front of what lies in it, and the door is closed."""
         thing, state = self.things.get(id), self.states.get(id)
-        return thing is not None and hides(thing) and (state is None or not state.open)
+        return thing is not None and has_door(thing) and (state is None or not state.open)
 
     def _is_at(self, state: ThingState, place: str) -> bool:
         if place in self.rooms:
@@ -68,12 +59,12 @@ class Knowledge:
         return state.support == place or (thing is not None and thing.kind == place)
 
 
-def hides(thing: Thing) -> bool:
+def has_door(thing: Thing) -> bool:
     """Whether it must be opened before one sees what lies in it."""
     return catalog.kind(thing.kind).hides
 
 
-def resting(thing: Thing, inset_m: float) -> tuple[Vec3, ...]:
+def resting_points(thing: Thing, inset_m: float) -> tuple[Vec3, ...]:
     """Points [m] all over its surfaces where an object that reaches ``inset_m`` from its middle could lie."""
     points = []
     for surface in catalog.kind(thing.kind).rests(thing.size):

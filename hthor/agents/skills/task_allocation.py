@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Collection, Sequence
 
 from hthor import catalog
-from hthor.agents.skills.subgoals import Knowledge, todo
+from hthor.agents.skills.subgoals import Knowledge
 from hthor.types import HUMAN, BodySpec, Briefing, Job, Observation, Vec2, Vec3
 
 UNKNOWING_M = 4.0
@@ -17,27 +17,27 @@ AT_HAND_M = 2.0
 """What lies this close to the person is left to them."""
 _REVIEW_S = 2.0
 
-Apart = Callable[[Vec2, Vec3], float]
+WalkingDistance = Callable[[Vec2, Vec3], float]
 """Walking distance [m] from a place to the floor beside a point."""
 
 
-class Crew:
+class TaskAllocation:
     """Everybody in the trial, and where they were seen last; who was never seen is taken to be at one's own start.
 
     ``now`` holds where those are [m] of whom one knows at this moment, ``places`` also where the others were.
     """
 
-    def __init__(self, briefing: Briefing, apart: Apart) -> None:
+    def __init__(self, briefing: Briefing, apart: WalkingDistance) -> None:
         self.me, self.bodies, self._apart = briefing.seat, dict(briefing.crew), apart
         self.bodies.setdefault(briefing.seat, briefing.body)
-        self.seats = sorted(self.bodies, key=rank)
+        self.seats = sorted(self.bodies, key=seat_order)
         self.places: dict[str, Vec2] = {}
         self.now: dict[str, Vec2] = {}
         self._start: Vec2 | None = None
         self._shared: tuple[object, dict[str, Job]] = (None, {})
         self._period = round(_REVIEW_S / briefing.tick_s)
         self.tick = 0
-        self.jobs = todo(briefing)
+        self.jobs = briefing.todo
         self._ways: dict[tuple[Vec2, Vec2], float] = {}
 
     def see(self, observation: Observation, knowledge: Knowledge) -> None:
@@ -69,7 +69,7 @@ class Crew:
     def _dealt(self, jobs: Sequence[Job], busy: Collection[str], knowledge: Knowledge) -> dict[str, Job]:
         free = [seat for seat in self.seats if seat not in busy]
         bids = [
-            (self.cost(seat, job, knowledge), rank(seat), number, seat, job)
+            (self.cost(seat, job, knowledge), seat_order(seat), number, seat, job)
             for number, job in enumerate(jobs)
             for seat in free
         ]
@@ -102,7 +102,7 @@ class Crew:
         """The way [m] from a seat to an object, with what comes on top; infinite for who cannot take it."""
         state = knowledge.states[job.target]
         shut = knowledge.is_shut(state.support)
-        if not able(self.bodies[seat], state.kind, job, shut):
+        if not can_do(self.bodies[seat], state.kind, job, shut):
             return math.inf
         way = self._apart(self.place(seat), state.position)
         return way + UNKNOWING_M if seat == HUMAN else way + (DOOR_M if shut else 0.0) - self._later(job, knowledge)
@@ -135,13 +135,13 @@ class Crew:
         return math.dist(self.now[HUMAN], state.position[:2]) < AT_HAND_M
 
 
-def able(body: BodySpec, kind: str, job: Job, shut: bool = False) -> bool:
+def can_do(body: BodySpec, kind: str, job: Job, shut: bool = False) -> bool:
     """Whether a body can take its part of a job with an object of this kind: alone, or with one hand of several."""
     if "pick" not in body.capabilities or (shut and "open" not in body.capabilities):
         return False
     return job.hands > 1 or catalog.kind(kind).mass <= body.strength
 
 
-def rank(seat: str) -> tuple[int, str]:
+def seat_order(seat: str) -> tuple[int, str]:
     """Seats in order: the person, "robot", "robot2", ... "robot10"."""
     return (0 if seat == HUMAN else len(seat), seat)

@@ -22,7 +22,7 @@ _SLACK_M = 1e-6
 """Lengths that differ by less may be the same one, added up otherwise."""
 
 
-class Ways(Protocol):
+class Routes(Protocol):
     """A house as one body knows it."""
 
     def stands(self, spot: Vec2) -> bool: ...
@@ -36,8 +36,8 @@ class Ways(Protocol):
     def sees(self, spot: Vec2, point: Vec3) -> bool: ...
 
 
-def route(
-    ways: Ways,
+def path_to_reach(
+    ways: Routes,
     here: Vec2,
     points: Sequence[Vec3],
     reach: float,
@@ -63,8 +63,8 @@ def route(
     return _first(ways, here, spots, points, holder)
 
 
-def closest(
-    ways: Ways, here: Vec2, things: Sequence[Thing], over: Callable[[Thing], Sequence[Vec3]], reach: float
+def closest_thing(
+    ways: Routes, here: Vec2, things: Sequence[Thing], over: Callable[[Thing], Sequence[Vec3]], reach: float
 ) -> Thing:
     """The thing with the shortest `route` to points ``over`` it; of equals, or when there is no way, by id.
 
@@ -81,19 +81,19 @@ def closest(
         if crow and least > best[0] + _SLACK_M:
             break
         way = _first(ways, here, spots, points, thing)
-        far = (length(way) if way else math.inf, id)
+        far = (path_length(way) if way else math.inf, id)
         if best[1] == "" or far < best:
             best, answer = far, thing
     return answer
 
 
-def length(way: Sequence[Vec2]) -> float:
+def path_length(way: Sequence[Vec2]) -> float:
     """Length [m] of a way."""
     return math.fsum(math.dist(a, b) for a, b in itertools.pairwise(way))
 
 
 def _first(
-    ways: Ways, here: Vec2, spots: Sequence[Vec2], points: Sequence[Vec3], holder: Thing | None
+    ways: Routes, here: Vec2, spots: Sequence[Vec2], points: Sequence[Vec3], holder: Thing | None
 ) -> tuple[Vec2, ...]:
     """The way to the nearest spot from which the point nearest to it can be got at; () when there is none."""
     lengths = ways.lengths(here, spots) if spots else ()
@@ -101,13 +101,15 @@ def _first(
     order = sorted((round(length, 6), number) for number, length in enumerate(lengths) if math.isfinite(length))
     for _, number in order:
         spot = spots[number]
-        point = nearest(_few(points, plan, spot), spot)
-        if ways.open_to(spot, point[:2] if holder is None else edge(holder, spot)) and ways.sees(spot, point):
+        point = nearest_point(_few(points, plan, spot), spot)
+        if ways.open_to(spot, point[:2] if holder is None else nearest_outline_point(holder, spot)) and ways.sees(
+            spot, point
+        ):
             return ways.way(here, spot)
     return ()
 
 
-def nearest(points: Sequence[Vec3], spot: Vec2) -> Vec3:
+def nearest_point(points: Sequence[Vec3], spot: Vec2) -> Vec3:
     """The one of the points that is nearest to a spot on the plan, the first of equals."""
     return min(points, key=lambda point: round(math.dist(point[:2], spot), 6))
 
@@ -118,7 +120,7 @@ def _few(points: Sequence[Vec3], plan: Floats, spot: Vec2) -> Sequence[Vec3]:
     return list(itertools.compress(points, (apart <= apart.min() + 10.0 * _SLACK_M).tolist()))
 
 
-def edge(thing: Thing, spot: Vec2) -> Vec2:
+def nearest_outline_point(thing: Thing, spot: Vec2) -> Vec2:
     """The point of a thing's outline, or inside it, that is nearest to a spot."""
     u, v, _ = plane.to_local((*spot, 0.0), thing.centre, thing.yaw)
     w, d = thing.size[0] / 2, thing.size[1] / 2
@@ -126,7 +128,7 @@ def edge(thing: Thing, spot: Vec2) -> Vec2:
     return (x, y)
 
 
-def gap(thing: Thing, spot: Vec2) -> float:
+def outline_distance(thing: Thing, spot: Vec2) -> float:
     """Distance [m] from a spot to a thing's outline."""
     return plane.distance_to_rectangle(spot, thing.centre[:2], thing.size[:2], thing.yaw)
 

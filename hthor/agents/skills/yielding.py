@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from hthor.agents.skills.task_allocation import rank
-from hthor.agents.skills.viewpoints import Ways
+from hthor.agents.skills.task_allocation import seat_order
+from hthor.agents.skills.viewpoints import Routes
 from hthor.geometry.plane import turn
 from hthor.navigation.path_follower import Follower, shift
 from hthor.types import HUMAN, Briefing, Motion, Move, Observation, Vec2, Wait
@@ -23,14 +23,14 @@ _SIDEWAYS = 1.5
 _DIRECTIONS = 16
 
 
-class Passing:
+class Yielding:
     """What to do about a robot that one has run into: one of the two makes room, the other goes round it.
 
     Who has hands goes first, and of equals whose seat comes first. The person is not meant: see
     `hthor.navigation.yielding`.
     """
 
-    def __init__(self, briefing: Briefing, ways: Ways) -> None:
+    def __init__(self, briefing: Briefing, ways: Routes) -> None:
         self.seat, self.ways, self.tick_s = briefing.seat, ways, briefing.tick_s
         self.bodies = {briefing.seat: briefing.body, **briefing.crew}
         self.radius = briefing.body.radius
@@ -49,7 +49,7 @@ class Passing:
     def motion(self, observation: Observation) -> Motion | None:
         """A step out of the way, or None to carry on."""
         seconds = observation.tick * self.tick_s
-        by = bumped(observation)
+        by = seat_bumped(observation)
         if by and by != HUMAN and self._goes_first(by) and seconds >= self._rest:
             self._until, self._rest = seconds + _YIELD_S, seconds + _YIELD_S + _REST_S
         if seconds >= self._until:
@@ -64,9 +64,9 @@ class Passing:
     def refuge(self, observation: Observation) -> Motion | None:
         """After running into the person again and again: out of the passage, and wait; None to carry on."""
         seconds = observation.tick * self.tick_s
-        if seconds < self._waited and bumped(observation):
+        if seconds < self._waited and seat_bumped(observation):
             self._follower.take(None)  # no way out: stand still until they are past
-        elif bumped(observation) == HUMAN:
+        elif seat_bumped(observation) == HUMAN:
             self._bumps = [when for when in self._bumps if seconds - when < _OFTEN_S] + [seconds]
         if len(self._bumps) >= _BUMPS and seconds >= self._waited:
             person = self.place(observation, HUMAN) or _here(observation)
@@ -82,7 +82,7 @@ class Passing:
         ``places`` [m] tells where the other robots are.
         """
         here = _here(observation)
-        for seat in sorted(places, key=rank):
+        for seat in sorted(places, key=seat_order):
             if seat not in (self.seat, HUMAN) and math.dist(here, places[seat]) < self._room(seat):
                 aside = self._aside(here, places[seat])
                 if aside is not None:
@@ -95,7 +95,7 @@ class Passing:
             if seen.id == seat:
                 return seen.position[:2]
         length = math.hypot(*self._along)
-        if seat != bumped(observation) or length == 0.0:
+        if seat != seat_bumped(observation) or length == 0.0:
             return None
         share = self._touching(seat) / length
         return (observation.pose.x + share * self._along[0], observation.pose.y + share * self._along[1])
@@ -105,7 +105,7 @@ class Passing:
 
     def _precedence(self, seat: str) -> tuple[bool, tuple[int, str]]:
         body = self.bodies.get(seat)
-        return (body is None or "pick" not in body.capabilities, rank(seat))
+        return (body is None or "pick" not in body.capabilities, seat_order(seat))
 
     def _touching(self, seat: str) -> float:
         body = self.bodies.get(seat)
@@ -116,7 +116,7 @@ class Passing:
 
     def around(self, observation: Observation, goal: Vec2) -> tuple[Vec2, ...]:
         """A way to ``goal`` past the body that is in the way; () when there is none."""
-        here, by = _here(observation), bumped(observation)
+        here, by = _here(observation), seat_bumped(observation)
         other = self.place(observation, by)
         if other is None:
             return ()
@@ -134,7 +134,7 @@ class Passing:
 
     def is_taken(self, observation: Observation, spot: Vec2) -> bool:
         """Whether the body that is in the way stands where one wants to."""
-        by = bumped(observation)
+        by = seat_bumped(observation)
         other = self.place(observation, by)
         return other is not None and math.dist(other, spot) < self._touching(by)
 
@@ -151,7 +151,7 @@ class Passing:
         return best
 
 
-def bumped(observation: Observation) -> str:
+def seat_bumped(observation: Observation) -> str:
     """The seat of the body that ended the last move, empty for none."""
     outcome = observation.outcome
     if outcome is None or outcome.ok or outcome.motion != "move":

@@ -14,7 +14,7 @@ from hthor.humans.core.trial_context import GAZE_PITCH, Behaviour, HumanContext
 from hthor.humans.memory.spatial_memory import KnownDoorway, SpatialMemory
 from hthor.navigation.grid_map import CELL_M, FREE, GridMap
 from hthor.navigation.path_follower import toward
-from hthor.navigation.planner import Planner, length
+from hthor.navigation.planner import Planner, path_length
 from hthor.types import Motion, Move, Rotate, Vec2, Wait
 
 _TURN_RAD = math.radians(12.0)
@@ -175,8 +175,8 @@ class Walker:
                 break
             rest = math.dist(door.beyond, goal)
             path = self.planner.path(here, door.beyond, most=most - rest)
-            if path is not None and length(path) + rest < most:
-                most = length(path) + rest
+            if path is not None and path_length(path) + rest < most:
+                most = path_length(path) + rest
                 best = Route(path=path, metres=most, doorway=door)
         return best
 
@@ -195,7 +195,7 @@ class Walker:
                 checked = now.tick
                 if not self.planner.clear((self.human.here, *ahead)):  # the rest of the way is free no more
                     return False
-                was, left = left, length((here, *ahead))
+                was, left = left, path_length((here, *ahead))
                 if moves >= _CHECK_TICKS and left > was - _CREEP * moves * self._pace() * human.tick_s:
                     yield from self._give_way(ahead[0])
                     return False
@@ -277,7 +277,7 @@ class Walker:
 
 
 def _as_way(path: tuple[Vec2, ...] | None) -> Route | None:
-    return None if path is None else Route(path=path, metres=length(path))
+    return None if path is None else Route(path=path, metres=path_length(path))
 
 
 def _planner_with(grid: GridMap, radius: float, x: float, y: float, size: float) -> Planner:
