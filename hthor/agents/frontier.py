@@ -30,24 +30,24 @@ class Agent:
         from hthor.navigation.yielding import Courtesy
 
         self.briefing = briefing
-        self.gatherer: MultiObjectFrontier | None = None
+        self.multi_object: MultiObjectFrontier | None = None
         carries = "pick" in briefing.body.capabilities and briefing.relation != "find"
         if carries or briefing.kind not in PAPER_KINDS:
             from hthor.agents.skills.multi_object_frontier import MultiObjectFrontier
 
-            self.gatherer = MultiObjectFrontier(briefing)
+            self.multi_object = MultiObjectFrontier(briefing)
             return
-        self.offers = MessageTiming(briefing, most=2)
+        self.timing = MessageTiming(briefing, most=2)
         self.explorer: Explorer = Explorer(briefing.body)
         self.courtesy: Courtesy = Courtesy(briefing.body, self.explorer.fits)
         self.target: Detection | None = None
-        self.aside = False
+        self.stands_aside = False
         self.kinds: dict[str, str] = {}
 
     def act(self, observation: Observation) -> Action:
         """Look, tell, and go on."""
-        if self.gatherer is not None:
-            return self.gatherer.act(observation)
+        if self.multi_object is not None:
+            return self.multi_object.act(observation)
         self.explorer.see(observation)
         self.kinds.update((thing.id, thing.kind) for thing in observation.detections)
         seen = find_detection(observation, self.briefing.target)
@@ -57,16 +57,16 @@ class Agent:
         if not observation.idle:
             return Action(say=say)
         seconds = observation.tick * self.briefing.tick_s
-        yielding = self.courtesy.motion(observation, seconds)
-        if yielding is not None:
-            return Action(motion=yielding, say=say)
+        aside = self.courtesy.motion(observation, seconds)
+        if aside is not None:
+            return Action(motion=aside, say=say)
         return Action(motion=self._watch(observation) if self.target else self.explorer.motion(observation), say=say)
 
     def _say(self, observation: Observation, seen: Detection | None) -> Send | None:
         """The message, when the target is in view, not in the person's hand, and it is time to speak."""
-        if seen is None or seen.held_by == HUMAN or not self.offers.due(observation.tick, observation.receipt):
+        if seen is None or seen.held_by == HUMAN or not self.timing.due(observation.tick, observation.receipt):
             return None
-        self.offers.note(observation.tick)
+        self.timing.note(observation.tick)
         return Send(text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position)
 
     def _watch(self, observation: Observation) -> Motion:
@@ -76,12 +76,12 @@ class Agent:
         assert self.target is not None
         pose, (x, y, _) = observation.pose, self.target.position
         follower, body = self.explorer.follower, self.briefing.body
-        speaking = self.target.held_by != HUMAN and self.offers.due(observation.tick, observation.receipt)
-        if self.aside and speaking:
-            self.aside = False
+        speaking = self.target.held_by != HUMAN and self.timing.due(observation.tick, observation.receipt)
+        if self.stands_aside and speaking:
+            self.stands_aside = False
             follower.take(self.explorer.planner.path((pose.x, pose.y), (x, y), within=APART_M))
-        elif not self.aside and not speaking:
-            self.aside = True
+        elif not self.stands_aside and not speaking:
+            self.stands_aside = True
             self.explorer.retreat(pose, (x, y), ASIDE_M)
         step = follower.next(pose)
         return step or face(pose, self.target.position, body.eye, body.pitch_limit) or Wait(seconds=1.0)

@@ -42,9 +42,15 @@ class Carrier:
     """One body's part in carrying one thing; ``waits`` says whether it lets a person take hold first."""
 
     def __init__(
-        self, briefing: Briefing, ways: TowingRoutes, worker: Manipulator, crew: TaskAllocation, waits: bool = True
+        self,
+        briefing: Briefing,
+        routes: TowingRoutes,
+        manipulator: Manipulator,
+        allocation: TaskAllocation,
+        waits: bool = True,
     ) -> None:
-        self.briefing, self.body, self.ways, self.worker, self.crew = briefing, briefing.body, ways, worker, crew
+        self.briefing, self.body, self.routes = briefing, briefing.body, routes
+        self.manipulator, self.allocation = manipulator, allocation
         self.follower = Follower(step=whole_tick_move(briefing.body, briefing.tick_s))
         self._waits = waits
         self._yaw: float | None = None
@@ -92,15 +98,17 @@ class Carrier:
         stand = (handle[0] + apart * math.cos(out), handle[1] + apart * math.sin(out), handle[2])
         if seat_bumped(observation) and not self._squeezed:
             self._squeezed = True
-            self.worker.drop()
+            self.manipulator.drop()
         free = self._yaw is not None and not self._squeezed
-        errand = ManipulationGoal(job.target, (handle,), Pick(object=job.target), stand=stand if free else None)
-        return self.worker.pursue(observation, errand) or Wait(seconds=0.3)
+        pick = ManipulationGoal(job.target, (handle,), Pick(object=job.target), stand=stand if free else None)
+        return self.manipulator.pursue(observation, pick) or Wait(seconds=0.3)
 
     def _counts_on_person(self, state: ThingState, job: Job) -> bool:
         """Whether it takes the person, as there are not enough robots with hands."""
-        robots = [seat for seat, body in self.crew.bodies.items() if seat != HUMAN and can_do(body, state.kind, job)]
-        return HUMAN in self.crew.bodies and len(robots) < job.hands
+        robots = [
+            seat for seat, body in self.allocation.bodies.items() if seat != HUMAN and can_do(body, state.kind, job)
+        ]
+        return HUMAN in self.allocation.bodies and len(robots) < job.hands
 
     def _await(self, observation: Observation, state: ThingState) -> Motion:
         """Come near, then wait where it is in nobody's way, facing the thing."""
@@ -111,12 +119,12 @@ class Carrier:
         if goal != self._goal or stopped:
             self._goal, self._parked = goal, False
             self.follower.take(
-                viewpoints.path_to_reach(self.ways, here, (place,), _BY_M, but=[here] if stopped else [])
+                viewpoints.path_to_reach(self.routes, here, (place,), _BY_M, but=[here] if stopped else [])
             )
         step = self.follower.next(observation.pose)
         if step is None and not self._parked:
             self._parked = True
-            self.follower.take(self.ways.retreat(here, place[:2], _ASIDE_M))
+            self.follower.take(self.routes.retreat(here, place[:2], _ASIDE_M))
             step = self.follower.next(observation.pose)
         return step or self._attend(observation, state)
 
@@ -125,11 +133,11 @@ class Carrier:
         if self._yaw is None:
             return state.position
         ends = [plane.to_house((side * self._half, 0.0, 0.0), state.position, self._yaw) for side in (1.0, -1.0)]
-        others = [self.crew.place(seat) for seat in state.bearers if seat != self.briefing.seat]
+        others = [self.allocation.place(seat) for seat in state.bearers if seat != self.briefing.seat]
         if others:
             return max(ends, key=lambda end: round(math.dist(end[:2], others[0]), 3))
-        way = self.ways.way(self.crew.place(HUMAN), self.ways.loose(state.position[:2]))
-        last = way[-2] if len(way) > 1 else self.crew.place(HUMAN)
+        way = self.routes.way(self.allocation.place(HUMAN), self.routes.loose(state.position[:2]))
+        last = way[-2] if len(way) > 1 else self.allocation.place(HUMAN)
         return max(ends, key=lambda end: round(math.dist(end[:2], last), 3))
 
     def _attend(self, observation: Observation, state: ThingState) -> Motion:
@@ -171,13 +179,13 @@ class Carrier:
 
     def _course(self, here: Vec2, state: ThingState, place: Vec3) -> tuple[Vec2, ...]:
         """The way to the place and past it; seen from the thing at first, from other sides when that did not do."""
-        way = self.ways.broad(here, place[:2])
+        way = self.routes.broad(here, place[:2])
         before = way[-2] if len(way) > 1 and self._number == 0 else state.position[:2]
         angle = math.atan2(place[1] - before[1], place[0] - before[0]) + _swing(self._number)
         for past in _PAST_M:
             end = (place[0] + past * math.cos(angle), place[1] + past * math.sin(angle))
-            if self.ways.stands(end) and (past == 0.0 or self.ways.fits(place[:2], end)):
-                return self.ways.broad(here, end)
+            if self.routes.stands(end) and (past == 0.0 or self.routes.fits(place[:2], end)):
+                return self.routes.broad(here, end)
         return way
 
     def _free(self, observation: Observation, state: ThingState, place: Vec3) -> Motion:
@@ -191,7 +199,7 @@ class Carrier:
         ahead = self.follower.ahead or place[:2]
         angle = math.atan2(ahead[1] - here[1], ahead[0] - here[0]) + (0.0, 1.0, -1.0, 2.2)[self._stuck % 4]
         spot = (here[0] + 0.3 * math.cos(angle), here[1] + 0.3 * math.sin(angle))
-        self.follower.take((spot, *self._course(spot, state, place)) if self.ways.fits(here, spot) else None)
+        self.follower.take((spot, *self._course(spot, state, place)) if self.routes.fits(here, spot) else None)
         return shift(observation.pose, spot, 0.3)
 
     def _room(self, knowledge: Knowledge, job: Job, state: ThingState) -> Vec3 | None:

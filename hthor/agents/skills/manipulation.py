@@ -48,12 +48,12 @@ class Manipulator:
     ``follower`` holds the way that it is on.
     """
 
-    def __init__(self, body: BodySpec, ways: Routes, passing: Yielding, tick_s: float) -> None:
-        self.body, self.ways, self.passing = body, ways, passing
+    def __init__(self, body: BodySpec, routes: Routes, yielding: Yielding, tick_s: float) -> None:
+        self.body, self.routes, self.yielding = body, routes, yielding
         self.follower = Follower(step=whole_tick_move(body, tick_s), turn_rad=_TURN_RAD, arrived_m=0.01)
         self._again = round(AGAIN_S / tick_s)
         self._left_alone: dict[str, int] = {}
-        self._errand, self._at = "", (0.0, 0.0, 0.0)
+        self._goal_name, self._at = "", (0.0, 0.0, 0.0)
         self._misses: list[Vec2] = []
 
     def can_try(self, name: str, tick: int) -> bool:
@@ -67,10 +67,10 @@ class Manipulator:
     def motion(self, observation: Observation, knowledge: Knowledge, job: Job) -> Motion | None:
         """The next motion of this job, None when nothing can be done about it now."""
         if observation.holding == job.target:
-            errand = self._delivery(observation, knowledge, job)
+            goal = self._delivery(observation, knowledge, job)
         else:
-            errand = self._fetching(knowledge, job)
-        return None if errand is None else self.pursue(observation, errand)
+            goal = self._fetching(knowledge, job)
+        return None if goal is None else self.pursue(observation, goal)
 
     def open(self, observation: Observation, thing: Thing) -> Motion | None:
         """The next motion towards an open door, None when it was given up."""
@@ -81,7 +81,7 @@ class Manipulator:
 
     def drop(self) -> None:
         """Forget where it was going."""
-        self._errand = ""
+        self._goal_name = ""
         self.follower.take(None)
 
     # ---------------------------------------------------------------------------------------------- what is to be done
@@ -111,7 +111,7 @@ class Manipulator:
             for thing in knowledge.bearers(job)
             if self._in_reach(thing, 0.0) and (not knowledge.is_shut(thing.id) or "open" in self.body.capabilities)
         ]
-        going = next((thing for thing in able if _at(job, thing) == self._errand), None)
+        going = next((thing for thing in able if _at(job, thing) == self._goal_name), None)
         if going is not None:
             return going
         things = [thing for thing in able if self.can_try(_at(job, thing), observation.tick)] or able
@@ -119,7 +119,7 @@ class Manipulator:
             return things[0] if things else None
         here = (observation.pose.x, observation.pose.y)
         return viewpoints.closest_thing(
-            self.ways, here, things, lambda thing: self._in_reach(thing, 0.0), self.body.reach
+            self.routes, here, things, lambda thing: self._in_reach(thing, 0.0), self.body.reach
         )
 
     def _in_reach(self, thing: Thing, inset_m: float) -> tuple[Vec3, ...]:
@@ -137,80 +137,78 @@ class Manipulator:
 
     # ------------------------------------------------------------------------------------------------------- doing it
 
-    def pursue(self, observation: Observation, errand: ManipulationGoal) -> Motion | None:
+    def pursue(self, observation: Observation, goal: ManipulationGoal) -> Motion | None:
         """Go, face, act; from another spot when that was refused."""
         outcome, here = observation.outcome, (observation.pose.x, observation.pose.y)
-        moved = len(errand.points) == 1 and math.dist(errand.points[0], self._at) > _MOVED_M
-        if errand.name != self._errand or moved:
-            self._errand, self._at, self._misses = errand.name, errand.points[0], []
-            if not self._set_out(here, errand):
+        moved = len(goal.points) == 1 and math.dist(goal.points[0], self._at) > _MOVED_M
+        if goal.name != self._goal_name or moved:
+            self._goal_name, self._at, self._misses = goal.name, goal.points[0], []
+            if not self._set_out(here, goal):
                 return self._give_up(observation)
         elif outcome is not None and not outcome.ok:
             if seat_bumped(observation) and not self._is_taken(observation):
                 if not self._gets_past(observation):
                     return Wait(seconds=_PAUSE_S)
-            elif not self._recover(observation, errand):
+            elif not self._recover(observation, goal):
                 return self._give_up(observation)
         step = self.follower.next(observation.pose)
         if step is not None:
             return step
-        turn = face(
-            observation.pose, viewpoints.nearest_point(errand.points, here), self.body.eye, self.body.pitch_limit
-        )
-        return turn if turn is not None and abs(turn.yaw) > _TURN_RAD else errand.act
+        turn = face(observation.pose, viewpoints.nearest_point(goal.points, here), self.body.eye, self.body.pitch_limit)
+        return turn if turn is not None and abs(turn.yaw) > _TURN_RAD else goal.act
 
-    def _recover(self, observation: Observation, errand: ManipulationGoal) -> bool:
+    def _recover(self, observation: Observation, goal: ManipulationGoal) -> bool:
         """After a failure: from another spot, or out of a tight corner first. False when all was tried."""
         outcome, here = observation.outcome, (observation.pose.x, observation.pose.y)
         assert outcome is not None
         if outcome.motion != "move":
             self._misses.append(here)
-            return len(self._misses) <= _TRIES and self._set_out(here, errand)
-        goal = self.follower.goal
+            return len(self._misses) <= _TRIES and self._set_out(here, goal)
+        spot = self.follower.goal
         if seat_bumped(observation):
-            if goal is not None:
-                self._misses.append(goal)
-            return len(self._misses) <= _TRIES and self._set_out(here, errand)
-        loose = self.ways.loose(here)
-        if not self._set_out(loose, errand):
+            if spot is not None:
+                self._misses.append(spot)
+            return len(self._misses) <= _TRIES and self._set_out(here, goal)
+        loose = self.routes.loose(here)
+        if not self._set_out(loose, goal):
             return False
         self.follower.take((loose, *self.follower.path))
         return True
 
     def _is_taken(self, observation: Observation) -> bool:
-        """Whether the one whom one ran into stands where one wants to."""
-        goal = self.follower.goal
-        return goal is None or self.passing.is_taken(observation, goal)
+        """Whether the body that it ran into stands where it wants to stand."""
+        spot = self.follower.goal
+        return spot is None or self.yielding.is_taken(observation, spot)
 
     def _gets_past(self, observation: Observation) -> bool:
-        """Set out round somebody; False when one has to wait for them to go."""
-        goal = self.follower.goal
-        way = self.passing.around(observation, goal) if goal is not None else ()
+        """Set out round another body; False when it has to wait for that body to go."""
+        spot = self.follower.goal
+        way = self.yielding.around(observation, spot) if spot is not None else ()
         if way:
             self.follower.take(way)
         return bool(way)
 
-    def _set_out(self, here: Vec2, errand: ManipulationGoal) -> bool:
+    def _set_out(self, here: Vec2, goal: ManipulationGoal) -> bool:
         """Take the way to a spot; False when there is none."""
-        if errand.stand is not None:
+        if goal.stand is not None:
             way = viewpoints.path_to_reach(
-                self.ways, here, (errand.stand,), _AT_M, but=self._misses, grid_m=_AT_M / 3.0
+                self.routes, here, (goal.stand,), _AT_M, but=self._misses, grid_m=_AT_M / 3.0
             )
             if way:
                 self.follower.take(way)
                 return True
-        holder = errand.holder
+        holder = goal.holder
         front = holder is not None and has_door(holder)
         for share, grid_m in _REACHES:
             reach = share * self.body.reach
-            way = viewpoints.path_to_reach(self.ways, here, errand.points, reach, holder, front, self._misses, grid_m)
+            way = viewpoints.path_to_reach(self.routes, here, goal.points, reach, holder, front, self._misses, grid_m)
             if way:
                 self.follower.take(way)
                 return True
         return False
 
     def _give_up(self, observation: Observation) -> Motion:
-        self._left_alone[self._errand] = observation.tick + self._again
+        self._left_alone[self._goal_name] = observation.tick + self._again
         self.drop()
         return Wait(seconds=2.0 if observation.holding else 0.3)
 

@@ -45,13 +45,13 @@ class Messenger:
         routes: HouseRoutes,
         follower: Follower,
         knowledge: Knowledge,
-        passing: Yielding | None,
+        yielding: Yielding | None,
     ) -> None:
-        """``passing`` is None where there is one job and no other robot, as in the paper."""
+        """``yielding`` is None where there is one job and no other robot, as in the paper."""
         self.briefing, self.routes, self.follower = briefing, routes, follower
-        self.knowledge, self.passing, self.many = knowledge, passing, passing is not None
+        self.knowledge, self.yielding, self.several = knowledge, yielding, yielding is not None
         self.kinds = {thing.id: thing.kind for thing in knowledge.things.values()}
-        self._offers: dict[tuple[str, str], MessageTiming] = {}
+        self._timings: dict[tuple[str, str], MessageTiming] = {}
         self._answers: dict[tuple[str, str], Receipt] = {}
         self.spoken_about = ("", "")
         self.target = ""
@@ -72,20 +72,20 @@ class Messenger:
             self._anew()
             self.follower.take(None)
 
-    def offers(self, job: Job, errand: str) -> MessageTiming:
+    def timing(self, job: Job, topic: str) -> MessageTiming:
         """What was said of the job's "target" or "destination"."""
-        return self._offers.setdefault((job.target, errand), MessageTiming(self.briefing, most=_MOST[errand]))
+        return self._timings.setdefault((job.target, topic), MessageTiming(self.briefing, most=_MOST[topic]))
 
     # ------------------------------------------------------------------------------------------------ what to tell of
 
     def hear(self, observation: Observation) -> None:
         """Keep the answer to what was said last."""
-        if self.many and observation.receipt is not None:
+        if self.several and observation.receipt is not None:
             self._answers[self.spoken_about] = observation.receipt
 
     def waits(self, observation: Observation, job: Job) -> bool:
         """Whether the person may still act on what they were told of this job, or was not told yet."""
-        if self.offers(job, "target").sent == 0:
+        if self.timing(job, "target").sent == 0:
             return True
         answer = self._answers.get((job.target, "target"))
         if answer is None:
@@ -93,17 +93,17 @@ class Messenger:
         patience = {"sent": _UNANSWERED_S, "shown": _UNANSWERED_S, "confirmed": _CONFIRMED_S}.get(answer.status, 0.0)
         return observation.tick < answer.tick + patience / self.briefing.tick_s
 
-    def is_due(self, observation: Observation, job: Job, errand: str = "target") -> bool:
+    def is_due(self, observation: Observation, job: Job, topic: str = "target") -> bool:
         """Whether there is reason to speak of the job, again or for the first time."""
-        key = (job.target, errand)
+        key = (job.target, topic)
         receipt = observation.receipt if self.spoken_about == key else self._answers.get(key)
-        return self.offers(job, errand).due(observation.tick, receipt)
+        return self.timing(job, topic).due(observation.tick, receipt)
 
     def is_exhausted(self, job: Job) -> bool:
         """Whether the object was spoken of as often as it may be."""
-        return self.offers(job, "target").sent >= _MOST["target"]
+        return self.timing(job, "target").sent >= _MOST["target"]
 
-    def errand(self, job: Job) -> tuple[str, Vec3]:
+    def topic(self, job: Job) -> tuple[str, Vec3]:
         """What to show now, the target or the destination, and where it is [m]."""
         target = self.knowledge.states[job.target]
         if target.held_by == HUMAN:
@@ -125,15 +125,15 @@ class Messenger:
 
     def say(self, observation: Observation, job: Job) -> Send | None:
         """The message about the job at hand, when it is time and the thing in question is near."""
-        errand, where = self.errand(job)
-        if not self.is_due(observation, job, errand):
+        topic, where = self.topic(job)
+        if not self.is_due(observation, job, topic):
             return None
         target = self.knowledge.states[job.target]
-        if errand == "destination":
+        if topic == "destination":
             message = self._destined(observation, job, target, where)
         else:
             message = self._found(observation, target)
-        return self._note(observation, job, errand, message)
+        return self._note(observation, job, topic, message)
 
     def in_view(self, observation: Observation, jobs: Sequence[Job]) -> list[Job]:
         """Those jobs whose objects are in view, in nobody's hand, and worth a word now."""
@@ -164,10 +164,10 @@ class Messenger:
         text = f"I put {kind_title(state.kind)} {place_phrase(thing.kind)}."
         return self._note(observation, job, "done", Send(text=text, object=state.id, position=state.position))
 
-    def _note(self, observation: Observation, job: Job, errand: str, message: Send | None) -> Send | None:
+    def _note(self, observation: Observation, job: Job, topic: str, message: Send | None) -> Send | None:
         if message is not None:
-            self.offers(job, errand).note(observation.tick)
-            self.spoken_about = (job.target, errand)
+            self.timing(job, topic).note(observation.tick)
+            self.spoken_about = (job.target, topic)
         return message
 
     def _found(self, observation: Observation, target: ThingState) -> Send | None:
@@ -210,12 +210,12 @@ class Messenger:
         """Walk to where the place is in range, face it, then stand aside; try another spot when it is not seen."""
         from hthor.navigation.path_follower import face
 
-        errand, where = self.errand(job)
+        topic, where = self.topic(job)
         if self.goal is None or math.dist(self.goal, where) > 0.3:
             goal, misses = self._looked.get(job.target, (where, []))
             self.goal, self.misses = where, misses if math.dist(goal, where) <= 0.3 else []
             self._route(observation, where)
-        elif self.aside == errand and self.is_due(observation, job, errand):
+        elif self.aside == topic and self.is_due(observation, job, topic):
             self.aside = ""
             self._route(observation, where)
         elif observation.outcome is not None and observation.outcome.motion == "move" and not observation.outcome.ok:
@@ -227,12 +227,12 @@ class Messenger:
         turn = face(observation.pose, where, body.eye, body.pitch_limit)
         if turn is not None:
             return turn
-        unsaid = self.is_due(observation, job, errand) if self.many else self.offers(job, errand).sent == 0
+        unsaid = self.is_due(observation, job, topic) if self.several else self.timing(job, topic).sent == 0
         if unsaid and len(self.misses) < 2 * _LOOKS:
             self.misses.append((observation.pose.x, observation.pose.y))
             self._route(observation, where)
             return self.follower.next(observation.pose) or Wait(seconds=0.5)
-        return self.stand_aside(observation, where, errand)
+        return self.stand_aside(observation, where, topic)
 
     def _route(self, observation: Observation, where: Vec3) -> None:
         here = (observation.pose.x, observation.pose.y)
@@ -241,8 +241,8 @@ class Messenger:
     def _reroute(self, observation: Observation, where: Vec3) -> None:
         """Stopped on the way: go round whoever stands there, or step back from a corner that was cut too close."""
         here, goal = (observation.pose.x, observation.pose.y), self.follower.goal
-        if self.passing is not None and goal is not None:
-            way = self.passing.around(observation, goal)
+        if self.yielding is not None and goal is not None:
+            way = self.yielding.around(observation, goal)
             if way:
                 self.follower.take(way)
                 return
@@ -250,11 +250,11 @@ class Messenger:
         via = self.routes.around(here, where, people) if people else self.routes.clear(here)
         self.follower.take((via, *self.routes.to_view(via, where, self.misses)))
 
-    def stand_aside(self, observation: Observation, where: Vec3, errand: str) -> Motion:
+    def stand_aside(self, observation: Observation, where: Vec3, topic: str) -> Motion:
         """Go where it is in nobody's way, once."""
-        if self.aside == errand:
+        if self.aside == topic:
             return Wait(seconds=0.5)
-        self.aside = errand
+        self.aside = topic
         here = (observation.pose.x, observation.pose.y)
         self.follower.take(self.routes.retreat(here, (where[0], where[1]), ASIDE_M))
         return self.follower.next(observation.pose) or Wait(seconds=0.5)

@@ -34,15 +34,15 @@ class MultiObjectFrontier:
         self.briefing, self.jobs = briefing, briefing.todo
         self.seen = ObservedKnowledge()
         self.explorer = Explorer(briefing.body)
-        ways = ObservedRoutes(self.explorer)
+        routes = ObservedRoutes(self.explorer)
         self.courtesy = Courtesy(briefing.body, self.explorer.fits)
-        self.passing = Yielding(briefing, ways)
-        self.worker = Manipulator(briefing.body, ways, self.passing, briefing.tick_s)
-        self.crew = TaskAllocation(briefing, lambda here, place: math.dist(here, place[:2]))
-        self.hauler = Carrier(briefing, ways, self.worker, self.crew, waits=False)
+        self.yielding = Yielding(briefing, routes)
+        self.manipulator = Manipulator(briefing.body, routes, self.yielding, briefing.tick_s)
+        self.allocation = TaskAllocation(briefing, lambda here, place: math.dist(here, place[:2]))
+        self.carrier = Carrier(briefing, routes, self.manipulator, self.allocation, waits=False)
         self.mine: Job | None = None
         self.placing: Place | None = None
-        self._offers: dict[str, MessageTiming] = {}
+        self._timings: dict[str, MessageTiming] = {}
         self._answers: dict[str, Receipt] = {}
         self._spoken = ""
 
@@ -50,7 +50,7 @@ class MultiObjectFrontier:
         """Look, tell, and go on."""
         self.explorer.see(observation)
         self.seen.note(observation)
-        self.crew.see(observation, self.seen)
+        self.allocation.see(observation, self.seen)
         if observation.receipt is not None:
             self._answers[self._spoken] = observation.receipt
         if observation.idle:
@@ -60,26 +60,26 @@ class MultiObjectFrontier:
         if not observation.idle:
             return Action(say=say)
         motion = self._motion(observation)
-        self.passing.note(observation, motion)
+        self.yielding.note(observation, motion)
         self.placing = motion if isinstance(motion, Place) else None
         return Action(motion=motion, say=say)
 
     def _motion(self, observation: Observation) -> Motion:
-        if self.mine is not None and self.mine.hands > 1 and self.hauler.is_close(observation, self.seen, self.mine):
+        if self.mine is not None and self.mine.hands > 1 and self.carrier.is_close(observation, self.seen, self.mine):
             self.explorer.drop()
-            return self.hauler.motion(observation, self.seen, self.mine)
-        yielding = self.passing.refuge(observation)
-        if yielding is None:
-            yielding = self.courtesy.motion(observation, observation.tick * self.briefing.tick_s)
-        if yielding is None:
-            yielding = self.passing.motion(observation)
-        if yielding is not None:
-            return yielding
+            return self.carrier.motion(observation, self.seen, self.mine)
+        aside = self.yielding.refuge(observation)
+        if aside is None:
+            aside = self.courtesy.motion(observation, observation.tick * self.briefing.tick_s)
+        if aside is None:
+            aside = self.yielding.motion(observation)
+        if aside is not None:
+            return aside
         motion = None
         if self.mine is not None and self.mine.hands > 1:
-            motion = self.hauler.motion(observation, self.seen, self.mine)
+            motion = self.carrier.motion(observation, self.seen, self.mine)
         elif self.mine is not None:
-            motion = self.worker.motion(observation, self.seen, self.mine)
+            motion = self.manipulator.motion(observation, self.seen, self.mine)
         elif "open" in self.briefing.body.capabilities and self._missing():
             motion = self._open(observation)
         if motion is None:
@@ -97,12 +97,12 @@ class MultiObjectFrontier:
         mine = [job for job in self.jobs if self._can(observation, job)]
         if self.mine in mine:
             return self.mine
-        self.worker.drop()
+        self.manipulator.drop()
         return mine[0] if mine else None
 
     def _can(self, observation: Observation, job: Job) -> bool:
         state = self._waits(job)
-        if state is None or job.relation == "find" or not self.worker.can_try(job.target, observation.tick):
+        if state is None or job.relation == "find" or not self.manipulator.can_try(job.target, observation.tick):
             return False
         shut = self.seen.is_shut(state.support)
         return can_do(self.briefing.body, state.kind, job, shut) and (job.hands > 1 or bool(self.seen.bearers(job)))
@@ -120,14 +120,15 @@ class MultiObjectFrontier:
         if placed is not None and outcome.motion == "place" and outcome.ok:
             self.seen.put(job.target, placed)
             if not self.seen.is_done(job):
-                self.worker.leave(job.target, observation.tick + round(_LATER_S / self.briefing.tick_s))
-        elif not observation.holding and not self.worker.can_try(job.target, observation.tick):
+                self.manipulator.leave(job.target, observation.tick + round(_LATER_S / self.briefing.tick_s))
+        elif not observation.holding and not self.manipulator.can_try(job.target, observation.tick):
             self.seen.forget(job.target)
 
     def _open(self, observation: Observation) -> Motion | None:
         """Look into what is shut, while something is still missing."""
         return next(
-            (motion for thing in self.seen.shut() if (motion := self.worker.open(observation, thing)) is not None), None
+            (motion for thing in self.seen.shut() if (motion := self.manipulator.open(observation, thing)) is not None),
+            None,
         )
 
     def _missing(self) -> list[Job]:
@@ -174,11 +175,11 @@ class MultiObjectFrontier:
         return None
 
     def _is_due(self, observation: Observation, name: str) -> bool:
-        offers = self._offers.setdefault(name, MessageTiming(self.briefing, most=_MOST))
-        return offers.due(observation.tick, self._answers.get(name))
+        timing = self._timings.setdefault(name, MessageTiming(self.briefing, most=_MOST))
+        return timing.due(observation.tick, self._answers.get(name))
 
     def _note(self, observation: Observation, name: str, text: str, about: str, position: Vec3) -> Send:
-        self._offers[name].note(observation.tick)
+        self._timings[name].note(observation.tick)
         self._spoken = name
         return Send(text=text, object=about, position=position)
 

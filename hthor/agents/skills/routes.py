@@ -43,7 +43,7 @@ class HouseRoutes:
     def __init__(self, house: HouseSpec, body: BodySpec) -> None:
         self.house, self.body = house, body
         self.space = FreeSpace.of(house, body.radius, body.height)
-        self.ways = house_geodesics(house, body.radius, body.height)
+        self.geodesics = house_geodesics(house, body.radius, body.height)
         self._beside = functools.lru_cache(maxsize=256)(self.space.nearest_free)
         self._near = functools.lru_cache(maxsize=256)(self._walk)
 
@@ -63,12 +63,12 @@ class HouseRoutes:
 
     def lengths(self, here: Vec2, spots: Sequence[Vec2]) -> list[float]:
         """Lengths [m] of the shortest ways to free spots; inf where there is none."""
-        lengths: list[float] = self.ways.distances(self.space.nearest_free(*here), spots).tolist()
+        lengths: list[float] = self.geodesics.distances(self.space.nearest_free(*here), spots).tolist()
         return lengths
 
     def way(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
         """The shortest way from where the body stands to a free spot; () when there is none."""
-        return self.ways.path(self.space.nearest_free(*here), spot)
+        return self.geodesics.path(self.space.nearest_free(*here), spot)
 
     def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
         """A short way with room for something broad to be drawn along, or else the shortest way; () for none."""
@@ -95,14 +95,14 @@ class HouseRoutes:
 
     def apart(self, here: Vec2, place: Vec3) -> float:
         """The same as `near`, quick for few places and bodies that come from ever different sides."""
-        return self.ways.distance(self._beside(place[0], place[1]), self.space.nearest_free(*here))
+        return self.geodesics.distance(self._beside(place[0], place[1]), self.space.nearest_free(*here))
 
     def near(self, a: Vec2, place: Vec3) -> float:
         """Walking distance [m] between the free places nearest to ``a`` and to ``place``."""
         return self._near(a[0], a[1], place[0], place[1])
 
     def _walk(self, x: float, y: float, px: float, py: float) -> float:
-        return self.ways.distance(self.space.nearest_free(x, y), self._beside(px, py))
+        return self.geodesics.distance(self.space.nearest_free(x, y), self._beside(px, py))
 
     def same_room(self, a: Vec2, place: Vec3) -> bool:
         """Whether both lie in one room; so nothing but furniture can be between them."""
@@ -132,12 +132,12 @@ class HouseRoutes:
             if self.space.segment_free(here, spot) and _passes(here, spot, (person[0], person[1]), radius - 0.1):
                 spots.append(spot)
         goal = self.space.nearest_free(place[0], place[1])
-        return min(spots, key=lambda spot: math.dist(here, spot) + self.ways.distance(goal, spot), default=here)
+        return min(spots, key=lambda spot: math.dist(here, spot) + self.geodesics.distance(goal, spot), default=here)
 
     def retreat(self, here: Vec2, point: Vec2, apart_m: float) -> tuple[Vec2, ...]:
         """The way to a spot where the body is in nobody's way, ``apart_m`` metres from ``point``; () to stay."""
         spot = park(self.space.free, self.space.origin, self.space.cell, here, point, apart_m)
-        return () if spot is None else self.ways.path(here, spot)
+        return () if spot is None else self.geodesics.path(here, spot)
 
     def to_view(self, here: Vec2, place: Vec3, but: Sequence[Vec2] = ()) -> tuple[Vec2, ...]:
         """The shortest way to a spot from which ``place`` is within range in the same room, () when there is none.
@@ -148,11 +148,11 @@ class HouseRoutes:
         spots = self._spots(place, but)
         if not len(spots):
             return ()
-        lengths = self.ways.distances(here, spots)
+        lengths = self.geodesics.distances(here, spots)
         best = int(np.argmin(lengths))
         if not math.isfinite(lengths[best]):
             return ()
-        return self.ways.path(here, (float(spots[best][0]), float(spots[best][1])))
+        return self.geodesics.path(here, (float(spots[best][0]), float(spots[best][1])))
 
     def _spots(self, place: Vec3, but: Sequence[Vec2]) -> np.ndarray:
         """(N, 2) middles of free cells from which the eye is within range; the nearest ones when none is."""

@@ -37,7 +37,7 @@ class Routes(Protocol):
 
 
 def path_to_reach(
-    ways: Routes,
+    routes: Routes,
     here: Vec2,
     points: Sequence[Vec3],
     reach: float,
@@ -56,15 +56,15 @@ def path_to_reach(
     """
     spots = [
         spot
-        for spot in ways.standing(_lattice(tuple(points), reach, grid_m))
+        for spot in routes.standing(_lattice(tuple(points), reach, grid_m))
         if not (front and holder is not None and not _in_front(holder, spot, reach))
         and all(math.dist(spot, miss) > _MISS_M for miss in but)
     ]
-    return _first(ways, here, spots, points, holder)
+    return _first(routes, here, spots, points, holder)
 
 
 def closest_thing(
-    ways: Routes, here: Vec2, things: Sequence[Thing], over: Callable[[Thing], Sequence[Vec3]], reach: float
+    routes: Routes, here: Vec2, things: Sequence[Thing], over: Callable[[Thing], Sequence[Vec3]], reach: float
 ) -> Thing:
     """The thing with the shortest `route` to points ``over`` it; of equals, or when there is no way, by id.
 
@@ -73,14 +73,14 @@ def closest_thing(
     looked = []
     for thing in things:
         points = over(thing)
-        spots = ways.standing(_lattice(tuple(points), reach, _GRID_M))
+        spots = routes.standing(_lattice(tuple(points), reach, _GRID_M))
         looked.append((_least(here, spots), thing.id, thing, points, spots))
-    crow = ways.stands(here)  # or else the way begins elsewhere
+    crow = routes.stands(here)  # or else the way begins elsewhere
     best, answer = (math.inf, ""), things[0]
     for least, id, thing, points, spots in sorted(looked, key=lambda one: one[:2]):
         if crow and least > best[0] + _SLACK_M:
             break
-        way = _first(ways, here, spots, points, thing)
+        way = _first(routes, here, spots, points, thing)
         far = (path_length(way) if way else math.inf, id)
         if best[1] == "" or far < best:
             best, answer = far, thing
@@ -93,19 +93,19 @@ def path_length(way: Sequence[Vec2]) -> float:
 
 
 def _first(
-    ways: Routes, here: Vec2, spots: Sequence[Vec2], points: Sequence[Vec3], holder: Thing | None
+    routes: Routes, here: Vec2, spots: Sequence[Vec2], points: Sequence[Vec3], holder: Thing | None
 ) -> tuple[Vec2, ...]:
     """The way to the nearest spot from which the point nearest to it can be got at; () when there is none."""
-    lengths = ways.lengths(here, spots) if spots else ()
+    lengths = routes.lengths(here, spots) if spots else ()
     plan = np.array([point[:2] for point in points])
     order = sorted((round(length, 6), number) for number, length in enumerate(lengths) if math.isfinite(length))
     for _, number in order:
         spot = spots[number]
         point = nearest_point(_few(points, plan, spot), spot)
-        if ways.open_to(spot, point[:2] if holder is None else nearest_outline_point(holder, spot)) and ways.sees(
+        if routes.open_to(spot, point[:2] if holder is None else nearest_outline_point(holder, spot)) and routes.sees(
             spot, point
         ):
-            return ways.way(here, spot)
+            return routes.way(here, spot)
     return ()
 
 

@@ -30,8 +30,8 @@ class Yielding:
     `hthor.navigation.yielding`.
     """
 
-    def __init__(self, briefing: Briefing, ways: Routes) -> None:
-        self.seat, self.ways, self.tick_s = briefing.seat, ways, briefing.tick_s
+    def __init__(self, briefing: Briefing, routes: Routes) -> None:
+        self.seat, self.routes, self.tick_s = briefing.seat, routes, briefing.tick_s
         self.bodies = {briefing.seat: briefing.body, **briefing.crew}
         self.radius = briefing.body.radius
         self._along: Vec2 = (0.0, 0.0)
@@ -70,7 +70,7 @@ class Yielding:
             self._bumps = [when for when in self._bumps if seconds - when < _OFTEN_S] + [seconds]
         if len(self._bumps) >= _BUMPS and seconds >= self._waited:
             person = self.place(observation, HUMAN) or _here(observation)
-            self._follower.take(self.ways.retreat(_here(observation), person, _APART_M))
+            self._follower.take(self.routes.retreat(_here(observation), person, _APART_M))
             self._waited, self._bumps = seconds + _REFUGE_S, []
         if seconds >= self._waited:
             return None
@@ -124,13 +124,15 @@ class Yielding:
         spots = [
             spot
             for spot in (*_ring(other, apart), *_ring(other, 1.5 * apart))
-            if self.ways.stands(spot) and self.ways.fits(here, spot) and _misses(here, spot, other, apart - _BESIDE_M)
+            if self.routes.stands(spot)
+            and self.routes.fits(here, spot)
+            and _misses(here, spot, other, apart - _BESIDE_M)
         ]
         if not spots:
             return ()
-        left = self.ways.lengths(goal, spots)
+        left = self.routes.lengths(goal, spots)
         best = min(range(len(spots)), key=lambda k: (math.dist(here, spots[k]) + left[k], k))
-        return (spots[best], *self.ways.way(spots[best], goal)) if math.isfinite(left[best]) else ()
+        return (spots[best], *self.routes.way(spots[best], goal)) if math.isfinite(left[best]) else ()
 
     def is_taken(self, observation: Observation, spot: Vec2) -> bool:
         """Whether the body that is in the way stands where one wants to."""
@@ -146,7 +148,7 @@ class Yielding:
         for spot in _ring(here, _STEP_M):
             dx, dy = spot[0] - other[0], spot[1] - other[1]
             score = math.hypot(dx, dy) + _SIDEWAYS * abs(ux * dy - uy * dx) if ux * dx + uy * dy > 0.5 * apart else 0.0
-            if score > most + 1e-9 and self.ways.stands(spot) and self.ways.fits(here, spot):
+            if score > most + 1e-9 and self.routes.stands(spot) and self.routes.fits(here, spot):
                 best, most = spot, score
         return best
 
