@@ -137,9 +137,9 @@ def test_an_agent_is_the_same_wherever_it_lies_and_whatever_holds_it(tmp_path: P
 def test_libraries_and_this_package_are_no_part_of_an_agent_beside_them(tmp_path: Path) -> None:
     path = write(tmp_path / "a", top="import numpy, hthor.navigation")
     (tmp_path / "a" / "venv").mkdir()
-    grounds = Guest(path).grounds
+    paths = Guest(path).paths
     inside = AgentPaths(root="/home/me", base="/home/me", apart=("/home/me/.venv",))
-    assert grounds.name(str(path)) == "agent.py"
+    assert paths.name(str(path)) == "agent.py"
     assert inside.name("/home/me/.venv/lib/numpy/__init__.py") is None
     assert inside.name("/home/me/x/y.py") == "x/y.py"
     assert inside.name("/home/you/y.py") is None
@@ -210,10 +210,10 @@ def test_scanning_never_leaves_the_agents_folder(tmp_path: Path, words: list[str
 def test_claims_about_files_that_are_not_the_agents_are_not_believed(tmp_path: Path) -> None:
     path = write(tmp_path / "a")
     (tmp_path / "secret").write_text("")
-    grounds = Guest(path).grounds
+    paths = Guest(path).paths
     known = manifest.make_manifest("a", "a.py", {}, ())
     told = ("../secret", "../../etc/passwd", "/etc/passwd", "agent.py", "absent", "./agent.py", "")
-    assert [file.path for file in agent_files.unlisted_files(told, known, grounds)] == ["agent.py"]
+    assert [file.path for file in agent_files.unlisted_files(told, known, paths)] == ["agent.py"]
 
 
 def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Path) -> None:
@@ -227,10 +227,10 @@ def test_a_program_is_its_command_and_the_files_that_its_texts_name(tmp_path: Pa
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     mind = Guest(f"cmd:sh {tmp_path / 'mind.sh'}")
-    first = agent_files.list_files(mind.reference, AgentInputs(), mind.grounds, ())
+    first = agent_files.list_files(mind.reference, AgentInputs(), mind.paths, ())
     assert [file.path for file in first] == ["lib/common.sh", "mind.sh", "tool.pl", "weights.bin"]
     (tmp_path / "weights.bin").write_text("2")
-    assert agent_files.list_files(mind.reference, AgentInputs(), mind.grounds, ()) != first
+    assert agent_files.list_files(mind.reference, AgentInputs(), mind.paths, ()) != first
 
 
 ARGS = """

@@ -74,7 +74,7 @@ def check_agent(
         (first,) = rehearsal.play(guest, [rehearsal.a])
         known = character.manifest
         opened = guest.take_opened()
-        later = agent_files.unlisted_files(opened, known, guest.grounds, guest.reference.path) if known else ()
+        later = agent_files.unlisted_files(opened, known, guest.paths, guest.reference.path) if known else ()
     findings = [
         criteria.check_loading(load_s, character),
         criteria.check_files(character, later),

@@ -59,7 +59,7 @@ def check_opened_files(
         used = {file for record in records for file in (record.files or {}).get(seat, ())}
         if used:
             try:
-                grounds = Guest(mind, config=guests).grounds
+                grounds = Guest(mind, config=guests).paths
                 agent_files.check_hashes(sorted(used), grounds, since="since trials of this run were played with it")
             except AgentError as error:
                 raise AgentError(f"{error} --out FOLDER gives it one.") from None

@@ -212,7 +212,7 @@ def hidden(options: RunOptions) -> tuple[str, ...]:
 
 
 def _crews(
-    options: RunOptions, chosen: TaskSelection, detector: str, camera: str, guests: GuestConfig
+    options: RunOptions, chosen: TaskSelection, detector: str, camera: str, guests: GuestConfig | None = None
 ) -> list[RobotTeam]:
     """Who is evaluated, one run each."""
     if options.robots:

@@ -145,15 +145,15 @@ class TrialRunner:
         """See that the agents' files are the ones that the run began with."""
         for seat, mind in company.minds.items():
             if isinstance(mind, RecordedAgent) and seat in self._sources.manifests:
-                agent_files.check_unchanged(self._sources.manifests[seat], mind.mind.grounds)
-                agent_files.check_hashes(self._seen.get(seat, ()), mind.mind.grounds)
+                agent_files.check_unchanged(self._sources.manifests[seat], mind.mind.paths)
+                agent_files.check_hashes(self._seen.get(seat, ()), mind.mind.paths)
 
     def _opened(self, company: Participants) -> dict[str, tuple[File, ...]]:
         """What agents opened of their own in the trial that was played, and no manifest lists."""
         found: dict[str, tuple[File, ...]] = {}
         for seat, mind in company.minds.items():
             if isinstance(mind, RecordedAgent) and seat in self._sources.manifests:
-                known, grounds = self._sources.manifests[seat], mind.mind.grounds
+                known, grounds = self._sources.manifests[seat], mind.mind.paths
                 if files := agent_files.unlisted_files(
                     mind.mind.take_opened(), known, grounds, mind.mind.reference.path
                 ):
@@ -190,7 +190,7 @@ class TrialRunner:
         guest = make() if step_limit_s is None else make(step_s=step_limit_s, bank_s=0.0)
         known = self._sources.manifests.get(seat.seat)
         if known is not None:
-            agent_files.check_unchanged(known, guest.grounds)
+            agent_files.check_unchanged(known, guest.paths)
         try:
             changed = guest.load().sha256 != seat.agent.sha256
         except Unreachable:  # a server that is gone for a while costs its trials, not the run

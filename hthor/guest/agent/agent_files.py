@@ -24,7 +24,7 @@ _MOST_READABLE = 20_000
 
 
 def list_files(
-    agent: AgentReference, given: AgentInputs, grounds: AgentPaths, opened: Iterable[str]
+    agent: AgentReference, inputs: AgentInputs, paths: AgentPaths, opened: Iterable[str]
 ) -> tuple[File, ...]:
     """The files of an agent, with their hashes, sorted.
 
@@ -35,15 +35,14 @@ def list_files(
         AgentError: when a file cannot be read.
     """
     first = [str(path) for path in _first(agent)]
-    first += [value for value in given.args.values() if os.path.isabs(value) and os.path.isfile(value)]
-    first += [str(path) for path in _real(opened, grounds)]
+    first += [value for value in inputs.args.values() if os.path.isabs(value) and os.path.isfile(value)]
+    first += [str(path) for path in _real(opened, paths)]
     hidden = _hidden(agent.root, agent.path)
-    named = {path for path in source_scan.referenced_files(first, grounds) if not _below_any(path, hidden)}
-    paths = {*named, *_readable(grounds)}
-    return tuple(sorted({_file(path, grounds) for path in paths}))
+    named = {path for path in source_scan.referenced_files(first, paths) if not _below_any(path, hidden)}
+    return tuple(sorted({_file(path, paths) for path in {*named, *_readable(paths)}}))
 
 
-def unlisted_files(names: Iterable[str], known: Manifest, grounds: AgentPaths, agent: str = "") -> tuple[File, ...]:
+def unlisted_files(names: Iterable[str], known: Manifest, paths: AgentPaths, agent: str = "") -> tuple[File, ...]:
     """Files that an agent has opened and that are not in its manifest.
 
     Args:
@@ -52,12 +51,12 @@ def unlisted_files(names: Iterable[str], known: Manifest, grounds: AgentPaths, a
     Raises:
         AgentError: when one of them cannot be read.
     """
-    new = list(_real(set(names) - {file.path for file in known.files}, grounds))
-    hidden = _hidden(grounds.root, agent) if new else []
-    return tuple(sorted({_file(str(path), grounds) for path in new if not _below_any(str(path), hidden)}))
+    new = list(_real(set(names) - {file.path for file in known.files}, paths))
+    hidden = _hidden(paths.root, agent) if new else []
+    return tuple(sorted({_file(str(path), paths) for path in new if not _below_any(str(path), hidden)}))
 
 
-def check_unchanged(known: Manifest, grounds: AgentPaths) -> None:
+def check_unchanged(known: Manifest, paths: AgentPaths) -> None:
     """See that an agent's files are as they were when its run began.
 
     Raises:
@@ -66,21 +65,21 @@ def check_unchanged(known: Manifest, grounds: AgentPaths) -> None:
     if known.claimed:
         return
     held = {file.path: file for file in known.files}
-    for path in _readable(grounds):
-        name = grounds.name(path)
+    for path in _readable(paths):
+        name = paths.name(path)
         if name is not None and name not in held:
             raise AgentError(change_message(path, "is new: it was not there when its run began"))
-    check_hashes(held.values(), grounds)
+    check_hashes(held.values(), paths)
 
 
-def check_hashes(files: Iterable[File], grounds: AgentPaths, *, since: str = "while its run was going on") -> None:
+def check_hashes(files: Iterable[File], paths: AgentPaths, *, since: str = "while its run was going on") -> None:
     """See that these files are as their hashes say.
 
     Raises:
         AgentError: names the first that is not.
     """
     for file in files:
-        path = grounds.find(file.path)
+        path = paths.find(file.path)
         try:
             same = digests.hash_file(path)[0] == file.sha256
         except OSError:
@@ -104,17 +103,17 @@ def _first(agent: AgentReference) -> list[Path]:
     return [Path(agent.path)]
 
 
-def _real(names: Iterable[str], grounds: AgentPaths) -> Iterator[Path]:
+def _real(names: Iterable[str], paths: AgentPaths) -> Iterator[Path]:
     """The files of these names, without what is no file of the agent's, whoever claims that."""
     for name in sorted(set(names)):
-        path = grounds.find(name)
-        if grounds.name(str(path)) == name and path.is_file():
+        path = paths.find(name)
+        if paths.name(str(path)) == name and path.is_file():
             yield path
 
 
-def _readable(grounds: AgentPaths) -> Iterator[str]:
+def _readable(paths: AgentPaths) -> Iterator[str]:
     """Every file that the user lets the agent read beyond its own folder."""
-    for place in grounds.readable:
+    for place in paths.readable:
         if os.path.isfile(place):
             yield place
             continue
@@ -145,8 +144,8 @@ def _below_any(path: str, folders: Iterable[str]) -> bool:
     return any(Path(path).is_relative_to(folder) for folder in folders)
 
 
-def _file(path: str, grounds: AgentPaths) -> File:
-    name = grounds.name(path) or f"../{os.path.basename(path)}"
+def _file(path: str, paths: AgentPaths) -> File:
+    name = paths.name(path) or f"../{os.path.basename(path)}"
     try:
         sha256, size = digests.hash_file(Path(path))
     except OSError as error:

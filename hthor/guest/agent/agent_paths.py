@@ -57,7 +57,7 @@ class AgentPaths(Struct, frozen=True, kw_only=True):
 
 
 def find_agent_paths(agent: AgentReference, readable: tuple[str, ...] = ()) -> AgentPaths:
-    """The grounds of an agent."""
+    """The paths of an agent."""
     root = agent.root
     base = root
     if agent.module and any(_below(root, folder) for folder in _libraries()):

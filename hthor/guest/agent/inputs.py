@@ -21,7 +21,7 @@ class AgentInputs(Struct, frozen=True, kw_only=True):
     args: dict[str, str] = {}
     readable: tuple[str, ...] = ()
 
-    def beyond(self, agent: AgentReference) -> tuple[str, ...]:
+    def extra_paths(self, agent: AgentReference) -> tuple[str, ...]:
         """What this agent may read that does not lie in its own folder.
 
         Raises:

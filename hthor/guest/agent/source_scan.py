@@ -21,7 +21,7 @@ _DEEPEST = 3
 """Folders within folders whose names a source gives one by one."""
 
 
-def referenced_files(first: Iterable[str], grounds: AgentPaths) -> set[str]:
+def referenced_files(first: Iterable[str], paths: AgentPaths) -> set[str]:
     """These files, and every file of the agent's own that they name, and so on. All paths are absolute."""
     found: set[str] = set()
     left = sorted(set(first))
@@ -30,12 +30,12 @@ def referenced_files(first: Iterable[str], grounds: AgentPaths) -> set[str]:
         if path in found:
             continue
         found.add(path)
-        if grounds.owns(path):
-            left += sorted({*_named(path, grounds)} - found)
+        if paths.owns(path):
+            left += sorted({*_named(path, paths)} - found)
     return found
 
 
-def _named(path: str, grounds: AgentPaths) -> Iterator[str]:
+def _named(path: str, paths: AgentPaths) -> Iterator[str]:
     try:
         if os.path.getsize(path) > _MOST_BYTES:
             return
@@ -48,8 +48,8 @@ def _named(path: str, grounds: AgentPaths) -> Iterator[str]:
         words, modules = {word.decode() for word in _WORD.findall(data)} if b"\0" not in data[:4096] else set(), set()
     folder = os.path.dirname(path)
     for level, name in sorted(modules):
-        yield from _modules(level, name, folder, grounds)
-    yield from _files(words, os.path.splitext(path)[1], (grounds.root, folder), grounds)
+        yield from _modules(level, name, folder, paths)
+    yield from _files(words, os.path.splitext(path)[1], (paths.root, folder), paths)
 
 
 def _python(data: bytes) -> tuple[set[str], set[tuple[int, str]]]:
@@ -73,9 +73,9 @@ def _python(data: bytes) -> tuple[set[str], set[tuple[int, str]]]:
     return words, modules
 
 
-def _modules(level: int, name: str, folder: str, grounds: AgentPaths) -> Iterator[str]:
+def _modules(level: int, name: str, folder: str, paths: AgentPaths) -> Iterator[str]:
     """Files that an import reads: the module's and those of the packages around it."""
-    base = grounds.root
+    base = paths.root
     if level:
         base = folder
         for _ in range(level - 1):
@@ -84,11 +84,11 @@ def _modules(level: int, name: str, folder: str, grounds: AgentPaths) -> Iterato
     for depth in range(len(parts) + 1):
         stem = os.path.join(base, *parts[:depth])
         for path in (os.path.join(stem, "__init__.py"), f"{stem}.py"):
-            if (depth or level) and grounds.owns(path) and os.path.isfile(path):
+            if (depth or level) and paths.owns(path) and os.path.isfile(path):
                 yield path
 
 
-def _files(words: Iterable[str], suffix: str, bases: Iterable[str], grounds: AgentPaths) -> Iterator[str]:
+def _files(words: Iterable[str], suffix: str, bases: Iterable[str], paths: AgentPaths) -> Iterator[str]:
     """Files that are named, in these folders or in folders of theirs that are named too."""
     usable = sorted(word for word in words if word and len(word) <= _LONGEST and "\0" not in word and "\n" not in word)
     folders = set(bases)
@@ -99,7 +99,7 @@ def _files(words: Iterable[str], suffix: str, bases: Iterable[str], grounds: Age
         for base in sorted(fresh):
             for word in usable:
                 path = os.path.normpath(os.path.join(base, word))
-                if not grounds.owns(path):
+                if not paths.owns(path):
                     continue
                 if os.path.isdir(path):
                     folders.add(path)

@@ -1,4 +1,4 @@
-"""One trial of a Python agent on the guest's side."""
+"""One trial of a Python agent: observations in, actions out."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from hthor.types import Action, Message
 def run_trial(
     pipe: HostConnection, make: Callable[[], Any], order: wire.Begin, recorder: FileRecorder | None = None
 ) -> None:
-    """One trial. A failure is the agent's last word; the host then ends the process.
+    """Run one trial. After a failure, which is reported, the host ends the process.
 
     Args:
-        make: gives a new agent. recorder: what has taken down the files that it opens, if anything has.
+        make: returns a new agent. recorder: records the files that it opens; None for no record.
     """
     try:
         agent = make()

@@ -1,6 +1,6 @@
-"""How a held process becomes an agent's program, in any language.
+"""Turns a confined process into an agent's program, in any language.
 
-The program finds the wire at its standard input and output, and what it writes to standard error is its log.
+The program reads messages from standard input and writes them to standard output; standard error is its log.
 """
 
 from __future__ import annotations
@@ -20,11 +20,12 @@ _MOST_FOLDERS = 1000
 
 
 def exec_program(words: Sequence[str], folder: str, pipes: tuple[int, int], shared: int, word: bytes) -> NoReturn:
-    """Start it in this process's place.
+    """Replace this process by the program.
 
     Args:
-        folder: where. pipes: from the host and to it. shared: the frames' memory, -1 for none.
-        word: what the filter of system calls waits for, empty where there is none.
+        words: the program and its arguments. folder: its working folder.
+        pipes: from the host and to it. shared: the shared memory for pictures, -1 for none.
+        word: the token that the system call filter demands, empty where there is no filter.
 
     Raises:
         Refused: when it cannot be started.
@@ -41,7 +42,7 @@ def exec_program(words: Sequence[str], folder: str, pipes: tuple[int, int], shar
         if held >= 0:
             os.dup2(held, _FRAMES)
             env[shared_frames.VARIABLE] = str(_FRAMES)
-        for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores them, and a program would inherit that
+        for number in (signal.SIGPIPE, signal.SIGXFSZ):  # ignored by Python, which the program would inherit
             signal.signal(number, signal.SIG_DFL)
         if word:
             seccomp.exec_with_token(words, env, word)
@@ -51,9 +52,9 @@ def exec_program(words: Sequence[str], folder: str, pipes: tuple[int, int], shar
 
 
 def _has_compiled(folder: str) -> bool:
-    """Whether modules lie there compiled, which a Python program would believe whatever their sources say now.
+    """Whether the folder has compiled modules, which a Python program would use even if their sources have changed.
 
-    Then it compiles all that it imports, which takes libraries a second; where nothing is compiled they need not.
+    Then the program must compile all that it imports itself, which takes libraries about a second.
     """
     for count, (_, inner, _) in enumerate(os.walk(folder)):
         if "__pycache__" in inner or count > _MOST_FOLDERS:

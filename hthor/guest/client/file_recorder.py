@@ -1,7 +1,7 @@
-"""Takes down which of its own files an agent opens, in the agent's own process; hashes nothing and believes nothing.
+"""Records which of its own files an agent opens, in the agent's own process.
 
-An agent could keep this from seeing what it does, and libraries in C open files unseen. So the host hashes the files
-itself, adds those that the sources name, and of a submission all that was handed in.
+An agent can evade this, and libraries in C open files unseen. So the host hashes the files itself and adds those that
+the sources name; of a submission, everything that was handed in counts.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from typing import Any
 from hthor.guest.agent.agent_paths import AgentPaths
 
 BATCH_BYTES = 16 << 10
-"""Bytes of names in one message; the rest goes with later ones."""
+"""Bytes of names in one message; the rest follow in later ones."""
 
 
 class UnprintableName(PermissionError):
-    """A file of the agent's own that no manifest can list, and that it may not open for that."""
+    """A file of the agent's own that it may not open, because no manifest can list its name."""
 
 
 class FileRecorder:
     """Every file of the agent's own that was opened for reading since `start`, each named once."""
 
-    def __init__(self, grounds: AgentPaths) -> None:
-        self._grounds = grounds
+    def __init__(self, paths: AgentPaths) -> None:
+        self._paths = paths
         self._seen: set[str] = set()
         self._fresh: list[str] = []
         self._readers: dict[str, Callable[[Any], object]] = {
@@ -40,16 +40,16 @@ class FileRecorder:
         }
 
     def start(self) -> None:
-        """Listen from now on, as long as this process lives."""
+        """Record from now on, as long as this process lives."""
         sys.addaudithook(self._hear)
 
     @property
     def waiting(self) -> bool:
-        """Whether there are names that were not taken yet."""
+        """Whether there are names that have not been taken."""
         return bool(self._fresh)
 
     def take(self) -> tuple[str, ...]:
-        """Names that were not taken yet, as many as fit into a message."""
+        """Names that have not been taken, as many as fit into a message."""
         if not self._fresh:
             return ()
         size, count = 0, 0
@@ -68,7 +68,7 @@ class FileRecorder:
                 read(args)
             except UnprintableName:
                 raise
-            except Exception:  # an agent's own odd arguments are for the call itself to refuse
+            except Exception:  # odd arguments are for the call itself to refuse
                 return
 
     def _open(self, args: Any) -> None:
@@ -87,7 +87,7 @@ class FileRecorder:
         if text in self._seen:
             return
         self._seen.add(text)
-        name = self._grounds.name(text)
+        name = self._paths.name(text)
         if name is None or not os.path.isfile(text):
             return
         if not name.isprintable():

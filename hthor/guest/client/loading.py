@@ -1,4 +1,8 @@
-"""From an agent's file to its class."""
+"""Imports an agent's file and finds its class.
+
+The agent's own modules are imported from their sources, never from compiled files beside them: those can be older, or
+of another source, so that what runs would not be what was hashed.
+"""
 
 from __future__ import annotations
 
@@ -19,11 +23,11 @@ _MODULE = "hthor_guest_agent"  # not the file's name, which could hide a module 
 
 
 class ContractViolation(Exception):
-    """The file does not follow the contract; the message goes to its author."""
+    """The file does not follow the agent contract; the message is for its author."""
 
 
 class SourceLoader(SourceFileLoader):
-    """Compiles a module anew whenever it is imported."""
+    """Compiles a module every time it is imported."""
 
     def get_code(self, fullname: str) -> CodeType:
         """The module's code."""
@@ -32,22 +36,22 @@ class SourceLoader(SourceFileLoader):
         return code
 
 
-def import_from_sources(grounds: AgentPaths) -> None:
-    """From now on this process imports what lies in an agent's folder from sources and extension modules."""
+def import_from_sources(paths: AgentPaths) -> None:
+    """From now on, import modules in an agent's folder from sources and extension modules only."""
     make = FileFinder.path_hook((ExtensionFileLoader, EXTENSION_SUFFIXES), (SourceLoader, [".py"]))
 
     def hook(path: str) -> Any:
-        if path != grounds.root and not grounds.owns(path):
+        if path != paths.root and not paths.owns(path):
             raise ImportError("not the agent's own", path=path)
         return make(path)
 
     sys.path_hooks.insert(0, hook)
-    for path in [path for path in sys.path_importer_cache if path == grounds.root or grounds.owns(path)]:
+    for path in [path for path in sys.path_importer_cache if path == paths.root or paths.owns(path)]:
         del sys.path_importer_cache[path]
 
 
 def load_agent(order: wire.Load) -> tuple[type[Any], wire.Ready]:
-    """The class of an agent's file or module, and what it says of itself.
+    """The class in an agent's file or module, and its description of itself.
 
     Raises:
         Refusal: when there is none, or it cannot be imported.
@@ -155,7 +159,7 @@ def _gpus(cls: type[Any], path: Path) -> float:
 
 
 def format_traceback(error: BaseException) -> str:
-    """The traceback without our own frames in front, its end kept when it is long."""
+    """The traceback without our own frames at the start; a long one is cut at the start."""
     ours = (str(Path(__file__).parents[1]), importlib.__file__ or "", "<frozen importlib")
     trace = error.__traceback__
     while trace is not None and trace.tb_frame.f_code.co_filename.startswith(ours):

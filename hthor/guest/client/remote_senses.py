@@ -15,11 +15,11 @@ _PICTURES = ("rgb", "depth", "segmentation", "image")
 
 
 class HostGone(BaseException):
-    """There is nobody to talk to any more; no agent is to catch this."""
+    """The host has closed the connection. Not an `Exception`, so that no agent catches it by accident."""
 
 
 class HostConnection(Protocol):
-    """A guest's end of whatever carries messages; ``view`` are the shared frames, if any."""
+    """The guest's end of a connection; ``view`` is the shared memory for pictures, if any."""
 
     view: shared_frames.FrameReader | None
 
@@ -29,7 +29,11 @@ class HostConnection(Protocol):
 
 
 class RemoteSenses:
-    """Asks the host for what the agent reads, each thing once; useless after `expire`."""
+    """Asks the host for what the agent reads, each thing once; implements `hthor.types.Senses`.
+
+    Args:
+        ahead: data that came with the observation.
+    """
 
     def __init__(self, pipe: HostConnection, ahead: Mapping[str, msgspec.Raw] | None = None) -> None:
         self._pipe, self._known, self._fresh = pipe, dict[tuple[str, int], Any](), True
@@ -37,11 +41,11 @@ class RemoteSenses:
 
     @property
     def read(self) -> tuple[str, ...]:
-        """What was read so far."""
+        """The names of everything read so far."""
         return tuple(what for what, _ in self._known)
 
     def expire(self) -> None:
-        """The tick is over."""
+        """End the tick: nothing can be read after it."""
         self._fresh = False
 
     def detections(self) -> tuple[Detection, ...]:
@@ -63,7 +67,7 @@ class RemoteSenses:
         return self._get("camera", _camera)  # type: ignore[no-any-return]
 
     def image(self, number: int) -> Any:
-        """The picture of message ``number``."""
+        """The picture that came with message ``number``."""
         return self._get("image", self._array, number)
 
     def _get(self, what: str, decode: Any, which: int = -1) -> Any:

@@ -1,6 +1,6 @@
-"""One trial's process: held first, then it imports the agent's file and plays.
+"""One trial's process: confines itself, then imports the agent's file and runs the trial.
 
-All that a submitted file ever does, it does here, and nothing of it lasts: the next trial has another process.
+A submitted file is executed here and nowhere else, and nothing of it lasts: the next trial has another process.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from hthor.guest.protocol.pipe import HostPipe
 from hthor.guest.protocol.trial_channel import GuestEnds
 
 COMPLETED = 97
-"""Exit status of a trial that came to its end, which an agent would hardly choose for itself."""
+"""Exit status of a completed trial, which an agent would hardly choose by chance."""
 
 
 def run_trials(awaited: Callable[[], GuestEnds | None], order: wire.Load, held: Ruleset | None, *, first: bool) -> None:
-    """Play one trial, or, with an agent that says ``persistent = True``, all of them.
+    """Run one trial, or, for an agent with ``persistent = True``, all of them.
 
     Args:
-        awaited: waits for the trial's channel; None when there is none to come. Until then nothing is said and nothing
-            of the agent is read.
-        held: rules for files. first: say what holds this process, and what the file is.
+        awaited: waits for the trial's pipes; None when none will come. Until then nothing is sent, and nothing of the
+            agent is read.
+        held: rules for files. first: whether to report how this process is confined, and what the agent is.
     """
     word = seccomp.new_token() if order.words and held is not None else b""
     try:
@@ -73,17 +73,17 @@ def run_trials(awaited: Callable[[], GuestEnds | None], order: wire.Load, held: 
 
 
 def _watched(order: wire.Load) -> FileRecorder | None:
-    """Take down what the agent opens from here on, and import its own modules from their sources alone."""
-    if order.grounds is None:
+    """Record which files the agent opens from here on, and import its own modules from their sources alone."""
+    if order.paths is None:
         return None
-    loading.import_from_sources(order.grounds)
-    recorder = FileRecorder(order.grounds)
+    loading.import_from_sources(order.paths)
+    recorder = FileRecorder(order.paths)
     recorder.start()
     return recorder
 
 
 def _taken(ends: GuestEnds) -> HostPipe:
-    """The wire of this trial, with standard input and output that are its own too."""
+    """The pipes of this trial, with standard input and output of its own."""
     nothing = os.open(os.devnull, os.O_RDONLY)
     for handle, number in ((nothing, 0), (ends.printed, 1), (ends.printed, 2)):
         os.dup2(handle, number)
@@ -109,11 +109,11 @@ NAMESPACES = namespaces()
 
 
 def _tidy_numba(scratch: str) -> None:
-    """Read code that was compiled before from where it is, which is not ours to change; keep none of this trial's."""
+    """Let numba read its cache, which agents may not change, and write none of this trial's code."""
     if "numba" not in sys.modules:
         os.environ["NUMBA_CACHE_DIR"] = scratch
         return
     from numba.core import caching
 
-    caching._CacheLocator.ensure_cache_path = lambda _: None  # it would try whether it may write there
+    caching._CacheLocator.ensure_cache_path = lambda _: None  # numba would test whether it may write there
     caching.Cache.save_overload = lambda *_: None

@@ -1,6 +1,6 @@
-"""A Python agent served over WebSocket, for evaluations elsewhere.
+"""Serves a Python agent over WebSocket, for evaluations elsewhere; runs in the process of ``hthor agent serve``.
 
-Every connection gets agents of its own, but all of them share this process. Nothing is held here: whoever serves an
+Every connection gets agents of its own, but all share this process. Nothing is confined here: a user who serves an
 agent trusts it.
 """
 
@@ -52,32 +52,32 @@ class WebSocketConnection:
         return message
 
     def send(self, message: wire.ToHost) -> None:
-        """Say something to the host, unless it is gone."""
+        """Send a message, unless the host has gone."""
         with contextlib.suppress(load_websockets().exceptions.ConnectionClosed):
             self._connection.send(wire.encode(message))
 
     def fail(self) -> NoReturn:
-        """The host does not keep to the wire."""
+        """The host has broken the protocol."""
         raise HostGone("not what was asked for")
 
 
 def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> Server:
-    """A server that is ready to serve an agent; call its ``serve_forever``.
+    """A server for an agent; call its ``serve_forever``.
 
     Args:
-        text: the agent, a Python file or module. port: 0 for any that is free. given: its arguments, and files beyond
-            its own folder that count as its own.
+        text: the agent, a Python file or module. port: 0 for any free one.
+        given: its arguments, and files beyond its own folder that count as its own.
 
     Raises:
-        UnknownName, AgentError: when it is no such agent, or cannot be loaded.
-        OSError: when the port cannot be had.
+        UnknownName, AgentError: when it is not such an agent, or cannot be loaded.
+        OSError: when the port is not available.
     """
     agent = reference.parse_reference(text)
     if agent.form not in ("file", "module"):
         raise UnknownName("agent to serve", text, reference.FORMS[:3], "Only Python agents are served.")
     sockets = load_websockets()
     version, more = agent.sha256, given or AgentInputs()
-    ground = agent_paths.find_agent_paths(agent, more.beyond(agent))
+    ground = agent_paths.find_agent_paths(agent, more.extra_paths(agent))
     sys.path.insert(0, agent.root)
     loading.import_from_sources(ground)
     recorder = FileRecorder(ground)
@@ -90,7 +90,7 @@ def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> 
             module=agent.module,
             root=agent.root,
             args=more.args,
-            grounds=ground,
+            paths=ground,
         )
         cls, ready = loading.load_agent(order)
     except loading.ContractViolation as error:
@@ -114,7 +114,7 @@ def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> 
 
 
 def address(server: Server) -> str:
-    """Where a server can be reached."""
+    """The address of a server."""
     host, port = server.socket.getsockname()[:2]
     return f"ws://{host}:{port}"
 

@@ -56,7 +56,7 @@ def confine_supervisor(policy: Policy) -> None:
         driven=policy.devices,
         execute=policy.execute,
     )
-    own.put_on()
+    own.apply()
     own.close()
     seccomp.install_supervisor_filter(execute=policy.execute)
 
@@ -73,7 +73,7 @@ def confine_trial(policy: Policy, held: Ruleset | None, word: bytes = b"") -> No
     limits.set_limits(0 if policy.devices else policy.memory_mb, policy.disk_mb, processes=held is None)
     if held is None:
         return
-    held.put_on()
+    held.apply()
     held.close()
     seccomp.install_filter(os.getpid(), word, driven=bool(policy.devices))
     _prove()

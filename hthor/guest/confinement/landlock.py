@@ -77,7 +77,7 @@ class Ruleset:
         for path in driven:
             self._allow(path, _READ_FILE | _WRITE_FILE | _READ_DIR | _IOCTL)
 
-    def put_on(self) -> None:
+    def apply(self) -> None:
         """Hold this process, which must have a single thread, to the rules for good."""
         kernel.syscall("putting on Landlock rules", _RESTRICT, self._handle, 0)
 

@@ -1,4 +1,4 @@
-"""Messages to and from a guest, each with a deadline; whatever goes wrong ends the guest and is a fault."""
+"""Messages to and from a guest, each with a deadline. Any failure ends the guest and is a `GuestFault`."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import msgspec
 from hthor.guest.protocol import wire
 from hthor.guest.protocol.sanitize import sanitize_text
 
-_guests_words = msgspec.msgpack.Decoder(wire.ToHost)
+_guests_messages = msgspec.msgpack.Decoder(wire.ToHost)
 _MOST_OPENED, _LONGEST = 20_000, 1000
-_keepers_words = msgspec.msgpack.Decoder(wire.SupervisorToHost)
+_supervisors_messages = msgspec.msgpack.Decoder(wire.SupervisorToHost)
 
 
 class GuestFault(Exception):
@@ -33,15 +33,15 @@ class GuestFault(Exception):
 
 
 class DeadlinePassed(Exception):
-    """The other end was not ready in time."""
+    """The peer was not ready in time."""
 
 
 class PeerGone(Exception):
-    """The other end is gone."""
+    """The peer has closed the connection or ended."""
 
 
 class Transport(Protocol):
-    """A guest that can be talked to."""
+    """What carries messages to a guest and back: a process's pipes, or a WebSocket."""
 
     @property
     def pid(self) -> int:
@@ -49,103 +49,108 @@ class Transport(Protocol):
 
     @property
     def log(self) -> str:
-        """The end of what it printed, empty where that cannot be had."""
+        """The end of what it printed; empty where that is not known."""
 
     def write(self, body: bytes, end: float) -> None:
         """Send a message before a moment of the monotonic clock.
 
         Raises:
-            TimeIsUp, HungUp: when it cannot.
+            DeadlinePassed, PeerGone: when it cannot.
         """
 
     def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
-        """The next message: whether it is the keeper's, and its bytes, or its size when it has more than ``most``.
+        """The next message.
+
+        Returns:
+            Whether it comes from the supervisor, and its bytes, or only its size if that is more than ``most``.
 
         Raises:
-            TimeIsUp, HungUp: when there is none.
+            DeadlinePassed, PeerGone: when there is none.
         """
 
-    def obituary(self) -> tuple[str, str]:
-        """How it ended: a fault's kind and its words."""
+    def end_reason(self) -> tuple[str, str]:
+        """How it ended: a fault's kind and description."""
 
     def kill(self) -> None:
-        """Let it go for good."""
+        """End it."""
 
 
 class MessageChannel:
-    """A conversation over a line, or over none once the guest is gone.
+    """Typed messages over a transport.
 
-    ``loaded`` says that the guest is up: from then on a message that it failed is a fault. ``opened`` are the files
-    that it says it has opened.
+    Attributes:
+        transport: None once the guest has ended.
+        loaded: whether the agent is loaded; from then on a message that it failed is a fault.
+        opened: the files that the guest has reported as opened.
     """
 
     def __init__(self) -> None:
-        self.line: Transport | None = None
+        self.transport: Transport | None = None
         self.loaded = False
         self.opened: set[str] = set()
         self._log = ""
 
-    def open(self, line: Transport) -> None:
-        """Talk to this guest from now on."""
-        self.line, self.loaded = line, False
+    def open(self, transport: Transport) -> None:
+        """Use this transport from now on."""
+        self.transport, self.loaded = transport, False
 
     def send(self, message: wire.ToGuest, seconds: float, allowed: str = "") -> float:
-        """Say something, and say what is left of the time.
+        """Send a message within ``seconds``; returns the seconds that are left.
 
         Args:
-            allowed: what a fault is to say that it had, where ``seconds`` are the rest of that.
+            allowed: the whole time allowed, as a fault describes it, where ``seconds`` is only the rest of it.
 
         Raises:
-            GuestFault: when it is not taken in time.
+            GuestFault: when it is not received in time.
         """
         body = wire.encode(message)
         end = time.monotonic() + seconds
         try:
-            self._running().write(body, end)
+            self._live_transport().write(body, end)
         except DeadlinePassed:
             raise self.fault("timeout", f"the agent read nothing for {allowed or f'{seconds:g} s'}") from None
         except PeerGone:
-            raise self.fault(*self._running().obituary()) from None
+            raise self.fault(*self._live_transport().end_reason()) from None
         return max(0.0, end - time.monotonic())
 
     def receive(self, seconds: float, allowed: str = "") -> tuple[wire.ToHost | wire.Over, float]:
-        """The next message of the guest or its keeper, and what is left of the time.
+        """The next message of the guest or its supervisor, and the seconds that are left.
 
         Args:
-            allowed: as in `send`. A fault is part of a record, so it does not tell what a clock said.
+            allowed: as in `send`. A fault is part of a record, so it never contains a measured time.
 
         Raises:
-            GuestFault: when there is none, or it is none.
+            GuestFault: if no message arrives in time, or the bytes are not a valid message.
         """
         end = time.monotonic() + seconds
         try:
-            keepers, body = self._running().read(wire.MOST_BYTES, end)
+            from_supervisor, body = self._live_transport().read(wire.MOST_BYTES, end)
         except DeadlinePassed:
             raise self.fault("timeout", f"the agent gave no answer within {allowed or f'{seconds:g} s'}") from None
         except PeerGone:
-            raise self.fault(*self._running().obituary()) from None
+            raise self.fault(*self._live_transport().end_reason()) from None
         if isinstance(body, int):
             raise self.fault("oversized", f"a message of {body} bytes, at most {wire.MOST_BYTES} are taken")
         message: wire.ToHost | wire.Over
         try:
-            message = _keepers_words.decode(body) if keepers else _guests_words.decode(body)
+            message = _supervisors_messages.decode(body) if from_supervisor else _guests_messages.decode(body)
         except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
             raise self.fault("garbage", f"what came is no message: {error}") from None
         if len(self.opened) < _MOST_OPENED:
             self.opened.update(name for name in getattr(message, "files", ()) if len(name) <= _LONGEST)
-        if isinstance(message, wire.Failed) and (self.loaded or keepers):
-            kind = message.kind if keepers or message.kind in wire.OWN_FAULTS else "garbage"
+        if isinstance(message, wire.Failed) and (self.loaded or from_supervisor):
+            kind = message.kind if from_supervisor or message.kind in wire.OWN_FAULTS else "garbage"
             raise self.fault(kind, message.detail, message.traceback)
         return message, max(0.0, end - time.monotonic())
 
     def wrong(self, what: str, answer: object) -> GuestFault:
-        """The fault of a message that does not belong here; the guest is gone."""
+        """End the guest; the fault of a message that is not expected here."""
         if isinstance(answer, wire.Over):
             return self.fault("died", f"its process ended before it had answered {what}")
         return self.fault("garbage", f"{what} was answered by {type(answer).__name__}")
 
     def fault(self, kind: str, detail: str, traceback: str = "") -> GuestFault:
-        """End the guest, and say why."""
+        """End the guest; the fault to raise."""
         log = self.log
         self.close()
         kind = kind if kind in wire.FAULTS else "garbage"
@@ -154,21 +159,21 @@ class MessageChannel:
     @property
     def log(self) -> str:
         """The end of what the guest printed."""
-        return self._log if self.line is None else self.line.log
+        return self._log if self.transport is None else self.transport.log
 
     def release(self) -> None:
-        """Go on without the guest, which somebody else has now."""
-        if self.line is not None:
-            self._log, self.line = self.line.log, None
+        """Let go of the transport without ending the guest, which is another's now."""
+        if self.transport is not None:
+            self._log, self.transport = self.transport.log, None
 
     def close(self) -> None:
         """End the guest."""
-        line, self.line = self.line, None
-        if line is not None:
-            self._log = line.log
-            line.kill()
+        transport, self.transport = self.transport, None
+        if transport is not None:
+            self._log = transport.log
+            transport.kill()
 
-    def _running(self) -> Transport:
-        if self.line is None:
+    def _live_transport(self) -> Transport:
+        if self.transport is None:
             raise GuestFault("died", "the agent's process is gone")
-        return self.line
+        return self.transport

@@ -1,4 +1,4 @@
-"""Says when an agent failed because of what isolation hides from it; hides nothing itself."""
+"""Explains an agent's failure where isolation caused it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ENVIRONMENT = ("os.environ", "<frozen os>", "/os.py")
 
 
 def explain_fault(fault: GuestFault, policy: Policy, root: str) -> GuestFault:
-    """The fault, with a sentence more where isolation is the reason."""
+    """The fault, with one more sentence where isolation is the reason."""
     more = isolation_reason(fault.detail, policy, root) if fault.kind == "raised" else ""
     if not more:
         return fault
@@ -24,10 +24,10 @@ def explain_fault(fault: GuestFault, policy: Policy, root: str) -> GuestFault:
 
 
 def isolation_reason(text: str, policy: Policy, root: str) -> str:
-    """What isolation has to do with a failure, a sentence; empty where it has nothing to do with it.
+    """One sentence on how isolation caused a failure; empty where it did not.
 
     Args:
-        text: the failure's words, with its traceback if there is one. root: the agent's folder.
+        text: the error message, with its traceback if there is one. root: the agent's folder.
     """
     said = _said(text)
     variable = _VARIABLE.match(said)
@@ -51,7 +51,7 @@ def isolation_reason(text: str, policy: Policy, root: str) -> str:
 
 
 def _said(text: str) -> str:
-    """The exception's own words: what follows its traceback."""
+    """The exception's own message, which follows its traceback."""
     lines = text.strip().splitlines()
     frames = [number for number, line in enumerate(lines) if line.startswith(" ")]
     return "\n".join(lines[frames[-1] + 1 if frames else 0 :])

@@ -1,4 +1,4 @@
-"""The host's side of a submitted agent: a mind that lives elsewhere."""
+"""A submitted agent as the evaluation sees it: an agent that runs in another process."""
 
 from __future__ import annotations
 
@@ -44,22 +44,22 @@ def in_force(level: str = AUTO) -> Isolation:
 
 
 class Guest:
-    """A submitted agent as a mind. Every trial gets a new agent object and, unless ``persistent``, a fresh process.
+    """A submitted agent. Every trial gets a new agent object and, unless it is ``persistent``, a new process.
 
-    Not for use from several threads; on Linux the process dies when the thread that started it ends.
+    Not for use from several threads; on Linux the process ends with the thread that started it.
 
     Args:
         path: the agent, as `reference.parse_reference` reads it: a file, a module, a command or an address.
         cls: the class to use when the file has several.
-        start_s: seconds for coming up, and again for every ``begin``.
-        step_s: seconds for each ``act``; what the host takes to answer (rendering) does not count.
-        bank_s: seconds in a trial by which its ``act`` may take longer than that, all together.
+        start_s: seconds to start, and again for every ``begin``.
+        step_s: seconds for each ``act``, without the time that the host takes to answer (rendering).
+        bank_s: seconds by which all the ``act`` of a trial together may take longer than that.
         config: how it is isolated and what it is given. An agent that is served elsewhere is not isolated at all.
         pool: idle processes to use, and where to leave this one's; without one it ends when the guest is closed.
-        memory_mb: memory that it may hold. disk_mb: what it may write in a trial.
+        memory_mb: the memory it may use. disk_mb: how much it may write in a trial.
 
     Attributes:
-        reference: what names it. inputs: what it is given. grounds: where its own files lie.
+        reference: which agent it is. inputs: what it is given. paths: where its own files are.
 
     Raises:
         UnknownName, AgentError: when ``path`` names no agent.
@@ -79,38 +79,38 @@ class Guest:
         memory_mb: int = 4096,
         disk_mb: int = 256,
     ) -> None:
-        self._gathered, self._talk = False, MessageChannel()
+        self._pinned, self._channel = False, MessageChannel()
         config = config or GuestConfig()
         self.inputs = config.inputs
         self.reference = reference.parse_reference(str(path), cls)
-        self.grounds = agent_paths.find_agent_paths(self.reference, self.inputs.beyond(self.reference))
-        self._arrival = GuestStartup(
-            self._talk,
+        self.paths = agent_paths.find_agent_paths(self.reference, self.inputs.extra_paths(self.reference))
+        self._startup = GuestStartup(
+            self._channel,
             self.reference,
             config=config,
             pool=pool or GuestPool(most=0),
             start_s=start_s,
             memory_mb=memory_mb,
             disk_mb=disk_mb,
-            grounds=self.grounds,
+            paths=self.paths,
         )
         self._start_s, self._step_s, self._bank_s = start_s, step_s, bank_s
         self._info: GuestInfo | None = None
-        self._turns: TrialExchange | None = None
+        self._exchange: TrialExchange | None = None
         self._ending = False
 
     def load(self) -> GuestInfo:
-        """Bring the agent up, unless that is done.
+        """Start the agent, unless it runs already.
 
         Raises:
             Unreachable: when it is served, and the server is not there.
             AgentError: when its file is missing, does not compile, cannot be imported in time, or has no agent class.
-            IsolationError: when the level that was asked for cannot be had.
+            IsolationError: when the level that was asked for does not start.
         """
-        if self._talk.line is None or self._info is None:
+        if self._channel.transport is None or self._info is None:
             self._info = None
             with cpu_affinity.unpinned():
-                self._info = self._arrival.come()
+                self._info = self._startup.start()
         return self._info
 
     def begin(self, briefing: Briefing) -> None:
@@ -122,70 +122,72 @@ class Guest:
         self.finish()
         if self._ending:
             self._await_end()
-        talk = self._talk
+        channel = self._channel
         try:
             self.load()
         except Unreachable as error:
             raise GuestFault("died", str(error)) from None
         process = self._process
-        self._gathered = process is not None and process.gather()
+        self._pinned = process is not None and process.pin()
         window = process.frames if process else None
-        turns = TrialExchange(talk, step_s=self._step_s, bank_s=self._bank_s, ahead=self._arrival.ahead, window=window)
-        talk.send(wire.Begin(briefing=briefing), self._start_s)
+        exchange = TrialExchange(
+            channel, step_s=self._step_s, bank_s=self._bank_s, ahead=self._startup.ahead, window=window
+        )
+        channel.send(wire.Begin(briefing=briefing), self._start_s)
         try:
-            answer, left = talk.receive(self._start_s)
+            answer, left = channel.receive(self._start_s)
         except GuestFault as fault:
             raise self._explained(fault) from None
         if isinstance(answer, wire.Ready) and self.reference.words:  # a program says so whenever it is started
-            answer, _ = talk.receive(left, f"{self._start_s:g} s")
+            answer, _ = channel.receive(left, f"{self._start_s:g} s")
         if not isinstance(answer, wire.Done):
-            raise talk.wrong("begin", answer)
-        self._turns = turns
+            raise channel.wrong("begin", answer)
+        self._exchange = exchange
 
     def act(self, observation: Observation) -> Action:
         """The agent's action.
 
         Raises:
-            GuestFault: when it raises, hangs, dies, or sends what is no action; its process is then gone.
+            GuestFault: when it raises, hangs, dies, or sends an invalid action; its process has then ended.
         """
-        if self._turns is None or self._talk.line is None:
+        if self._exchange is None or self._channel.transport is None:
             raise GuestFault("died", "the agent has no trial: begin was not called, or it failed before")
         try:
-            return self._turns.act(observation)
+            return self._exchange.act(observation)
         except GuestFault as fault:
             raise self._explained(fault) from None
 
     def finish(self) -> None:
-        """The trial is over: its process comes to its end while the caller goes on. Need not be called."""
-        self._scatter()
-        turns, self._turns = self._turns, None
-        if turns is not None and self._talk.line is not None:
-            turns.end()
+        """End the trial; its process ends while the caller goes on. Calling this is optional."""
+        self._unpin()
+        exchange, self._exchange = self._exchange, None
+        if exchange is not None and self._channel.transport is not None:
+            exchange.end()
             self._ending = self._info is not None and not self._info.persistent
 
     def close(self) -> None:
-        """End the process, unless it is to wait for another user; a later ``begin`` starts another."""
+        """End the process, or leave it idle in the pool; a later ``begin`` starts another."""
         self.finish()
         if self._ending:
             self._await_end()
-        if self._info is None or not self._arrival.leave(self._info):
-            self._talk.close()
+        if self._info is None or not self._startup.leave_idle(self._info):
+            self._channel.close()
 
     def take_opened(self) -> tuple[str, ...]:
-        """Which of its own files it says it has opened since this was asked last, as its manifest calls them."""
-        names = tuple(sorted(self._talk.opened))
-        self._talk.opened.clear()
+        """The agent's own files that it has reported as opened since the last call, by their names in the manifest."""
+        names = tuple(sorted(self._channel.opened))
+        self._channel.opened.clear()
         return names
 
     @property
     def pid(self) -> int:
         """The first of its processes, 0 when there is none."""
-        return self._talk.line.pid if self._talk.line is not None else 0
+        return self._channel.transport.pid if self._channel.transport is not None else 0
 
     @property
     def log(self) -> str:
         """The end of what the agent printed, 16 KiB at most."""
-        return self._talk.log
+        return self._channel.log
 
     def __enter__(self) -> Guest:
         return self
@@ -194,32 +196,32 @@ class Guest:
         self.close()
 
     def __del__(self) -> None:
-        if getattr(self, "_talk", None) is not None:
+        if getattr(self, "_channel", None) is not None:
             with contextlib.suppress(Exception):  # the interpreter may be half gone
-                self._scatter()
-                self._talk.close()
+                self._unpin()
+                self._channel.close()
 
     def _explained(self, fault: GuestFault) -> GuestFault:
-        """The fault, with what isolation has to do with it."""
-        policy = self._arrival.policy
+        """The fault, with an explanation where isolation caused it."""
+        policy = self._startup.policy
         return failure_explanation.explain_fault(fault, policy, self.reference.root) if policy else fault
 
     @property
     def _process(self) -> GuestProcess | None:
-        return self._talk.line if isinstance(self._talk.line, GuestProcess) else None
+        return self._channel.transport if isinstance(self._channel.transport, GuestProcess) else None
 
-    def _scatter(self) -> None:
+    def _unpin(self) -> None:
         """Let this thread run on any CPU again."""
-        if self._gathered:
-            self._gathered = False
+        if self._pinned:
+            self._pinned = False
             cpu_affinity.unpin_thread()
 
     def _await_end(self) -> None:
-        """Wait until the last trial's process has come to its end; whoever will not is ended with its keeper."""
+        """Wait until the last trial's process has ended; if it does not, end it with its supervisor."""
         self._ending = False
         with contextlib.suppress(GuestFault):
-            answer, _ = self._talk.receive(self._step_s)
+            answer, _ = self._channel.receive(self._step_s)
             if not isinstance(answer, wire.Over):
-                self._talk.close()
+                self._channel.close()
             elif self._process is not None:
-                self._process.renew()
+                self._process.next_trial()

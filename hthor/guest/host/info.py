@@ -1,4 +1,4 @@
-"""What a submitted agent is, as a record."""
+"""What a submitted agent says it is, as a record."""
 
 from __future__ import annotations
 
@@ -17,11 +17,14 @@ from hthor.guest.protocol.sanitize import is_printable_name, sanitize_text
 
 
 class GuestInfo(Struct, frozen=True, kw_only=True):
-    """What an agent says of itself. ``robots`` names the bodies it is made for (empty: any); ``absent`` means none.
+    """What an agent says it is.
 
-    ``persistent`` agents keep one process for all their trials. ``sha256`` is the hash of the file alone; what else
-    it consists of is in its `Manifest`. Of a served agent it is the hash of what the server says of it, ``manifest``
-    included. ``isolation`` is what held the agent while it was asked. ``gpus`` is how much of a GPU it asks for.
+    Attributes:
+        sha256: hash of its file alone (its `Manifest` lists the rest); of a served agent, hash of all that its server
+            says, ``manifest`` included.
+        robots: the bodies it is made for, empty for any. absent: whether there is no robot at all.
+        persistent: whether one process serves all its trials. gpus: the share of a GPU it asks for.
+        isolation: how it was confined while it was asked.
     """
 
     name: str
@@ -38,10 +41,10 @@ class GuestInfo(Struct, frozen=True, kw_only=True):
 
 
 def make_info(reference: AgentReference, sha256: str, ready: wire.Ready, held: Isolation) -> GuestInfo:
-    """What is known of an agent that has come up.
+    """The record of an agent that has started.
 
     Raises:
-        AgentError: when it says of itself what cannot be.
+        AgentError: when its description of itself is invalid.
     """
     unknown = [name for name in ready.privileges if name not in wire.PRIVILEGES]
     if unknown:

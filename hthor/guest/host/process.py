@@ -26,34 +26,34 @@ from hthor.guest.protocol.trial_channel import HostEnds
 _PASSED_ON = ("PATH", "LANG", "LC_ALL", "TZ", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _MEMORY = f"glibc.malloc.mmap_threshold={64 << 20}:glibc.malloc.trim_threshold={256 << 20}"
-"""Keep what arrays have freed, as a process that has lived for long does anyway: each trial's is new, and pages that
-are given back and taken again cost it more than its agent."""
+"""Keep memory that arrays have freed, as a long-lived process would: every trial has a new process, for which returning
+and requesting pages would cost more than its agent."""
 _LOG_BYTES = 16 << 10
 _LAST_S = 10.0
-"""Longest wait for a process whose pipes are closed. On a busy machine it takes a while to clear up behind it."""
+"""Longest wait for a process whose pipes are closed; on a busy machine cleaning up after it takes a while."""
 _INSIDE = "/tmp/hthor-guest"
-"""The scratch folder where the guest has a file system of its own."""
+"""The scratch folder of a guest with a file system of its own (L3)."""
 _HOME = "home"
-"""The scratch folder elsewhere, within a folder that is made for the guest: its keeper may have to make it anew."""
+"""The scratch folder elsewhere, within a folder that is made for the guest: its supervisor may have to make it anew."""
 
 
 class GuestProcess:
-    """A running guest: a line to its keeper, a pipe for what that prints, and the channel of one trial after another.
+    """A running guest: a socket to its supervisor, a pipe for what that prints, and the pipes of the current trial.
 
     Args:
-        ground: the folder that was made for it and is to be removed; empty for none.
+        folder: made for it and removed at its end; empty for none.
     """
 
-    def __init__(self, policy: Policy, ground: str) -> None:
-        self.policy, self._ground = policy, ground
+    def __init__(self, policy: Policy, folder: str) -> None:
+        self.policy, self._folder = policy, folder
         self._log = b""
         limits.make_undumpable()
-        self._line, tell = socket.socketpair()
-        self._keeper = self._line.fileno()
+        self._socket, tell = socket.socketpair()
+        self._supervisor = self._socket.fileno()
         self._err, printed = os.pipe()
-        for handle in (self._keeper, self._err):
+        for handle in (self._supervisor, self._err):
             os.set_blocking(handle, False)
-        self._channel = HostEnds()
+        self._ends = HostEnds()
         spaces = policy.level == "L3"
         words = [
             sys.executable,
@@ -84,71 +84,71 @@ class GuestProcess:
             tell.close()
             os.close(printed)
         self._cpu = resource_usage.CpuMeter(self._process.pid)
-        self._buffers: dict[int, bytes] = {self._keeper: b""}
+        self._buffers: dict[int, bytes] = {self._supervisor: b""}
         self._open()
 
     def _open(self) -> None:
-        """Hand a new channel over, and listen to it."""
-        channel = self._channel
-        channel.hand_over(self._line)
-        self._buffers = {channel.words: b"", self._keeper: self._buffers[self._keeper]}
+        """Send the far ends of the new trial's pipes over, and listen to the near ends."""
+        ends = self._ends
+        ends.send_far_ends(self._socket)
+        self._buffers = {ends.words: b"", self._supervisor: self._buffers[self._supervisor]}
         self._hear, self._say = select.poll(), select.poll()
-        for handle in (channel.words, self._keeper, channel.err, self._err):
+        for handle in (ends.words, self._supervisor, ends.err, self._err):
             self._hear.register(handle, select.POLLIN)
-        self._say.register(channel.out, select.POLLOUT)
-        for handle in (channel.err, self._err):
+        self._say.register(ends.out, select.POLLOUT)
+        for handle in (ends.err, self._err):
             self._say.register(handle, select.POLLIN)
 
     @property
     def frames(self) -> FrameWriter | None:
-        """Pictures that are shared with the trial's process."""
-        return self._channel.frames
+        """Memory for pictures, shared with the trial's process."""
+        return self._ends.frames
 
     @property
     def pid(self) -> int:
         return self._process.pid
 
-    def gather(self) -> bool:
-        """Play the trial that begins on one CPU with this thread, if that can be; then `affinity.leave` ends it."""
+    def pin(self) -> bool:
+        """Run the trial that begins on this thread's CPU; False if that is impossible. `unpin_thread` undoes it."""
         if (
             self.policy.level == "L1" or (cpu := cpu_affinity.pin_thread()) < 0
         ):  # at L1 an agent may start processes of its own
             return False
-        cpu_affinity.send_cpu(self._keeper, cpu)
+        cpu_affinity.send_cpu(self._supervisor, cpu)
         return True
 
     def write(self, body: bytes, end: float) -> None:
-        """As `TrialLine` says."""
+        """As `Transport` says."""
         left = memoryview(wire.add_length(body))
         while left:
             try:
-                left = left[os.write(self._channel.out, left) :]
+                left = left[os.write(self._ends.out, left) :]
             except BlockingIOError:
-                self._wait(self._say, (self._channel.out,), end)
+                self._wait(self._say, (self._ends.out,), end)
             except OSError:
                 raise PeerGone from None
 
     def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
-        """As `TrialLine` says; a message of a trial comes before one of the keeper."""
-        both = (self._channel.words, self._keeper)
+        """As `Transport` says; a message of the trial comes before one of the supervisor."""
+        both = (self._ends.words, self._supervisor)
         while True:
             for handle in both:
                 if (found := self._next(handle, most)) is not None:
-                    return handle == self._keeper, found
+                    return handle == self._supervisor, found
             for handle in self._wait(self._hear, both, end):
                 try:
                     chunk = os.read(handle, 1 << 16)
-                except ConnectionResetError:  # a keeper that ended before it had read all
+                except ConnectionResetError:  # a supervisor that ended before it had read all
                     chunk = b""
                 if not chunk:
                     raise PeerGone
                 self._buffers[handle] += chunk
 
-    def renew(self) -> None:
-        """Begin a channel for the next trial; what the last one left half said is gone with its own."""
+    def next_trial(self) -> None:
+        """Make new pipes for the next trial; anything half sent goes with the old ones."""
         self._drain()
-        self._channel.close()
-        self._channel = HostEnds()
+        self._ends.close()
+        self._ends = HostEnds()
         self._open()
 
     def _next(self, handle: int, most: int) -> bytes | int | None:
@@ -164,15 +164,15 @@ class GuestProcess:
         return buffer[4 : 4 + size]
 
     def _wait(self, poll: select.poll, wanted: tuple[int, ...], end: float) -> list[int]:
-        """Which pipes are ready, in the order asked for, reading along what is printed."""
+        """Which pipes are ready, in the order asked for; reads what is printed meanwhile."""
         while True:
             ready = [handle for handle, _ in poll.poll(max(0.0, end - time.monotonic()) * 1000.0)]
             if found := [handle for handle in wanted if handle in ready]:
                 return found
-            if not ready or time.monotonic() > end:  # a flood of words does not lengthen it
+            if not ready or time.monotonic() > end:  # a flood of output does not extend it
                 raise DeadlinePassed
             if not self._drain():
-                time.sleep(0.001)  # the log was closed; do not spin on it
+                time.sleep(0.001)  # a closed log pipe is always ready: do not spin
 
     @property
     def lives(self) -> bool:
@@ -186,9 +186,9 @@ class GuestProcess:
         return sanitize_text(self._log.decode(errors="replace"))
 
     def _drain(self) -> bool:
-        """Take in what was printed, as much of it as has come by now; false when nothing more can come of something."""
-        keepers, trials = self._taken_in(self._err), self._taken_in(self._channel.err)
-        return keepers and trials
+        """Read what has been printed by now; False when one of the pipes is closed."""
+        from_supervisor, trials = self._taken_in(self._err), self._taken_in(self._ends.err)
+        return from_supervisor and trials
 
     def _taken_in(self, handle: int) -> bool:
         try:
@@ -204,8 +204,8 @@ class GuestProcess:
         """Add the processor time it has taken so far to `resource_usage.uncollected_cpu_s`."""
         self._cpu.count()
 
-    def obituary(self) -> tuple[str, str]:
-        """How the process ended: a fault's kind and its words."""
+    def end_reason(self) -> tuple[str, str]:
+        """How the process ended: a fault's kind and description."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(_LAST_S)
         code = self._process.returncode
@@ -214,7 +214,7 @@ class GuestProcess:
         return exit_status.describe_exit(exit_status.unwrap_bwrap(code) if self.policy.level == "L3" else code)
 
     def kill(self) -> None:
-        """End everything that the guest has started, close the pipes, and remove what it wrote."""
+        """End everything that the guest has started, close the pipes, and remove what it has written."""
         with self._cpu.ending():
             if self.policy.level == "L1":
                 cleanup.end_descendants(self._process.pid)
@@ -224,17 +224,17 @@ class GuestProcess:
         self._close()
 
     def _close(self) -> None:
-        self._line.close()
+        self._socket.close()
         os.close(self._err)
-        self._channel.close()
-        remove_folder(self._ground)
+        self._ends.close()
+        remove_folder(self._folder)
 
 
-def remove_folder(ground: str) -> None:
-    """Remove what a guest may have written, and the folder that it was in; an empty name is none."""
-    if ground:
-        cleanup.empty_folder(ground)
-        shutil.rmtree(ground, ignore_errors=True)
+def remove_folder(folder: str) -> None:
+    """Remove the folder that a guest may have written to; an empty name stands for none."""
+    if folder:
+        cleanup.empty_folder(folder)
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def start_process(
@@ -247,18 +247,18 @@ def start_process(
     gpus: bool = False,
     readable: tuple[str, ...] = (),
 ) -> GuestProcess:
-    """A fresh guest on this level; what it says first tells whether the level is in force."""
+    """Start a guest at a level; its first message says whether the level is in force."""
     compiled = os.environ.get("NUMBA_CACHE_DIR", "")
     if compiled:
         os.makedirs(compiled, exist_ok=True)
     more = ([compiled] if compiled else []) + (list(paths.GPU_FACTS) if gpus else [])
     read = paths.readable_paths(agent.path, agent.root, hidden, readable)
-    ground = "" if level == "L3" else tempfile.mkdtemp(prefix="hthor-guest-")
+    folder = "" if level == "L3" else tempfile.mkdtemp(prefix="hthor-guest-")
     policy = Policy(
         level=level,
         read=(*read, *more),
         listed=(*paths.listed_folders(agent.root), *(place for place in readable if os.path.isdir(place))),
-        scratch=os.path.join(ground, _HOME) if ground else _INSIDE,
+        scratch=os.path.join(folder, _HOME) if folder else _INSIDE,
         memory_mb=memory_mb,
         disk_mb=disk_mb,
         execute=bool(agent.words),
@@ -266,16 +266,16 @@ def start_process(
         compiled=compiled,
     )
     try:
-        if ground:
+        if folder:
             os.mkdir(policy.scratch)
-        return GuestProcess(policy, ground)
+        return GuestProcess(policy, folder)
     except OSError:
-        remove_folder(ground)
+        remove_folder(folder)
         raise
 
 
 def _environment(ours: Mapping[str, str], policy: Policy) -> dict[str, str]:
-    """Nothing of ours but what an interpreter needs; one thread, and the same hash seed every time."""
+    """Only what an interpreter needs; one thread, and the same hash seed every time."""
     passed_on = (*_PASSED_ON, *(paths.GPU_VARIABLES if policy.devices else ()))
     env = {name: ours[name] for name in passed_on if name in ours}
     env.update(dict.fromkeys(_THREADS, "1"))

@@ -15,33 +15,33 @@ from hthor.types import BodySpec, Briefing
 
 
 def take_manifest(guest: Guest, name: str) -> Manifest:
-    """The manifest of an agent; its guest is brought up, and of no further use.
+    """The manifest of an agent; its guest is started, and of no further use.
 
     Args:
-        name: what a result calls it.
+        name: what results call it.
 
     Raises:
         AgentError: when it cannot be loaded, or a file cannot be read.
     """
-    info, agent, grounds = guest.load(), guest.reference, guest.grounds
+    info, agent, paths = guest.load(), guest.reference, guest.paths
     if agent.url:
         return Manifest(name=name, source=info.source, sha256=info.sha256, files=info.manifest, claimed=True)
     if not info.absent and not agent.words:
         _try_beginning(guest, info.privileges)
-    args = {key: _shown(value, grounds) for key, value in guest.inputs.args.items()}
-    files = agent_files.list_files(agent, guest.inputs, grounds, guest.take_opened())
-    return manifest.make_manifest(name, info.source, args, files, _library(files, grounds))
+    args = {key: _shown(value, paths) for key, value in guest.inputs.args.items()}
+    files = agent_files.list_files(agent, guest.inputs, paths, guest.take_opened())
+    return manifest.make_manifest(name, info.source, args, files, _library(files, paths))
 
 
-def _library(files: Iterable[File], grounds: AgentPaths) -> str:
-    """Hash of what the Python files among these import of hthor, and of all that needs."""
-    python = [grounds.find(file.path) for file in files if file.path.endswith(".py")]
+def _library(files: Iterable[File], paths: AgentPaths) -> str:
+    """Hash of the modules of hthor that the Python files among these import, directly or not."""
+    python = [paths.find(file.path) for file in files if file.path.endswith(".py")]
     read = [path for path in python if code_identity.is_python(path)]
     return code_identity.ours().sha256((), files=read) if read else ""
 
 
 def _try_beginning(guest: Guest, privileges: tuple[str, ...]) -> None:
-    """Let the agent begin a trial that is never played, for the files that it opens. How that ends is no matter."""
+    """Let the agent begin a trial that is never run, to learn which files it opens. It may fail."""
     house = None
     if "house_map" in privileges:
         from hthor import houses
@@ -83,8 +83,8 @@ def _try_beginning(guest: Guest, privileges: tuple[str, ...]) -> None:
     guest.finish()
 
 
-def _shown(value: str, grounds: AgentPaths) -> str:
-    """An argument as a result shows it: a path as the manifest has it, without the folders of this machine."""
+def _shown(value: str, paths: AgentPaths) -> str:
+    """An argument as results show it: a path as in the manifest, without the folders of this machine."""
     if not os.path.isabs(value) or not os.path.exists(value):
         return value
-    return grounds.name(value) or value
+    return paths.name(value) or value

@@ -1,4 +1,4 @@
-"""How a submitted agent comes up: a process at some level, or a connection."""
+"""Starts a submitted agent: a process at a level of isolation, or a connection to a server."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from hthor.guest.protocol import wire
 from hthor.guest.protocol.sanitize import sanitize_text
 
 _ENTER_S = 120.0
-"""Seconds until a process must say what holds it: the start of an interpreter, and the libraries an agent names."""
+"""Seconds until a process must say how it is confined: it starts an interpreter and imports the agent's libraries."""
 
 _REFUSED = "operation not permitted"
 _ONE_PROGRAM = (
@@ -27,11 +27,15 @@ _ONE_PROGRAM = (
 
 
 class GuestStartup:
-    """Brings an agent up, and up again after it has failed. The arguments are those of `Guest`."""
+    """Starts an agent, and again after it has failed. The arguments are those of `Guest`.
+
+    Attributes:
+        ahead: whether the agent accepts sensor data before it asks. policy: what its process may do.
+    """
 
     def __init__(
         self,
-        talk: MessageChannel,
+        channel: MessageChannel,
         agent: AgentReference,
         *,
         config: GuestConfig,
@@ -39,75 +43,75 @@ class GuestStartup:
         start_s: float,
         memory_mb: int,
         disk_mb: int,
-        grounds: AgentPaths,
+        paths: AgentPaths,
     ) -> None:
-        self._talk, self._agent = talk, agent
-        self._config, self._pool, self._grounds = config, pool, grounds
+        self._channel, self._agent = channel, agent
+        self._config, self._pool, self._paths = config, pool, paths
         self._start_s = start_s
         self._memory_mb, self._disk_mb = memory_mb, disk_mb
         self._gpus = 0.0
         self.ahead = False
         self.policy: Policy | None = None
 
-    def come(self) -> GuestInfo:
-        """Bring it up, and say what it is; ``ahead`` is then what it says of itself.
+    def start(self) -> GuestInfo:
+        """Start the agent, and say what it is.
 
         Raises:
             Unreachable, AgentError, IsolationError: as `Guest.load`.
         """
-        talk, agent = self._talk, self._agent
+        channel, agent = self._channel, self._agent
         digest = agent.sha256
-        if waiting := self._pool.take(self._key(digest)):
-            talk.open(waiting.process)
-            talk.loaded, self.ahead = True, waiting.ahead
-            self.policy = waiting.process.policy
-            return waiting.info
-        held = self._connected() if agent.url else self._started()
+        if idle := self._pool.take(self._key(digest)):
+            channel.open(idle.process)
+            channel.loaded, self.ahead = True, idle.ahead
+            self.policy = idle.process.policy
+            return idle.info
+        isolation = self._connect() if agent.url else self._start_process()
         try:
-            ready = talk.receive(self._start_s)[0]
+            ready = channel.receive(self._start_s)[0]
         except GuestFault as fault:
             kind = AgentKilled if fault.kind == KILLED else AgentError
             hint = _ONE_PROGRAM if agent.words and _REFUSED in fault.log.lower() else ""
             raise kind(f"{agent.text}: loading it failed ({fault}).{hint}\n{fault.log}".rstrip()) from None
         if not isinstance(ready, wire.Ready):
-            talk.close()
+            channel.close()
             said = _instead(agent, ready)
             why = failure_explanation.isolation_reason(said, self.policy, agent.root) if self.policy else ""
             raise AgentError(f"{said}\n{why}".rstrip())
         try:
-            found = info.make_info(agent, digest, ready, held)
+            known = info.make_info(agent, digest, ready, isolation)
         except AgentError:
-            talk.close()
+            channel.close()
             raise
-        if found.gpus and not self._gpus and not agent.url:  # once more, with what it asks for
-            talk.close()
-            self._gpus = found.gpus
-            return self.come()
-        talk.loaded, self.ahead = True, ready.ahead
-        return found
+        if known.gpus and not self._gpus and not agent.url:  # start again, with the GPUs that it asks for
+            channel.close()
+            self._gpus = known.gpus
+            return self.start()
+        channel.loaded, self.ahead = True, ready.ahead
+        return known
 
-    def leave(self, found: GuestInfo) -> bool:
-        """Let the guest, which has no trial, wait for whoever wants the same; false when it is to end."""
-        line = self._talk.line
-        if not isinstance(line, GuestProcess):
+    def leave_idle(self, info: GuestInfo) -> bool:
+        """Leave the guest, which has no trial, in the pool; False when it is to end."""
+        process = self._channel.transport
+        if not isinstance(process, GuestProcess):
             return False
-        waiting = IdleGuest(process=line, info=found, ahead=self.ahead)
-        if left := self._pool.put(self._key(found.sha256), waiting):
-            self._talk.release()
+        idle = IdleGuest(process=process, info=info, ahead=self.ahead)
+        if left := self._pool.put(self._key(info.sha256), idle):
+            self._channel.release()
         return left
 
     def _key(self, digest: str) -> Key:
-        """What two guests must share to be exchangeable."""
+        """What two guests must share to be interchangeable."""
         config = self._config
         limits = config.isolation, config.hidden, self._memory_mb, self._disk_mb
-        return self._agent.text, digest, *limits, tuple(config.inputs.args.items()), self._grounds.readable
+        return self._agent.text, digest, *limits, tuple(config.inputs.args.items()), self._paths.readable
 
-    def _connected(self) -> Isolation:
-        self._talk.open(websocket_client.connect(self._agent.url, self._start_s))
+    def _connect(self) -> Isolation:
+        self._channel.open(websocket_client.connect(self._agent.url, self._start_s))
         return websocket_client.ISOLATION
 
-    def _started(self) -> Isolation:
-        """Start its process, at the level that is wanted or the strongest that comes up."""
+    def _start_process(self) -> Isolation:
+        """Start its process, at the level asked for or the strongest that starts."""
         return isolation_level.start_at_level(
             self._config.isolation, self._launch, self._enter, self._pool.unavailable, self._memory_mb
         )
@@ -120,12 +124,12 @@ class GuestStartup:
             memory_mb=self._memory_mb,
             disk_mb=self._disk_mb,
             gpus=self._gpus > 0.0,
-            readable=self._grounds.readable,
+            readable=self._paths.readable,
         )
 
     def _enter(self, started: GuestProcess) -> wire.Confined | str:
-        """What a process that has just started says of its confinement, or why it has none."""
-        self._talk.open(started)
+        """How a process that has just started is confined, or the reason why it is not."""
+        self._channel.open(started)
         self.policy = started.policy
         agent, args = self._agent, self._config.inputs.args
         load = wire.Load(
@@ -136,23 +140,23 @@ class GuestStartup:
             words=(*agent.words, *arguments.as_options(args)) if agent.words else (),
             root=agent.root,
             args=args,
-            grounds=self._grounds,
+            paths=self._paths,
         )
         try:
-            self._talk.send(load, _ENTER_S)
-            said, _ = self._talk.receive(_ENTER_S)
+            self._channel.send(load, _ENTER_S)
+            said, _ = self._channel.receive(_ENTER_S)
         except GuestFault as fault:
-            if fault.kind == KILLED:  # which says nothing about what this machine can do
+            if fault.kind == KILLED:  # no evidence about what this machine can do
                 raise AgentKilled(f"{agent.text}: its process was {fault.detail} while it started.") from None
             return fault.log.strip() or str(fault)
         if isinstance(said, wire.Confined):
             return said
-        self._talk.close()
+        self._channel.close()
         return said.detail if isinstance(said, wire.Failed) else f"unexpected {type(said).__name__}"
 
 
 def _instead(agent: AgentReference, said: object) -> str:
-    """What came in place of what an agent says of itself."""
+    """Describe the message that came instead of the agent's description of itself."""
     if isinstance(said, wire.Failed):
         return sanitize_text(said.detail)
     if isinstance(said, wire.Over):

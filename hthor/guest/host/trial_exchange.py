@@ -1,4 +1,4 @@
-"""One trial of a guest from its first look to its last action: who asks, who answers, and what time is left."""
+"""One trial of a guest: observations out, sensor requests answered, actions in, all within the time allowed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hthor.types import Action, Observation
 
 _T = TypeVar("_T")
 _ASKS = 100
-"""How often an agent may ask for something within one ``act``; what it has read once it need not ask for again."""
+"""Sensor requests allowed within one ``act``; an agent never needs to ask for the same thing twice."""
 
 
 _CHEAP = ("detections", "scan")
@@ -22,26 +22,26 @@ _SENSES = ("detections", "scan", "rgb", "depth", "segmentation", "camera")
 
 
 class UnknownSensor(Exception):
-    """Something was asked for that there is not."""
+    """A request for a sensor that does not exist."""
 
 
 class TrialExchange:
     """A trial that has begun.
 
     Args:
-        step_s: seconds for each action; what the host takes to answer does not count.
-        bank_s: seconds by which actions may take longer than that, all together.
-        ahead: whether the guest takes what it is likely to read before it asks.
-        window: where pictures are shared, None for nowhere.
+        step_s: seconds for each action, without the time that the host takes to answer.
+        bank_s: seconds by which all actions together may take longer than that.
+        ahead: whether the guest accepts data that it is likely to read before it asks.
+        window: shared memory for pictures, None for none.
     """
 
     def __init__(
-        self, talk: MessageChannel, *, step_s: float, bank_s: float, ahead: bool, window: FrameWriter | None
+        self, channel: MessageChannel, *, step_s: float, bank_s: float, ahead: bool, window: FrameWriter | None
     ) -> None:
-        self._talk, self._window = talk, window
+        self._channel, self._window = channel, window
         self._step_s, self._bank = step_s, bank_s
         self._allowed = f"{step_s:g} s" + (f" and what was left of {bank_s:g} s more" if bank_s else "")
-        self._habits = ReadAhead() if ahead else None
+        self._read_ahead = ReadAhead() if ahead else None
         if window is not None:
             window.wipe()
 
@@ -51,35 +51,35 @@ class TrialExchange:
         Raises:
             GuestFault: when there is none.
         """
-        talk, habits = self._talk, self._habits
+        channel, read_ahead = self._channel, self._read_ahead
         slim = tuple(msgspec.structs.replace(message, image=None) for message in observation.inbox)
         bare = msgspec.structs.replace(observation, senses=None, inbox=slim)
-        ahead = self._sensed(habits.ahead, observation) if habits else {}
+        ahead = self._sensed(read_ahead.ahead, observation) if read_ahead else {}
         if self._window is not None:
             self._window.clear()
         granted = self._step_s + self._bank
-        left = talk.send(wire.Look(observation=bare, ahead=ahead), granted, self._allowed)
+        left = channel.send(wire.Look(observation=bare, ahead=ahead), granted, self._allowed)
         for _ in range(_ASKS):
-            said, left = talk.receive(left, self._allowed)
+            said, left = channel.receive(left, self._allowed)
             if isinstance(said, wire.Ask):
-                left = talk.send(self._given(observation, said), left, self._allowed)
-                if habits:
-                    habits.read(said.what)
+                left = channel.send(self._given(observation, said), left, self._allowed)
+                if read_ahead:
+                    read_ahead.read(said.what)
             elif isinstance(said, wire.Acted):
                 if wrong := wire.find_action_fault(said.action):
-                    raise talk.fault(*wrong)
-                if habits:
-                    habits.read(*said.read)
+                    raise channel.fault(*wrong)
+                if read_ahead:
+                    read_ahead.read(*said.read)
                 self._bank -= max(0.0, granted - left - self._step_s)
                 return said.action
             else:
-                raise talk.wrong("act", said)
-        raise talk.fault("garbage", f"asked for more than {_ASKS} things within one act")
+                raise channel.wrong("act", said)
+        raise channel.fault("garbage", f"asked for more than {_ASKS} things within one act")
 
     def end(self) -> None:
-        """Say that the trial is over, if there is still somebody to hear it."""
+        """Tell the guest that the trial is over, if it still runs."""
         try:
-            self._talk.send(wire.End(), self._step_s)
+            self._channel.send(wire.End(), self._step_s)
         except GuestFault:
             return
 
@@ -87,28 +87,28 @@ class TrialExchange:
         try:
             return self._sensed(make_reply, observation, ask, self._window)
         except UnknownSensor as error:
-            raise self._talk.fault("garbage", str(error)) from None
+            raise self._channel.fault("garbage", str(error)) from None
 
     def _sensed(self, sense: Callable[..., _T], *values: object) -> _T:
-        """What sensing gives. A failure to sense is ours, so the guest is let go and the error passed on."""
+        """The result of a sensing function. If that fails it is our fault: end the guest and raise."""
         try:
             return sense(*values)
         except UnknownSensor:
             raise
         except Exception:
-            self._talk.close()
+            self._channel.close()
             raise
 
 
 def make_reply(observation: Observation, ask: wire.Ask, window: FrameWriter | None) -> wire.Given:
-    """What was asked for.
+    """The reply to a sensor request.
 
     Args:
-        window: where pictures go that are asked for in shared memory; None where there is none.
+        window: shared memory for pictures that are asked for there; None for none.
 
     Raises:
-        Unknown: when there is no such thing.
-        Exception: whatever sensing raises, which is not the guest's doing.
+        UnknownSensor: when there is no such sensor.
+        Exception: any error of the sensor itself, which is not the guest's fault.
     """
     value = _sensed(observation, ask)
     placed = window.put(value) if window is not None and ask.shared else None
@@ -116,9 +116,9 @@ def make_reply(observation: Observation, ask: wire.Ask, window: FrameWriter | No
 
 
 class ReadAhead:
-    """What an agent has read in both of its last two steps, which is likely what it reads next.
+    """Predicts what an agent reads next: what it has read in both of its last two steps.
 
-    To be sent along with the next observation: every question costs two changes of process.
+    That is sent along with the next observation, since every request costs two switches between processes.
     """
 
     def __init__(self) -> None:
@@ -126,11 +126,11 @@ class ReadAhead:
         self._now: set[str] = set()
 
     def read(self, *what: str) -> None:
-        """It has read this."""
+        """Note what it has read."""
         self._now.update(one for one in what if one in _CHEAP)
 
     def ahead(self, observation: Observation) -> dict[str, msgspec.Raw]:
-        """Begin a step with this; raises whatever sensing raises."""
+        """Start a step: the data to send along. Raises any error of a sensor."""
         likely = sorted(self._before & self._now)
         self._before, self._now = self._now, set()
         return {what: msgspec.Raw(wire.encode(getattr(observation.senses, what)())) for what in likely}

@@ -1,7 +1,7 @@
-"""The line to an agent that somebody serves over WebSocket.
+"""The connection to an agent that is served over WebSocket.
 
-One message of the wire is one binary message of the WebSocket, without a length in front. What holds the agent there
-is not known here, so its isolation is "served", which is less than any level.
+Each message is one binary WebSocket message, without a length in front. How the agent is confined there is unknown,
+so its isolation is "served", which is less than any level.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 ISOLATION = Isolation(level=SERVED, reason_not_higher="it is served from elsewhere, where nothing of ours holds it")
 _CLOSING_S = 2.0
-"""Longest time for parting in peace."""
+"""Longest time for a clean close."""
 _LOOK_S = 0.25
 _TOO_BIG = 1009
 
@@ -35,7 +35,7 @@ class Unreachable(AgentError):
 
 
 def connect(url: str, seconds: float) -> WebSocketTransport:
-    """A line to the agent at this address.
+    """Connect to the agent at this address.
 
     Raises:
         Unreachable: when nothing answers there, or it is no WebSocket server.
@@ -68,10 +68,9 @@ def connect(url: str, seconds: float) -> WebSocketTransport:
 
 
 class DeadlineTimer:
-    """Calls somebody once, when a moment passes that was set; a thread of its own looks from time to time.
+    """Calls ``ring`` once when a deadline has passed; checked by a thread of its own.
 
-    Whatever a server does to the library that speaks WebSocket, which may wait for it while it holds all its locks, a
-    deadline ends it.
+    So a deadline holds even where a server makes the WebSocket library wait while it holds its locks.
     """
 
     def __init__(self, ring: Callable[[], None]) -> None:
@@ -80,7 +79,7 @@ class DeadlineTimer:
         threading.Thread(target=self._look, daemon=True).start()
 
     def set(self, end: float = math.inf) -> None:
-        """Ring after this moment of the monotonic clock; never, if none is given."""
+        """Set the deadline on the monotonic clock; none by default."""
         self._end = end
 
     def stop(self) -> None:
@@ -107,7 +106,7 @@ class WebSocketTransport:
         self._alarm = DeadlineTimer(self._hang_up)
 
     def write(self, body: bytes, end: float) -> None:
-        """As `TrialLine` says."""
+        """As `Transport` says."""
         self._alarm.set(end)
         try:
             self._connection.send(body)
@@ -118,7 +117,7 @@ class WebSocketTransport:
             self._alarm.set()
 
     def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
-        """As `TrialLine` says; here is no keeper."""
+        """As `Transport` says; there is no supervisor here."""
         self._alarm.set(end + _LOOK_S)
         try:
             body = self._connection.recv(timeout=max(0.0, end - time.monotonic()), decode=False)
@@ -135,12 +134,12 @@ class WebSocketTransport:
             self._alarm.set()
         return False, body
 
-    def obituary(self) -> tuple[str, str]:
-        """As `TrialLine` says."""
+    def end_reason(self) -> tuple[str, str]:
+        """As `Transport` says."""
         return "died", f"the server closed the connection: {self._end or 'without a word'}"
 
     def kill(self) -> None:
-        """As `TrialLine` says; the server goes on."""
+        """As `Transport` says; the server goes on."""
         self._alarm.set(time.monotonic() + _CLOSING_S)
         with contextlib.suppress(Exception):
             self._connection.__exit__(None, None, None)

@@ -83,7 +83,7 @@ class PinnedProcess:
         self._before = frozenset(os.sched_getaffinity(0))
         self._near = len(self._threads()) == 1 and _move(pid, {cpu})
 
-    def part(self) -> None:
+    def release_if_threaded(self) -> None:
         """Let it run everywhere again if it has several threads by now."""
         if self._near and len(threads := self._threads()) > 1:
             self._near = False

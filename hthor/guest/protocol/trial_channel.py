@@ -35,8 +35,8 @@ class HostEnds:
         with contextlib.suppress(OSError):  # only speed depends on it
             fcntl.fcntl(self.out, _F_SETPIPE_SZ, _PIPE_BYTES)
 
-    def hand_over(self, line: socket.socket) -> None:
-        """Give the other ends to the keeper; it may be gone, which others will notice."""
+    def send_far_ends(self, line: socket.socket) -> None:
+        """Give the other ends to the supervisor; it may be gone, which others will notice."""
         shared = (self.frames.handle,) if self.frames is not None else ()
         with contextlib.suppress(OSError):
             socket.send_fds(line, [_SIGN], [*self._far, *shared])
@@ -72,7 +72,7 @@ class GuestEnds:
         every = (self.read, self.write, self.printed, self.shared)
         return tuple(handle for handle in every if handle >= 0)
 
-    def pass_on(self, line: socket.socket) -> None:
+    def send_copies(self, line: socket.socket) -> None:
         """Give copies of them to another process.
 
         Raises:

@@ -34,7 +34,7 @@ VERSION = 1
 FAULTS = ("raised", "timeout", "died", KILLED, "memory", "disk", "garbage", "wrong_type", "oversized", "not_finite")
 """Kinds of failure during a trial."""
 OWN_FAULTS = ("raised", "wrong_type", "garbage", "oversized")
-"""Those that a guest may report of itself; the others are for its keeper and the host to find."""
+"""Those that a guest may report of itself; the others are for its supervisor and the host to find."""
 
 
 class InvalidAction(ValueError):
@@ -48,7 +48,7 @@ class Load(Struct, tag="load", frozen=True, kw_only=True):
         path: its file, which is imported. cls: the class to take, empty for the only one.
         module: the name to import it by, from the folder ``root``; empty for a file that has none.
         words: a program and its arguments, started in ``root`` instead of importing anything.
-        args: keyword arguments of the class's constructor. grounds: where the agent's own files lie.
+        args: keyword arguments of the class's constructor. paths: where the agent's own files lie.
     """
 
     path: str
@@ -58,7 +58,7 @@ class Load(Struct, tag="load", frozen=True, kw_only=True):
     words: tuple[str, ...] = ()
     root: str = ""
     args: dict[str, str] = {}
-    grounds: AgentPaths | None = None
+    paths: AgentPaths | None = None
 
 
 class Begin(Struct, tag="begin", frozen=True, kw_only=True):
@@ -144,11 +144,11 @@ class Acted(Struct, tag="acted", frozen=True, kw_only=True):
 
 
 class Over(Struct, tag="over", frozen=True, kw_only=True):
-    """Keeper: the trial's process has come to its end, and all that it left is gone."""
+    """Supervisor: the trial's process has come to its end, and all that it left is gone."""
 
 
 class Failed(Struct, tag="failed", frozen=True, kw_only=True):
-    """Guest or keeper: something went wrong; ``kind`` as in `GuestFault`, ``files`` as in `FinishedRun`."""
+    """Guest or supervisor: something went wrong; ``kind`` as in `GuestFault`, ``files`` as in `FinishedRun`."""
 
     kind: str
     detail: str

@@ -1,4 +1,4 @@
-"""A trial's process, forked when its trial begins or before."""
+"""Forks the process of a trial, when the trial begins or before."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from hthor.guest.protocol.trial_channel import GuestEnds
 
 
 def fork_trial(ends: GuestEnds, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool = False) -> int:
-    """A child that plays one trial; its process id.
+    """Fork a process that runs one trial; its process id.
 
     Args:
-        ends: the trial's channel. tell: the keeper's own line, which no child may have.
-        held: rules for files. first: as `child.serve`.
+        ends: the trial's pipes. tell: the supervisor's own socket, which no child may have.
+        held: rules for files. first: as in `trial_process.run_trials`.
     """
     return _forked(lambda: ends, (tell,), order, held, first=first)
 
 
 class SpareProcess:
-    """A child that is held already, and waits for its trial without having seen anything of the agent.
+    """A child that is confined already, and waits for its trial; it saves the time to fork and confine one.
 
-    So nothing of one trial can reach the next by it: what it imports, it imports when its turn has come.
+    It has seen nothing of the agent, so that nothing of one trial can reach the next through it.
 
     Args:
-        playing: the channel of the trial that goes on meanwhile, which is none of its business.
+        playing: the pipes of the trial that runs meanwhile, which it must not have.
     """
 
     def __init__(self, playing: GuestEnds, tell: int, order: wire.Load, held: Ruleset | None) -> None:
@@ -39,9 +39,9 @@ class SpareProcess:
         wait.close()
 
     def start(self, ends: GuestEnds) -> int:
-        """Let it play a trial with this channel; its process id, or 0 if it is gone."""
+        """Let it run a trial with these pipes; its process id, or 0 if it has ended."""
         try:
-            ends.pass_on(self._go)
+            ends.send_copies(self._go)
         except BrokenPipeError:
             self.discard()
             return 0

@@ -1,7 +1,7 @@
-"""Imports the libraries that an agent's file names, once for all its trials; never a line of the file itself.
+"""Imports the libraries that an agent's file names, once for all its trials; never the file itself.
 
-Only installed libraries and the parts of this package that minds are made with count. Whatever goes wrong here is left
-for the file's own import to meet.
+Only installed libraries and the parts of this package that agents are made with are imported. Errors are ignored here:
+the file's own import will meet them.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from hthor.guest.confinement import paths
 
 _MINDS = "hthor.agents"
 _MOST_BYTES = 1 << 20
-"""Longest file that is looked into."""
+"""Longest file that is parsed."""
 _SIDE_EFFECTS = ("__main__", "antigravity", "idlelib", "lib2to3", "this", "turtledemo")
-"""Names of modules, or of parts of them, that do something when they are imported; so do all tests."""
+"""Modules, or parts of their names, whose import has side effects; so have all tests."""
 _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "hthor.catalog", "hthor.rules")
 
 
 def preload(path: Path, module: str = "") -> None:
-    """Import what the file is going to import, and keep it out of the way of forks.
+    """Import what the file is going to import, and freeze it so that forks share its memory.
 
     Args:
-        module: its name where it is imported by name; nothing of its own package is imported here.
+        module: the agent's module, where it is imported by name; nothing of its own package is imported here.
     """
     own = module.partition(".")[0]
     wanted = [one for one in _named(path) if one[0].partition(".")[0] != own or own == "hthor"]
@@ -40,13 +40,13 @@ def preload(path: Path, module: str = "") -> None:
                 if name.startswith(_OURS) or (_quiet(name) and _installed(name.partition(".")[0])):
                     found = importlib.import_module(name)
                     for part in names:
-                        getattr(found, part, None)  # some packages import their parts only then
+                        getattr(found, part, None)  # some packages import their submodules only on access
     gc.collect()
     gc.freeze()
 
 
 def _behind() -> list[str]:
-    """What our own minds import only once they begin, which would cost every trial anew."""
+    """What built-in agents import only when they begin, which would cost time in every trial."""
     files = [path for part in ("agents", "navigation") for path in sorted((paths.PACKAGE / part).rglob("*.py"))]
     return [
         f"hthor.{path.parent.name}.{path.stem}" for path in files if path.parent.name != "agents" or path.stem[0] == "_"
@@ -54,7 +54,7 @@ def _behind() -> list[str]:
 
 
 def _quiet(name: str) -> bool:
-    """Whether a module is a library, which importing does nothing but make available."""
+    """Whether importing a module has no side effects, as far as its name says."""
     return not any(part in _SIDE_EFFECTS or part.startswith("test") for part in name.split("."))
 
 
@@ -68,9 +68,9 @@ def _installed(name: str) -> bool:
 
 
 def _named(path: Path) -> list[tuple[str, list[str]]]:
-    """Modules that a file imports by name at its top level, and what it wants of each."""
+    """Modules that a file imports by name at its top level, with the names taken from each."""
     try:
-        if path.stat().st_size > _MOST_BYTES:  # nothing bounds what it takes to read it here
+        if path.stat().st_size > _MOST_BYTES:  # no limit holds here for the memory and time that parsing takes
             return []
         tree = ast.parse(path.read_bytes())
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):

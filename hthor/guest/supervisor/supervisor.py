@@ -1,12 +1,13 @@
-"""The trusted part of a guest's process: forks one child a trial, watches it and clears up; runs no agent's code.
+"""The trusted process of a guest: forks one process per trial, watches it and cleans up; runs no agent's code.
 
-It is held too, before it imports anything for an agent, so that no library does what an agent may not. It has its own
-line to the host, which no child ever holds. So an agent can neither speak for it nor keep it from saying
-how the agent ended. What a trial is about it never reads: that the host calls is enough to fork a child who does.
+It is confined too, before it imports libraries for an agent, so that no library does what an agent may not. It has its
+own socket to the host, which no trial's process ever holds: an agent can neither speak for it nor keep it from
+reporting how the agent ended. It never reads what a trial is about.
 """
 
 from __future__ import annotations
 
+import contextlib
 import os
 import select
 import signal
@@ -22,7 +23,6 @@ from hthor.guest.protocol.pipe import HostPipe
 from hthor.guest.supervisor import forking, watchdog
 from hthor.guest.supervisor.forking import SpareProcess
 from hthor.guest.supervisor.preloading import preload
-from hthor.guest.supervisor.scratch_folder import ScratchFolder
 
 _SUBREAPER = 36
 
@@ -31,8 +31,8 @@ def main(tell: int, parent: int) -> None:
     """Serve the host until it hangs up.
 
     Args:
-        tell: the keeper's own line to the host and back, by which channels for trials come too.
-        parent: the host's process id, to die with it; 0 where bubblewrap sees to that.
+        tell: the supervisor's own socket to the host, by which the pipes of each trial come too.
+        parent: the host's process id, to end with it; 0 where bubblewrap takes care of that.
     """
     limits.die_with(parent)
     os.set_inheritable(tell, False)
@@ -50,7 +50,7 @@ def main(tell: int, parent: int) -> None:
         if sys.platform == "linux":
             kernel.prctl("adopting orphans", _SUBREAPER, 1)
         enforcement.confine_supervisor(order.policy)
-        home = ScratchFolder(order.policy.scratch)
+        scratch = ScratchFolder(order.policy.scratch)
         held = enforcement.make_ruleset(order.policy)
     except Refused as error:
         own.send(wire.Failed(kind="confinement", detail=str(error)))
@@ -58,12 +58,12 @@ def main(tell: int, parent: int) -> None:
     os.chdir(os.path.dirname(order.policy.scratch))
     if not order.words:
         preload(Path(order.path), order.module)
-        home.tidy()
+        scratch.reset()
     pid = forking.fork_trial(ends, tell, order, held, first=True)
     spare: SpareProcess | None = None
     while True:
         told = watchdog.watch_trial(pid, order, tell)
-        if home.tidy() and held is not None:  # rules are for the folder that was there
+        if scratch.reset() and held is not None:  # the rules are for the old folder
             held.close()
             held = enforcement.make_ruleset(order.policy)
             if spare:
@@ -77,12 +77,39 @@ def main(tell: int, parent: int) -> None:
         if not _called(ends.read):
             return
         pid = (spare.start(ends) if spare else 0) or forking.fork_trial(ends, tell, order, held)
-        if order.policy.level != "L1":  # there all that the keeper has started ends with each trial
+        if order.policy.level != "L1":  # at L1 everything the supervisor has started ends with each trial
             spare = SpareProcess(ends, tell, order, held)
 
 
+class ScratchFolder:
+    """The folder that an agent may write to, which every trial finds as the first one did.
+
+    Args:
+        folder: its path, in a folder that this process may change.
+    """
+
+    def __init__(self, folder: str) -> None:
+        self._folder = folder
+        self._size = os.stat(folder).st_size
+        self.reset()
+
+    def reset(self) -> bool:
+        """Empty it, and reset its times; True when it was replaced by a new folder.
+
+        A folder that had many files can stay large without them, which would reveal them.
+        """
+        cleanup.empty_folder(self._folder)
+        outgrown = os.stat(self._folder).st_size != self._size
+        if outgrown:
+            with contextlib.suppress(OSError):  # at L3 it is a mount, which cannot be replaced
+                os.rmdir(self._folder)
+                os.mkdir(self._folder, 0o700)
+        os.utime(self._folder, (0, 0))
+        return outgrown
+
+
 def _called(read: int) -> bool:
-    """Wait until the host begins a trial, without reading what it says; false when it has hung up."""
+    """Wait until the host begins a trial, without reading its message; False when it has closed the pipe."""
     poll = select.poll()
     poll.register(read, select.POLLIN)
     ((_, event),) = poll.poll()
@@ -90,9 +117,9 @@ def _called(read: int) -> bool:
 
 
 def _leave_guard(pipes: tuple[int, ...], ground: str) -> None:
-    """Go on as a child of a guard, which outlives us and the host for just as long as it takes to end all we started.
+    """Become the guard, which outlives the host until all processes of the guest have ended; go on in a child.
 
-    Whatever loses its parent comes to the guard, even if it has left the group.
+    Processes that lose their parent become children of the guard, even if they have left the group.
     """
     if sys.platform != "linux":
         return
@@ -108,7 +135,7 @@ def _leave_guard(pipes: tuple[int, ...], ground: str) -> None:
         host = os.getppid()
         kernel.prctl("outliving the host", kernel.PR_SET_PDEATHSIG, int(signal.SIGUSR1))
         kernel.prctl("adopting orphans", _SUBREAPER, 1)
-        for handle in (*pipes, 1, 2):  # the host takes an open end for a guest that lives
+        for handle in (*pipes, 1, 2):  # an open end would look like a living guest to the host
             os.close(handle)
         while os.getppid() == host and code is None:
             signal.sigwait(awaited)
@@ -118,6 +145,6 @@ def _leave_guard(pipes: tuple[int, ...], ground: str) -> None:
         cleanup.empty_folder(ground)
         os.rmdir(ground)
     finally:
-        if code is not None and code < 0:  # so that the host hears how the keeper ended
+        if code is not None and code < 0:  # so that the host learns how the supervisor ended
             os.kill(me, -code)
         os._exit(code or 0)

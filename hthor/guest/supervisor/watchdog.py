@@ -1,4 +1,4 @@
-"""The end of a trial's process, which comes early if it takes too much."""
+"""Waits for the end of a trial's process, and ends it early if it exceeds a limit."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _LOOK_MS = 50
 
 
 def watch_trial(pid: int, order: wire.Load, tell: int) -> wire.SupervisorToHost:
-    """Wait for a child's end, which comes early if it takes too much; what to say of it.
+    """Wait for a trial's process to end, or end it when it exceeds a limit; the message to the host.
 
     Args:
-        tell: the line to the host, which may say on which CPU it waits for the child.
+        tell: the socket to the host, which may say on which CPU it waits.
     """
     policy = order.policy
     found = _excess(pid, policy, tell) if hasattr(os, "pidfd_open") else None
@@ -37,7 +37,7 @@ def watch_trial(pid: int, order: wire.Load, tell: int) -> wire.SupervisorToHost:
 
 
 def _excess(pid: int, policy: Policy, tell: int) -> tuple[str, str] | None:
-    """What a child takes too much of; None when it comes to its end before."""
+    """The limit that a process exceeds, as a fault's kind and detail; None when it ends before."""
     ended, joined, found = os.pidfd_open(pid), None, None
     poll = select.poll()
     for handle in (ended, tell):
@@ -46,7 +46,7 @@ def _excess(pid: int, policy: Policy, tell: int) -> tuple[str, str] | None:
         if not ready:
             found = limits.find_excess(pid, policy.scratch, policy.memory_mb, policy.disk_mb)
             if joined:
-                joined.part()
+                joined.release_if_threaded()
         elif (cpu := cpu_affinity.receive_cpu(tell)) >= 0:
             joined = cpu_affinity.PinnedProcess(pid, cpu)
         else:

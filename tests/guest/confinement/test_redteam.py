@@ -112,7 +112,7 @@ from hthor.guest import GuestConfig, Guest
 from tests.support.guest_agents import BRIEFING
 guest = Guest(sys.argv[1], config=GuestConfig(isolation=sys.argv[2]))
 guest.load()
-print(guest._process._ground or guest._process.policy.scratch, flush=True)
+print(guest._process._folder or guest._process.policy.scratch, flush=True)
 guest.begin(BRIEFING)
 """
 DAEMON = """
