@@ -29,7 +29,7 @@ def list_files(
     """The files of an agent, with their hashes, sorted.
 
     Args:
-        opened: names of files that it has said it opened.
+        opened: names of files that it has reported as opened.
 
     Raises:
         AgentError: when a file cannot be read.
@@ -57,7 +57,7 @@ def unlisted_files(names: Iterable[str], known: Manifest, paths: AgentPaths, age
 
 
 def check_unchanged(known: Manifest, paths: AgentPaths) -> None:
-    """See that an agent's files are as they were when its run began.
+    """Check that an agent's files are as they were when its run began.
 
     Raises:
         AgentError: names the first that is not.
@@ -73,7 +73,7 @@ def check_unchanged(known: Manifest, paths: AgentPaths) -> None:
 
 
 def check_hashes(files: Iterable[File], paths: AgentPaths, *, since: str = "while its run was going on") -> None:
-    """See that these files are as their hashes say.
+    """Check these files against their hashes.
 
     Raises:
         AgentError: names the first that is not.
@@ -89,7 +89,7 @@ def check_hashes(files: Iterable[File], paths: AgentPaths, *, since: str = "whil
 
 
 def change_message(path: str, what: str) -> str:
-    """What to tell a user whose agent is not the one that a run began with."""
+    """The message to a user whose agent is not the one that a run began with."""
     return (
         f"{path} {what}. Change it back and repeat the command to finish this run, or evaluate the new version in a "
         "run of its own."
@@ -97,14 +97,14 @@ def change_message(path: str, what: str) -> str:
 
 
 def _first(agent: AgentReference) -> list[Path]:
-    """The files that are the agent by its name alone."""
+    """The files that the agent's reference itself names."""
     if agent.words:
         return command.own_files(agent.words) or [Path(agent.words[0])]
     return [Path(agent.path)]
 
 
 def _real(names: Iterable[str], paths: AgentPaths) -> Iterator[Path]:
-    """The files of these names, without what is no file of the agent's, whoever claims that."""
+    """The files with these names, without any that are not the agent's, whatever it claims."""
     for name in sorted(set(names)):
         path = paths.find(name)
         if paths.name(str(path)) == name and path.is_file():
@@ -136,7 +136,7 @@ def _readable(paths: AgentPaths) -> Iterator[str]:
 
 
 def _hidden(folder: str, agent: str = "") -> list[str]:
-    """What in a folder isolation hides from every agent. It is no part of one, though at L1 it could be read."""
+    """What isolation hides from every agent in a folder. It is no part of an agent, though at L1 it could be read."""
     return [str(path) for path in hidden_paths.hidden_below(Path(folder).resolve(), agent)] if folder else []
 
 

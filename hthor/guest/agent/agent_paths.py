@@ -1,4 +1,4 @@
-"""Where an agent's own files lie, and what each of them is called in its manifest; reads no file."""
+"""Where an agent's own files are, and their names in its manifest."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _NEVER = ("__pycache__", ".git")
 
 
 class AgentPaths(Struct, frozen=True, kw_only=True):
-    """The folders that an agent's files lie in.
+    """The folders of an agent's files.
 
     Attributes:
-        root: the folder that it lives in, empty for none.
-        base: the part of that which is its own: all of it, or of installed libraries its own package.
-        apart: folders in there that are not its own: installed libraries, this package, caches.
+        root: the agent's folder, empty for none.
+        base: the part of it that is its own: all of it, or its own package among installed libraries.
+        apart: folders in it that are not its own: installed libraries, this package, caches.
         readable: files and folders elsewhere that the user lets it read.
     """
 
@@ -31,14 +31,14 @@ class AgentPaths(Struct, frozen=True, kw_only=True):
     readable: tuple[str, ...] = ()
 
     def owns(self, path: str) -> bool:
-        """Whether a path lies in the agent's own folder, or is that folder."""
+        """Whether a path is the agent's own folder or inside it."""
         if not self.base or not _below(path, self.base):
             return False
         parts = path[len(self.base) :].split(os.sep)
         return not any(part in _NEVER for part in parts) and not any(_below(path, folder) for folder in self.apart)
 
     def name(self, path: str) -> str | None:
-        """What a path is called in the manifest; None for what is no part of the agent."""
+        """A path's name in the manifest; None for what is no part of the agent."""
         for place in (os.path.normpath(path), os.path.realpath(path)):
             if self.owns(place):
                 return os.path.relpath(place, self.root).replace(os.sep, "/")
@@ -48,7 +48,7 @@ class AgentPaths(Struct, frozen=True, kw_only=True):
         return None
 
     def find(self, name: str) -> Path:
-        """Where the file of this name in the manifest lies."""
+        """The path of the file with this name in the manifest."""
         if name.startswith("../"):
             for readable in self.readable:
                 if _below(name[3:], os.path.basename(readable)):
@@ -57,7 +57,7 @@ class AgentPaths(Struct, frozen=True, kw_only=True):
 
 
 def find_agent_paths(agent: AgentReference, readable: tuple[str, ...] = ()) -> AgentPaths:
-    """The paths of an agent."""
+    """The folders of an agent; ``readable`` as in `AgentPaths`."""
     root = agent.root
     base = root
     if agent.module and any(_below(root, folder) for folder in _libraries()):
@@ -65,7 +65,7 @@ def find_agent_paths(agent: AgentReference, readable: tuple[str, ...] = ()) -> A
         base = base if os.path.isdir(base) else f"{base}.py"
     strangers = [*_strangers(), os.path.join(root, "runs")]
     apart = [folder for folder in strangers if root and folder != root and _below(folder, root)]
-    if agent.words:  # a command names files anywhere; where it names none of its own, the program is what there is
+    if agent.words:  # a command may name files anywhere; if none are its own, it consists of the program
         named = [str(path) for path in command.own_files(agent.words)] or [agent.words[0]]
         readable += tuple(path for path in named if not (root and _below(path, root)))
     return AgentPaths(root=root, base=base, apart=tuple(sorted(set(apart))), readable=tuple(dict.fromkeys(readable)))
@@ -76,7 +76,7 @@ def _libraries() -> list[str]:
 
 
 def _strangers() -> list[str]:
-    """Folders whose files are no agent's own, wherever they lie."""
+    """Folders whose files belong to no agent."""
     places = [sys.prefix, sys.base_prefix, sys.exec_prefix, *paths.library_folders(), str(paths.PACKAGE), "runs"]
     if compiled := os.environ.get("NUMBA_CACHE_DIR", ""):
         places.append(compiled)

@@ -1,4 +1,4 @@
-"""What a user gives an agent by ``--agent-args``: read, made to fit a constructor, or put behind a command."""
+"""The user's ``--agent-args``: parsed, converted for a constructor, or appended to a command."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _YES, _NO = ("true", "yes", "1", "on"), ("false", "no", "0", "off")
 
 
 class ArgumentMismatch(ValueError):
-    """An argument that the agent does not take; the message goes to the user."""
+    """The agent does not take these arguments; the message is for the user."""
 
 
 def parse_arguments(texts: Iterable[str]) -> dict[str, str]:
@@ -38,7 +38,7 @@ def parse_arguments(texts: Iterable[str]) -> dict[str, str]:
 
 
 def convert_arguments(cls: type[Any], given: Mapping[str, str]) -> dict[str, Any]:
-    """The same arguments with values of the types that the constructor's parameters have, by annotation or default.
+    """The arguments with values of the types of the constructor's parameters, by annotation or default.
 
     Raises:
         Unfit: when the constructor has no such parameter, lacks one, or the value is of another type.
@@ -68,7 +68,7 @@ def convert_arguments(cls: type[Any], given: Mapping[str, str]) -> dict[str, Any
 
 
 def make_factory(cls: type[Any], given: Mapping[str, str]) -> Callable[[], Any]:
-    """What makes new agents with these arguments, which fit."""
+    """A function that makes a new agent with these arguments, which must fit."""
     values = convert_arguments(cls, given)
     return lambda: cls(**values)
 
@@ -92,5 +92,5 @@ def _typed(key: str, value: str, parameter: inspect.Parameter | None) -> Any:
 
 
 def as_options(given: Mapping[str, str]) -> tuple[str, ...]:
-    """The arguments as words of a command, ``--key=value``."""
+    """The arguments as options of a command, ``--key=value``."""
     return tuple(f"--{key}={value}" for key, value in given.items())

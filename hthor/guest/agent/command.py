@@ -1,4 +1,4 @@
-"""An agent's command: its words, the files that these name, and their hash; starts nothing."""
+"""An agent that is a command: its words, the files that they name, and their hash."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _ENV = ("/usr/bin/env", "/bin/env")
 
 
 def parse_command(text: str) -> tuple[str, ...]:
-    """The words of a command, with the program found and files made absolute, as it will be started.
+    """The words of a command as it will be started, with absolute paths of the program and of files.
 
-    A script that names its interpreter by ``env`` gets the interpreter in front: a held program starts no second one.
+    A script that names its interpreter by ``env`` gets the interpreter in front: a confined program cannot start it.
 
     Raises:
         AgentError: when it cannot be read, or there is no such program.
@@ -63,12 +63,12 @@ def own_files(words: Sequence[str]) -> list[Path]:
 
 
 def _comes_with_the_machine(path: Path) -> bool:
-    """Whether a program lies in a folder of the system or of this Python, or is a link to one that does."""
+    """Whether a program is in a folder of the system or of this Python, or links to such a program."""
     return any(place.is_relative_to(root) for place in (path, path.resolve()) for root in _SYSTEM)
 
 
 def command_sha256(words: Sequence[str]) -> str:
-    """The hash of the words, without folders, and of the own files; of the program where there are none.
+    """Hash of the words, without folders, and of the own files, or else of the program.
 
     Raises:
         AgentError: when a file cannot be read.
@@ -79,12 +79,12 @@ def command_sha256(words: Sequence[str]) -> str:
 
 
 def as_text(words: Sequence[str]) -> str:
-    """The command as one text, to be split again."""
+    """The command as one text, for `parse_command`."""
     return "cmd:" + shlex.join(words)
 
 
 def as_source(words: Sequence[str]) -> str:
-    """The command without the machine's folders."""
+    """The command without folders of this machine, for results."""
     return "cmd:" + shlex.join(_bare(word) for word in words)
 
 

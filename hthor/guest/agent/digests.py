@@ -12,7 +12,7 @@ from hthor.errors import AgentError
 
 _Sign = tuple[int, int, int, int, int]
 _SETTLED_NS = 2_000_000_000
-"""A file that was written so shortly ago may be written again without its times telling."""
+"""A file that was written so recently may be written again without a change of its times."""
 _known: dict[str, tuple[_Sign, str]] = {}
 
 
@@ -30,12 +30,12 @@ def file_sha256(path: Path) -> str:
 
 
 def hash_file(path: Path) -> tuple[str, int]:
-    """The hash of a file's bytes, and how many they are; not read again while nothing about the file has changed.
+    """The hash of a file's bytes, and their number; cached while the file's inode, size and times stay the same.
 
     Raises:
-        OSError: when it cannot be read, or is no file.
+        OSError: when it cannot be read, or is not a file.
     """
-    if path.exists() and not path.is_file():  # which could be read without end, or never
+    if path.exists() and not path.is_file():  # reading it might never end
         raise OSError(errno.EINVAL, "it is no file")
     with path.open("rb") as file:
         found = os.fstat(file.fileno())

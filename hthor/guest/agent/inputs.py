@@ -1,4 +1,4 @@
-"""What a user gives an agent beyond its own folder: arguments, and files that it may read; starts nothing."""
+"""What a user gives an agent beyond its own folder: arguments, and files that it may read."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class AgentInputs(Struct, frozen=True, kw_only=True):
     readable: tuple[str, ...] = ()
 
     def extra_paths(self, agent: AgentReference) -> tuple[str, ...]:
-        """What this agent may read that does not lie in its own folder.
+        """Files and folders outside its own folder that this agent may read.
 
         Raises:
             HthorError: when an argument names a folder that it may not read.
@@ -42,7 +42,7 @@ class AgentInputs(Struct, frozen=True, kw_only=True):
 
 
 def parse_inputs(args: Iterable[str] = (), readable: Iterable[Path | str] = ()) -> AgentInputs:
-    """What a user typed.
+    """The inputs that a user typed.
 
     Raises:
         HthorError: when an argument cannot be read, or there is no such file or folder.
@@ -57,7 +57,7 @@ def parse_inputs(args: Iterable[str] = (), readable: Iterable[Path | str] = ()) 
         raise HthorError(f"--readable names two files or folders called '{twice[0]}'; rename one of them.")
     found = arguments.parse_arguments(args)
     folders = [place for place in places if os.path.isdir(place)]
-    for key, value in found.items():  # a folder without a slash in its name, which could be any word
+    for key, value in found.items():  # a folder without a slash could be any word
         if os.path.isdir(value) and os.path.realpath(value) in folders:
             found[key] = os.path.realpath(value)
     return AgentInputs(args=found, readable=tuple(dict.fromkeys(places)))

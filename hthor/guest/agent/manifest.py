@@ -1,4 +1,4 @@
-"""What an agent consists of: a list of files with hashes, and the arguments it was given; opens nothing itself."""
+"""What an agent consists of: a list of files with hashes, and its arguments."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from hthor import jsonio
 class File(Struct, frozen=True, kw_only=True, order=True):
     """One file of an agent.
 
-    ``path`` is relative to the agent's folder, with slashes; what lies outside of it (``--readable``) begins with
-    ``../``, followed by the name of the file or folder that was made readable.
+    ``path`` is relative to the agent's folder, with slashes; outside of it (``--readable``) it begins with ``../`` and
+    the name of the file or folder that was made readable.
     """
 
     path: str
@@ -26,12 +26,12 @@ class Manifest(Struct, frozen=True, kw_only=True):
 
     Attributes:
         name, source: as in `AgentRef`.
-        sha256: what `AgentRef` has: the hash of source, arguments, files and library; of a served agent, of what its
-            server says.
-        args: what ``--agent-args`` gave it; files stand there by their path in ``files``.
+        sha256: as in `AgentRef`: the hash of source, arguments, files and library; of a served agent, of its server's
+            description.
+        args: the ``--agent-args``; files appear by their path in ``files``.
         files: sorted by path.
-        library: hash of what its files import of hthor, and of all that needs; empty where no file of it is Python.
-        claimed: whether nobody but the agent's server says so.
+        library: hash of the modules of hthor that its files import, directly or not; empty without Python files.
+        claimed: whether this is only what the agent's server says.
     """
 
     name: str
@@ -52,7 +52,7 @@ def make_manifest(name: str, source: str, args: dict[str, str], files: Iterable[
 
 
 def differences(there: Iterable[File], here: Iterable[File]) -> list[str]:
-    """What is not the same in two lists of files, a few words for each."""
+    """The differences between two lists of files, a few words for each."""
     before, now = ({file.path: file.sha256 for file in files} for files in (there, here))
     words = []
     for path in sorted({*before, *now}):

@@ -1,6 +1,6 @@
-"""What names a submitted agent, read and found; imports and starts nothing of it.
+"""Finds the submitted agent that a user names, without importing or starting it.
 
-Every command that takes an agent reads it here, so that all of them know the same forms.
+Every command that takes an agent parses it here, so that all accept the same forms.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from hthor.errors import AgentError, UnknownName
 from hthor.guest.agent import command, digests
 
 FORMS = ("my_agent.py", "my_agent.py:Class", "package.module:Class", "cmd:PROGRAM ARGS", "ws://HOST:PORT[/PATH]")
-"""How an agent that is not built in can be named."""
+"""The ways to name an agent that is not built in."""
 HINT = f"An agent of your own is {', '.join(FORMS)} or wss://...; see docs/agents.md."
 _MODULE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*")
 _COMMANDS = ("cmd", "command", "exec", "run", "program", "process", "shell")
@@ -30,12 +30,12 @@ class AgentReference(Struct, frozen=True, kw_only=True):
 
     Attributes:
         form: file, module, command or served.
-        text: the same agent in words that another process of this machine understands, wherever it was started.
-        source: what a result calls it; no folder of this machine is in it.
-        name: what to call it, unless it says otherwise.
+        text: names the same agent for another process of this machine, in any working folder.
+        source: its name in results, without folders of this machine.
+        name: its name, unless it gives another one.
         path: the file that is imported or started; empty when it is served.
-        root: the folder that it lives in and may read, empty for none.
-        cls: the class to take, empty for the only one. module: the module's name, where it is imported by name.
+        root: its own folder, which it may read; empty for none.
+        cls: the class to use, empty for the only one. module: its name, where it is imported by name.
         words: the program and its arguments. url: of the server.
     """
 
@@ -52,7 +52,7 @@ class AgentReference(Struct, frozen=True, kw_only=True):
 
     @property
     def sha256(self) -> str:
-        """The hash of its file, or of its command with the files that this names; empty when it is served.
+        """Hash of its file, or of its command with the files that it names; empty when it is served.
 
         Raises:
             AgentError: when a file cannot be read.
@@ -63,12 +63,12 @@ class AgentReference(Struct, frozen=True, kw_only=True):
 
 
 def is_served(text: str) -> bool:
-    """Whether these words name an agent that runs elsewhere."""
+    """Whether this text names an agent that runs elsewhere."""
     return "://" in text
 
 
 def parse_reference(text: str, cls: str | None = None) -> AgentReference:
-    """Understand what somebody typed.
+    """Parse what a user typed.
 
     Raises:
         UnknownName: when it has none of the forms.
@@ -151,7 +151,7 @@ def _served(text: str) -> AgentReference:
 
 
 def _guess(text: str) -> str:
-    """What may have been meant, as a question, or nothing."""
+    """A suggestion as a question, or nothing."""
     head, colon, tail = text.partition(":")
     meant = ""
     if "://" in text:

@@ -1,6 +1,6 @@
-"""Which files of an agent its sources name, found without running them.
+"""Finds the files that an agent's sources name, without running them.
 
-A file that is imported late, or opened by a library in C, leaves no trace when an agent comes up. Its name does.
+A file that is imported late, or opened by a library in C, is not recorded while the agent starts.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from pathlib import Path
 from hthor.guest.agent.agent_paths import AgentPaths
 
 _MOST_BYTES = 4 << 20
-"""Longest file that is looked into."""
+"""Longest file that is searched [bytes]."""
 _LONGEST = 300
 _WORD = re.compile(rb"[A-Za-z0-9_@+.~-][A-Za-z0-9_@+.~/-]{0,299}")
 _DEEPEST = 3
-"""Folders within folders whose names a source gives one by one."""
+"""Depth of nested folders whose names a source gives one by one."""
 
 
 def referenced_files(first: Iterable[str], paths: AgentPaths) -> set[str]:
@@ -53,7 +53,7 @@ def _named(path: str, paths: AgentPaths) -> Iterator[str]:
 
 
 def _python(data: bytes) -> tuple[set[str], set[tuple[int, str]]]:
-    """Texts in a source that can be names of files, and the modules that it imports anywhere, with their level."""
+    """Strings in a source that can be names of files, and the modules that it imports anywhere, with their level."""
     try:
         tree = ast.parse(data)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -74,7 +74,7 @@ def _python(data: bytes) -> tuple[set[str], set[tuple[int, str]]]:
 
 
 def _modules(level: int, name: str, folder: str, paths: AgentPaths) -> Iterator[str]:
-    """Files that an import reads: the module's and those of the packages around it."""
+    """Files that an import reads: those of the module and of its parent packages."""
     base = paths.root
     if level:
         base = folder
@@ -89,7 +89,7 @@ def _modules(level: int, name: str, folder: str, paths: AgentPaths) -> Iterator[
 
 
 def _files(words: Iterable[str], suffix: str, bases: Iterable[str], paths: AgentPaths) -> Iterator[str]:
-    """Files that are named, in these folders or in folders of theirs that are named too."""
+    """Files that are named, in these folders or in their subfolders that are named too."""
     usable = sorted(word for word in words if word and len(word) <= _LONGEST and "\0" not in word and "\n" not in word)
     folders = set(bases)
     tried: set[str] = set()

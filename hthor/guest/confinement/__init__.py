@@ -1,7 +1,6 @@
-"""What keeps a guest from all that is not its business.
+"""Confines a process at one of three levels. Begin with `enforcement`.
 
-Three levels, each with what the one before has: L1, a process with limits; L2, with Landlock and seccomp; L3, in
-namespaces of its own. See `Isolation` for what a result says of it.
+L1 is a process with limits, L2 adds Landlock and seccomp, and L3 adds namespaces. Results describe it by `Isolation`.
 """
 
 from __future__ import annotations

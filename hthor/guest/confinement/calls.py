@@ -1,7 +1,7 @@
-"""System calls of Linux on x86_64 by number: which ones a guest is refused, and which only seem to be done.
+"""System calls of Linux on x86_64 by number: which ones a guest is denied, and which only seem to succeed.
 
-The filter in `seccomp` is assembled from these tables. What is not named in them is allowed, but for the commands of
-`fcntl` and `ioctl`: of those only the ones that are named here are.
+The filter in `seccomp` is assembled from these tables. Calls that are not listed are allowed, except the commands of
+`fcntl` and `ioctl`: of those only the listed ones are.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ DENIED = {
     "ioprio_set": 251,
     "setrlimit": 160,
     "timer_create": 222,  # it sends any signal, and all processes of a user share one limit of how many there are
-    # memory and messages that outlive a process, or that no limit counts
+    # memory and messages that outlive a process or escape the limits
     "shmget": 29,
     "shmat": 30,
     "shmctl": 31,
@@ -62,7 +62,7 @@ DENIED = {
     "add_key": 248,
     "request_key": 249,
     "keyctl": 250,
-    # the file system as a whole, and ways around the rules for files
+    # the file system as a whole, and ways around Landlock
     "mount": 165,
     "umount2": 166,
     "chroot": 161,
@@ -88,7 +88,7 @@ DENIED = {
     "quotactl": 179,
     "swapon": 167,
     "swapoff": 168,
-    # what the rules for files say nothing of: they would let a process change every file of its user
+    # not restricted by Landlock: a process could change every file of its user
     "truncate": 76,
     "chown": 92,
     "fchown": 93,
@@ -131,12 +131,12 @@ DENIED = {
     "vhangup": 153,
 }
 SUPERVISOR_CALLS = ("fork", "vfork", "pidfd_open", "sched_setaffinity")
-"""Those that whoever starts and watches a guest's processes is not refused."""
+"""Calls that the supervisor needs to start and watch processes, which it is not denied."""
 ABSENT = {"clone3": 435, "memfd_create": 319, "mincore": 27, "cachestat": 451}
-"""Said not to exist, so that libraries take the older way: clone3 hides what it does behind a pointer, and the last two
-tell which parts of a shared file somebody has read."""
+"""Reported as missing, so that libraries fall back: clone3 hides its flags behind a pointer, and the last two reveal
+which parts of a shared file have been read."""
 UNSUPPORTED = {"fallocate": 285}
-"""Said not to be supported: libraries then write, which is counted while it happens."""
+"""Reported as unsupported: libraries then write instead, which the limits see as it happens."""
 IGNORED = {
     "chmod": 90,
     "fchmod": 91,
@@ -151,28 +151,29 @@ IGNORED = {
     "syncfs": 306,
     "fadvise64": 221,
 }
-"""Said to be done, and not done. Programs call these in good faith, but no rule for files says on which files: modes
-and times stay, a lock on a file that two guests can read is a wire between them, and others may notice that a file was
-dropped from memory."""
+"""Reported as done, and not done. Programs call these in good faith, but Landlock cannot restrict them: modes and times
+would stay, a lock on a file that two guests can read would be a channel between them, and others may notice that a file
+was dropped from memory."""
 
 CLONE, KILL, TGKILL, PRLIMIT, EXECVE = 56, 62, 234, 302, 59
-"""Allowed: threads, signals to itself but for `FROM_OUTSIDE`, its own limits but for `CPU_LIMITS`, one program."""
+"""Allowed: threads, signals to itself except `FROM_OUTSIDE`, its own limits except `CPU_LIMITS`, one program."""
 FROM_OUTSIDE = frozenset({signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGKILL, signal.SIGTERM})
-"""By these only a machine or a person ends a process, so that its trial may be played again: no guest can use them."""
+"""Signals by which only the machine or a person ends a process; its trial may then be repeated, so no guest can use
+them."""
 CPU_LIMITS = (0, 15)
 """RLIMIT_CPU and RLIMIT_RTTIME end a process with SIGKILL."""
 
 SOCKETPAIR, AF_UNIX, SOCK_TYPE, SOCK_STREAM = 53, 1, 0xF, 1
-"""Only streams: a socket for single messages, though it is one of a pair, also sends to any name on the machine."""
+"""Only streams: a datagram socket of a pair could also send to any address on the machine."""
 
 PRCTL = 157
 PRCTLS = (1, 4, 67)
 """Refused: PR_SET_PDEATHSIG (it would outlive its parent), PR_SET_DUMPABLE (it shows in /proc), PR_SET_MEMORY_MERGE."""
 
 PREADV2, READ_FLAGS = 327, 5
-"""Its flags ask whether a file's part is in memory, or drop it from there."""
+"""Its flags reveal whether a part of a file is cached, or drop it from the cache."""
 MADVISE, COLD = 28, (12, 20, 21)
-"""Advice by which others may notice something: MADV_MERGEABLE, MADV_COLD, MADV_PAGEOUT. Seems to be taken."""
+"""Advice whose effect others could notice: MADV_MERGEABLE, MADV_COLD, MADV_PAGEOUT. Reported as done."""
 
 FCNTL = 72
 FCNTLS = (0, 1, 2, 3, 4, 5, 9, 11, 16, 17, 36, 1025, 1027, 1028, 1030, 1032, 1034)
@@ -180,7 +181,7 @@ FCNTLS = (0, 1, 2, 3, 4, 5, 9, 11, 16, 17, 36, 1025, 1027, 1028, 1030, 1032, 103
 F_OFD_GETLK, F_GETLEASE, F_DUPFD_QUERY, F_CREATED_QUERY, F_DUPFD_CLOEXEC, F_GETPIPE_SZ, F_GET_SEALS. The others send
 signals, take leases, watch folders, or set what stays with a file or a pipe."""
 FCNTL_LOCKS = (6, 7, 37, 38)
-"""F_SETLK, F_SETLKW, F_OFD_SETLK, F_OFD_SETLKW: they seem to lock, as `flock` does."""
+"""F_SETLK, F_SETLKW, F_OFD_SETLK, F_OFD_SETLKW: reported as done, like `flock`."""
 
 IOCTL = 16
 IOCTLS = (0x5401, 0x802C542A, 0x540F, 0x5411, 0x5413, 0x541B, 0x5421, 0x5450, 0x5451, 0x5460, 0x8905)

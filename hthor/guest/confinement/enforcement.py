@@ -1,6 +1,6 @@
-"""Puts one process under a policy, before it runs a line of anybody's code.
+"""Puts a process under a policy before it runs any code of an agent.
 
-Each layer is tried out once it is on: a filter that lets something through must not be taken for one that holds.
+Each layer is tested once it is on: a filter that lets something through must not pass for one that works.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ _PROCESSES = ("/proc",)
 
 
 def make_ruleset(policy: Policy) -> Ruleset | None:
-    """What a guest may do to files, for all its trials; None at the lowest level.
+    """The Landlock rules for all trials of a guest; None at L1.
 
     Raises:
-        Refused: when the kernel has no such thing.
+        Refused: when the kernel does not support them.
     """
     if policy.level == "L1":
         return None
@@ -39,12 +39,12 @@ def make_ruleset(policy: Policy) -> Ruleset | None:
 
 
 def confine_supervisor(policy: Policy) -> None:
-    """Hold the trusted part of a guest for good, before it imports what an agent names.
+    """Confine the supervisor for good, before it imports what an agent names.
 
-    It may do what its agents may, and what it takes to start them, to watch them and to clear up behind them.
+    It may do what its agents may, and what it needs to start them, to watch them and to clean up after them.
 
     Raises:
-        Refused: when it cannot be held.
+        Refused: when it cannot be confined.
     """
     if policy.level == "L1":
         return
@@ -62,13 +62,13 @@ def confine_supervisor(policy: Policy) -> None:
 
 
 def confine_trial(policy: Policy, held: Ruleset | None, word: bytes = b"") -> None:
-    """Hold this process, which has given up its privileges, to a policy for good.
+    """Confine this process, which has dropped its privileges, to a policy for good.
 
     Args:
-        word: what lets it start a program, once; see `seccomp`. Empty when it may start none.
+        word: the token that lets it start a program, once; see `seccomp`. Empty when it may start none.
 
     Raises:
-        Refused: when a layer cannot be put on, or does not hold.
+        Refused: when a layer cannot be applied, or does not work.
     """
     limits.set_limits(0 if policy.devices else policy.memory_mb, policy.disk_mb, processes=held is None)
     if held is None:

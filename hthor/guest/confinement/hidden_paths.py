@@ -1,7 +1,7 @@
-"""Finds what below an agent's folder it may not read: runs, logs, suites, people, boards and salts of hthor.
+"""Finds what an agent may not read in its own folder: runs, logs, suites, populations, boards and salts of hthor.
 
-They are known by their content, wherever they lie and whatever they are called. The walk is bounded: folders that it
-did not come to are hidden as well.
+They are recognized by their content, whatever their names and places. The search is bounded: folders that it did not
+reach are hidden as well.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from pathlib import Path
 
 _NEVER = (".git", "runs")
 _RUN = ("run.json", "trials.jsonl", "sessions.jsonl")
-"""Any of these, if it is hthor's, marks a folder that is hidden with everything in it."""
+"""Any of these files, if it is hthor's, marks a folder that is hidden with everything in it."""
 _FAULTS = "faults"
 _OURS = re.compile(rb'"schema":\s?"hthor\.|"floorPolygon"|"sha256":\s?"[0-9a-f]{64}",\s?"version":\s?\d+,\s?"tasks":')
-"""In a document of hthor's: a schema of ours, the rooms of a house, the head of a suite."""
+"""In a document of hthor: a schema, the rooms of a house, the head of a suite."""
 _LINE = re.compile(rb'"(human_sha256|rules_sha256)"|"check":"[0-9a-f]{8}"\}\n')
 """In a line of a log."""
 _SALT = re.compile(rb"[0-9a-f]{64}\s*")
 _SALT_BYTES = range(64, 68)
 _READ_BYTES, _ENTRIES_MAX, _BYTES_MAX = 1 << 18, 250_000, 1 << 28
 _FRESH_S = 30.0
-"""A folder is looked through again after this time: runs may come to lie there meanwhile."""
+"""A folder is searched again after this time: new runs may have been written there."""
 _known: dict[tuple[str, str], tuple[float, tuple[Path, ...]]] = {}
 
 
@@ -33,7 +33,7 @@ def hidden_below(root: Path, agent: str = "") -> tuple[Path, ...]:
     """Files and folders below ``root`` that no agent may read.
 
     Args:
-        agent: the agent's own file. Of the folders that it lies in, only the files that are hthor's are hidden.
+        agent: the agent's own file. In the folders that contain it, only hthor's files are hidden.
     """
     key, now = (str(root), agent), time.monotonic()
     if key not in _known or now - _known[key][0] > _FRESH_S:
@@ -42,14 +42,14 @@ def hidden_below(root: Path, agent: str = "") -> tuple[Path, ...]:
 
 
 class _Walk:
-    """One look through a folder, breadth first."""
+    """One search of a folder, breadth first."""
 
     def __init__(self, agent: str) -> None:
         self._agent = Path(agent) if agent else None
         self._entries, self._bytes = 0, 0
 
     def hidden(self, root: Path) -> Iterator[Path]:
-        """What is to be hidden in a folder and below."""
+        """Files and folders to hide in a folder and below."""
         left = deque([root])
         while left:
             folder = left.popleft()
@@ -83,14 +83,14 @@ class _Walk:
                     left.append(Path(one.path))
 
     def _is_ours(self, entry: os.DirEntry[str]) -> bool:
-        """Whether a file is one of hthor's that an agent may not read."""
+        """Whether a file is one of hthor that no agent may read."""
         try:
             if entry.name.endswith((".json", ".jsonl")):
                 pattern = _OURS if entry.name.endswith(".json") else _LINE
                 return pattern.search(self._head(entry.path)) is not None
             if entry.stat(follow_symlinks=False).st_size in _SALT_BYTES:
                 return _SALT.fullmatch(self._head(entry.path)) is not None
-        except OSError:  # what cannot be read here, an agent cannot read either
+        except OSError:  # an agent cannot read it either
             return False
         return False
 

@@ -1,4 +1,4 @@
-"""How strongly a guest is held, as a record of what is in force."""
+"""Levels of isolation, and the record of how a guest was isolated."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from hthor.errors import HthorError, UnknownName
 LEVELS = ("L1", "L2", "L3")
 """From weak to strong: a process; plus Landlock and seccomp; plus namespaces."""
 SERVED = "served"
-"""In place of a level: the agent runs elsewhere, and what holds it there is not known here."""
+"""In place of a level: the agent runs elsewhere, where its confinement is unknown."""
 AUTO = "auto"
-"""The strongest level that the machine gives."""
+"""The strongest level that starts on the machine."""
 
 
 class IsolationError(HthorError):
-    """A level of isolation that was asked for cannot be had."""
+    """A level of isolation that was asked for does not start on this machine."""
 
     exit_code = 5
 
 
 class Isolation(Struct, frozen=True, kw_only=True):
-    """What holds a guest.
+    """How a guest was isolated.
 
     Attributes:
-        level: one of `LEVELS`, or "served" for an agent that runs elsewhere and is held by nothing of ours.
+        level: one of `LEVELS`, or "served" for an agent that runs elsewhere.
         landlock_abi: version of Landlock in force, 0 for none.
         seccomp: whether system calls are filtered.
         netns: whether it has a network of its own, an empty one.
         pidns: whether it sees no processes but its own.
-        memory: how much memory it may take, and what sees to that.
-        reason_not_higher: why the next level could not be had, or that it was not asked for; empty at the highest.
+        memory: how much memory it may use, and how that is enforced.
+        reason_not_higher: why the next level did not start, or that it was not asked for; empty at the highest.
     """
 
     level: str
@@ -42,7 +42,7 @@ class Isolation(Struct, frozen=True, kw_only=True):
     reason_not_higher: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse a level that does not exist, also one that is read from a file.
+        """Refuse an unknown level, also one that is read from a file.
 
         Raises:
             ValueError: when there is no such level.
@@ -52,7 +52,7 @@ class Isolation(Struct, frozen=True, kw_only=True):
 
 
 def check_level(level: str, *, auto: bool = True) -> str:
-    """The same level, if there is one of this name.
+    """The level itself, if it exists.
 
     Raises:
         UnknownName: when there is none.

@@ -1,4 +1,4 @@
-"""Calls to the kernel that Python has no names for."""
+"""Kernel calls for which Python has no functions."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ PR_SET_NO_NEW_PRIVS = 38
 
 
 class Refused(Exception):
-    """The kernel does not give what was asked for; the message says what and why."""
+    """The kernel refuses a request; the message says which and why."""
 
 
 def syscall(what: str, number: int, *values: Any) -> int:
     """The result of a system call.
 
     Raises:
-        Refused: when it fails; ``what`` says what it was to do.
+        Refused: when it fails; ``what`` names its purpose.
     """
     result: int = _library().syscall(ctypes.c_long(number), *(_wide(value) for value in values))
     if result < 0:
@@ -31,7 +31,7 @@ def syscall(what: str, number: int, *values: Any) -> int:
 
 
 def prctl(what: str, option: int, *values: Any) -> None:
-    """Change something of this process; like `syscall`."""
+    """Call prctl; like `syscall`."""
     padded = (*values, 0, 0, 0, 0)[:4]
     if _library().prctl(ctypes.c_int(option), *(_wide(value) for value in padded)) < 0:
         raise Refused(f"{what}: {os.strerror(ctypes.get_errno())}")

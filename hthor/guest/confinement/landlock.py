@@ -1,8 +1,8 @@
-"""Which files a process may open, by the kernel's Landlock.
+"""Which files a process may open, enforced by the kernel's Landlock.
 
-Rules only add: what no rule allows is refused, for this process and all that it starts, and nothing lifts that again.
-From version 4 of the kernel's interface TCP is refused too, from version 6 signals and abstract sockets to processes
-outside. Whether a file exists, and its size, can still be asked.
+What no rule allows is denied, for this process and all that it starts, permanently. From ABI version 4 on TCP is
+denied too, from version 6 on signals and abstract sockets to processes outside. Whether a file exists, and its size,
+can still be asked.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _SCOPES = 1 | 2
 
 
 def abi() -> int:
-    """Version of the kernel's interface, 0 where there is none."""
+    """Version of the kernel's Landlock ABI, 0 where there is none."""
     try:
         return kernel.syscall("asking for Landlock", _CREATE, None, 0, _ASK_VERSION)
     except Refused:
@@ -37,15 +37,15 @@ def abi() -> int:
 
 
 class Ruleset:
-    """A set of rules, made once and put on by any number of forks.
+    """A set of rules, made once and applied by any number of forks.
 
     Args:
-        read: files and folders that may be read, folders with all that is in them.
+        read: files and folders that may be read, folders with everything in them.
         listed: folders of which only the names may be read.
-        write: folders that may be changed at will. devices: files that may be read and written.
-        driven: devices that may be told what to do as well. execute: whether what may be read may be executed.
+        write: folders that may be changed. devices: files that may be read and written.
+        driven: devices that also take ioctl commands. execute: whether readable files may be executed.
 
-    What does not exist is passed over.
+    Paths that do not exist are skipped.
     """
 
     def __init__(
@@ -78,11 +78,11 @@ class Ruleset:
             self._allow(path, _READ_FILE | _WRITE_FILE | _READ_DIR | _IOCTL)
 
     def apply(self) -> None:
-        """Hold this process, which must have a single thread, to the rules for good."""
+        """Apply the rules to this process, which must have a single thread, for good."""
         kernel.syscall("putting on Landlock rules", _RESTRICT, self._handle, 0)
 
     def close(self) -> None:
-        """Let the rules go; whoever has put them on keeps them."""
+        """Close the rules; processes that have applied them stay confined."""
         os.close(self._handle)
 
     def _allow(self, path: str, rights: int) -> None:
@@ -100,5 +100,5 @@ class Ruleset:
 
 
 def _handled(version: int) -> int:
-    """Every right to files that this version knows."""
+    """Every file access right that this version knows."""
     return (1 << (13 if version == 1 else 14 if version == 2 else 15 if version < 5 else 16)) - 1

@@ -1,4 +1,4 @@
-"""What a process may use up, and what it loses for good."""
+"""Resource limits, dropped privileges, and what a process uses."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
 def die_with(parent: int) -> None:
-    """End when the parent ends; 0 says that somebody else sees to that."""
+    """End when the parent ends; 0 if bubblewrap takes care of that."""
     if sys.platform == "linux":
         kernel.prctl("dying with the parent", kernel.PR_SET_PDEATHSIG, int(signal.SIGKILL))
     if parent and os.getppid() != parent:
@@ -30,20 +30,20 @@ def die_with(parent: int) -> None:
 
 
 def make_undumpable() -> None:
-    """Keep this process's memory and environment from others of the same user."""
+    """Hide this process's memory and environment from other processes of the same user."""
     if sys.platform == "linux":
         kernel.prctl("hiding memory", kernel.PR_SET_DUMPABLE, 0)
 
 
 def drop_privileges() -> None:
-    """Give up every privilege, root's too, and all hope of any; leave no core, and be the first to go for memory."""
+    """Give up every privilege for good, root's too; write no core files, and be the first to go for memory."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     if sys.platform != "linux":
         return
     with contextlib.suppress(OSError):
         Path("/proc/self/oom_score_adj").write_text("1000")
     kernel.prctl("renouncing privileges", kernel.PR_SET_NO_NEW_PRIVS, 1)
-    with contextlib.suppress(kernel.Refused):  # who has none cannot drop any
+    with contextlib.suppress(kernel.Refused):  # without privileges nothing can be dropped
         for capability in range(41):
             kernel.prctl("dropping a privilege", _CAPBSET_DROP, capability)
     if os.uname().machine == "x86_64":
@@ -52,7 +52,7 @@ def drop_privileges() -> None:
 
 
 def set_limits(memory_mb: int, disk_mb: int, *, processes: bool) -> None:
-    """Bound memory (0: not by a limit, as a GPU's does not fit one), files and, where it may start any, processes."""
+    """Limit memory (0: no limit, as a GPU maps more than any), files and, where it may start any, processes."""
     if memory_mb:
         _lower(resource.RLIMIT_DATA, memory_mb << 20)
     _lower(resource.RLIMIT_FSIZE, disk_mb << 20)
@@ -62,7 +62,7 @@ def set_limits(memory_mb: int, disk_mb: int, *, processes: bool) -> None:
 
 
 def resident_mb(pid: int) -> float:
-    """Memory that a process holds, shared memory included [MB]; 0 when it is gone."""
+    """Resident memory of a process, shared memory included [MB]; 0 when it has ended."""
     try:
         return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * _PAGE / (1 << 20)
     except (OSError, IndexError):
@@ -70,9 +70,9 @@ def resident_mb(pid: int) -> float:
 
 
 def process_memory_mb(pid: int) -> float:
-    """All that a process keeps in memory [MB], with what was swapped out and the tables of its pages.
+    """All memory that a process takes [MB], with swapped pages and page tables.
 
-    The tables can be many times as large as the pages: one that was only read takes none, but a place in a table.
+    The tables can be many times as large as the pages: a page that was only read takes no memory but a table entry.
     """
     with contextlib.suppress(OSError, ValueError, IndexError):
         lines = Path(f"/proc/{pid}/status").read_text().splitlines()
@@ -82,7 +82,7 @@ def process_memory_mb(pid: int) -> float:
 
 
 def written_mb(pid: int) -> float:
-    """What a process has written to disks so far [MB], files included that have no name any more."""
+    """What a process has written to disk so far [MB], deleted files included."""
     try:
         words = Path(f"/proc/{pid}/io").read_text().split()
         return int(words[words.index("write_bytes:") + 1]) / (1 << 20)
@@ -94,7 +94,7 @@ def folder_usage(folder: str) -> tuple[float, int]:
     """Size of all files in a folder [MB] and their number; stops counting at `_MOST_FILES`.
 
     Raises:
-        OSError: when a folder in there cannot be looked into, though it is there.
+        OSError: when a folder in it exists but cannot be read.
     """
     size = count = 0
     left = [folder]
@@ -112,9 +112,9 @@ def folder_usage(folder: str) -> tuple[float, int]:
 
 
 def find_excess(pid: int, scratch: str, memory_mb: int, disk_mb: int) -> tuple[str, str] | None:
-    """What a process has too much of, as a fault's kind and detail; None while it keeps within its bounds.
+    """The limit that a process exceeds, as a fault's kind and detail; None while it exceeds none.
 
-    How much it had when it was looked at is chance, and no part of the detail.
+    The detail has no measured amount, which would differ from run to run.
     """
     if process_memory_mb(pid) > memory_mb:
         return "memory", f"the agent held more than {memory_mb} MB of memory"
@@ -137,7 +137,7 @@ def _lower(which: int, most: int) -> None:
 
 
 def _threads_of_user() -> int:
-    """How many threads this user has; the kernel counts them all against the bound."""
+    """How many threads this user has; the kernel counts them all against the limit."""
     count, me = 0, os.getuid()
     for status in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):

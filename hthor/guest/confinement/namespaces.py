@@ -1,7 +1,7 @@
-"""The command that gives a guest a world of its own, by bubblewrap.
+"""Runs a guest in namespaces of its own, by bubblewrap.
 
-In there it sees no process but its own, no network, not even the machine's loopback, and no file but those that it may
-read. What it writes goes to memory of a fixed size and is gone with it.
+There it sees only its own processes, no network, not even the machine's loopback, and only the files that it may read.
+What it writes goes to memory of a fixed size and ends with it.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ _OWN = ("/proc/", "/dev/")
 
 
 def unavailable() -> str:
-    """Why there is no such command, empty when there is."""
+    """Why bubblewrap is not available, empty when it is."""
     return "" if shutil.which("bwrap") else f"bubblewrap is not installed. {_HELP}"
 
 
 def bwrap_command(policy: Policy, inner: Sequence[str]) -> list[str]:
-    """The command that runs another one inside."""
+    """The bubblewrap command that runs ``inner``."""
     words = [shutil.which("bwrap") or "bwrap", *_APART, *_NOBODY, "--hostname", "guest"]
     words += ["--die-with-parent", "--cap-drop", "ALL", "--proc", "/proc", "--dev", "/dev"]
     words += ["--size", str(policy.disk_mb << 20), "--tmpfs", policy.scratch]
-    for path in policy.read:  # after the scratch folder: what comes later lies on top
+    for path in policy.read:  # after the scratch folder: later mounts cover earlier ones
         if not path.startswith(_OWN):
             words += ["--ro-bind-try", path, path]
     if policy.compiled:
@@ -38,7 +38,7 @@ def bwrap_command(policy: Policy, inner: Sequence[str]) -> list[str]:
 
 
 def failure_reason(said: str) -> str:
-    """Why it did not start, from what it said, and what to do about it."""
+    """Why bubblewrap did not start, from its output, and what to do about it."""
     lines = [line for line in said.splitlines() if line.strip()]
     reason = lines[-1] if lines else "bubblewrap ended without a word"
     if "uid map" in reason or "namespace" in reason:

@@ -1,7 +1,7 @@
-"""What a guest may read of the machine, as a list.
+"""Which files of the machine a guest may read, as a list.
 
-Both enforcers only know rules that allow. So a folder that holds something to be hidden is not named itself; its other
-members are, one by one.
+Landlock and bubblewrap only know rules that allow. So a folder that contains something hidden is not listed itself; its
+other members are, one by one.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ from hthor import jsonio
 from hthor.guest.confinement import hidden_paths
 
 PACKAGE = Path(__file__).resolve().parents[2]
-_OURS = ("types", "geometry", "guest", "agents", "navigation", "comms", "catalog", "houses/space")
-"""Parts of this package that minds are made with. Houses, tasks, people and worlds are no business of theirs."""
+_OURS = ("types", "geometry", "guest", "agents", "navigation", "comms", "catalog", "houses/space", "houses/checks")
+"""Parts of this package that agents are made with; tasks, humans, worlds, evaluation and the houses are hidden."""
 _LIBRARIES = ("site-packages", "dist-packages")
 _SYSTEM = ("/usr", "/bin", "/lib", "/lib64", "/lib32", "/etc/ld.so.cache", "/etc/localtime", "/etc/ssl")
 _FACTS = ("/sys/devices/system/cpu", "/proc/cpuinfo", "/proc/meminfo")
 DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
 GPU_VARIABLES = ("CUDA_VISIBLE_DEVICES", "CUDA_DEVICE_ORDER", "NVIDIA_VISIBLE_DEVICES", "NVIDIA_DRIVER_CAPABILITIES")
-"""What in the environment says which of them are meant."""
+"""Environment variables that choose among the machine's GPUs."""
 GPU_FACTS = ("/proc/driver/nvidia", "/sys/bus/pci", "/sys/devices", "/sys/module/nvidia")
-"""What a driver reads of the machine."""
+"""Files about the machine that GPU drivers read."""
 
 
 def gpu_devices(root: str = "/dev") -> tuple[str, ...]:
-    """The files of the machine's GPUs."""
+    """Device files of the machine's GPUs."""
     return tuple(sorted(str(path) for path in Path(root).glob("nvidia*")))
 
 
@@ -41,8 +41,8 @@ def readable_paths(agent: str, root: str, hidden: Sequence[str], beyond: Sequenc
     """Files and folders that a guest may read, folders with everything in them.
 
     Args:
-        agent: the agent's file. root: the folder that it lives in, empty for none.
-        hidden: files and folders that it may not read, wherever they lie.
+        agent: the agent's file. root: its own folder, empty for none.
+        hidden: files and folders that it may not read, wherever they are.
         beyond: files and folders elsewhere that the user lets it read.
     """
     secret = [PACKAGE, *(Path(path).resolve() for path in hidden)]
@@ -60,22 +60,22 @@ def readable_paths(agent: str, root: str, hidden: Sequence[str], beyond: Sequenc
 
 
 def listed_folders(root: str) -> tuple[str, ...]:
-    """Folders whose names a guest may read, since Python looks for modules by name there."""
+    """Folders whose names a guest may read, since Python searches for modules there."""
     return (str(PACKAGE), *library_folders(), *([root] if root else []))
 
 
 def _ours() -> Iterable[Path]:
     yield from (path for path in sorted(PACKAGE.glob("*.py")))
     yield from (PACKAGE / name for name in _OURS)
-    yield from (path for path in sorted((PACKAGE / "houses").glob("*.py")))  # maps are made with these; no house is
+    yield from (path for path in sorted((PACKAGE / "houses").glob("*.py")))  # maps need this code, not the houses
 
 
 def _open(root: Path, secret: Sequence[Path]) -> list[str]:
-    """The folder, or as much of it as can be named without naming what is secret."""
+    """The folder, or as much of it as can be listed without what is secret."""
     real = root.resolve()
     if any(real.is_relative_to(hidden) for hidden in secret):
         return []
-    if not jsonio.is_text(str(root)):  # a list is a message, and no message can name it
+    if not jsonio.is_text(str(root)):  # the list is sent as a message, which cannot contain it
         return []
     below = [hidden for hidden in secret if hidden.is_relative_to(real)]
     if not below or not real.is_dir():
@@ -88,7 +88,7 @@ def _open(root: Path, secret: Sequence[Path]) -> list[str]:
 
 
 def _tops(found: Iterable[str]) -> tuple[str, ...]:
-    """Each path once, without those that lie in another one."""
+    """Each path once, without those inside another one."""
     tops: list[str] = []
     for path in sorted(set(found)):
         if not tops or not Path(path).is_relative_to(tops[-1]):

@@ -1,10 +1,10 @@
-"""Which system calls a process may make, as a filter assembled by hand.
+"""Which system calls a process may make, as a seccomp filter assembled by hand.
 
-What is not named is allowed, so this is a fence and no wall: a new kernel may have new calls. The numbers are those of
-x86_64; on another machine the filter refuses to be put on.
+Calls that are not listed are allowed, so a new kernel may have new ones. The numbers are those of x86_64; on another
+machine the filter refuses to be installed.
 
-A process can be let start one program, which stays held: `start` says a word that the filter waits for, in places that
-the kernel itself does not read. The word is random, and gone with the memory of whoever said it.
+A process can be allowed to start one program, which stays confined: `exec_with_token` passes a token that the filter
+demands, in arguments that the kernel itself ignores. The token is random, and is gone with the memory of its sender.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ def unavailable() -> str:
 
 
 def new_token() -> bytes:
-    """What is to be said to start a program."""
+    """A token for `exec_with_token`."""
     return os.urandom(_WORD.size)
 
 
 def exec_with_token(words: Sequence[str], env: Mapping[str, str], word: bytes) -> NoReturn:
-    """Become another program.
+    """Replace this process by another program.
 
     Raises:
         Refused: when it cannot be started.
@@ -128,7 +128,7 @@ def filter_program(me: int, word: bytes = b"", *, driven: bool = False) -> bytes
 
 
 def _begin() -> list[Line]:
-    """Whoever calls otherwise than a program for x86_64 is ended; then the call's number is loaded."""
+    """End processes that call in another way than x86_64 programs do; then load the call's number."""
     lines = [(_LOAD, 0, 0, _MACHINE), (_EQUAL, 1, 0, _ARCH), (_RETURN, 0, 0, _KILL)]
     return [*lines, (_LOAD, 0, 0, _NUMBER), (_AT_LEAST, 0, 1, _X32), (_RETURN, 0, 0, _KILL)]
 
@@ -138,20 +138,20 @@ def _assembled(lines: Iterable[Line]) -> bytes:
 
 
 def _own_limits(me: int, refuse: Line) -> list[Line]:
-    """Allow reading a process's own limits, and setting those that do not end it as if from outside."""
+    """Allow reading a process's own limits, and setting those that do not end it by a signal."""
     own = [_argument(0), (_EQUAL, 2, 0, 0), (_EQUAL, 1, 0, me), refuse]
     read = [_argument(2), (_EQUAL, 0, 3, 0), (_LOAD, 0, 0, 16 + 8 * 2 + 4), (_EQUAL, 0, 1, 0), _YES]
     return [*own, *read, _argument(1), *_any(calls.CPU_LIMITS, refuse), _YES]
 
 
 def _streams(refuse: Line) -> list[Line]:
-    """Allow a pair of sockets that is a stream within this machine."""
+    """Allow a pair of connected stream sockets."""
     family = [_argument(0), (_EQUAL, 1, 0, calls.AF_UNIX), refuse]
     return [*family, _argument(1), (_AND, 0, 0, calls.SOCK_TYPE), (_EQUAL, 1, 0, calls.SOCK_STREAM), refuse, _YES]
 
 
 def _commands(driven: bool) -> list[Line]:
-    """Allow what may be asked of an open file by its driver."""
+    """Allow the listed ioctl commands."""
     refuse = _no(errno.ENOTTY)
     if not driven:
         return [_argument(1), *_any(calls.IOCTLS, _YES), refuse]
@@ -175,12 +175,12 @@ def _no(code: int) -> Line:
 
 
 def _argument(index: int) -> Line:
-    """Load the low half of an argument; all those that are looked at have 32 bits."""
+    """Load the low half of an argument; all arguments that are examined have 32 bits."""
     return (_LOAD, 0, 0, 16 + 8 * index)
 
 
 def _on(value: int, lines: list[Line]) -> list[Line]:
-    """Lines that count only where the loaded word has this value."""
+    """Lines that apply only where the loaded word has this value."""
     return [(_EQUAL, 0, len(lines), value), *lines]
 
 

@@ -1,4 +1,4 @@
-"""Ends what a guest has started and removes what it has written."""
+"""Ends the processes that a guest has started, and removes the files that it has written."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW
 
 
 def end_descendants(ancestor: int) -> None:
-    """End all that a process has started, and what those have started; it adopts what loses its parent."""
+    """End all descendants of a process, which adopts those that lose their parent."""
     for _ in range(20):
         below_each = children_by_parent()
         line, left = [ancestor], []
@@ -40,9 +40,9 @@ def children_by_parent() -> dict[int, list[int]]:
 
 
 def empty_folder(folder: str) -> None:
-    """Remove all that is in a folder, however deep and however it was locked; nothing that a link leads to.
+    """Remove everything in a folder, at any depth and with any permissions, without following links.
 
-    It starts no program and holds one folder open at a time, so neither depth nor names stop it.
+    It starts no program and keeps one folder open at a time, so neither depth nor names stop it.
     """
     if os.path.islink(folder):
         os.unlink(folder)
@@ -53,7 +53,7 @@ def empty_folder(folder: str) -> None:
 
 
 def _descend(at: int) -> None:
-    """Empty an open folder, which is closed then."""
+    """Empty an open folder, and close it."""
     way, left = list[str](), [_emptied(at)]
     try:
         while way or left[-1]:
@@ -79,7 +79,7 @@ def _moved(name: str, at: int) -> int:
 
 
 def _emptied(at: int) -> list[str]:
-    """Remove what can be removed of an open folder at once; the names of folders in it that are not empty."""
+    """Remove everything from an open folder except folders that are not empty; the names of these."""
     with os.scandir(at) as entries:
         found = [(entry.name, entry.is_dir(follow_symlinks=False)) for entry in entries]
     full = []

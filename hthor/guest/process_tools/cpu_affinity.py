@@ -1,7 +1,7 @@
-"""On which CPU an evaluation and its guest take turns.
+"""Keeps an evaluation and its guest on one CPU.
 
-One of the two always waits. If it waits on another CPU, that CPU falls asleep between two steps, and to wake it takes
-longer than all else in a step. A guest with several threads is left alone, since they may well work at once.
+One of the two always waits. On a CPU of its own it would fall asleep between two steps, and waking it takes longer than
+everything else in a step. A guest with several threads is left alone, since they may run in parallel.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _BYTES = 2
 
 
 class _Here(threading.local):
-    """What is laid down for one thread of an evaluation: how many guests it stays for, and where it ran before."""
+    """Of one thread of an evaluation: for how many guests it is pinned, and where it might run before."""
 
     guests = 0
     before: frozenset[int] = frozenset()
@@ -27,7 +27,7 @@ _here = _Here()
 
 
 def pin_thread() -> int:
-    """Keep this thread on the CPU that it runs on until `leave` was called as often; -1 where that cannot be had."""
+    """Keep this thread on its current CPU until `unpin_thread` is called as often; the CPU, or -1 if that fails."""
     if sys.platform != "linux":
         return -1
     if not _here.guests:
@@ -42,7 +42,7 @@ def pin_thread() -> int:
 
 
 def unpin_thread() -> None:
-    """One guest less to stay for."""
+    """Undo one call of `pin_thread`."""
     if _here.guests:
         _here.guests -= 1
         if not _here.guests:
@@ -51,7 +51,7 @@ def unpin_thread() -> None:
 
 @contextlib.contextmanager
 def unpinned() -> Iterator[None]:
-    """Let what is started meanwhile run on every CPU, as this thread does when it stays nowhere."""
+    """Let processes that are started meanwhile run on every CPU that this thread may use when it is not pinned."""
     if not _here.guests:
         yield
         return
@@ -64,19 +64,19 @@ def unpinned() -> Iterator[None]:
 
 
 def send_cpu(handle: int, cpu: int) -> None:
-    """Say to whom watches a guest where its evaluation stays."""
-    with contextlib.suppress(OSError):  # it is gone, which others will notice
+    """Tell a guest's supervisor which CPU the evaluation is pinned to."""
+    with contextlib.suppress(OSError):  # it has ended, which is noticed elsewhere
         os.write(handle, cpu.to_bytes(_BYTES, "little"))
 
 
 def receive_cpu(handle: int) -> int:
-    """What `tell` said; -1 when nothing can come any more."""
+    """The CPU that `send_cpu` sent; -1 when the socket is closed."""
     said = os.read(handle, _BYTES)
     return int.from_bytes(said, "little") if len(said) == _BYTES else -1
 
 
 class PinnedProcess:
-    """A guest's process that was moved to its evaluation's CPU, unless it has several threads."""
+    """A guest's process, moved to its evaluation's CPU unless it has several threads."""
 
     def __init__(self, pid: int, cpu: int) -> None:
         self._pid = pid

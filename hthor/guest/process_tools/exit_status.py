@@ -1,4 +1,4 @@
-"""How a process ended, as a fault's kind and its words."""
+"""How a process ended, as a fault's kind and description."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ _SHELLS = 128
 
 
 def describe_exit(code: int) -> tuple[str, str]:
-    """Kind and words for an exit code as `subprocess` has it.
+    """A fault's kind and description for an exit code as `subprocess` reports it.
 
-    By some signals only a machine or a person ends a process, one that ran out of memory or is going down, so what
-    they end is "killed" and may be tried again. From L2 on an agent cannot send itself such a signal.
+    Some signals are sent only by a person or by a machine that runs out of memory or shuts down. What they end is
+    "killed" and may be tried again. From L2 on an agent cannot send itself such a signal.
     """
     if code >= 0:
         return "died", f"exited with status {code}"
@@ -22,7 +22,7 @@ def describe_exit(code: int) -> tuple[str, str]:
 
 
 def unwrap_bwrap(code: int) -> int:
-    """The exit code of what bubblewrap ran, which tells of a signal as shells do."""
+    """The exit code of what bubblewrap ran; bubblewrap reports a signal as shells do."""
     return _SHELLS - code if code > _SHELLS else code
 
 

@@ -1,7 +1,7 @@
-"""What guests' processes cost: processor time that nobody waits for, and memory.
+"""Processor time and memory of guests.
 
-Most of a guest's time is spent by processes that end with it, all at once, so that no parent collects what they took.
-It is therefore read just before the end.
+Most of a guest's time is spent by processes that end together with it, so that `os.times` never includes it. It is
+therefore read just before the end.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class CpuMeter:
 
 
 def cpu_s(pid: int) -> float:
-    """Processor time of a process and all below it, those included that it has waited for; 0 where nobody can tell."""
+    """Processor time of a process and its descendants, including those that have ended [s]; 0 where it is unknown."""
     total = 0
     for one in _family(pid):
         with contextlib.suppress(OSError, IndexError, ValueError):
@@ -63,7 +63,7 @@ def cpu_s(pid: int) -> float:
 
 
 def resident_mb(pid: int) -> float:
-    """Memory of the largest process among ``pid`` and all below it [MB]."""
+    """Memory of the largest process among ``pid`` and its descendants [MB]."""
     return max((limits.resident_mb(one) for one in _family(pid)), default=0.0)
 
 

@@ -13,7 +13,7 @@ _hosts_words = msgspec.msgpack.Decoder(wire.ToGuest)
 
 
 class HostPipe:
-    """The guest's end of the wire. Reads exactly one frame at a time, so that a fork shares nothing half read."""
+    """Messages over pipes. Reads exactly one message at a time, so that a fork shares nothing half read."""
 
     def __init__(self, read: int, write: int, shared: int = -1) -> None:
         self._read, self._write = read, write
@@ -21,7 +21,7 @@ class HostPipe:
         self.view = shared_frames.FrameReader(shared) if shared >= 0 else None
 
     def receive(self) -> wire.ToGuest:
-        """The host's next message; ends the process when the host is gone."""
+        """The host's next message; ends the process when the host has closed the pipe."""
         size = int.from_bytes(self._exactly(4), "little")
         message: wire.ToGuest = _hosts_words.decode(self._exactly(size))
         return message
@@ -32,7 +32,7 @@ class HostPipe:
             data = data[os.write(self._write, data) :]
 
     def fail(self) -> NoReturn:
-        """The host does not keep to the wire; there is nobody to tell."""
+        """The host has broken the protocol: end the process."""
         os._exit(1)
 
     def _exactly(self, size: int) -> bytes:

@@ -1,6 +1,6 @@
-"""A guest's words, made fit to be shown to people and written to files.
+"""Makes a guest's text safe to show and to write to files.
 
-What moves a terminal's cursor, turns the direction of writing or is half a character stands as its escape instead.
+Control characters, characters that change the writing direction, and surrogates are replaced by escapes.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ _ESCAPED = {
 
 
 def sanitize_text(text: str) -> str:
-    """The same text, with escapes for what is not to be seen; line ends stay."""
+    """The text with escapes for unsafe characters; line ends and tabs stay."""
     return text.replace("\r\n", "\n").translate(_ESCAPED)
 
 
 def is_printable_name(text: str, most: int) -> bool:
-    """Whether this can stand in a table or a file's name."""
+    """Whether this fits in a table or a file's name."""
     return text.isprintable() and len(text) <= most

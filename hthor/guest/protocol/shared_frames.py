@@ -1,7 +1,7 @@
-"""Pictures in memory that host and guest share: the host writes, the guest can only read.
+"""Shared memory for pictures: the host writes, the guest can only read.
 
-The memory has no name and a fixed size; seals keep everybody but the host's own mapping from changing it. A picture
-stays until the next step, so the guest takes a copy.
+The memory has no name and a fixed size; seals keep all but the host's own mapping from changing it. A picture stays
+until the next step, so the guest takes a copy.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from typing import Any
 import numpy as np
 
 SIZE = 4 << 20
-"""Bytes of it; what does not fit travels in a message."""
+"""Size of the memory [bytes]; what does not fit is sent in a message."""
 VARIABLE = "HTHOR_FRAMES"
-"""What tells a guest the number of its open file."""
+"""Environment variable with the number of the guest's open file."""
 _ADD_SEALS, _SEAL, _SHRINK, _GROW, _FUTURE_WRITE = 1033, 1, 2, 4, 16
 _ALIGN = 64
 _KINDS = "biuf"
-"""What arrays may hold: truth, whole numbers, numbers."""
+"""Kinds of arrays: boolean, integer, unsigned, float."""
 
 
 class FrameWriter:
@@ -40,16 +40,16 @@ class FrameWriter:
         self._at = self._most = 0
 
     def clear(self) -> None:
-        """Begin a step: what was put here before may be written over."""
+        """Start a step: earlier pictures may be overwritten."""
         self._at = 0
 
     def wipe(self) -> None:
-        """Begin a trial: nothing of the one before is left to see."""
+        """Start a trial: erase everything of the previous one."""
         self._whole[: self._most] = 0
         self._at = self._most = 0
 
     def put(self, array: Any) -> dict[str, Any] | None:
-        """Put an array here and give what a message says of it; None when it does not fit."""
+        """Store an array; the reference to it for a message, or None when it does not fit."""
         if not isinstance(array, np.ndarray) or array.dtype.kind not in _KINDS or self._at + array.nbytes > SIZE:
             return None
         at, end = self._at, self._at + array.nbytes
@@ -59,12 +59,12 @@ class FrameWriter:
         return {"__nd__": array.dtype.str, "s": list(array.shape), "at": at}
 
     def close(self) -> None:
-        """Let it go."""
+        """Close the memory."""
         os.close(self.handle)
 
 
 def open_frames() -> FrameWriter | None:
-    """A new one, None where the system has no such memory."""
+    """New memory; None where the system does not support it."""
     if sys.platform != "linux":
         return None
     try:
@@ -80,7 +80,7 @@ class FrameReader:
         self._memory = memoryview(mmap.mmap(handle, SIZE, mmap.MAP_SHARED, mmap.PROT_READ))
 
     def take(self, value: dict[str, Any]) -> Any:
-        """A copy of the array that lies there."""
+        """A copy of the array that a message refers to."""
         shape, dtype = value["s"], np.dtype(value["__nd__"])
         count = 1
         for length in shape:

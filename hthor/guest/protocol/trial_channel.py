@@ -1,4 +1,4 @@
-"""What one trial has in common with its evaluation: pipes and shared pictures, made for it and closed after it.
+"""The pipes and shared memory between host and guest, made for one trial and closed after it.
 
 Whatever an agent does to them, such as writing into a pipe's other end, ends with its trial.
 """
@@ -18,10 +18,11 @@ _SIGN = b"c"
 
 
 class HostEnds:
-    """The host's ends of a trial's channel.
+    """The host's ends.
 
     Attributes:
-        out: pipe to the trial's process. words: what it says. err: what it prints. frames: pictures shared with it.
+        out: pipe to the trial's process. words: pipe with its messages. err: pipe with what it prints.
+        frames: shared memory for pictures.
     """
 
     def __init__(self) -> None:
@@ -36,14 +37,14 @@ class HostEnds:
             fcntl.fcntl(self.out, _F_SETPIPE_SZ, _PIPE_BYTES)
 
     def send_far_ends(self, line: socket.socket) -> None:
-        """Give the other ends to the supervisor; it may be gone, which others will notice."""
+        """Send the guest's ends to the supervisor; if that has ended, it is noticed elsewhere."""
         shared = (self.frames.handle,) if self.frames is not None else ()
         with contextlib.suppress(OSError):
             socket.send_fds(line, [_SIGN], [*self._far, *shared])
         self._let_go()
 
     def close(self) -> None:
-        """Close all ends that are here."""
+        """Close all ends that this process has."""
         for handle in (self.out, self.words, self.err):
             os.close(handle)
         self._let_go()
@@ -57,10 +58,11 @@ class HostEnds:
 
 
 class GuestEnds:
-    """The guest's ends of a trial's channel.
+    """The guest's ends.
 
     Attributes:
-        read: pipe from the host. write: pipe to it. printed: where to print. shared: pictures' memory, -1 for none.
+        read: pipe from the host. write: pipe to it. printed: pipe for output.
+        shared: shared memory for pictures, -1 for none.
     """
 
     def __init__(self, read: int, write: int, printed: int, shared: int = -1) -> None:
@@ -73,10 +75,10 @@ class GuestEnds:
         return tuple(handle for handle in every if handle >= 0)
 
     def send_copies(self, line: socket.socket) -> None:
-        """Give copies of them to another process.
+        """Send copies of them to another process.
 
         Raises:
-            BrokenPipeError: when it is gone.
+            BrokenPipeError: when it has ended.
         """
         socket.send_fds(line, [_SIGN], self.handles)
 
@@ -87,9 +89,9 @@ class GuestEnds:
 
 
 def receive_ends(line: socket.socket) -> GuestEnds | None:
-    """The ends that are given over a line, when they come; None when nothing can come any more.
+    """Wait for the guest's ends on a socket; None when it is closed.
 
-    Other words on the line were meant for the trial before, and are passed over.
+    Other bytes on the socket were meant for the previous trial, and are skipped.
     """
     while True:
         try:

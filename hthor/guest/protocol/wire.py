@@ -1,7 +1,7 @@
-"""What host and guest say to one another, as msgpack. docs/wire.md tells it all.
+"""The messages between host and guest, as msgpack; described in docs/wire.md.
 
-Arrays travel from host to guest only: as ``{"__nd__": dtype, "s": shape, "d": bytes}``, or, for a guest that has shared
-memory and asks for it, with ``"at"``, the place in there, instead of the bytes.
+Arrays are sent from host to guest only: as ``{"__nd__": dtype, "s": shape, "d": bytes}``, or, for a guest that asks for
+shared memory, with ``"at"``, the offset in it, instead of the bytes.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ MOST_BYTES = 64 << 10
 NAME_MAX = 200
 """Longest id, seat or thing's name in an action, in characters."""
 NUMBER_MAX = 1e12
-"""Greatest number in an action, either way: what is beyond that is infinite a multiplication later."""
+"""Largest magnitude of a number in an action: beyond it the next multiplication may overflow."""
 TEXT_MAX = 8000
-"""Longest text that a guest may say of itself or of a failure, in characters."""
+"""Longest description of an agent or of a failure, in characters."""
 PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
-"""What an agent may declare, to be given more than its robot sees."""
+"""What an agent may declare in order to get more than its robot senses."""
 VERSION = 1
-"""Of all this. A guest that speaks another one is refused."""
+"""Version of this protocol; guests with another one are refused."""
 FAULTS = ("raised", "timeout", "died", KILLED, "memory", "disk", "garbage", "wrong_type", "oversized", "not_finite")
 """Kinds of failure during a trial."""
 OWN_FAULTS = ("raised", "wrong_type", "garbage", "oversized")
-"""Those that a guest may report of itself; the others are for its supervisor and the host to find."""
+"""Kinds that a guest may report itself; the supervisor and the host find the others."""
 
 
 class InvalidAction(ValueError):
@@ -42,7 +42,7 @@ class InvalidAction(ValueError):
 
 
 class Load(Struct, tag="load", frozen=True, kw_only=True):
-    """Host, to our own part of a guest: bring up this agent on these terms.
+    """Host to supervisor: start this agent.
 
     Attributes:
         path: its file, which is imported. cls: the class to take, empty for the only one.
@@ -68,9 +68,9 @@ class Begin(Struct, tag="begin", frozen=True, kw_only=True):
 
 
 class Look(Struct, tag="look", frozen=True, kw_only=True):
-    """Host: act. ``senses`` of the observation and the images of its messages are left out, to be asked for.
+    """Host: act. The observation's ``senses`` and the images of its messages are left out; the guest asks for them.
 
-    ``ahead`` holds what the guest has read in both of its last two steps, if it takes such: it need not ask for that.
+    ``ahead`` holds the sensor data that the guest has read in both of its last two steps, if it accepts that.
     """
 
     observation: Observation
@@ -88,7 +88,7 @@ class End(Struct, tag="end", frozen=True, kw_only=True):
 
 
 class Confined(Struct, tag="confined", frozen=True, kw_only=True):
-    """Guest: held, and about to import the file. ``spaces`` are its namespaces, as /proc names them."""
+    """Guest: confined, and about to import the file. ``spaces`` are its namespaces, as /proc names them."""
 
     landlock_abi: int
     seccomp: bool
@@ -96,12 +96,11 @@ class Confined(Struct, tag="confined", frozen=True, kw_only=True):
 
 
 class Ready(Struct, tag="ready", frozen=True, kw_only=True):
-    """Guest: loaded; what the agent says of itself.
+    """Guest: loaded; the agent's description of itself.
 
-    ``version`` is whatever tells one version of a served agent from another; ``ahead``
-    says that it takes what it is going to read before it asks; ``gpus`` is how much of a GPU it asks for. ``files``
-    are those of its own files that it has opened, relative to its folder; ``manifest`` is what a served agent says
-    that it consists of.
+    ``version`` distinguishes versions of a served agent; ``ahead`` says that it accepts sensor data before it asks;
+    ``gpus`` is the share of a GPU it asks for; ``files`` are its own files that it has opened, relative to its folder;
+    ``manifest`` is what a served agent says that it consists of.
     """
 
     name: str = ""
@@ -119,7 +118,7 @@ class Ready(Struct, tag="ready", frozen=True, kw_only=True):
 
 
 class Done(Struct, tag="done", frozen=True, kw_only=True):
-    """Guest: ready for the trial; ``files`` as in `Ready`, those that were not named before."""
+    """Guest: ready for the trial; ``files`` as in `Ready`, without those named before."""
 
     files: tuple[str, ...] = ()
 
@@ -127,7 +126,7 @@ class Done(Struct, tag="done", frozen=True, kw_only=True):
 class Ask(Struct, tag="ask", frozen=True, kw_only=True):
     """Guest: needs one of rgb, depth, segmentation, camera, scan, detections, or the image of message ``which``.
 
-    With ``shared`` a picture is to be put in shared memory, if there is any and it fits.
+    With ``shared`` a picture is put in shared memory, if there is any and it fits.
     """
 
     what: str
@@ -136,7 +135,7 @@ class Ask(Struct, tag="ask", frozen=True, kw_only=True):
 
 
 class Acted(Struct, tag="acted", frozen=True, kw_only=True):
-    """Guest: its action, and what it has read of what was sent ahead; ``files`` as in `FinishedRun`."""
+    """Guest: its action, and what it has read of the data sent ahead; ``files`` as in `Done`."""
 
     action: Action
     read: tuple[str, ...] = ()
@@ -144,11 +143,11 @@ class Acted(Struct, tag="acted", frozen=True, kw_only=True):
 
 
 class Over(Struct, tag="over", frozen=True, kw_only=True):
-    """Supervisor: the trial's process has come to its end, and all that it left is gone."""
+    """Supervisor: the trial's process has ended, and everything that it left is removed."""
 
 
 class Failed(Struct, tag="failed", frozen=True, kw_only=True):
-    """Guest or supervisor: something went wrong; ``kind`` as in `GuestFault`, ``files`` as in `FinishedRun`."""
+    """Guest or supervisor: a failure; ``kind`` as in `GuestFault`, ``files`` as in `Done`."""
 
     kind: str
     detail: str
@@ -200,12 +199,12 @@ _action_decoder = msgspec.msgpack.Decoder(Action)
 
 
 def encode(message: object) -> bytes:
-    """One message or value, without its length; arrays and NumPy numbers included."""
+    """One message or value as bytes, without its length; arrays and NumPy numbers are allowed."""
     return _encoder.encode(message)
 
 
 def frame(message: ToGuest | ToHost | SupervisorToHost) -> bytes:
-    """One message as it goes through a pipe."""
+    """One message as bytes for a pipe."""
     return add_length(encode(message))
 
 
@@ -215,7 +214,7 @@ def add_length(body: bytes) -> bytes:
 
 
 def find_action_fault(action: Action) -> tuple[str, str] | None:
-    """What is wrong with an action, as a fault's kind and detail; None when it is sound."""
+    """What is wrong with an action, as a fault's kind and detail; None when it is valid."""
     for part in (action.motion, action.say):
         if part is None:
             continue
