@@ -21,6 +21,7 @@ from hthor.episode import run_episode
 from hthor.eval.config import robot_team
 from hthor.eval.config.sessions import Session
 from hthor.eval.runner import trial_runner
+from hthor.eval.runner.sources import Sources
 from hthor.guest import Guest
 from hthor.guest.process_tools import resource_usage
 from hthor.types import BodySpec, Briefing, Observation, Pose
@@ -145,7 +146,7 @@ def _trials(home: Path, suite: str, count: int, persistent: bool) -> Iterator[Ro
     guest = robot_team.load_agent_info(str(path))
     inside, outside = (
         trial_runner.TrialRunner(),
-        trial_runner.TrialRunner(trial_runner.Sources(minds={"robot": guest.path})),
+        trial_runner.TrialRunner(Sources(agent_paths={"robot": guest.path})),
     )
     ours, theirs = hands(suite, "frontier"), hands(suite, robot_team.form_team(["scout"], [guest]))
     took: list[tuple[Spent, Spent]] = []
@@ -174,10 +175,10 @@ def _together(
             took: list[Spent] = []
             ticks = set()
             for stage, company, trial in ((one[0], mine, first), (other[0], yours, second)):
-                world, robots = stage.world(trial), company.robots()
+                world, robots = stage.world(trial), company.ready_agents()
                 spent, begin = resource_usage.cpu_s(os.getpid()), time.perf_counter()
                 ticks.add(run_episode(trial, world, company.human, robots).ticks)
-                company.rest()
+                company.finish_trial()
                 wall = time.perf_counter() - begin
                 time.sleep(0.05)  # so that a guest's end is counted too
                 took.append((wall, resource_usage.cpu_s(os.getpid()) - spent))

@@ -17,9 +17,9 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from hthor.eval.config import run_config
 from hthor.eval.config.sessions import Session
-from hthor.eval.records import reader, trial_log
+from hthor.eval.records import trial_log
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, result_file
 from hthor.eval.runner import engines, progress, run
@@ -40,7 +40,7 @@ def player(path: Path) -> Callable[[Session], Iterator[TrialRecord]]:
 
 def sessions(folder: Path) -> list[Session]:
     """The sessions of a finished run, from its log."""
-    _, records = reader.digest(folder, run_config.load_config(folder))
+    _, records = RunFolder(folder).digest()
     people = itertools.groupby(records, key=lambda one: one.spec.participant)
     return [Session(participant=who, trials=tuple(one.spec for one in mine)) for who, mine in people]
 
@@ -50,7 +50,7 @@ def main() -> None:
     options = argparse.ArgumentParser(prog="python -m benchmarks.keeping", description=__doc__.split("\n\n")[0])
     options.add_argument("run", type=Path, help="the folder of a finished run")
     folder = options.parse_args().run
-    plan, dealt, stored = run_config.load_config(folder), sessions(folder), result_file.load_result(folder)
+    plan, dealt, stored = RunFolder(folder).config, sessions(folder), result_file.load_result(folder)
     engine = engines.find_engine("local", jobs=2)
     scoring = 0.0
     real = aggregate.make_result
@@ -66,7 +66,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="hthor-keeping-") as name:
         began = time.process_time()
         make = functools.partial(player, folder / "trials.jsonl")
-        run.run_evaluation(plan, dealt, make, folder=Path(name, "again"), engine=engine, watch=progress.Silent())
+        run.run_evaluation(
+            plan, dealt, make, folder=RunFolder(Path(name, "again")), engine=engine, watcher=progress.Silent()
+        )
         spent = time.process_time() - began
     began = os.times().children_user + os.times().children_system
     subprocess.run([sys.executable, "-m", "hthor", "--help"], check=True, stdout=subprocess.DEVNULL)

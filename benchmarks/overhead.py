@@ -17,12 +17,13 @@ from pathlib import Path
 
 from rich.console import Console
 
-from hthor.eval.config import run_config
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_log, trial_record
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline, result_file
 from hthor.eval.runner import collector, experiment, progress, run, run_options, trial_runner
+from hthor.eval.runner.messages import TrialOutcome
 
 
 def player(folder: Path, sources: object = None) -> Callable[[Session], Iterator[TrialRecord]]:
@@ -33,18 +34,19 @@ def player(folder: Path, sources: object = None) -> Callable[[Session], Iterator
 
     def perform(session: Session) -> Iterator[TrialRecord]:
         for trial in session.trials:
-            yield trial_record.make_record(trial, kept[bool(trial.robots), trial.participant, trial.index])
+            log = kept[bool(trial.robots), trial.participant, trial.index]
+            yield TrialOutcome(record=trial_record.make_record(trial, log))
 
     return perform
 
 
 def main(folder: Path) -> None:
     """Give the run's command again, and print what the harness took."""
-    plan = run_config.load_config(folder)
+    plan = RunFolder(folder).config
     results = [result_file.load_result(path) for path in (folder, folder / baseline.FOLDER)]
     trials_s = sum(one.effort.cpu_s for one in results if one is not None and one.effort is not None)
     spent: dict[str, float] = {}
-    for place, name in ((collector, "play"), (run, "_finish")):
+    for place, name in ((collector.Collector, "collect"), (run, "_score")):
         setattr(place, name, _timed(getattr(place, name), name, spent))
     trial_runner.make_runner = functools.partial(player, folder.resolve())  # type: ignore[assignment]
     with tempfile.TemporaryDirectory() as scratch:

@@ -107,12 +107,12 @@ def make(wanted: Sequence[str], folder: Path = FOLDER) -> None:
 def played(task_id: str) -> TrialRecord:
     """The trial of a task with the oracle, as `hthor eval` plays it with the seed 0."""
     chosen = task_selection.select_tasks(task_id.partition("/")[0], "")
-    suite, crew = chosen.suite, robot_team.form_team(chosen.crew, ["oracle"] * len(chosen.crew))
+    suite, crew = chosen.suite, robot_team.form_team(chosen.robots, ["oracle"] * len(chosen.robots))
     for one in sessions.make_sessions(suite, agent=crew):
         ids = [trial.task.id for trial in one.trials]
         if task_id in ids:
             until = sessions.Session(participant=one.participant, trials=one.trials[: ids.index(task_id) + 1])
-            return list(trial_runner.make_runner()(until))[-1]
+            return [done.record for done in trial_runner.make_runner()(until)][-1]
     raise ValueError(f"the suite {suite.name} has no task {task_id}")
 
 

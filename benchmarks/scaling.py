@@ -49,6 +49,6 @@ def _play(order: tuple[str, int]) -> float:
             for _, trial in mine:
                 world = stage.world(trial)
                 clock = Clock()
-                run_episode(trial, world, company.human, company.robots())
+                run_episode(trial, world, company.human, company.ready_agents())
                 spent += clock()
     return spent

@@ -60,13 +60,13 @@ def cost(suite: str, agent: str | RobotTeam, each: int) -> dict[str, list[float]
     sessions = hands(suite, agent)
     with stage.enter(sessions[0]) as company:
         first = sessions[0].trials[0]
-        run_episode(first, stage.world(first), company.human, company.robots())
+        run_episode(first, stage.world(first), company.human, company.ready_agents())
     wanted = {trial.task.house for session in sessions for trial in session.trials}
     for session in sessions:
         with stage.enter(session) as company:
             for trial in session.trials:
                 world = stage.world(trial)
-                robots = company.robots()
+                robots = company.ready_agents()
                 clock = Clock()
                 log = run_episode(trial, world, company.human, robots)
                 costs[trial.task.house].append(clock() * TICKS / log.ticks)

@@ -58,6 +58,11 @@ def is_built_in(sort: str, name: str) -> bool:
     return plugin_name(sort, name) in names(sort)
 
 
+def package(sort: str) -> str:
+    """The package of the plug-ins that ship with hthor."""
+    return _PACKAGES[sort][0]
+
+
 def module_name(sort: str, name: str) -> str:
     """The module's name of a plug-in that ships with hthor."""
     package, _ = _PACKAGES[sort]

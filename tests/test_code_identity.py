@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from hthor import code_identity, plugins, tasks
-from hthor.code_identity import PICTURES, SIMULATION, Sources
+from hthor.code_identity import PICTURES, SIMULATION, Sources, syntax
 from hthor.eval.config import sessions
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.records import trial_record
@@ -58,7 +58,7 @@ def edited(sources: Sources, changes: dict[str, str]) -> Sources:
     for name, text in changes.items():
         path = sources._path(name)
         assert path is not None
-        other._read[name] = code_identity._parse(name, path, sources._path, text.encode())
+        other._read[name] = syntax.parse(name, path, sources._path, text.encode())
     return other
 
 
@@ -250,7 +250,7 @@ def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent
     trial = sessions.make_sessions(chosen, agent=agent, robot=robot, human=model)[0].trials[0]
     with stage.enter(sessions.make_sessions(chosen, agent=agent, robot=robot, human=model)[0]) as company:
         world = stage.world(trial)
-        called = _called(lambda: stage.play(company, trial, world))
+        called = _called(lambda: stage.run(company, trial, world))
     roots = [trial_runner.__name__, trial_metrics.__name__, trial_record.__name__]
     roots += [plugins.module_name("metric", name) for name in plugins.names("metric")]
     own = (("human model", model), ("agent", agent), ("robot", robot), ("task kind", trial.task.kind))

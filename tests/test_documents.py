@@ -22,8 +22,8 @@ from hthor.calibration.pipeline import evidence
 from hthor.calibration.simulation import session_store
 from hthor.catalog import procthor
 from hthor.errors import HouseError, HthorError, PopulationError, RunError, TaskError
-from hthor.eval.config import run_config
 from hthor.eval.records import platform, run_isolation, trial_log
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import result_file
 from hthor.eval.runner import fault_report
 from hthor.guest import Isolation
@@ -65,7 +65,7 @@ def _lines(read: Callable[[Path], Any]) -> Callable[[Path], Any]:
 
 
 READERS: dict[str, tuple[str, type[HthorError], Callable[[Path], Any]]] = {
-    "run": ("run.json", RunError, lambda path: run_config.load_config(path.parent)),
+    "run": ("run.json", RunError, lambda path: RunFolder(path.parent).config),
     "result": ("result.json", RunError, lambda path: result_file.load_result(path.parent)),
     "trials": ("trials.jsonl", RunError, _lines(lambda path: list(trial_log.read(path)))),
     "isolation": ("isolation.json", RunError, lambda path: run_isolation.load_isolation(path.parent)),

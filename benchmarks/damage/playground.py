@@ -9,6 +9,7 @@ import msgspec
 
 from hthor import calibration, humans, jsonio, tasks, world
 from hthor.eval.records import find
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner import experiment, fault_report, progress, run_options
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites import commitment
@@ -46,8 +47,8 @@ def make(folder: Path) -> Path:
 
 def _faults(run: Path) -> None:
     """What a run keeps of a trial in which an agent failed."""
-    spec = find.find_trial(run, "0").spec
-    key = find.find_trial(run, "0").key
+    spec = find.find_trial(RunFolder(run), "0").spec
+    key = find.find_trial(RunFolder(run), "0").key
     failure = fault_report.Failure(seat="robot", agent="oracle", kind="raised", tick=3, time_s=0.3, detail="lost")
     left = fault_report.FaultReport(
         key=key, task=spec.task.id, participant=spec.participant, index=spec.index, failures=(failure,)

@@ -57,9 +57,10 @@ def replay(
         _replay_mind(run, trial, out, agent or (), humans, inputs.parse_inputs(agent_args or (), readable or ()), json)
         return
     from hthor.eval.records import find
+    from hthor.eval.records.run_folder import RunFolder
     from hthor.report.drawing import render_trial
 
-    record = find.find_trial(run, trial)
+    record = find.find_trial(RunFolder(run), trial)
     path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}.{'webm' if video else 'png'}"
     render_trial.draw_trial(run, record, path, video=video)
     output.put_files([path], json, key=record.key, task=record.spec.task.id)
@@ -70,12 +71,16 @@ def _replay_mind(
 ) -> None:
     """Play a session again up to one trial, and draw or print the trace of the human model."""
     from hthor.eval.records import find
+    from hthor.eval.records.run_folder import RunFolder
     from hthor.eval.replay import human_trace
+    from hthor.eval.replay.session_history import RunFiles
     from hthor.report.drawing import human_trace_figure, lettering, render_trial
 
-    record = find.find_trial(run, trial)
+    record = find.find_trial(RunFolder(run), trial)
     house = render_trial.load_house(run, record)
-    stream = human_trace.trace_human(run, record, agents=agents, humans=humans, given=given)
+    stream = human_trace.trace_human(
+        RunFolder(run), record, RunFiles(agents=tuple(agents), humans=humans), inputs=given
+    )
     if not stream.same:
         talk = output.console(talk=True)
         talk.print(

@@ -1,1 +1,1 @@
-"""Running many trials, keeping their logs, scoring and publishing them."""
+"""Runs of many trials: configuring, running, scoring, comparing and replaying them."""

@@ -12,10 +12,10 @@ import msgspec
 
 from hthor import code_identity
 from hthor.errors import HthorError, RunError
-from hthor.eval.config import cli_command, run_config, task_selection
+from hthor.eval.config import cli_command, task_selection
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import trial_metrics
-from hthor.eval.records import platform, reader, run_isolation, session_restarts
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import aggregate, baseline
 from hthor.guest import Manifest
 from hthor.leaderboard import board_check
@@ -43,7 +43,7 @@ def add(folder: Path, board: Path, submission: Submission | None = None) -> list
     """
     made: dict[Path, Entry] = {}
     for run in _runs(folder):
-        plan = run_config.load_config(run)
+        plan = RunFolder(run).config
         beside = baseline.baseline_folder(run, plan)
         for each in (run, *([beside] if beside else [])):
             made[each] = made.get(each) or of(each, submission if each == run else None)
@@ -60,8 +60,9 @@ def add(folder: Path, board: Path, submission: Submission | None = None) -> list
 
 def of(folder: Path, submission: Submission | None = None) -> Entry:
     """The entry of one run."""
-    plan = run_config.load_config(folder)
-    lines, kept = reader.records(folder, plan)
+    run = RunFolder(folder)
+    plan = run.config
+    lines, kept = run.lines()
     _whole(folder, plan, len(kept))
     found = overrides.of(plan, _crew(plan), len({one.spec.task.id for one in kept}))
     if found:
@@ -70,13 +71,11 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
     gain = baseline.measure_uplift(folder, plan, records)
     if gain is None and plan.seats:
         raise RunError(f"{folder} has no run without a robot beside it. 'hthor eval' plays it without --no-control.")
-    held = run_isolation.load_isolation(folder)
-    result = aggregate.make_result(
-        plan, lines, records, uplift=gain, isolation=held, replays=session_restarts.count(folder)
-    )
+    held = run.isolation
+    result = aggregate.make_result(plan, lines, records, uplift=gain, isolation=held, replays=run.restarts)
     columns = trial_outcomes.of(records, map(trial_outcomes.leaf, lines))
     whose = entry_metrics.people(len(records), plan.participants)
-    agent = submission.agent if submission else Agent(name=plan.crew)
+    agent = submission.agent if submission else Agent(name=plan.team_name)
     _same_files(folder, result.agents, submission)
     return Entry(
         id=f"{_slug(agent.name)}-{_slug(Path(plan.suite.name).name)}-{plan.sha256[:10]}",
@@ -89,7 +88,7 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
         hashes=Hashes(run=plan.sha256, trials=result.hashes.trials, merkle=columns.merkle),
         harness=harness.here(),
         mode=REALTIME if getattr(result, "mode", "") == REALTIME else LOCKSTEP,
-        platforms=platform.load(folder),
+        platforms=run.platforms,
         isolation=held,
         counts=Counts(
             trials=len(records),
@@ -148,7 +147,7 @@ def _crew(plan: RunConfig) -> tuple[str, ...]:
         chosen = task_selection.select_tasks(plan.suite.name, "")
     except HthorError:
         return ("scout",)
-    return chosen.crew
+    return chosen.robots
 
 
 def _same_files(folder: Path, agents: Sequence[Manifest], submission: Submission | None) -> None:

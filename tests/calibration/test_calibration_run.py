@@ -117,7 +117,7 @@ def test_a_session_is_what_an_evaluation_would_have_played():
     human, logs = Model(Participant(seed=5, number=0, traits=traits)), []
     with stage.enter(dealt) as company:
         for trial in dealt.trials:
-            logs.append((trial, run_episode(trial, stage.world(trial), human, company.robots())))
+            logs.append((trial, run_episode(trial, stage.world(trial), human, company.ready_agents())))
     for row, (trial, log) in zip(rows, logs, strict=True):
         told = dict(zip(session_simulation.OUTCOMES, row, strict=True))
         assert TINY.tasks[told["task"]].id == trial.task.id

@@ -207,7 +207,7 @@ def test_records_become_the_same_numbers() -> None:
     runs = {}
     for condition, absent in (("none", True), ("oracle", False)):
         _, dealt = eval_fakes.run_of(30, absent=absent)
-        runs[condition] = [done for session in dealt for done in eval_fakes.player()(session)]
+        runs[condition] = [done for session in dealt for done in eval_fakes.records(session)]
     made = trial_tables.table(runs, suite)
     for number, condition in ((0, "none"), (2, "oracle")):
         one = made.take(made.condition == number)

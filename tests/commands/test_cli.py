@@ -81,7 +81,7 @@ def test_version(hthor):
         (("eval", "--agnet", "none"), ("No such option", "--agent")),
         (("houses", "chekc", "x"), ("No such command 'chekc'", "check")),
         (("eval",), ("name an agent with --agent", "--robots tall:oracle")),
-        (("eval", "--robots", "tall"), ("'tall' has no mind", "--agent")),
+        (("eval", "--robots", "tall"), ("'tall' has no agent", "--agent")),
         (("eval", "--robots", "tall:oracle", "--robot", "scout"), ("leave out --robot",)),
         (("eval", "--agent", "none", "--kind", "colect"), ("unknown kind of task 'colect'", "'collect'")),
         (("eval", "--agent", "none", "--jobs", "0"), ("--jobs", "greater than or equal to 1")),

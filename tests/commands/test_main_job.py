@@ -28,9 +28,11 @@ from hthor.errors import AgentError
 from hthor.eval.config import robot_team
 from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.records import find, run_isolation
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import TrialLog
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import engines, trial_runner
+from hthor.eval.runner.sources import Sources
 from hthor.leaderboard import enter
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
 from hthor.tasks.suite import encode_suite, make_suite
@@ -278,18 +280,18 @@ def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(tmp_path
     assert json.loads((folder / "result.json").read_bytes()) == mine
 
 
-def dealt(agent: str, count: int = 2) -> tuple[trial_runner.Sources, Session]:
+def dealt(agent: str, count: int = 2) -> tuple[Sources, Session]:
     """Where an agent's file lies, and the first trials of its first person."""
     who = robot_team.form_team(["scout"], [agent])
     whole = make_sessions(tasks.load_suite(SUITE), agent=who, participants=1)[0]
-    return trial_runner.Sources(minds=who.minds, manifests=who.manifests), msgspec.structs.replace(
+    return Sources(agent_paths=who.agent_paths, manifests=who.manifests), msgspec.structs.replace(
         whole, trials=whole.trials[:count]
     )
 
 
 def played(agent: str, count: int = 2) -> list[TrialRecord]:
     sources, session = dealt(agent, count)
-    return list(trial_runner.make_runner(sources)(session))
+    return [done.record for done in trial_runner.make_runner(sources)(session)]
 
 
 def test_the_example_works(root: Path):
@@ -356,7 +358,7 @@ def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: l
 
 def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(idle_robot: list[TrialRecord]):
     _, session = dealt("silent")
-    alone = list(trial_runner.make_runner()(session))
+    alone = [done.record for done in trial_runner.make_runner()(session)]
     assert [one.spec.task for one in alone] == [one.spec.task for one in idle_robot]
     for none, idle in zip(alone, idle_robot, strict=True):
         met = [event.tick for event in idle.events if event.kind == "in_way"]
@@ -576,8 +578,9 @@ def test_leaderboard(
 
 
 def test_a_trial_is_found_by_any_of_its_names(reference: Path, say: Callable[..., Said]):
-    record = find.find_trial(reference, "3")
-    assert find.find_trial(reference, record.key[:8]) == find.find_trial(reference, record.spec.task.id) == record
+    record = find.find_trial(RunFolder(reference), "3")
+    for name in (record.key[:8], record.spec.task.id):
+        assert find.find_trial(RunFolder(reference), name) == record
     for wrong in (record.spec.task.id[:-1], record.spec.task.id.split("/")[-1]):
         said = say("replay", reference, wrong)
         assert said.code == 2

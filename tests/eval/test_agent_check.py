@@ -13,6 +13,7 @@ from hthor import cli
 from hthor.errors import HthorError
 from hthor.eval.agent_check import checks
 from hthor.eval.runner import trial_runner
+from hthor.eval.runner.sources import Sources
 
 HEAD = "import random, time\nfrom hthor.types import *\n"
 AGENTS = {
@@ -67,7 +68,7 @@ def one_world_for_all() -> Any:
     worlds: dict[object, Any] = {}
     before = trial_runner.TrialRunner.__init__
 
-    def begin(self: trial_runner.TrialRunner, sources: trial_runner.Sources | None = None, pool: Any = None) -> None:
+    def begin(self: trial_runner.TrialRunner, sources: Sources | None = None, pool: Any = None) -> None:
         before(self, sources, pool)
         self._worlds = worlds
 

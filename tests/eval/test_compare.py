@@ -19,9 +19,9 @@ from scipy import stats as scipy_stats
 from hthor import jsonio
 from hthor.errors import HthorError, RunError
 from hthor.eval.comparison import compare, ranking, sample_size, verdict
-from hthor.eval.config import run_config
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import SECONDS, SHARE
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import aggregate, baseline, paired_difference, pairing, result_file, uplift
 from hthor.eval.runner import progress, run
 from hthor.eval.statistics import power
@@ -30,7 +30,7 @@ from hthor.report.terminal import result_tables
 
 def _run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, make=fakes.player, count: int = 60) -> Path:
     plan, dealt = fakes.run_of(count, name=name, absent=absent, seed=seed)
-    run.run_evaluation(plan, dealt, make, folder=folder / name, jobs=1, watch=progress.Silent())
+    run.run_evaluation(plan, dealt, make, folder=RunFolder(folder / name), jobs=1, watcher=progress.Silent())
     return folder / name
 
 
@@ -136,7 +136,7 @@ def four() -> tuple[compare.LoadedRun, ...]:
     chance = np.random.default_rng(4)
     level = chance.random(120)
     plan, dealt = fakes.run_of(120)
-    kept = [one for session in dealt for one in fakes.player()(session)]
+    kept = [one for session in dealt for one in fakes.records(session)]
 
     def run(name: str, rate: float) -> compare.LoadedRun:
         met = level + 0.15 * np.random.default_rng(len(name)).normal(size=120) < rate
@@ -197,7 +197,7 @@ def test_other_conditions_are_refused_by_name(runs: Path, tmp_path: Path):
     other = _run(tmp_path, "helper", seed=1, count=10)
     with pytest.raises(RunError, match=r"suite\.sha256 is .* other tasks"):
         compare.compare_runs([runs / "helper", other])
-    plan = run_config.load_config(runs / "helper")
+    plan = RunFolder(runs / "helper").config
     changes = {
         "seed": msgspec.structs.replace(plan, seed=9),
         "humans.sha256": msgspec.structs.replace(plan, humans=msgspec.structs.replace(plan.humans, sha256="0" * 64)),
@@ -273,12 +273,12 @@ def test_of_several_controls_it_is_the_one_that_the_result_names(tmp_path: Path,
     whole = _better(tmp_path / "runs")
     named = result_file.load_result(whole).uplift.control
     other = shutil.copytree(tmp_path / "runs" / "alone", tmp_path / "runs" / "aaa")
-    plan = run_config.load_config(other)
+    plan = RunFolder(other).config
     assert plan.sha256 == named
     (other / "run.json").write_bytes(jsonio.pretty(msgspec.structs.replace(plan, versions={"hthor": "another"})))
-    assert run_config.load_config(other).sha256 != named
+    assert RunFolder(other).config.sha256 != named
     assert aggregate.rescore(whole)[1].uplift.control == named
-    assert baseline.baseline_folder(whole, run_config.load_config(whole)).name == "alone"
+    assert baseline.baseline_folder(whole, RunFolder(whole).config).name == "alone"
 
 
 def test_a_result_of_another_run_lends_no_uplift(tmp_path: Path, monkeypatch):
@@ -287,16 +287,16 @@ def test_a_result_of_another_run_lends_no_uplift(tmp_path: Path, monkeypatch):
     shutil.rmtree(tmp_path / "runs" / "alone")
     assert result_file.stored_uplift(whole, run="0" * 64) is None
     (whole / "result.json").write_text("[" * 100_000, encoding="utf-8")
-    assert result_file.stored_uplift(whole, run=run_config.load_config(whole).sha256) is None
+    assert result_file.stored_uplift(whole, run=RunFolder(whole).config.sha256) is None
 
 
 def test_half_a_control_is_none(tmp_path: Path):
     folder = _run(tmp_path, "helper", count=20)
     alone = _run(tmp_path, "alone", absent=True, count=20)
-    assert baseline.find_baseline(folder, run_config.load_config(folder)) is not None
+    assert baseline.find_baseline(folder, RunFolder(folder).config) is not None
     lines = (alone / "trials.jsonl").read_bytes().splitlines(keepends=True)
     (alone / "trials.jsonl").write_bytes(b"".join(lines[:-1]))
-    assert baseline.find_baseline(folder, run_config.load_config(folder)) is None
+    assert baseline.find_baseline(folder, RunFolder(folder).config) is None
 
 
 # -------------------------------------------------------------------------------------------------------------- power

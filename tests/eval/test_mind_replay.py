@@ -15,9 +15,11 @@ from hthor import tasks
 from hthor.cli import app
 from hthor.errors import HthorError, RunError
 from hthor.eval.records import find, trial_log
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import human_trace, session_history
 from hthor.eval.replay.human_trace import HumanTrace
+from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner import experiment, progress, run_options
 from hthor.report.drawing import human_trace_figure, human_trace_timeline, render_trial
 from hthor.report.page import camera_frames
@@ -43,8 +45,8 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def heard(run: Path) -> list[tuple[TrialRecord, HumanTrace]]:
-    records = [find.find_trial(run, str(number)) for number in range(3)]
-    return [(one, human_trace.trace_human(run, one)) for one in records]
+    records = [find.find_trial(RunFolder(run), str(number)) for number in range(3)]
+    return [(one, human_trace.trace_human(RunFolder(run), one, RunFiles())) for one in records]
 
 
 def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
@@ -54,7 +56,7 @@ def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[TrialRecor
 
 
 def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run: Path) -> None:
-    one = find.find_trial(run, "1")
+    one = find.find_trial(RunFolder(run), "1")
     views = camera_frames.render_frames(run, one, [0, one.ticks])
     assert sorted(views) == [0, one.ticks]
     for seen in views.values():
@@ -133,12 +135,12 @@ def test_a_damaged_past_is_no_past(run: Path, tmp_path: Path) -> None:
         (tmp_path / name).write_bytes((run / name).read_bytes())
     lines = (run / "trials.jsonl").read_bytes().splitlines(keepends=True)
     (tmp_path / "trials.jsonl").write_bytes(b"".join(lines[1:]))
-    wanted = find.find_trial(tmp_path, "1")
+    wanted = find.find_trial(RunFolder(tmp_path), "1")
     with pytest.raises(RunError, match="lacks some of the trials that participant 0 did before"):
-        human_trace.trace_human(tmp_path, wanted)
+        human_trace.trace_human(RunFolder(tmp_path), wanted, RunFiles())
     other = msgspec.structs.replace(wanted, spec=msgspec.structs.replace(wanted.spec, code_sha256="0" * 64))
     with pytest.raises(RunError, match="another version of hthor"):
-        human_trace.trace_human(run, other)
+        human_trace.trace_human(RunFolder(run), other, RunFiles())
 
 
 def test_whose_agent_is_a_file_needs_the_file(run: Path) -> None:
@@ -147,7 +149,7 @@ def test_whose_agent_is_a_file_needs_the_file(run: Path) -> None:
     agent = msgspec.structs.replace(seat.agent, name="mine", source="my_agent.py")
     spec = msgspec.structs.replace(record.spec, robots=(msgspec.structs.replace(seat, agent=agent),))
     with pytest.raises(HthorError, match=r"came from the file my_agent\.py\. Give that file, unchanged, with --agent"):
-        session_history.replay_sources(run, spec, (), "")
+        session_history.replay_team(RunFolder(run), spec, RunFiles())
 
 
 def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> None:
@@ -164,10 +166,10 @@ def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> N
         agents=(str(agent),), suite=str(tmp_path / "one.json"), jobs=1, out=tmp_path / "run", max_faults="100%"
     )
     list(experiment.run_experiment(options, lambda _: progress.Silent()))
-    faulty = find.find_trial(tmp_path / "run", "0")
+    faulty = find.find_trial(RunFolder(tmp_path / "run"), "0")
     assert "clumsy.py" in faulty.faults[0].detail
     assert str(tmp_path) not in faulty.faults[0].detail
-    assert human_trace.trace_human(tmp_path / "run", faulty, agents=(str(agent),)).same
+    assert human_trace.trace_human(RunFolder(tmp_path / "run"), faulty, RunFiles(agents=(str(agent),))).same
     assert camera_frames.render_frames(tmp_path / "run", faulty, [0], agents=(str(agent),)).keys() == {0}
 
 

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import eval_fakes as fakes
+import msgspec
 import pytest
 
 from hthor.episode import Fault
 from hthor.errors import RunError
-from hthor.eval.runner import fault_report, redact
-from hthor.eval.runner.agent_recorder import RecordedAgent
+from hthor.eval.config.sessions import Session
+from hthor.eval.runner import fault_report
+from hthor.eval.runner.fault_report import RecordedAgent
+from hthor.eval.runner.messages import TrialDone, TrialOutcome
+from hthor.eval.runner.worker import SessionPlayer
 from hthor.types import Action, Observation, Pose
 
 
@@ -68,10 +73,19 @@ def test_a_thousand_faults_fill_no_disk(tmp_path: Path):
     assert sum(path.stat().st_size for path in (tmp_path / "faults").iterdir()) < 8 << 20
 
 
-def test_what_is_laid_down_is_taken_once():
-    fault_report.leave(left("ab"))
-    assert fault_report.take("ab") is not None
-    assert fault_report.take("ab") is None
+def test_a_report_travels_with_the_message_of_its_trial():
+    """Two workers in one process, turn by turn: each report comes with its own trial, and is kept nowhere else."""
+    _, dealt = fakes.run_of(20, name="clumsy")
+
+    def make(session: Session) -> Iterator[TrialOutcome]:
+        for done in fakes.player()(session):
+            yield msgspec.structs.replace(done, fault_report=left(done.record.key) if done.record.faults else None)
+
+    streams = [SessionPlayer(lambda: make).run(session) for session in dealt]
+    for pair in zip(*streams, strict=True):
+        for message in pair:
+            if isinstance(message, TrialDone):
+                assert (message.fault_report.key if message.fault_report else "") == message.key * message.faulty
 
 
 def test_a_faults_words_are_the_same_wherever_the_file_lies(tmp_path: Path):
@@ -83,6 +97,6 @@ def test_a_faults_words_are_the_same_wherever_the_file_lies(tmp_path: Path):
     ):
         file = tmp_path / folder / "agent.py"
         words = text.format(file.parent, address, scratch, scratch)
-        told.add(redact.redact(words, [str(file), f"{tmp_path}/else.py:Agent"]))
-        told.add(redact.redact(words, [os.path.relpath(file) + ":Agent"]))
+        told.add(fault_report.redact(words, [str(file), f"{tmp_path}/else.py:Agent"]))
+        told.add(fault_report.redact(words, [os.path.relpath(file) + ":Agent"]))
     assert told == {'File "lib/a.py", line 3\n<Thing object at 0x...> not in $TMPDIR/x and "$TMPDIR"'}

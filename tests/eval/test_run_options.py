@@ -25,8 +25,10 @@ from hthor.eval.config import cli_command, robot_team, run_config, sessions, tas
 from hthor.eval.config.sessions import Session
 from hthor.eval.dry_run import trial_cost
 from hthor.eval.records import trial_record
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import pairing
 from hthor.eval.runner import queue, run_options, trial_runner
+from hthor.eval.runner.sources import Sources
 from hthor.guest import GuestFault
 from hthor.leaderboard.entries import overrides
 from hthor.types import Action
@@ -128,10 +130,10 @@ def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds
     slow = robot_team.load_agent_info(str(tmp_path / "slow.py"))
     who = robot_team.form_team(["scout"], [slow])
     trials = sessions.make_sessions(suite(1), agent=who, human="greedy", step_limit_s=seconds)[0].trials
-    with trial_runner.TrialRunner(trial_runner.Sources(minds=who.minds, manifests=who.manifests)).enter(
+    with trial_runner.TrialRunner(Sources(agent_paths=who.agent_paths, manifests=who.manifests)).enter(
         Session(participant=0, trials=trials)
     ) as company:
-        mind = company.robots()["robot"]
+        mind = company.ready_agents()["robot"]
         mind.begin(guest_agents.BRIEFING)
         if seconds is None:
             assert mind.act(guest_agents.look()) == Action()
@@ -145,11 +147,11 @@ def test_the_control_of_a_limited_run_has_the_same_tasks(tmp_path: Path) -> None
     asked = run_options.resolve_options(
         run_options.RunOptions(agents=("oracle",), suite="smoke", limit=12, control=True, out=tmp_path / "run")
     )
-    control = asked.control_of[tmp_path / "run"].plan
+    control = asked.baseline_of[tmp_path / "run"].config
     assert control.limit == 12
     assert control.trials == 12
-    assert control.suite == asked.parts[0].plan.suite
-    assert asked.parts[0].plan.participants == 2
+    assert control.suite == asked.runs[0].config.suite
+    assert asked.runs[0].config.participants == 2
 
 
 # ------------------------------------------------------------------------------------------------------ names and lists
@@ -159,15 +161,15 @@ def test_a_name_is_a_folder_and_a_heading_and_changes_no_trial(tmp_path: Path, m
     monkeypatch.chdir(tmp_path)
     one = run_options.resolve_options(run_options.RunOptions(agents=("oracle",), control=True, name="first-try"))
     bare = run_options.resolve_options(run_options.RunOptions(agents=("oracle",)))
-    (part,), (plain,) = one.parts, bare.parts
-    assert part.folder == Path("runs/first-try")
-    assert part.plan.name == part.title == "first-try"
-    assert part.plan.crew == plain.plan.name == "oracle"
-    assert (part.plan.sha256, part.plan.untitled) == (plain.plan.sha256, plain.plan)
-    assert one.control_of[part.folder].folder == Path("runs/first-try/control"), "where it is found again"
+    (part,), (plain,) = one.runs, bare.runs
+    assert part.folder.path == Path("runs/first-try")
+    assert part.config.name == part.title == "first-try"
+    assert part.config.team_name == plain.config.name == "oracle"
+    assert (part.config.sha256, part.config.untitled) == (plain.config.sha256, plain.config)
+    assert one.baseline_of[part.folder.path].folder.path == Path("runs/first-try/control"), "where it is found again"
     several = run_options.resolve_options(run_options.RunOptions(agents=("oracle", "frontier"), name="both"))
-    assert [str(each.folder) for each in several.parts] == ["runs/both/oracle", "runs/both/frontier"]
-    assert [each.plan.name for each in several.parts] == ["both-oracle", "both-frontier"]
+    assert [str(each.folder) for each in several.runs] == ["runs/both/oracle", "runs/both/frontier"]
+    assert [each.config.name for each in several.runs] == ["both-oracle", "both-frontier"]
 
 
 @pytest.mark.parametrize("name", ["", "-x", "a/b", "..", "a b", "x" * 61])
@@ -178,11 +180,11 @@ def test_a_name_that_is_no_folders_is_refused(name: str) -> None:
 
 def test_a_run_keeps_the_name_that_it_began_with(tmp_path: Path) -> None:
     named = msgspec.structs.replace(plan(), title="first")
-    run_config.write_config(tmp_path / "run", named)
-    run_config.check_folder(tmp_path / "run", plan())
-    assert run_config.with_stored_title(tmp_path / "run", plan()) == named
+    RunFolder(tmp_path / "run").write_config(named)
+    RunFolder(tmp_path / "run").check_free(plan())
+    assert RunFolder(tmp_path / "run").write_config(plan()) == named
     with pytest.raises(RunError, match="is called 'first'"):
-        run_config.check_folder(tmp_path / "run", msgspec.structs.replace(plan(), title="second"))
+        RunFolder(tmp_path / "run").check_free(msgspec.structs.replace(plan(), title="second"))
 
 
 @pytest.fixture(scope="module")

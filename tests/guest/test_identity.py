@@ -584,7 +584,7 @@ def test_two_contents_of_one_file_are_no_manifest() -> None:
     from hthor.eval.records import opened_files
 
     plan, sessions = eval_fakes.run_of(20)
-    lines = [done for session in sessions for done in eval_fakes.player()(session)]
+    lines = [done for session in sessions for done in eval_fakes.records(session)]
     import msgspec
 
     mixed = [

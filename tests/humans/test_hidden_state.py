@@ -117,9 +117,9 @@ def _one(
 ) -> EpisodeLog:
     world = stage.world(trial)
     if not veiled:
-        return run_episode(trial, world, company.human, company.robots())
+        return run_episode(trial, world, company.human, company.ready_agents())
     shut = Shut(world)
-    return run_episode(trial, shut, Guarded(company.human, shut), company.robots())  # type: ignore[arg-type]
+    return run_episode(trial, shut, Guarded(company.human, shut), company.ready_agents())  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")

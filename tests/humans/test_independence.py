@@ -56,7 +56,7 @@ def first_trials(agent: str, stage: trial_runner.TrialRunner, mind: object = Non
     for session in make_sessions(few, agent=agent)[:PEOPLE]:
         with stage.enter(session) as company:
             for trial in session.trials[:TRIALS]:
-                robots = {"robot": mind} if mind else company.robots()
+                robots = {"robot": mind} if mind else company.ready_agents()
                 logs.append(run_episode(trial, stage.world(trial), company.human, robots))
     return logs
 

@@ -90,7 +90,10 @@ def played() -> list[TrialRecord]:
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "alder"))
     whole = make_sessions(few, agent="oracle", seed=3)[0]
-    return list(trial_runner.make_runner()(Session(participant=whole.participant, trials=whole.trials[:4])))
+    return [
+        done.record
+        for done in trial_runner.make_runner()(Session(participant=whole.participant, trials=whole.trials[:4]))
+    ]
 
 
 def test_nobody_goes_farther_than_the_stick_says(played: list[TrialRecord]) -> None:

@@ -21,10 +21,11 @@ from rich.console import Console
 from hthor import cli, plugins, rules, tasks
 from hthor.errors import HthorError, PopulationError, UnknownName
 from hthor.eval.comparison import population_matrix, robustness
-from hthor.eval.config import human_populations, run_config, sessions
+from hthor.eval.config import human_populations, sessions
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.results import result_file
 from hthor.eval.runner import experiment, progress, run_options, trial_runner
+from hthor.eval.runner.sources import Sources
 from hthor.humans.population import (
     bounds,
     describe,
@@ -273,13 +274,13 @@ def test_every_robot_meets_the_same_people(files: Path):
         fakes.crew("none", absent=True),
     ]
     dealt = [sessions.make_sessions(suite, agent=crew, human=word, seed=4) for crew in crews]
-    stage = trial_runner.TrialRunner(trial_runner.Sources(people=resolve.resolve_humans(word).word))
+    stage = trial_runner.TrialRunner(Sources(humans=resolve.resolve_humans(word).word))
     met = []
     for run in dealt:
         whole = []
         for one in run:
             trial = one.trials[0]
-            found = stage._persons(trial)
+            found = stage._population_of(trial)
             whole.append(
                 (one.participant, [t.task.id for t in one.trials], found.participant(trial.seed, trial.participant))
             )
@@ -311,15 +312,13 @@ def test_a_file_that_changes_during_a_run_stops_it(files: Path):
     found = resolve.resolve_humans(f"{files}/pop.npz")
     (one, *_) = sessions.make_sessions(fakes.suite(10), agent=fakes.crew("helper"), human=found)
     population_file.save_population(small(suite="other"), files / "pop")  # says something else of the same people
-    assert (
-        trial_runner.TrialRunner(trial_runner.Sources(people=found.word))._persons(one.trials[0]).sha256 == found.sha256
-    )
+    assert trial_runner.TrialRunner(Sources(humans=found.word))._population_of(one.trials[0]).sha256 == found.sha256
     rows = [[0.4, 0.2]]
     population_file.save_population(
         Population.make("pop", rows, names=("v_pace", "sigma"), purpose="", seed=0, command=""), files / "pop"
     )
     with pytest.raises(HthorError, match=r"pop\.npz was changed while its run was going on"):
-        trial_runner.TrialRunner(trial_runner.Sources(people=found.word))._persons(one.trials[0])
+        trial_runner.TrialRunner(Sources(humans=found.word))._population_of(one.trials[0])
 
 
 # ---------------------------------------------------------------------------------------------------------- validity
@@ -383,7 +382,7 @@ def test_words_for_several_peoples(files: Path):
     population_file.save_population(
         Population.make("pop", [[0.5]], names=["v_pace"], purpose="", seed=0, command=""), files / "sub" / "pop"
     )
-    with pytest.raises(HthorError, match="two different peoples are called 'pop'"):
+    with pytest.raises(HthorError, match="two different populations are called 'pop'"):
         human_populations.find_populations([f"{files}/pop.npz", f"{files}/sub/pop.npz"])
     with pytest.raises(UnknownName, match="'kinds'"):
         human_populations.find_populations(["kindz"])
@@ -408,13 +407,15 @@ def test_each_people_is_a_run_of_its_own(files: Path):
             told.append(text)
 
     done = list(experiment.run_experiment(options, lambda _: Watcher()))
-    assert [(one.plan.humans.name, one.plan.name) for one in done] == [
+    assert [(one.config.humans.name, one.config.name) for one in done] == [
         *(("pop", "none"), ("pop", "frontier"), ("slow@pop", "none"), ("slow@pop", "frontier")),
     ]
-    assert [one.folder for one in done] == [files / "out" / one.plan.humans.name / one.plan.name for one in done]
+    assert [one.folder.path for one in done] == [
+        files / "out" / one.config.humans.name / one.config.name for one in done
+    ]
     assert all(one.result.humans.valid for one in done)
     assert told == []
-    assert done[2].plan.folder_name.startswith("none-fake-slow@pop-")
+    assert done[2].config.folder_name.startswith("none-fake-slow@pop-")
     assert done[0].result.hashes.human != done[2].result.hashes.human
     whole = population_matrix.make_matrix([one.result for one in done])
     assert whole.agents == ("none", "frontier")
@@ -476,7 +477,7 @@ def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
     assert stored["humans"]["valid"] is False
     assert [one in said for one in stored["humans"]["notes"]] == [True]
     assert stored["humans"]["population_sha256"] == small().sha256
-    assert run_config.load_config(done[0].folder).humans == done[0].result.humans
+    assert done[0].folder.config.humans == done[0].result.humans
     console = Console(record=True, width=150, file=io.StringIO())
     console.print(result_tables.result_table(done[0].result))
     console.print(result_tables.comparison_table([one.result for one in done]))
@@ -493,7 +494,7 @@ def test_a_worker_finds_files_by_path(files: Path):
     code = (
         "import sys, msgspec\nfrom hthor.eval.runner import trial_runner\nfrom hthor.types import TrialSpec\n"
         "trial = msgspec.json.decode(sys.stdin.buffer.read(), type=TrialSpec)\n"
-        "found = trial_runner.TrialRunner(trial_runner.Sources(people=sys.argv[1]))._persons(trial)\n"
+        "found = trial_runner.TrialRunner(Sources(humans=sys.argv[1]))._population_of(trial)\n"
         "print(type(found.make_model(trial.seed, 0)).__module__, found.participant(0, 0).traits.v_pace)\n"
     )
     said = subprocess.run(

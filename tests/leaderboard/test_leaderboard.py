@@ -28,6 +28,7 @@ from benchmarks import forging
 from hthor import code_identity, jsonio, tasks
 from hthor.errors import HthorError, RunError
 from hthor.eval.config import run_config
+from hthor.eval.records.run_folder import RunFolder
 from hthor.guest.agent import manifest
 from hthor.leaderboard import board_check, canonical_form, enter, publish, rescore
 from hthor.leaderboard.entries import column_packing, entry_metrics, files, merkle, overrides
@@ -389,7 +390,7 @@ def test_names_of_submissions(handed_in: Path):
 def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path, tmp_path: Path):
     played = submission.listed(handed_in)
     mine = shutil.copytree(runs, tmp_path / "runs") / "helper"
-    plan = run_config.load_config(mine)
+    plan = RunFolder(mine).config
     ref = plan.robots[0].agent
     about = manifest.make_manifest(ref.name, ref.source, {}, [one for one in played if one.path == "agent.py"])
     plan = msgspec.structs.replace(plan, agents=(msgspec.structs.replace(about, sha256=ref.sha256),))

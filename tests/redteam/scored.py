@@ -20,8 +20,11 @@ import msgspec
 from hthor import guest, jsonio, tasks
 from hthor.eval.config import robot_team, run_config, sessions
 from hthor.eval.records import run_isolation
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import read
 from hthor.eval.runner import fault_report, progress, run, trial_runner, worker
+from hthor.eval.runner.run_job import make_sources
+from hthor.eval.runner.sources import Sources
 from hthor.eval.runner.worker import News
 from hthor.guest import Guest, GuestConfig, GuestPool, IsolationError
 from hthor.tasks.suite import make_suite
@@ -37,7 +40,7 @@ _WORLDS: dict[object, Any] = {}
 class _Stage(trial_runner.TrialRunner):
     """Keeps its world for the next run too, which saves building it for every agent."""
 
-    def __init__(self, sources: trial_runner.Sources | None = None, pool: GuestPool | None = None) -> None:
+    def __init__(self, sources: Sources | None = None, pool: GuestPool | None = None) -> None:
         super().__init__(sources, pool)
         self._worlds = _WORLDS
 
@@ -45,10 +48,10 @@ class _Stage(trial_runner.TrialRunner):
 class _Here:
     """An engine that plays in this process."""
 
-    def perform(self, sessions: Any, make: Any) -> Generator[News | None, None, None]:
+    def run_sessions(self, sessions: Any, make: Any) -> Generator[News | None, None, None]:
         player = worker.SessionPlayer(make)
         for one in sessions:
-            yield from player.play(one)
+            yield from player.run(one)
 
 
 def main(levels: list[str], wanted: list[str]) -> None:
@@ -88,15 +91,14 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
     plan = run_config.build_config(suite, crew, human="proxy", seed=0, participants=None)
     hidden = (str(home / "runs"), str(home / "official.json"))
     config = GuestConfig(isolation=held.level, hidden=hidden)
-    sources = trial_runner.Sources(minds=crew.minds, manifests=crew.manifests, guests=config)
-    make = functools.partial(trial_runner.make_runner, sources)
+    make = functools.partial(trial_runner.make_runner, make_sources(crew, guests=config))
     result = run.run_evaluation(
         plan,
         sessions.make_sessions(suite, agent=crew),
         make,
-        folder=runs,
+        folder=RunFolder(runs),
         engine=_Here(),
-        watch=progress.Silent(),
+        watcher=progress.Silent(),
         extra={run_isolation.NAME: jsonio.pretty(held)},
     )
     ((_, record),) = read(runs / "trials.jsonl")

@@ -43,7 +43,7 @@ def play(base: Path) -> Path:
         with mock.patch.object(fakes, "character", character):
             plan, dealt = fakes.run_of(COUNT, name=name, absent=name == "silent")
         jsonio.write(base / name / "run.json", jsonio.pretty(plan))
-        made = [one for session in dealt for one in fakes.player()(session)]
+        made = [one for session in dealt for one in fakes.records(session)]
         made = [late(one) for one in made] if name == "clumsy" else made
         jsonio.write(base / name / "trials.jsonl", b"".join(trial_record.encode(one) for one in made))
         if name != "silent":

@@ -24,10 +24,12 @@ from hthor.eval.config import robot_team, run_config, sessions
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner import engines, trial_runner, worker
+from hthor.eval.runner import engines, worker
 from hthor.eval.runner.engines import SessionFailed
-from hthor.eval.runner.messages import Failed, News
+from hthor.eval.runner.messages import Failed, News, TrialOutcome
+from hthor.eval.runner.sources import Sources
 from hthor.humans.population import resolve
 from hthor.humans.population.population import Population, Validity
 from hthor.humans.population.resolve import ParticipantSource
@@ -126,20 +128,29 @@ def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
     )
 
 
-def player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[TrialRecord]]:
+def player(sources: Sources | None = None) -> Callable[[Session], Iterator[TrialOutcome]]:
     """Plays a session in no time; the fake person counts the trials so far, so sessions cannot be cut in pieces."""
 
-    def perform(session_: Session) -> Iterator[TrialRecord]:
+    def perform(session_: Session) -> Iterator[TrialOutcome]:
         for memory, trial in enumerate(session_.trials):
-            yield trial_record.make_record(trial, episode(trial, memory))
+            yield outcome(trial, episode(trial, memory))
 
     return perform
 
 
-def leaning_player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[TrialRecord]]:
+def outcome(trial: TrialSpec, log: EpisodeLog) -> TrialOutcome:
+    return TrialOutcome(record=trial_record.make_record(trial, log))
+
+
+def records(session_: Session) -> list[TrialRecord]:
+    """The records of a session that `player` plays."""
+    return [played.record for played in player()(session_)]
+
+
+def leaning_player(sources: Sources | None = None) -> Callable[[Session], Iterator[TrialOutcome]]:
     """Robots help the people they meet, and hinder those called random."""
 
-    def perform(session_: Session) -> Iterator[TrialRecord]:
+    def perform(session_: Session) -> Iterator[TrialOutcome]:
         for trial in session_.trials:
             chance = 0.5 if not trial.robots else 0.2 if trial.human.startswith("random") else 0.9
             met = seeds.draw(trial.seed, "met", trial.task.id) < chance
@@ -148,25 +159,23 @@ def leaning_player(sources: trial_runner.Sources | None = None) -> Callable[[Ses
             paths = {seat: path[:1] * (ticks // 2) for seat, path in log.paths.items()}
             last = Event(tick=ticks, seat="human", kind="success" if met else "timeout")
             events = (*(event for event in log.events[:-1] if event.tick < ticks), last)
-            yield trial_record.make_record(
-                trial, msgspec.structs.replace(log, met=met, ticks=ticks, paths=paths, events=events)
-            )
+            yield outcome(trial, msgspec.structs.replace(log, met=met, ticks=ticks, paths=paths, events=events))
 
     return perform
 
 
-def forgetful_player() -> Callable[[Session], Iterator[TrialRecord]]:
+def forgetful_player() -> Callable[[Session], Iterator[TrialOutcome]]:
     """Plays every trial otherwise than `player`."""
 
-    def perform(session_: Session) -> Iterator[TrialRecord]:
+    def perform(session_: Session) -> Iterator[TrialOutcome]:
         for trial in session_.trials:
-            yield trial_record.make_record(trial, episode(trial, memory=99))
+            yield outcome(trial, episode(trial, memory=99))
 
     return perform
 
 
-def slow_player(seconds: float = 0.05) -> Callable[[Session], Iterator[TrialRecord]]:
-    def perform(session_: Session) -> Iterator[TrialRecord]:
+def slow_player(seconds: float = 0.05) -> Callable[[Session], Iterator[TrialOutcome]]:
+    def perform(session_: Session) -> Iterator[TrialOutcome]:
         for played in player()(session_):
             time.sleep(seconds)
             yield played
@@ -174,10 +183,10 @@ def slow_player(seconds: float = 0.05) -> Callable[[Session], Iterator[TrialReco
     return perform
 
 
-def dying_player(folder: str, deaths: int = 1) -> Callable[[Session], Iterator[TrialRecord]]:
+def dying_player(folder: str, deaths: int = 1) -> Callable[[Session], Iterator[TrialOutcome]]:
     """Kills its own process in the middle of sessions, ``deaths`` times for every session of an even participant."""
 
-    def perform(session_: Session) -> Iterator[TrialRecord]:
+    def perform(session_: Session) -> Iterator[TrialOutcome]:
         for number, played in enumerate(player()(session_)):
             mark = Path(folder, f"died-{session_.participant}")
             died = len(mark.read_text()) if mark.exists() else 0
@@ -189,10 +198,10 @@ def dying_player(folder: str, deaths: int = 1) -> Callable[[Session], Iterator[T
     return perform
 
 
-def lonely_player(sources: trial_runner.Sources | None = None) -> Callable[[Session], Iterator[TrialRecord]]:
+def lonely_player(sources: Sources | None = None) -> Callable[[Session], Iterator[TrialOutcome]]:
     """Participant 1 cannot be played without a robot."""
 
-    def perform(session_: Session) -> Iterator[TrialRecord]:
+    def perform(session_: Session) -> Iterator[TrialOutcome]:
         if session_.participant == 1 and not session_.trials[0].robots:
             raise ZeroDivisionError("our own")
         yield from player()(session_)
@@ -200,12 +209,12 @@ def lonely_player(sources: trial_runner.Sources | None = None) -> Callable[[Sess
     return perform
 
 
-def hopeless_player() -> Callable[[Session], Iterator[TrialRecord]]:
+def hopeless_player() -> Callable[[Session], Iterator[TrialOutcome]]:
     raise ModuleNotFoundError("no module named 'mujoco'")
 
 
-def failing_player(error: str) -> Callable[[Session], Iterator[TrialRecord]]:
-    def perform(session_: Session) -> Iterator[TrialRecord]:
+def failing_player(error: str) -> Callable[[Session], Iterator[TrialOutcome]]:
+    def perform(session_: Session) -> Iterator[TrialOutcome]:
         yield from list(player()(session_))[:2]
         from hthor.errors import AgentError
 
@@ -214,10 +223,10 @@ def failing_player(error: str) -> Callable[[Session], Iterator[TrialRecord]]:
     return perform
 
 
-def sick_player(folder: str, *ills: str) -> Callable[[Session], Iterator[TrialRecord]]:
+def sick_player(folder: str, *ills: str) -> Callable[[Session], Iterator[TrialOutcome]]:
     """The fourth trial of participant 1 ends the worker, of participant 3 hangs once, of participant 5 has a bug."""
 
-    def perform(session_: Session) -> Iterator[TrialRecord]:
+    def perform(session_: Session) -> Iterator[TrialOutcome]:
         for number, played in enumerate(player()(session_)):
             ill = {1: "crash", 3: "hang", 5: "bug"}.get(session_.participant) if number == 3 else None
             if ill == "crash" and ill in ills:
@@ -242,10 +251,10 @@ for line in sys.stdin.buffer:
 """
 
 
-def guarded_player(seconds: float = 0.004) -> Callable[[Session], Iterator[TrialRecord]]:
+def guarded_player(seconds: float = 0.004) -> Callable[[Session], Iterator[TrialOutcome]]:
     """Each session has a guest, a process that has to answer in each trial; if not, the trial has a fault."""
 
-    def perform(session_: Session) -> Iterator[TrialRecord]:
+    def perform(session_: Session) -> Iterator[TrialOutcome]:
         words = [sys.executable, "-S", "-E", "-c", GUEST, str(os.getpid())]
         with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0) as guest:
             assert guest.stdin is not None
@@ -262,32 +271,32 @@ def guarded_player(seconds: float = 0.004) -> Callable[[Session], Iterator[Trial
                     if not answer:
                         fault = Fault(seat="robot", kind=KILLED, tick=1, detail="killed by SIGKILL")
                         log = msgspec.structs.replace(log, faults=(fault,))
-                    yield trial_record.make_record(trial, log)
+                    yield outcome(trial, log)
             finally:
                 guest.kill()
 
     return perform
 
 
-def killing_player(times: int, plays: dict[int, int]) -> Callable[[Session], Iterator[TrialRecord]]:
+def killing_player(times: int, plays: dict[int, int]) -> Callable[[Session], Iterator[TrialOutcome]]:
     """The agent of the third trial is killed in the first ``times`` plays of a session, which ``plays`` counts."""
 
-    def perform(session_: Session) -> Iterator[TrialRecord]:
+    def perform(session_: Session) -> Iterator[TrialOutcome]:
         plays[session_.participant] = plays.get(session_.participant, 0) + 1
         for memory, trial in enumerate(session_.trials):
             log = episode(trial, memory)
             if memory == 2 and plays[session_.participant] <= times:
                 fault = Fault(seat="robot", kind=KILLED, tick=1, detail="killed by SIGKILL")
                 log = msgspec.structs.replace(log, faults=(fault,))
-            yield trial_record.make_record(trial, log)
+            yield outcome(trial, log)
 
     return perform
 
 
-def late_player(times: int, plays: dict[int, int]) -> Callable[[Session], Iterator[TrialRecord]]:
+def late_player(times: int, plays: dict[int, int]) -> Callable[[Session], Iterator[TrialOutcome]]:
     """The agent of participant 1 is killed before it can say what it is, so many times; ``plays`` counts them."""
 
-    def perform(session_: Session) -> Iterator[TrialRecord]:
+    def perform(session_: Session) -> Iterator[TrialOutcome]:
         if session_.participant == 1 and plays.get(1, 0) < times:
             plays[1] = plays.get(1, 0) + 1
             raise AgentKilled("helper.py: its process was killed by SIGKILL while it started.")
@@ -305,10 +314,10 @@ class Here:
     def drain(self) -> None:
         pass
 
-    def perform(self, sessions, make) -> Generator[News | None, None, None]:
+    def run_sessions(self, sessions, make) -> Generator[News | None, None, None]:
         player = worker.SessionPlayer(make)
         for one in sessions:
-            for news in player.play(one):
+            for news in player.run(one):
                 if isinstance(news, Failed):
                     raise SessionFailed(news)
                 yield news
@@ -345,7 +354,7 @@ def _evaluate(folder: Path, count: int, make, engine: engines.Engine) -> None:
     from hthor.eval.runner import progress, run
 
     plan, dealt = run_of(count)
-    run.run_evaluation(plan, dealt, make, folder=folder, engine=engine, watch=progress.Silent())
+    run.run_evaluation(plan, dealt, make, folder=RunFolder(folder), engine=engine, watcher=progress.Silent())
 
 
 if __name__ == "__main__":

@@ -12,9 +12,8 @@ import test_episode
 from hthor import guest
 from hthor.episode import run_episode
 from hthor.eval.config.sessions import Session
-from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
+from hthor.eval.runner.messages import TrialOutcome
 from hthor.types import HUMAN, RobotSeat, Snapshot
 
 AGENT = """
@@ -42,21 +41,23 @@ class Stage(test_episode.Stage):
         return Snapshot(tick=self.tick, poses={}, things=self.things, in_view={HUMAN: view}, holding={HUMAN: ""})
 
 
-def player(agent: str, level: str) -> Callable[[Session], Iterator[TrialRecord]]:
+def player(agent: str, level: str) -> Callable[[Session], Iterator[TrialOutcome]]:
     """Plays sessions of some dozen ticks a trial with the agent of this file, held at this level."""
 
     def mind(_: RobotSeat) -> guest.Guest:
         return guest.Guest(agent, config=guest.GuestConfig(isolation=level))
 
-    def perform(session: Session) -> Iterator[TrialRecord]:
+    def perform(session: Session) -> Iterator[TrialOutcome]:
         with trial_runner.Participants(test_episode.Mind(), session.trials[0].robots, mind) as company:
             for memory, trial in enumerate(session.trials):
                 task = msgspec.structs.replace(trial.task, kind="object_goal_navigation")
                 stage = Stage(seen=fakes.episode(trial, memory).ticks // 10)
-                log = run_episode(msgspec.structs.replace(trial, task=task), stage, company.human, company.robots())
+                log = run_episode(
+                    msgspec.structs.replace(trial, task=task), stage, company.human, company.ready_agents()
+                )
                 for seat in dict.fromkeys(fault.seat for fault in log.faults):
                     company.dismiss(seat)
-                yield trial_record.make_record(trial, log)
+                yield fakes.outcome(trial, log)
 
     return perform
 

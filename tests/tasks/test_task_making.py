@@ -13,7 +13,7 @@ import pytest
 
 from hthor import cli, houses, tasks
 from hthor.errors import HthorError, TaskError, UnknownName
-from hthor.eval.config import cli_command, run_config, suite_check, task_selection
+from hthor.eval.config import cli_command, run_config, task_selection
 from hthor.eval.runner import run_options
 from hthor.eval.task_check import custom_houses, solvability
 from hthor.houses.assets import DATABASE
@@ -159,17 +159,17 @@ def test_the_check_lists_every_task(suite: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_one_fault_is_told_as_it_is(suite: Path):
     with pytest.raises(TaskError, match=r"mine\.json: tasks\[1\]\.objects\[0\]\.position: .* rests on no surface"):
-        suite_check.checked_suite(str(broken(suite, 1)))
+        task_selection.checked_suite(str(broken(suite, 1)))
 
 
 def test_that_a_suite_is_sound_is_remembered_until_it_changes(suite: Path, monkeypatch: pytest.MonkeyPatch):
     looked: list[str] = []
-    monkeypatch.setattr(suite_check, "validate", lambda found, file: looked.append(file))
-    assert suite_check.checked_suite(str(suite)) == suite_check.checked_suite(str(suite))
+    monkeypatch.setattr(task_selection, "validate", lambda found, file: looked.append(file))
+    assert task_selection.checked_suite(str(suite)) == task_selection.checked_suite(str(suite))
     assert len(looked) == 1
     house = suite.with_suffix(".houses") / "my home.json"
     house.write_bytes(house.read_bytes() + b" ")
-    suite_check.checked_suite(str(suite))
+    task_selection.checked_suite(str(suite))
     assert len(looked) == 2, "the houses count, too"
 
 
@@ -203,11 +203,11 @@ def test_difficulty_is_worked_out_where_a_suite_does_not_tell():
 
 def test_the_part_is_in_the_configuration_and_the_command(tmp_path: Path):
     options = run_options.RunOptions(agents=("frontier",), suite="paper", houses=("alder",), difficulty="easy")
-    plan = run_options.resolve_options(options).parts[0].plan
+    plan = run_options.resolve_options(options).runs[0].config
     assert (plan.houses, plan.difficulty) == (("alder",), "easy")
     assert "paper-alder-easy" in plan.folder_name
     assert "--house alder --difficulty easy" in cli_command.resume_command(tmp_path, plan)
-    whole = run_options.resolve_options(run_options.RunOptions(agents=("frontier",), suite="paper")).parts[0].plan
+    whole = run_options.resolve_options(run_options.RunOptions(agents=("frontier",), suite="paper")).runs[0].config
     assert not whole.houses
     assert run_config.differences(whole, plan)
 

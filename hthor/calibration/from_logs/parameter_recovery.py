@@ -1,4 +1,4 @@
-"""Do the estimators find what is known? People of known parameters, their logs, and what is read off these.
+"""Do the estimators find what is known? ParticipantSource of known parameters, their logs, and what is read off these.
 
 Each dataset is one population drawn from the prior and some of its people, a third of them without a robot, a third
 with the frontier robot, a third with the oracle; everybody does ten tasks in the real world and leaves a real log.
@@ -24,6 +24,7 @@ from hthor.eval.config.sessions import make_sessions as deal
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
+from hthor.eval.runner.sources import Sources
 from hthor.humans.models.proxy import Model
 from hthor.humans.population import parameter_registry, random_effects
 from hthor.humans.population.parameters import Parameters
@@ -62,7 +63,7 @@ class Recovered(Struct, frozen=True, kw_only=True):
 def run(count: int, *, people: int = 12, seed: int = 0, suite: str = "paper", first: int = 0) -> Iterator[Dataset]:
     """Simulate datasets and estimate each."""
     held = tasks.load_suite(suite)
-    stage = trial_runner.TrialRunner(trial_runner.Sources(houses=str(held.houses.folder or "")))
+    stage = trial_runner.TrialRunner(Sources(houses=str(held.houses.folder or "")))
     cube = design_points.spread(first + count, len(parameter_registry.free_parameter_names()), seed, "recovery")[first:]
     for number, point in enumerate(cube, first):
         population = parameter_registry.parameters_at(tuple(map(float, point)))

@@ -12,7 +12,7 @@ from hthor.eval.runner import progress
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hthor.eval.runner.run import Watcher
+    from hthor.eval.runner.progress import Watcher
 
 _WORTH_TELLING_S = 1.0
 

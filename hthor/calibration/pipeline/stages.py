@@ -18,7 +18,7 @@ from hthor.calibration.simulation import design_points, simulate, studies, trial
 from hthor.calibration.simulation.budget import Sizes
 from hthor.calibration.simulation.trial_table import Table
 from hthor.calibration.targets import Targets
-from hthor.eval.runner.run import Watcher
+from hthor.eval.runner.progress import Watcher
 from hthor.humans.population import parameter_registry
 from hthor.tasks import Suite
 

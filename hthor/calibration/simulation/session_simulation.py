@@ -7,13 +7,16 @@ draws people, and plays ten tasks one after the other with the robot of a condit
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Any
 
 from msgspec import Struct
 
 from hthor import plugins, rules
 from hthor.episode import EpisodeLog, run_episode
 from hthor.errors import HthorError
-from hthor.eval.runner.trial_runner import Sources, TrialRunner
+from hthor.eval.runner.messages import TrialOutcome
+from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.humans.models.proxy import Model
 from hthor.humans.population import parameter_registry, random_effects
 from hthor.humans.population.participant import Participant, participant_root
@@ -67,7 +70,7 @@ class SessionOutcome(Struct, frozen=True, kw_only=True):
     faults: tuple[str, ...] = ()
 
 
-def player(suite: Suite, seats: tuple[tuple[RobotSeat, ...], ...]) -> Callable[[SessionSpec], Iterator[SessionOutcome]]:
+def player(suite: Suite, seats: tuple[tuple[RobotSeat, ...], ...]) -> Callable[[SessionSpec], Iterator[TrialOutcome]]:
     """What a worker does with each sitting: tell of each trial, and in the end of the session.
 
     Called in the worker; keeps worlds for later sittings.
@@ -77,14 +80,19 @@ def player(suite: Suite, seats: tuple[tuple[RobotSeat, ...], ...]) -> Callable[[
     """
     stage = TrialRunner(Sources(houses=str(suite.houses.folder or "")))
 
-    def perform(sitting: SessionSpec) -> Iterator[SessionOutcome]:
+    def perform(sitting: SessionSpec) -> Iterator[TrialOutcome]:
         rows = []
         for row in sit(sitting, suite, seats[sitting.condition], stage):
             rows.append(row)
-            yield SessionOutcome(rows=(row,))
-        yield SessionOutcome(key=sitting.key, rows=tuple(rows))
+            yield _outcome(SessionOutcome(rows=(row,)))
+        yield _outcome(SessionOutcome(key=sitting.key, rows=tuple(rows)))
 
     return perform
+
+
+def _outcome(session: Any) -> TrialOutcome:
+    """What workers send; they only encode it, so it need not be a trial's record."""
+    return TrialOutcome(record=session)
 
 
 def sit(sitting: SessionSpec, suite: Suite, seats: tuple[RobotSeat, ...], stage: TrialRunner) -> Iterator[Row]:

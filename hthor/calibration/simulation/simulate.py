@@ -19,11 +19,11 @@ from hthor.calibration.simulation.trial_identity import Identity
 from hthor.calibration.simulation.trial_table import AGENTS, CONDITIONS, Table
 from hthor.errors import RunError
 from hthor.eval.config import robot_team, sessions
-from hthor.eval.runner import local_runner
 from hthor.eval.runner.collector import InternalFailure
+from hthor.eval.runner.engines.local import SessionLost, run_all_sessions
 from hthor.eval.runner.interrupt import Interrupted, stoppable
 from hthor.eval.runner.messages import TrialDone
-from hthor.eval.runner.run import Watcher
+from hthor.eval.runner.progress import Watcher
 from hthor.humans.population import parameter_registry
 from hthor.tasks import Suite
 from hthor.types import RobotSeat
@@ -137,7 +137,7 @@ def _play(suite: Suite, left: Sequence[SessionSpec], ledger: SessionStore, jobs:
         session_simulation.player, suite, robots()
     )  # what it plays and gives is ours to choose
     some: Any = left
-    with stoppable() as stop, closing(local_runner.run_sessions(some, make, jobs=jobs)) as stream:
+    with stoppable() as stop, closing(run_all_sessions(some, make, jobs=jobs)) as stream:
         try:
             for news in stream:
                 if isinstance(news, TrialDone):
@@ -147,7 +147,7 @@ def _play(suite: Suite, left: Sequence[SessionSpec], ledger: SessionStore, jobs:
                 watch.beat()
                 if stop.is_set():
                     raise Interrupted(f"interrupted after {len(ledger.held)} sessions; the same command resumes.")
-        except local_runner.SessionLost as failure:
+        except SessionLost as failure:
             if failure.detail:
                 jsonio.write(ledger.path.with_name("error.txt"), failure.detail.encode())
                 raise InternalFailure(f"{failure}. The traceback is in {ledger.path.with_name('error.txt')}.") from None

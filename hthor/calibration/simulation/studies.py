@@ -15,7 +15,7 @@ from hthor.calibration.simulation import design_points, simulate, trial_identity
 from hthor.calibration.simulation.simulate import Plan
 from hthor.calibration.simulation.trial_table import CONDITIONS, Table
 from hthor.calibration.targets import Design
-from hthor.eval.runner.run import Watcher
+from hthor.eval.runner.progress import Watcher
 from hthor.tasks import Suite
 
 

@@ -21,10 +21,9 @@ from hthor.calibration.validation.plan import SUITE, Round, ValidationOptions
 from hthor.calibration.validation.report import build, measures, page, trial_tables
 from hthor.calibration.validation.report.findings import Findings, Played, Setting, Subject
 from hthor.eval.config.sessions import participants_needed
-from hthor.eval.records import reader
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import experiment
-from hthor.eval.runner.experiment import ClosableWatcher
+from hthor.eval.runner.progress import Watcher
 from hthor.humans.population import resolve
 from hthor.humans.population.resolve import PROXY, ParticipantSource
 from hthor.tasks import Suite
@@ -43,7 +42,7 @@ class Outcome(Struct, frozen=True, kw_only=True):
     folder: Path
 
 
-Watch = Callable[[str], ClosableWatcher]
+Watch = Callable[[str], Watcher]
 
 
 def run_validation(options: ValidationOptions, watcher: Watch) -> Outcome:
@@ -99,9 +98,9 @@ class _Stage:
         for done in experiment.run_experiment(
             plan.asked(self._options, one), lambda title: self._watcher(f"{name} people, {title}")
         ):
-            condition = CONDITIONS[AGENTS.index(plugins.file_stem("agent", done.plan.name))]
-            runs[condition] = reader.records(done.folder, done.plan)[1]
-            self.notes = self.notes or done.plan.humans.notes
+            condition = CONDITIONS[AGENTS.index(plugins.file_stem("agent", done.config.name))]
+            runs[condition] = done.folder.records()
+            self.notes = self.notes or done.config.humans.notes
         return trial_tables.table(runs, tasks.load_suite(one.suite))
 
 

@@ -55,12 +55,15 @@ def run(
     The person's trials before it are played too, as they shape what the person does. Exit code 3 when the agent fails.
     """
     from hthor.eval.records import find
+    from hthor.eval.records.run_folder import RunFolder
     from hthor.eval.replay import rerun
+    from hthor.eval.replay.session_history import RunFiles
     from hthor.guest.agent import inputs
 
-    wanted = find.find_trial(run, trial)
-    files = rerun.RunFiles(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
-    done = rerun.rerun_trial(run, wanted, files, isolation, inputs.parse_inputs(agent_args or (), readable or ()))
+    folder = RunFolder(run)
+    wanted = find.find_trial(folder, trial)
+    files = RunFiles(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
+    done = rerun.rerun_trial(folder, wanted, files, isolation, inputs.parse_inputs(agent_args or (), readable or ()))
     if json:
         output.put_json(done)
     else:

@@ -12,16 +12,14 @@ if TYPE_CHECKING:
 
     from hthor.eval.dry_run.forecast import Forecast, RunForecast
     from hthor.eval.dry_run.trial_cost import TrialCost
-    from hthor.eval.runner.experiment import ClosableWatcher
+    from hthor.eval.runner.progress import Watcher
     from hthor.eval.runner.run_options import ResolvedRuns, RunOptions
 
 _LEFT_OUT = ("json", "quiet", "dry_run", "context")
 _ORIGINS = {"COMMANDLINE": "flag", "ENVIRONMENT": "environment", "DEFAULT": "default", "DEFAULT_MAP": "default"}
 
 
-def show_forecast(
-    options: RunOptions, watcher: Callable[[str], ClosableWatcher], context: typer.Context, json: bool
-) -> None:
+def show_forecast(options: RunOptions, watcher: Callable[[str], Watcher], context: typer.Context, json: bool) -> None:
     """Say what the command would do."""
     from hthor.eval.dry_run import forecast
     from hthor.eval.runner import experiment

@@ -12,7 +12,8 @@ from hthor.commands.options import AgentArgs, Camera, CameraSize, Json, Readable
 from hthor.console import output
 
 if TYPE_CHECKING:
-    from hthor.eval.runner.experiment import ClosableWatcher, FinishedRun
+    from hthor.eval.runner.experiment import FinishedRun
+    from hthor.eval.runner.progress import Watcher
 
 _FAULTS_EXIT = 3
 
@@ -220,14 +221,14 @@ def evaluate(
     """
     from hthor.eval.comparison import eval_document, population_matrix
     from hthor.eval.config import human_populations
-    from hthor.eval.runner import experiment, fault_report, progress, run_options
+    from hthor.eval.runner import experiment, progress, run_options
     from hthor.eval.task_check import custom_houses
     from hthor.report.terminal import result_tables
 
-    allowed = fault_report.parse_max_faults(max_faults)
+    allowed = run_options.parse_max_faults(max_faults)
     talk = output.console(talk=True)
 
-    def watcher(name: str) -> ClosableWatcher:
+    def watcher(name: str) -> Watcher:
         if quiet:
             return progress.Silent()
         return progress.Live(talk, name) if output.live() else progress.Plain(talk, name)
@@ -288,8 +289,8 @@ def evaluate(
         paper.print(result_tables.comparison_table(run_results))
     if len(done) > 1:
         for one in done:
-            whose = f", {one.plan.humans.name} people" if whole is not None else ""
-            output.say(f"{one.plan.label}{whose}: {one.folder}/", paper)
+            whose = f", {one.config.humans.name} people" if whole is not None else ""
+            output.say(f"{one.config.label}{whose}: {one.folder}/", paper)
     for note in result_tables.result_notes(run_results):
         output.say(note, paper)
     if json:

@@ -22,15 +22,15 @@ def show_run(console: Console, one: FinishedRun) -> None:
     from hthor.leaderboard.entries import overrides
     from hthor.report.terminal import result_tables
 
-    result, folder = one.result, one.folder
+    result, config, folder = one.result, one.config, one.folder.path
     console.print(result_tables.result_table(result))
     if result.counts.faults:
-        faulty, many = find.first_fault(folder), f"{result.counts.faults} of {result.counts.trials}"
+        faulty, many = find.first_fault(one.folder), f"{result.counts.faults} of {result.counts.trials}"
         alone = (
-            "there the person continued alone" if len(one.plan.seats) == 1 else "there the others continued without it"
+            "there the person continued alone" if len(config.seats) == 1 else "there the others continued without it"
         )
         failed = [f"{seat} in {count}" for seat, count in result.counts.faults_by_seat.items() if count]
-        whose = f" ({', '.join(failed)})" if len(one.plan.seats) > 1 else ""
+        whose = f" ({', '.join(failed)})" if len(config.seats) > 1 else ""
         output.say(f"{'An' if whose else 'The'} agent failed in {many} trials{whose}; {alone}.", console)
         kinds = ", ".join(f"{count} {kind}" for kind, count in result.counts.faults_by_kind.items())
         output.say(f"Faults by kind: {kinds}.", console)
@@ -40,15 +40,15 @@ def show_run(console: Console, one: FinishedRun) -> None:
         if again := fault_report.rerun_command(folder, faulty.key):
             output.say(f"see:   {again}", console)
     more = ", suite.json" if (folder / "suite.json").exists() else ""
-    if one.plan.shard:
-        base, of = shlex.quote(str(whole_folder(folder))), one.plan.shard.of
-        output.say(f"shard {one.plan.shard.words} is done: {result.counts.trials} of {one.plan.trials} trials", console)
+    if config.shard:
+        base, of = shlex.quote(str(whole_folder(folder))), config.shard.of
+        output.say(f"shard {config.shard.words} is done: {result.counts.trials} of {config.trials} trials", console)
         output.say(f"files: {folder}/run.json, trials.jsonl{more}", console)
         output.say(f"next:  hthor merge {base}-shard-*-of-{of} --out {base}", console)
         return
     output.say(f"files: {folder}/run.json, trials.jsonl, result.json{more}", console)
     run = shlex.quote(str(folder))
-    unranked = overrides.of(one.plan)
+    unranked = overrides.of(config)
     if unranked:
         why = ", ".join(f"{name.replace('_', '-')} is {value}" for name, value in unranked.items())
         output.say(f"not for the leaderboard: {why}", console)

@@ -12,7 +12,7 @@ from hthor.console import output
 
 if TYPE_CHECKING:
     from hthor.calibration.validation.plan import ValidationOptions
-    from hthor.eval.runner.experiment import ClosableWatcher
+    from hthor.eval.runner.progress import Watcher
 
 
 def validate(
@@ -71,7 +71,7 @@ def validate(
 
     talk = output.console(talk=True)
 
-    def watcher(title: str) -> ClosableWatcher:
+    def watcher(title: str) -> Watcher:
         if quiet:
             return progress.Silent()
         return progress.Live(talk, title) if output.live() else progress.Plain(talk, title)

@@ -66,7 +66,7 @@ def check_agent(
         return _report(agent, [broken], {})
     if character.absent:
         raise HthorError(f"{agent} says that there is no robot at all (absent = True), so there is nothing to check.")
-    rehearsal = ProbeTrials(character, robot or (character.bodies[0] if character.bodies else "scout"), camera)
+    rehearsal = ProbeTrials(character, robot or (character.robots[0] if character.robots else "scout"), camera)
     with Guest(agent, config=guests) as guest:
         began = time.perf_counter()
         info = guest.load()

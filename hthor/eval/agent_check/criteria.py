@@ -13,7 +13,7 @@ from hthor import rules
 from hthor.episode import Fault
 from hthor.eval.agent_check.probe_trials import ProbeResult
 from hthor.eval.config.robot_team import AgentInfo
-from hthor.eval.runner import redact
+from hthor.eval.runner.fault_report import redact
 from hthor.guest import File
 from hthor.humans.population.parameters import Parameters
 
@@ -95,7 +95,7 @@ def check_trial(notes: ProbeResult, agent: str) -> list[Finding]:
 
 def _broken(name: str, fault: Fault, agent: str, step: int) -> Finding:
     when = f"step {step}, after {fault.tick * rules.TICK_S:.1f} s" if name == "acts" else "in begin"
-    detail = redact.redact(fault.detail.strip(), [agent])
+    detail = redact(fault.detail.strip(), [agent])
     return Finding(
         check=name, status="broken", told=f"{fault.kind}, {when}\n{detail}", advice=_ADVICE.get(fault.kind, "")
     )

@@ -16,7 +16,7 @@ from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.records import trial_record
 from hthor.eval.runner import trial_runner
-from hthor.eval.runner.agent_recorder import RecordedAgent
+from hthor.eval.runner.fault_report import RecordedAgent
 from hthor.guest import Guest
 from hthor.guest.process_tools import resource_usage
 from hthor.tasks.suite import make_suite

@@ -10,9 +10,9 @@ from pathlib import Path
 from msgspec import Struct
 
 from hthor.errors import HthorError
-from hthor.eval.config import run_config
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records import trial_log
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import result_file
 
@@ -78,7 +78,7 @@ def _seen(run: Path, root: Path) -> RunSummary:
     where = str(run.relative_to(root)) if run != root else str(run)
     when = _when(run)
     try:
-        plan = run_config.load_config(run)
+        plan = RunFolder(run).config
         done, met, faults = _tally(run, plan)
     except (HthorError, OSError, ValueError, RecursionError) as error:
         return RunSummary(folder=where, when=when, problem=" ".join(str(error).split()))

@@ -9,9 +9,9 @@ from pathlib import Path
 from msgspec import Struct
 
 from hthor import rules
-from hthor.eval.config import cli_command, run_config
+from hthor.eval.config import cli_command
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.records import reader
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, result_file
 from hthor.eval.results.result_file import RunResult
@@ -78,8 +78,9 @@ def view_run(folder: Path, wanted: TrialFilter) -> tuple[RunView, RunResult | No
     Raises:
         RunError: when the folder holds no run, or the run cannot be read.
     """
-    plan = run_config.load_config(folder)
-    _, records = reader.digest(folder, plan)
+    run = RunFolder(folder)
+    plan = run.config
+    _, records = run.digest()
     total = plan.shard.trials if plan.shard else plan.trials
     whole = len(records) >= total
     stored = None if result_file.is_outdated(folder / "result.json") else result_file.load_result(folder)

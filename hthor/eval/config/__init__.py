@@ -1,1 +1,1 @@
-"""What a run is of: its configuration, robots, people, tasks and sessions."""
+"""The configuration of a run: `run_config` is the whole of it; beside it robots, humans, tasks and sessions."""

@@ -1,4 +1,4 @@
-"""The command that plays a run, or the rest of it, as a person would type it."""
+"""The command that runs or resumes a run, as a user would type it."""
 
 from __future__ import annotations
 
@@ -16,83 +16,83 @@ from hthor.guest import Manifest
 from hthor.types import AgentRef, RobotSeat, cameras
 from hthor.types.detector_specs import OWN
 
-BUILT_IN_AGENTS = "hthor.agents."
-"""Where built-in agents come from."""
+BUILT_IN_AGENTS = f"{plugins.package('agent')}."
+"""How the source of a built-in agent begins."""
 
 
-def resume_command(folder: Path, plan: RunConfig, out: Path | None = None) -> str:
+def resume_command(folder: Path, config: RunConfig, out: Path | None = None) -> str:
     """The command that finishes a run, or a shard of one, as a shell takes it.
 
     Args:
-        out: the folder that it names, when that is not the run's own.
+        out: the folder that the command names, when it is not the run's own.
     """
     out = out or folder
-    words = ["hthor", "eval", *_robot_options(plan.robots), "--humans", plan.humans.source]
-    if plan.kind is not None and plan.kind.sha256:
-        words += ["--kind", f"{plan.kind.name}.py"]
-        words += [] if (folder / "suite.json").exists() else ["--suite", plan.suite.name]
+    words = ["hthor", "eval", *_robot_options(config.robots), "--humans", config.humans.source]
+    if config.kind is not None and config.kind.sha256:
+        words += ["--kind", f"{config.kind.name}.py"]
+        words += [] if (folder / "suite.json").exists() else ["--suite", config.suite.name]
     else:
-        words += ["--suite", plan.suite.name, *(("--kind", plan.kind.name) if plan.kind else ())]
-    words += [] if plan.assets.name == PROCEDURAL else ["--assets", plan.assets.name]
-    detector = next((robot.detector for robot in plan.seats), OWN)
+        words += ["--suite", config.suite.name, *(("--kind", config.kind.name) if config.kind else ())]
+    words += [] if config.assets.name == PROCEDURAL else ["--assets", config.assets.name]
+    detector = next((robot.detector for robot in config.seats), OWN)
     words += [] if detector == OWN else ["--detector", detector]
-    words += _camera_options(plan)
-    words += ["--name", plan.title] if plan.title else []
-    words += ["--realtime"] if plan.realtime else []
-    words += [word for name in plan.houses or () for word in ("--house", name)]
-    words += ["--difficulty", plan.difficulty] if plan.difficulty else []
-    words += ["--limit", str(plan.limit)] if plan.limit else []
-    words += ["--step-limit", f"{plan.step_limit_s:g}"] if plan.step_limit_s else []
-    for one in plan.agents[:1]:  # all agents of a command are given the same
+    words += _camera_options(config)
+    words += ["--name", config.title] if config.title else []
+    words += ["--realtime"] if config.realtime else []
+    words += [word for name in config.houses or () for word in ("--house", name)]
+    words += ["--difficulty", config.difficulty] if config.difficulty else []
+    words += ["--limit", str(config.limit)] if config.limit else []
+    words += ["--step-limit", f"{config.step_limit_s:g}"] if config.step_limit_s else []
+    for one in config.agents[:1]:  # all agents of a command get the same arguments and files
         words += [word for key, value in one.args.items() for word in ("--agent-args", f"{key}={value}")]
         beyond = dict.fromkeys(file.path.split("/")[1] for file in one.files if file.path.startswith("../"))
         words += [word for name in beyond if name not in _listed_files(one) for word in ("--readable", name)]
-    words += ["--seed", str(plan.seed), "--participants", str(plan.participants)]
-    words += ["--shard", plan.shard.words] if plan.shard else []
-    return shlex.join([*words, "--out", str(whole_folder(out) if plan.shard else out)])
+    words += ["--seed", str(config.seed), "--participants", str(config.participants)]
+    words += ["--shard", config.shard.words] if config.shard else []
+    return shlex.join([*words, "--out", str(whole_folder(out) if config.shard else out)])
 
 
 def _listed_files(agent: Manifest) -> set[str]:
-    """What lies outside an agent's folder and needs no option of its own: arguments, and the words of a command."""
+    """Files outside an agent's folder that need no option: arguments, and the words of a command."""
     words = shlex.split(agent.source[len("cmd:") :]) if agent.source.startswith("cmd:") else []
     return {*(value.removeprefix("../") for value in agent.args.values()), *words}
 
 
-def _camera_options(plan: RunConfig) -> list[str]:
+def _camera_options(config: RunConfig) -> list[str]:
     """The options that name the robots' camera."""
-    named = next((robot.camera for robot in plan.seats if robot.camera), cameras.OWN)
-    name, _, size = named.partition(":")
+    camera = next((robot.camera for robot in config.seats if robot.camera), cameras.OWN)
+    name, _, size = camera.partition(":")
     words = [] if name == cameras.OWN else ["--camera", name]
     return [*words, "--camera-size", size] if size else words
 
 
 def relative_path(path: Path) -> Path:
-    """A folder as it can be typed from here: below the current folder without that, elsewhere as it was given."""
+    """A folder as it can be typed here: relative when it is below the current folder, otherwise unchanged."""
     here = Path.cwd()
     return path.relative_to(here) if path.is_absolute() and path.is_relative_to(here) else path
 
 
-def baseline_command(plan: RunConfig) -> str:
-    """The command that plays the same people at the same tasks without a robot."""
-    nobody = RobotSeat(
+def baseline_command(config: RunConfig) -> str:
+    """The command that runs the same people at the same tasks without a robot."""
+    absent = RobotSeat(
         seat="", robot="", agent=AgentRef(name=NO_ROBOT_AGENT, source=f"{BUILT_IN_AGENTS}{NO_ROBOT_AGENT}", sha256="")
     )
-    return resume_command(Path(), msgspec.structs.replace(plan, robots=(nobody,), realtime=msgspec.UNSET)).removesuffix(
-        " --out ."
-    )
+    return resume_command(
+        Path(), msgspec.structs.replace(config, robots=(absent,), realtime=msgspec.UNSET)
+    ).removesuffix(" --out .")
 
 
 def _robot_options(robots: Sequence[RobotSeat]) -> list[str]:
     """The options that name these robots."""
-    minds = [
+    agents = [
         robot.agent.name if robot.agent.source.startswith(BUILT_IN_AGENTS) else robot.agent.source for robot in robots
     ]
-    bodies = [
+    names = [
         robot.robot if not robot.robot or plugins.is_built_in("robot", robot.robot) else f"{robot.robot}.py"
         for robot in robots
     ]
     if len(robots) == 1:
-        return ["--agent", minds[0], *(("--robot", bodies[0]) if bodies[0] else ())]
-    # a mind that wants no robot may have been asked for with any body
-    pairs = (f"{body or 'scout'}:{mind}" for body, mind in zip(bodies, minds, strict=True))
+        return ["--agent", agents[0], *(("--robot", names[0]) if names[0] else ())]
+    # an agent that needs no robot may have been asked for with any robot
+    pairs = (f"{name or 'scout'}:{agent}" for name, agent in zip(names, agents, strict=True))
     return ["--robots", ",".join(pairs)]

@@ -1,4 +1,4 @@
-"""Several peoples for one evaluation, and where each is known to fit."""
+"""The human populations of an evaluation, and whether each is used where it was calibrated."""
 
 from __future__ import annotations
 
@@ -18,21 +18,23 @@ from hthor.tasks import Suite
 from hthor.types import RobotSpec
 
 KINDS, BRACKET = "kinds", "bracket"
-"""Words for several peoples: the population and every kind of people; the population between two extremes."""
+"""Words for several populations: the default and every kind of people; the default between the two extremes."""
 WORDS = (KINDS, BRACKET)
 EXTREMES = ("greedy", "random")
-"""Human models that no person is beyond: takes every offer, takes none."""
+"""Human models that bound real people: one accepts every message, one accepts none."""
 
 
 class HumanModelRef(Struct, frozen=True, kw_only=True):
-    """Who the people of a run are.
+    """The human participants of a run.
 
     Attributes:
-        name: what to call them; ``source`` what they were asked for by, paths cut to the file's name.
-        model: the human model; ``kind``: what is changed in the population, empty for nothing.
-        population: whom they are drawn from; ``population_sha256`` its hash. Empty where it is a log that makes them.
-        sha256: hash of all that makes these people, the population included.
-        valid: whether that population is used where it was calibrated; ``notes`` say what is different.
+        name: what to call them.
+        source: how the user asked for them, with paths cut to the file's name.
+        model: the human model.
+        kind: the kind of people that the population was changed into, empty for the population itself.
+        population: what participants are drawn from, empty where they replay a log; ``population_sha256`` is its hash.
+        sha256: hash of all of this, the population included.
+        valid: whether the population is used where it was calibrated; ``notes`` say what differs.
     """
 
     name: str
@@ -47,35 +49,35 @@ class HumanModelRef(Struct, frozen=True, kw_only=True):
 
 
 def find_populations(words: Sequence[str]) -> list[ParticipantSource]:
-    """The peoples that the words of ``--humans`` stand for, each once.
+    """The populations that the words of ``--humans`` stand for, each once.
 
     Raises:
         UnknownName: when a word stands for none.
-        PeopleError: when a file of people cannot be used.
-        HthorError: when two different peoples are called the same.
+        PopulationError: when a population's file cannot be used.
+        HthorError: when two different populations have the same name.
     """
-    found: dict[str, ParticipantSource] = {}
+    populations: dict[str, ParticipantSource] = {}
     for word in dict.fromkeys(word for several in words for word in _expand_word(several)):
-        one = _find(word)
-        if one.sha256 in {other.sha256 for other in found.values()}:
+        population = _find(word)
+        if population.sha256 in {other.sha256 for other in populations.values()}:
             continue
-        if one.name in found:
-            raise HthorError(f"two different peoples are called '{one.name}'. Rename one of the files.")
-        found[one.name] = one
-    return list(found.values())
+        if population.name in populations:
+            raise HthorError(f"two different populations are called '{population.name}'. Rename one of the files.")
+        populations[population.name] = population
+    return list(populations.values())
 
 
-def robot_settings(body: str | RobotInfo, detector: str) -> dict[str, str | float]:
-    """What of a robot bears on how people fare beside it, as a population's file keeps it.
+def robot_settings(robot: str | RobotInfo, detector: str) -> dict[str, str | float]:
+    """The settings of a robot that affect human performance, as a population's file stores them.
 
     Args:
-        body: the robot's name, or a user's own body.
+        robot: the robot's name, or a user's own robot.
         detector: as `hthor.types.detector_specs.canonical_name` spells it.
     """
-    shape = RobotInfo(name=body) if isinstance(body, str) else body
-    spec: RobotSpec = plugins.load("robot", shape.path or shape.name)
+    info = RobotInfo(name=robot) if isinstance(robot, str) else robot
+    spec: RobotSpec = plugins.load("robot", info.path or info.name)
     return {
-        "robot": shape.name,
+        "robot": info.name,
         "speed_m_s": spec.speed,
         "turn_rate_rad_s": spec.turn_rate,
         "sight_m": spec.sight_range,
@@ -83,18 +85,18 @@ def robot_settings(body: str | RobotInfo, detector: str) -> dict[str, str | floa
     }
 
 
-def human_model_ref(found: ParticipantSource, suite: Suite, crew: RobotTeam) -> HumanModelRef:
-    """Who they are, and whether they are known to fit this suite, this world and these robots."""
-    drawn = not found.source
-    notes = tuple(_differences(found, suite, crew)) if drawn else ()
+def human_model_ref(population: ParticipantSource, suite: Suite, team: RobotTeam) -> HumanModelRef:
+    """The population as `run.json` has it, with whether it was calibrated for this suite, world and robots."""
+    drawn = not population.source
+    notes = tuple(_differences(population, suite, team)) if drawn else ()
     return HumanModelRef(
-        name=found.name,
-        source=re.sub(r"(^|[:@])[^:@]*/", r"\1", found.word),
-        model=Path(found.model).stem if found.model.endswith(".py") else found.model,
-        kind=found.kind.name if found.kind is not None else "",
-        population=population_file.population_name(found.population.name) if drawn else "",
-        population_sha256=found.population.sha256 if drawn else "",
-        sha256=found.sha256,
+        name=population.name,
+        source=re.sub(r"(^|[:@])[^:@]*/", r"\1", population.word),
+        model=Path(population.model).stem if population.model.endswith(".py") else population.model,
+        kind=population.kind.name if population.kind is not None else "",
+        population=population_file.population_name(population.population.name) if drawn else "",
+        population_sha256=population.population.sha256 if drawn else "",
+        sha256=population.sha256,
         valid=not notes,
         notes=notes,
     )
@@ -119,19 +121,20 @@ def _find(word: str) -> ParticipantSource:
         raise UnknownName("people", error.given, (*error.valid, *WORDS), error.hint) from None
 
 
-def _differences(found: ParticipantSource, suite: Suite, crew: RobotTeam) -> Iterator[str]:
-    """What is other than where the population was fitted, a sentence each."""
-    name, its = f"the population {population_file.population_name(found.population.name)}", found.population.validity
+def _differences(people: ParticipantSource, suite: Suite, team: RobotTeam) -> Iterator[str]:
+    """How this run differs from the conditions of the calibration, a sentence each."""
+    drawn_from = people.population
+    name, its = f"the population {population_file.population_name(drawn_from.name)}", drawn_from.validity
     if not its.suite_sha256:
         yield f"{name} was fitted to no data: every parameter is drawn from its prior"
     elif its.suite_sha256 != suite.sha256:
-        again = "other tasks" if suite.name == its.suite else f"those of the suite {suite.name}"
-        yield f"{name} was calibrated on the tasks of the suite {its.suite}, not on {again}"
+        others = "other tasks" if suite.name == its.suite else f"those of the suite {suite.name}"
+        yield f"{name} was calibrated on the tasks of the suite {its.suite}, not on {others}"
     yield from _versions(name, its)
-    if found.population.missing:
-        listed = ", ".join(found.population.missing)
+    if drawn_from.missing:
+        listed = ", ".join(drawn_from.missing)
         yield f"{name} was made before there was {listed}; defaults stand in"
-    yield from _robots(name, its.settings, crew)
+    yield from _robots(name, its.settings, team)
 
 
 def _versions(name: str, its: Validity) -> Iterator[str]:
@@ -143,16 +146,16 @@ def _versions(name: str, its: Validity) -> Iterator[str]:
         yield f"{name} was calibrated under other constants of the benchmark"
 
 
-def _robots(name: str, its: dict[str, str | float], crew: RobotTeam) -> Iterator[str]:
+def _robots(name: str, its: dict[str, str | float], team: RobotTeam) -> Iterator[str]:
     if not its:
         return
-    shapes = {shape.name: shape for shape, mind in crew.robots if not mind.absent}
-    for shape in shapes.values():
-        here = robot_settings(shape, crew.detector)
-        other = [key for key in here if key in its and its[key] != here[key]]
-        if other:
-            told = ", ".join(f"{key} {_short(its[key])}, not {_short(here[key])}" for key in other)
-            yield f"{name} was calibrated with another robot: {told}"
+    robots = {robot.name: robot for robot, agent in team.robots if not agent.absent}
+    for robot in robots.values():
+        here = robot_settings(robot, team.detector)
+        changed = [key for key in here if key in its and its[key] != here[key]]
+        if changed:
+            words = ", ".join(f"{key} {_short(its[key])}, not {_short(here[key])}" for key in changed)
+            yield f"{name} was calibrated with another robot: {words}"
 
 
 def _short(value: str | float) -> str:

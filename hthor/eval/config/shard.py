@@ -1,4 +1,4 @@
-"""Dividing a run among machines: which sessions are whose, and what the folder is called."""
+"""Dividing a run among machines: the sessions of each shard, and its folder."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from msgspec import Struct
 
 from hthor.errors import HthorError
 
-_Any = TypeVar("_Any")
+_T = TypeVar("_T")
 _ENDING = re.compile(r"-shard-\d+-of-\d+$")
 
 
@@ -24,15 +24,15 @@ class Shard(Struct, frozen=True, kw_only=True):
 
     @property
     def words(self) -> str:
-        """As the command line spells it."""
+        """As the command line has it, such as "3/16"."""
         return f"{self.number}/{self.of}"
 
-    def share(self, whole: Sequence[_Any]) -> tuple[_Any, ...]:
-        """What of the sessions is this shard's: every ``of``-th, so that all have their share of every house."""
+    def share(self, whole: Sequence[_T]) -> tuple[_T, ...]:
+        """This shard's part of the sessions: every ``of``-th, so that all shards have their share of every house."""
         return tuple(whole[self.number - 1 :: self.of])
 
     def folder(self, run: Path) -> Path:
-        """Where this shard of a run is written when the whole would be written to ``run``."""
+        """The folder of this shard when the whole run's would be ``run``."""
         return run.with_name(f"{run.name}-shard-{self.number}-of-{self.of}")
 
 
@@ -40,7 +40,7 @@ def parse_shard(text: str) -> Shard:
     """The shard that the user named, such as "3/16".
 
     Raises:
-        HthorError: when it cannot be read, or there is no such shard.
+        HthorError: when the text cannot be parsed, or there is no such shard.
     """
     number, slash, of = text.partition("/")
     if not (slash and number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
@@ -49,5 +49,5 @@ def parse_shard(text: str) -> Shard:
 
 
 def whole_folder(folder: Path) -> Path:
-    """The folder of the whole run that a shard's folder was named after."""
+    """The whole run's folder, after which a shard's folder was named."""
     return folder.with_name(_ENDING.sub("", folder.name))

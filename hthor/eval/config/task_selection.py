@@ -1,7 +1,8 @@
-"""What is played: the tasks that a suite and a kind stand for together."""
+"""The tasks of a run: those of a suite, or a part of it by task kind, house, difficulty or number."""
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -9,34 +10,41 @@ from typing import Any
 import msgspec
 from msgspec import Struct
 
-from hthor import houses, plugins, seeds, tasks
+from hthor import code_identity, houses, installation, jsonio, plugins, seeds, tasks
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.config import suite_check, task_subset
+from hthor.eval.config import task_subset
 from hthor.eval.config.run_config import KindRef
 from hthor.houses import HouseLibrary
 from hthor.tasks.kind import TaskKind
 from hthor.tasks.suite import Suite, make_suite
+from hthor.tasks.suites import library
+from hthor.tasks.validate import validate
 from hthor.types import TaskSpec
 
 _ROOT = seeds.derive(2, "programme")
-"""Of all draws of tasks for a user's own kind: the same file always gives the same tasks."""
+"""Seed of the tasks that are generated for a user's own kind: the same file always gives the same tasks."""
 _VERSION = 1
 
 
 class TaskSelection(Struct, frozen=True, kw_only=True):
     """The tasks of a run.
 
-    ``kind`` is what the suite was narrowed to, None for all of it; ``path`` the file of a user's own kind, and
-    ``drawn`` whether the tasks were made for this run; ``crew`` the robots' bodies that all the tasks' kinds agree on,
-    empty when they do not. ``houses`` and ``difficulty`` are what else the suite was narrowed to. ``limit`` is how many
-    of the tasks were chosen, None where all of them are there.
+    Attributes:
+        suite: the tasks, under the name of the suite that they are from.
+        kind: the task kind that the suite was narrowed to, None for all of them.
+        kind_path: the file of a user's own kind.
+        generated: the tasks were generated for this run.
+        robots: the robots that all task kinds are made for; empty when the kinds differ.
+        notes: what the user should be told.
+        limit: how many tasks were chosen, None for all.
+        houses: the houses, and ``difficulty`` the difficulty, that the suite was narrowed to.
     """
 
     suite: Suite
     kind: KindRef | None = None
-    path: str = ""
-    drawn: bool = False
-    crew: tuple[str, ...] = ()
+    kind_path: str = ""
+    generated: bool = False
+    robots: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     limit: int | None = None
     houses: tuple[str, ...] = ()
@@ -44,43 +52,65 @@ class TaskSelection(Struct, frozen=True, kw_only=True):
 
 
 def select_tasks(suite: str, kind: str) -> TaskSelection:
-    """The tasks that are meant.
+    """The tasks of a suite, or those of one task kind.
 
     Args:
-        suite: name or file of a suite, empty for the kind's own, or "smoke" without a kind.
-        kind: name or short name of a kind of task, or the path of a Python file that defines one; empty for all kinds.
+        suite: name or file of a suite; empty for the kind's own, or "smoke" without a kind.
+        kind: name or short name of a task kind, or the path of a Python file that defines one; empty for all kinds.
 
     Raises:
         UnknownName: when there is no such suite or kind.
-        HthorError: when the two do not fit together, or a user's kind does not work.
+        HthorError: when the suite has no task of the kind, or a user's kind does not work.
     """
     if kind.endswith(".py"):
         return _from_user_kind(kind, suite)
     if not kind:
-        return _whole_suite(suite_check.checked_suite(suite or "smoke"))
+        return _whole_suite(checked_suite(suite or "smoke"))
     known = find_kind(kind)
     if not suite and known.short not in tasks.suite_names():
         raise HthorError(f"there is no suite of tasks of the kind '{known.name}'; name one that has some with --suite.")
-    whole = suite_check.checked_suite(suite or known.short)
+    whole = checked_suite(suite or known.short)
     chosen = _only_kind(whole, known.name)
     if len(chosen.tasks) == len(whole.tasks):
         return _whole_suite(whole)
-    return TaskSelection(suite=chosen, kind=KindRef(name=known.name), crew=tuple(known.crew))
+    return TaskSelection(suite=chosen, kind=KindRef(name=known.name), robots=tuple(known.crew))
+
+
+def checked_suite(name_or_path: str) -> Suite:
+    """A suite by name, or from a file whose tasks fit their houses' floor plans and the catalogue.
+
+    A file is checked once: the user's cache remembers it by the hash of its tasks, its houses and hthor's code.
+
+    Raises:
+        UnknownName: when no suite has that name.
+        TaskError: as `hthor.tasks.suite`, or naming the tasks that cannot be run.
+    """
+    if name_or_path in tasks.suite_names() or not Path(name_or_path).exists():
+        return tasks.load_suite(name_or_path)
+    suite = library.read_suite(name_or_path)
+    own_houses = {name: hashlib.sha256(data).hexdigest() for name, data in library.house_files(name_or_path).items()}
+    content = jsonio.sha256([suite.sha256, own_houses, code_identity.makers_sha256()])
+    mark = installation.cache() / "sound" / content
+    if not mark.exists():
+        validate(suite, name_or_path)
+        jsonio.write(mark, b"")
+    return suite
 
 
 def narrow_selection(whole: TaskSelection, names: Sequence[str], difficulty: str) -> TaskSelection:
-    """The programme with only its tasks in these houses and of this difficulty; all of them where neither is given.
+    """The tasks in these houses and of this difficulty; all tasks where neither is given.
 
-    What a suite does not tell of the difficulty of its tasks is worked out.
+    The difficulty of a task is computed where the suite does not state it.
 
     Raises:
         UnknownName: when the suite has no task in a house.
         HthorError: when no task is left.
     """
-    suite, there = whole.suite, tuple(dict.fromkeys(task.house for task in whole.suite.tasks))
+    suite = whole.suite
+    suite_houses = tuple(dict.fromkeys(task.house for task in suite.tasks))
     for name in names:
-        if name not in there:
-            raise UnknownName(f"house of the suite '{suite.name}'", name, there)
+        if name not in suite_houses:
+            raise UnknownName(f"house of the suite '{suite.name}'", name, suite_houses)
     chosen = tuple(
         task
         for task in suite.tasks
@@ -95,12 +125,12 @@ def narrow_selection(whole: TaskSelection, names: Sequence[str], difficulty: str
         return whole
     words = [f"in {', '.join(dict.fromkeys(names))}"] if names else []
     words += [f"of difficulty {difficulty}"] if difficulty else []
-    few = f"{len(chosen)} of the {len(suite.tasks)} tasks of '{suite.name}', those {' and '.join(words)}"
-    note = f"{few}, are played: no result for the leaderboard."
+    part = f"{len(chosen)} of the {len(suite.tasks)} tasks of '{suite.name}', those {' and '.join(words)}"
+    note = f"{part}, are played: no result for the leaderboard."
     return msgspec.structs.replace(
         whole,
         suite=suite.with_tasks(chosen),
-        houses=tuple(name for name in there if name in names),
+        houses=tuple(name for name in suite_houses if name in names),
         difficulty=difficulty,
         notes=(*whole.notes, note),
     )
@@ -115,10 +145,10 @@ def _has_difficulty(task: TaskSpec, houses: HouseLibrary, difficulty: str) -> bo
 
 
 def limit_selection(whole: TaskSelection, limit: int | None) -> TaskSelection:
-    """The programme with only so many of its tasks, chosen by `hthor.eval.config.task_subset`; all of them for None.
+    """A representative subset of ``limit`` tasks; all tasks for None.
 
     Raises:
-        HthorError: when there are not so many.
+        HthorError: when there are fewer tasks than that.
     """
     if limit is None or limit == len(whole.suite.tasks):
         return whole
@@ -131,10 +161,10 @@ def limit_selection(whole: TaskSelection, limit: int | None) -> TaskSelection:
 
 
 def find_kind(name: str) -> TaskKind:
-    """A kind of task by its name or its short name.
+    """A task kind by its name or its short name.
 
     Raises:
-        UnknownName: when none is called so.
+        UnknownName: when there is none of that name.
     """
     names = plugins.names("task kind")
     kinds: dict[str, TaskKind] = {known: plugins.load("task kind", known) for known in names}
@@ -146,22 +176,22 @@ def find_kind(name: str) -> TaskKind:
 
 
 def _whole_suite(suite: Suite) -> TaskSelection:
-    crews = {tuple(plugins.load("task kind", name).crew) for name in sorted({task.kind for task in suite.tasks})}
-    return TaskSelection(suite=suite, crew=crews.pop() if len(crews) == 1 else ())
+    robots = {tuple(plugins.load("task kind", name).crew) for name in sorted({task.kind for task in suite.tasks})}
+    return TaskSelection(suite=suite, robots=robots.pop() if len(robots) == 1 else ())
 
 
 def _from_user_kind(path: str, suite: str) -> TaskSelection:
-    """The tasks of a user's kind: those of a suite, or one in each of the houses that come with hthor."""
+    """The tasks of a user's kind: those of a suite, or one in each of the houses that ship with hthor."""
     kind = _load_user_kind(path)
-    found, missing = (
-        (_only_kind(suite_check.checked_suite(suite), kind.name), ()) if suite else _generated_tasks(kind, path)
+    tasks_of_kind, missing = (
+        (_only_kind(checked_suite(suite), kind.name), ()) if suite else _generated_tasks(kind, path)
     )
     return TaskSelection(
-        suite=found,
+        suite=tasks_of_kind,
         kind=KindRef(name=kind.name, sha256=plugins.sha256(path)),
-        path=str(Path(path).resolve()),
-        drawn=not suite,
-        crew=tuple(kind.crew),
+        kind_path=str(Path(path).resolve()),
+        generated=not suite,
+        robots=tuple(kind.crew),
         notes=missing,
     )
 
@@ -170,24 +200,24 @@ def _only_kind(whole: Suite, kind: str) -> Suite:
     """The suite's tasks of one kind, under the suite's own name."""
     chosen = tuple(task for task in whole.tasks if task.kind == kind)
     if not chosen:
-        there = ", ".join(sorted({task.kind for task in whole.tasks}))
-        raise HthorError(f"the suite '{whole.name}' has no task of the kind '{kind}'; it has: {there}.")
+        kinds = ", ".join(sorted({task.kind for task in whole.tasks}))
+        raise HthorError(f"the suite '{whole.name}' has no task of the kind '{kind}'; it has: {kinds}.")
     return whole.with_tasks(chosen)
 
 
 def _generated_tasks(kind: TaskKind, path: str) -> tuple[Suite, tuple[str, ...]]:
-    """A task in each house that has what it takes, and why the others have none."""
+    """A task in each house that is fit for the kind, and for the other houses why they have none."""
     from hthor.tasks.generation import generate
 
-    made, missing = [], []
+    generated, missing = [], []
     for name in houses.names():
         try:
-            made.append(generate.make_task(houses.load(name), kind, None, _ROOT, name=f"{kind.short}/{name}"))
+            generated.append(generate.make_task(houses.load(name), kind, None, _ROOT, name=f"{kind.short}/{name}"))
         except HthorError as error:
             missing.append(f"there is no task in {name}: {error}")
-    if not made:
+    if not generated:
         raise HthorError(f"{path}: {missing[0]}")
-    return make_suite(kind.short, _VERSION, tuple(made)), tuple(missing)
+    return make_suite(kind.short, _VERSION, tuple(generated)), tuple(missing)
 
 
 def _load_user_kind(path: str) -> TaskKind:

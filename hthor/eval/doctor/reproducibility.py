@@ -15,7 +15,7 @@ from msgspec import Struct
 
 from hthor import jsonio
 from hthor.eval.doctor.check_result import CheckResult
-from hthor.eval.records import platform_fingerprint
+from hthor.eval.records import platform
 
 REFERENCE = Path(__file__).with_name("reference.json")
 _SUITE, _AGENT, _PEOPLE, _SEED = "smoke", "frontier", "proxy", 0
@@ -40,7 +40,7 @@ def run_reference_trial() -> TrialFingerprint:
     from hthor.eval.runner import trial_runner
 
     first = sessions.make_sessions(tasks.load_suite(_SUITE), agent=_AGENT, human=_PEOPLE, seed=_SEED)[0]
-    done = next(iter(trial_runner.make_runner()(msgspec.structs.replace(first, trials=first.trials[:1]))))
+    done = next(iter(trial_runner.make_runner()(msgspec.structs.replace(first, trials=first.trials[:1])))).record
     course = msgspec.json.decode(trial_record.encode(done))
     for name in (*_NAMES, "check"):
         del course[name]
@@ -48,7 +48,7 @@ def run_reference_trial() -> TrialFingerprint:
         trial=done.spec.task.id,
         sha256=jsonio.sha256(course),
         outcome={"met": done.met, "ticks": done.ticks, "trust": done.trust, "events": len(done.events)},
-        platform=platform_fingerprint.this_platform(),
+        platform=platform.this_platform(),
     )
 
 
@@ -68,7 +68,7 @@ def check_reproducibility(here: TrialFingerprint | str) -> list[CheckResult]:
     there = load_reference()
     if here.sha256 == there.sha256:
         return [CheckResult(name=name, says=f"{here.trial} goes as in the reference, byte for byte")]
-    other = platform_fingerprint.platform_differences(there.platform, here.platform)
+    other = platform.platform_differences(there.platform, here.platform)
     same = here.outcome == there.outcome and here.trial == there.trial
     if not other:
         says = f"on the very platform of the reference {here.trial} goes otherwise, outcome {_verdict(same)}"

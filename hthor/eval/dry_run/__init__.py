@@ -1,1 +1,1 @@
-"""What a run would do and how long it would take, without playing it."""
+"""`hthor eval --dry-run`: what a command would do and how long it would take."""

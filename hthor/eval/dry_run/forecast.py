@@ -1,4 +1,4 @@
-"""What a command would do, found out without doing it: runs, how far each is, and a time; writes nothing."""
+"""What a command would do, found out without doing it: its runs, how far each is, and how long they would take."""
 
 from __future__ import annotations
 
@@ -9,19 +9,25 @@ from typing import Any
 
 from msgspec import Struct
 
+from hthor import rules
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.dry_run import trial_cost
 from hthor.eval.records import trial_log
-from hthor.eval.runner.run_options import ResolvedRuns, RunJob, RunOptions
+from hthor.eval.runner.run_job import ScheduledRun
+from hthor.eval.runner.run_options import ResolvedRuns, RunOptions
 from hthor.guest import Isolation
 
 SCHEMA = "hthor.dry-run/2"
 
 
 class RunForecast(Struct, frozen=True, kw_only=True):
-    """A run that would be played: ``played`` of its ``trials`` are there already; ``seconds`` for the rest of them.
+    """A run that would be run.
 
-    ``pace`` is what a trial takes, and how that is known; ``seconds`` is None where nothing tells.
+    Attributes:
+        played: how many of its ``trials`` are there already.
+        control: whether nobody asked for it: it would be another run's baseline.
+        seconds: how long the others would take; None where that is unknown.
+        pace: what a trial takes, and how that is known.
     """
 
     name: str
@@ -35,7 +41,7 @@ class RunForecast(Struct, frozen=True, kw_only=True):
 
 
 class Setting(Struct, frozen=True, kw_only=True):
-    """An option's value as it would be used, and whether a flag, an environment variable or a default gave it."""
+    """An option's value as it would be used, and its origin: a flag, an environment variable or the default."""
 
     name: str
     value: Any
@@ -43,7 +49,7 @@ class Setting(Struct, frozen=True, kw_only=True):
 
 
 class Forecast(Struct, frozen=True, kw_only=True):
-    """All that would be done, and on which level agents of the user's own would be held."""
+    """All that would be done, and how submitted agents would be isolated."""
 
     schema: str = SCHEMA
     settings: tuple[Setting, ...]
@@ -55,72 +61,74 @@ class Forecast(Struct, frozen=True, kw_only=True):
 
 
 def make_forecast(
-    options: RunOptions, intent: ResolvedRuns, origins: Mapping[str, str], say: Callable[[str], None] | None = None
+    options: RunOptions, resolved: ResolvedRuns, origins: Mapping[str, str], say: Callable[[str], None] | None = None
 ) -> Forecast:
-    """Look ahead.
+    """Forecast what some options would do.
 
     Args:
-        intent: what the options stand for. origins: where each option's value is from, by its name.
-        say: is told what is tried out. Where it is given, a few trials are played for runs like which none was played
-            before, to see what one takes; they are kept nowhere.
+        resolved: what the options stand for.
+        origins: the origin of each option's value, by the option's name.
+        say: prints a line. If given, a few trials are run for robots without a finished run, to measure what one
+            takes; they are not kept.
     """
     workers = options.jobs or len(os.sched_getaffinity(0))
-    sampler = trial_cost.CostSampler(options, intent, say) if say is not None else None
-    worlds = len({(one.house, tuple((it.id, it.kind) for it in one.objects)) for one in intent.chosen.suite.tasks})
+    sampler = trial_cost.CostSampler(options, say) if say is not None else None
+    worlds = len({(one.house, tuple((it.id, it.kind) for it in one.objects)) for one in resolved.tasks.suite.tasks})
     runs = [
-        *(_run_forecast(part, workers, worlds, sampler, control=True) for part in intent.controls),
-        *(_run_forecast(part, workers, worlds, sampler, control=False) for part in intent.parts),
+        *(_run_forecast(run, workers, worlds, sampler, control=True) for run in resolved.baselines),
+        *(_run_forecast(run, workers, worlds, sampler, control=False) for run in resolved.runs),
     ]
-    left = [one.seconds for one in runs]
+    seconds = [run.seconds for run in runs]
     return Forecast(
-        settings=tuple(_settings(options, intent, workers, origins)),
-        isolation=intent.held,
+        settings=tuple(_settings(options, resolved, workers, origins)),
+        isolation=resolved.isolation,
         runs=tuple(runs),
-        trials=sum(one.trials for one in runs),
-        played=sum(one.played for one in runs),
-        seconds=None if None in left else round(sum(filter(None, left)), 1),
+        trials=sum(run.trials for run in runs),
+        played=sum(run.played for run in runs),
+        seconds=None if None in seconds else round(sum(filter(None, seconds)), 1),
     )
 
 
 def _run_forecast(
-    part: RunJob, workers: int, houses: int, sampler: trial_cost.CostSampler | None, *, control: bool
+    run: ScheduledRun, workers: int, houses: int, sampler: trial_cost.CostSampler | None, *, control: bool
 ) -> RunForecast:
-    plan = part.plan
-    trials = plan.shard.trials if plan.shard else plan.trials
-    played = len({record.key for _, record in trial_log.read(part.folder / "trials.jsonl")})
+    trials = run.config.expected_trials
+    played = len({record.key for _, record in trial_log.read(run.folder.log_file)})
     left = trials - played
-    known = trial_cost.measured_cost(part)
-    if known is None and left and sampler is not None:
-        known = sampler.play(part)
-    busy = max(1, min(workers, math.ceil(left / 10)))  # a session's ten trials are played by one worker
-    seconds = 0.0 if not left else None if known is None else known.seconds(left, workers=busy, houses=houses)
+    cost = trial_cost.measured_cost(run)
+    if cost is None and left and sampler is not None:
+        cost = sampler.measure(run)
+    busy = max(1, min(workers, math.ceil(left / rules.SESSION_TASKS)))  # one worker runs all trials of a session
+    seconds = 0.0 if not left else None if cost is None else cost.seconds(left, workers=busy, houses=houses)
     return RunForecast(
-        name=part.title,
-        folder=str(part.folder),
+        name=run.title,
+        folder=str(run.folder),
         trials=trials,
         played=played,
         control=control,
         seconds=seconds,
-        pace=known,
-        plan=plan,
+        pace=cost,
+        plan=run.config,
     )
 
 
-def _settings(options: RunOptions, intent: ResolvedRuns, workers: int, origins: Mapping[str, str]) -> Iterator[Setting]:
+def _settings(
+    options: RunOptions, resolved: ResolvedRuns, workers: int, origins: Mapping[str, str]
+) -> Iterator[Setting]:
     """Every option with what its default stands for."""
-    plans = [part.plan for part in intent.parts]
-    first = plans[0]
-    resolved: dict[str, Any] = {
-        "agent": sorted({robot.agent.name for plan in plans for robot in plan.robots}),
-        "humans": list(dict.fromkeys(plan.humans.name for plan in plans)),
+    configs = [run.config for run in resolved.runs]
+    first = configs[0]
+    values: dict[str, Any] = {
+        "agent": sorted({robot.agent.name for config in configs for robot in config.robots}),
+        "humans": list(dict.fromkeys(config.humans.name for config in configs)),
         "suite": first.suite.name,
         "kind": first.kind.name if first.kind else "all of the suite",
         "robot": [robot.robot for robot in first.seats],
         "assets": first.assets.name,
         "participants": first.participants,
         "jobs": workers,
-        "out": [str(part.folder) for part in intent.parts],
+        "out": [str(run.folder) for run in resolved.runs],
     }
     for name, origin in origins.items():
-        value = resolved.get(name, getattr(options, name, None))
+        value = values.get(name, getattr(options, name, None))
         yield Setting(name=name, value=value, origin=origin)

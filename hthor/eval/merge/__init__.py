@@ -1,1 +1,1 @@
-"""Joining the shards of one run."""
+"""`hthor merge`: joining the shards of one run."""

@@ -1,4 +1,4 @@
-"""Joining the shards of a run: each record once, and what is missing."""
+"""Joining the shards of a run in one folder: each record once, and what is still missing."""
 
 from __future__ import annotations
 
@@ -13,22 +13,26 @@ from hthor.errors import RunError
 from hthor.eval.config import cli_command, run_config
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.shard import Shard, whole_folder
-from hthor.eval.records import opened_files, platform, reader, run_isolation, session_restarts, trial_log, trial_record
-from hthor.eval.records.trial_log import Place, TrialLog
+from hthor.eval.records import opened_files, platform, run_isolation, session_restarts, trial_log, trial_record
+from hthor.eval.records.run_folder import RunFolder
+from hthor.eval.records.trial_log import Place
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, baseline, result_file
 from hthor.eval.results.result_file import Effort, RunResult
-from hthor.eval.runner.run import EFFORT
 from hthor.guest import Isolation
 
 _CARRIED = ("suite.json", "houses/*.json", "faults/*.json")
-"""What else a run's folder may hold that others need to read it."""
+"""Other files of a run's folder that are copied, as its readers need them."""
+_Trial = tuple[int, int]
+"""A participant, and the place of the trial in their session."""
+_Line = tuple[Place, str, int]
+"""Where a trial's line is, the trial's key, and the line's checksum."""
 
 
 class MissingTrials(Struct, frozen=True, kw_only=True):
-    """What a run lacks of one shard, and the command that plays it. ``trials`` is None when all of it is missing.
+    """What is missing of one shard, and the command that runs it. ``trials`` is None when all of it is missing.
 
-    Shards of several divisions have one gap, of the whole run, as if it were shard 1 of 1.
+    Where shards of different divisions are merged, the whole run counts as shard 1 of 1.
     """
 
     number: int
@@ -38,7 +42,7 @@ class MissingTrials(Struct, frozen=True, kw_only=True):
 
 
 class MergeResult(Struct, frozen=True, kw_only=True):
-    """What became of a merge: trials that were there before and new ones; the result when nothing is missing."""
+    """What a merge did: how many trials there are now, how many of them are new; the result when none is missing."""
 
     folder: str
     plan: RunConfig
@@ -49,183 +53,200 @@ class MergeResult(Struct, frozen=True, kw_only=True):
 
 
 class _ShardLog(Struct, frozen=True, kw_only=True):
-    """A shard's folder, its configuration, and where its records lie, by person and trial.
+    """A shard's folder and its lines; ``opened`` has the records of trials in which agents opened further files."""
 
-    ``opened`` are the records, without what is long in them, that tell of files which agents opened only then.
-    """
-
-    folder: Path
-    plan: RunConfig
+    folder: RunFolder
     shard: Shard
-    records: dict[tuple[int, int], tuple[Place, str, int]]
+    lines: dict[_Trial, _Line]
     opened: tuple[TrialRecord, ...] = ()
+
+    @property
+    def config(self) -> RunConfig:
+        return self.folder.config
 
 
 def merge_shards(folders: Sequence[Path], out: Path, *, dry: bool = False) -> MergeResult:
-    """Join shards, all of them or those that there are so far, in a folder that is then like an undivided run's.
+    """Join shards, all or some of them, in a folder that is then like an undivided run's.
 
-    They may overlap, and be of several divisions: thirds with a half. Records lie there in the order of people and
-    their trials. What is there already stays; merging again adds.
+    Shards may overlap, and be of different divisions, such as thirds with a half. Records are written in the order of
+    participants and their trials. Trials that ``out`` has already stay, so merging again adds what is new.
+
+    Args:
+        dry: only count; nothing is written.
 
     Raises:
-        RunError: when a folder is no shard, they are not of one run, or a record is damaged or there twice and unlike.
-        RunLocked: when ``out`` is being written.
+        RunError: when a folder is no shard, the shards belong to different runs, a record is damaged, or a trial is
+            there twice with different records.
+        RunLocked: when another process writes ``out``.
     """
-    folders = list({folder.resolve(): folder for folder in folders}.values())  # each costs what it did but once
-    parts = [_examine(folder) for folder in folders]
-    first = parts[0]
-    for part in parts[1:]:
-        _same_run(first, part)
-    plan, found = first.plan.whole, _join(parts)
-    opened_files.complete_manifests(plan, [one for part in parts for one in part.opened])
-    run_config.check_folder(out, plan)
-    if dry:  # only count; what is missing is named by the merge itself
-        there = {one.key for _, one in trial_log.read(out / "trials.jsonl")}
-        more = {key for _, key, _ in found.values()} - there
-        return MergeResult(
-            folder=str(out), plan=plan, trials=len(there) + len(more), new=len(more), gaps=(), result=None
-        )
-    new = 0
-    with TrialLog(out) as book:
-        run_config.write_config(out, plan)
-        for name, data in _other_files(folders).items():
-            jsonio.write(out / name, data)
-        wanted = [found[place] for place in sorted(found)]
-        for (_, key, _), line in zip(wanted, trial_log.fetch(place for place, _, _ in wanted), strict=True):
-            new += book.append(key, line)
-            if not book.agrees(key, line):
-                raise RunError(
-                    f"{out}: trial {key} is there already, and is not as in the shards. Choose another --out."
-                )
-        trials = len(book)
-    result = _score(out, plan, [part.folder for part in parts]) if trials == plan.trials else None
-    gaps = () if result else _gaps(parts, out, plan.trials - trials)
-    return MergeResult(folder=str(out), plan=plan, trials=trials, new=new, gaps=gaps, result=result)
+    folders = list({folder.resolve(): folder for folder in folders}.values())  # each counts once
+    shards = [_read_shard(RunFolder(folder)) for folder in folders]
+    for other in shards[1:]:
+        _check_same_run(shards[0], other)
+    config, lines = shards[0].config.whole, _join(shards)
+    opened_files.complete_manifests(config, [record for shard in shards for record in shard.opened])
+    whole = RunFolder(out)
+    whole.check_free(config)
+    if dry:
+        known = {record.key for _, record in trial_log.read(whole.log_file)}
+        new_keys = {key for _, key, _ in lines.values()} - known
+        count = len(known) + len(new_keys)
+        return MergeResult(folder=str(out), plan=config, trials=count, new=len(new_keys), gaps=(), result=None)
+    trials, new = _write(whole, config, shards, lines)
+    result = _score(whole, [shard.folder for shard in shards]) if trials == config.trials else None
+    gaps = () if result else _gaps(shards, out, config.trials - trials)
+    return MergeResult(folder=str(out), plan=config, trials=trials, new=new, gaps=gaps, result=result)
 
 
-def _examine(folder: Path) -> _ShardLog:
-    plan = run_config.load_config(folder)
-    if not plan.shard:
+def _read_shard(folder: RunFolder) -> _ShardLog:
+    config = folder.config
+    if not config.shard:
         raise RunError(
             f"{folder} holds a run that is not divided: run.json has no shard. 'hthor eval --shard' makes some."
         )
-    records: dict[tuple[int, int], tuple[Place, str, int]] = {}
-    told: list[TrialRecord] = []
-    for place, line, one in trial_log.places(folder / "trials.jsonl"):
-        reader.check_origin(folder, one, plan)
-        _check_share(folder, one, plan, plan.shard)
-        if one.files:
-            told.append(msgspec.structs.replace(one, paths={}, journal=(), events=()))
-        seat, mine = (one.spec.participant, one.spec.index), (place, one.key, trial_record.checksum(line))
-        if records.setdefault(seat, mine)[1:] != mine[1:]:
+    lines: dict[_Trial, _Line] = {}
+    opened: list[TrialRecord] = []
+    for place, line, record in trial_log.places(folder.log_file):
+        folder.check_origin(record)
+        _check_shard(folder, record, config.shard)
+        if record.files:
+            opened.append(msgspec.structs.replace(record, paths={}, journal=(), events=()))
+        trial, mine = (record.spec.participant, record.spec.index), (place, record.key, trial_record.checksum(line))
+        if lines.setdefault(trial, mine)[1:] != mine[1:]:
             raise RunError(
-                f"{place.path}: trial {one.key} is there twice and not the same. Delete one of the two lines."
+                f"{place.path}: trial {record.key} is there twice and not the same. Delete one of the two lines."
             )
-    return _ShardLog(folder=folder, plan=plan, shard=plan.shard, records=records, opened=tuple(told))
+    return _ShardLog(folder=folder, shard=config.shard, lines=lines, opened=tuple(opened))
 
 
-def _check_share(folder: Path, one: TrialRecord, plan: RunConfig, mine: Shard) -> None:
-    participant = one.spec.participant
-    if participant not in mine.share(range(plan.participants)):
+def _check_shard(folder: RunFolder, record: TrialRecord, shard: Shard) -> None:
+    participant = record.spec.participant
+    if participant not in shard.share(range(folder.config.participants)):
         raise RunError(
-            f"{folder / 'trials.jsonl'}: trial {one.key}: spec.participant is {participant}, who is not in shard "
-            f"{mine.words}. The line belongs to another shard; delete it."
+            f"{folder.log_file}: trial {record.key}: spec.participant is {participant}, who is not in shard "
+            f"{shard.words}. The line belongs to another shard; delete it."
         )
 
 
-def _same_run(first: _ShardLog, part: _ShardLog) -> None:
-    there, here = first.plan, part.plan
-    if there.whole.untitled != here.whole.untitled:
-        told = "; ".join(run_config.differences(there.whole.untitled, here.whole.untitled))
-        raise RunError(f"{part.folder} is a shard of another run than {first.folder}: {told}.")
+def _check_same_run(first: _ShardLog, other: _ShardLog) -> None:
+    there, here = first.config.whole.untitled, other.config.whole.untitled
+    if there != here:
+        words = "; ".join(run_config.differences(there, here))
+        raise RunError(f"{other.folder} is a shard of another run than {first.folder}: {words}.")
 
 
-def _join(parts: Sequence[_ShardLog]) -> dict[tuple[int, int], tuple[Place, str, int]]:
-    """Every record once, by person and trial; a shard may be there twice, played on two machines."""
-    found: dict[tuple[int, int], tuple[Place, str, int]] = {}
-    for part in parts:
-        for seat, (place, key, check) in part.records.items():
-            there = found.setdefault(seat, (place, key, check))
-            if there[1:] != (key, check):
+def _join(shards: Sequence[_ShardLog]) -> dict[_Trial, _Line]:
+    """Every line once; a shard may be there twice, run on two machines."""
+    joined: dict[_Trial, _Line] = {}
+    for shard in shards:
+        for trial, line in shard.lines.items():
+            known = joined.setdefault(trial, line)
+            if known[1:] != line[1:]:
                 raise RunError(
-                    f"trial {key} is not the same in {there[0].path} and in {place.path}. An agent that does not "
-                    "repeat itself gives such; leave one of the folders out."
+                    f"trial {line[1]} is not the same in {known[0].path} and in {line[0].path}. An agent that is not "
+                    "deterministic gives such; leave one of the folders out."
                 )
-    return found
+    return joined
 
 
-def _other_files(folders: Sequence[Path]) -> dict[str, bytes]:
+def _write(
+    whole: RunFolder, config: RunConfig, shards: Sequence[_ShardLog], lines: dict[_Trial, _Line]
+) -> tuple[int, int]:
+    """Write the whole run's files; how many trials its log has now, and how many are new."""
+    new = 0
+    with whole.open_log() as log:
+        whole.write_config(config)
+        for name, data in _other_files([shard.folder for shard in shards]).items():
+            whole.write(name, data)
+        ordered = [lines[trial] for trial in sorted(lines)]
+        fetched = trial_log.fetch(place for place, _, _ in ordered)
+        for (_, key, _), line in zip(ordered, fetched, strict=True):
+            new += log.append(key, line)
+            if not log.agrees(key, line):
+                raise RunError(
+                    f"{whole}: trial {key} is there already, and is not as in the shards. Choose another --out."
+                )
+        return len(log), new
+
+
+def _other_files(folders: Sequence[RunFolder]) -> dict[str, bytes]:
     paths = {
-        path.relative_to(folder).as_posix(): path
+        path.relative_to(folder.path).as_posix(): path
         for folder in folders
         for pattern in _CARRIED
-        for path in sorted(folder.glob(pattern))
+        for path in sorted(folder.path.glob(pattern))
     }
     return {name: path.read_bytes() for name, path in paths.items()}
 
 
-def _gaps(parts: Sequence[_ShardLog], out: Path, missing: int) -> tuple[MissingTrials, ...]:
-    """What each shard lacks. The fullest folder of a shard is the one to go on with."""
-    first = parts[0]
-    of, base = first.shard.of, whole_folder(first.folder)
-    if any(part.shard.of != of for part in parts):  # the undivided command plays just what is missing
-        return (
-            MissingTrials(number=1, of=1, trials=missing, command=cli_command.resume_command(out, first.plan.whole)),
-        )
+def _gaps(shards: Sequence[_ShardLog], out: Path, missing: int) -> tuple[MissingTrials, ...]:
+    """What each shard lacks. Of several folders of one shard, the fullest is the one to go on with."""
+    first = shards[0]
+    of, base = first.shard.of, whole_folder(first.folder.path)
+    if any(shard.shard.of != of for shard in shards):  # the undivided command runs just what is missing
+        command = cli_command.resume_command(out, first.config.whole)
+        return (MissingTrials(number=1, of=1, trials=missing, command=command),)
     gaps = []
     for number in range(1, of + 1):
-        mine = [part for part in parts if part.shard.number == number]
-        if not mine:
+        same = [shard for shard in shards if shard.shard.number == number]
+        if not same:
             absent = Shard(number=number, of=of)
-            words = cli_command.resume_command(absent.folder(base), msgspec.structs.replace(first.plan, shard=absent))
-            gaps.append(MissingTrials(number=number, of=of, trials=None, command=words))
+            config = msgspec.structs.replace(first.config, shard=absent)
+            command = cli_command.resume_command(absent.folder(base), config)
+            gaps.append(MissingTrials(number=number, of=of, trials=None, command=command))
             continue
-        fullest = max(mine, key=lambda part: len(part.records))
-        lacks = fullest.shard.trials - len(set().union(*(part.records for part in mine)))
+        fullest = max(same, key=lambda shard: len(shard.lines))
+        lacks = fullest.shard.trials - len(set().union(*(shard.lines for shard in same)))
         if lacks:
-            words = cli_command.resume_command(fullest.folder, fullest.plan)
-            gaps.append(MissingTrials(number=number, of=of, trials=lacks, command=words))
+            command = cli_command.resume_command(fullest.folder.path, fullest.config)
+            gaps.append(MissingTrials(number=number, of=of, trials=lacks, command=command))
     return tuple(gaps)
 
 
-def _score(out: Path, plan: RunConfig, folders: Sequence[Path]) -> RunResult:
-    """The result of the whole, with the effort of the shards: the longest wall time, and all that they cost."""
-    there, records = reader.digest(out, plan)
-    efforts = [
-        documents.read(folder / EFFORT, Effort, RunError, hint="it only says what the run cost: delete it, and go on")
-        for folder in folders
-        if (folder / EFFORT).is_file()
-    ]
-    stored = result_file.load_result(out)
-    effort = stored.effort if stored else None
-    if efforts:
-        effort = Effort(
-            wall_s=max(one.wall_s for one in efforts),
-            cpu_s=round(sum(one.cpu_s for one in efforts), 3),
-            trials=sum(one.trials for one in efforts),
-            replays=sum(one.replays for one in efforts),
-        )
-    platform.join(out, folders)
-    session_restarts.join(out, folders)
-    beside, held = baseline.uplift_or_stored(out, plan, records), _store_isolation(out, folders)
+def _score(whole: RunFolder, shards: Sequence[RunFolder]) -> RunResult:
+    """Score the whole run and store its result."""
+    places, records = whole.digest()
+    stored = result_file.load_result(whole.path)
+    effort = _effort(shards) or (stored.effort if stored else None)
+    paths = [shard.path for shard in shards]
+    platform.join(whole.path, paths)
+    session_restarts.join(whole.path, paths)
     result = aggregate.make_result(
-        plan,
-        trial_log.fetch(there),
+        whole.config,
+        trial_log.fetch(places),
         records,
         effort,
-        uplift=beside,
-        isolation=held,
-        replays=session_restarts.count(out),
+        uplift=baseline.uplift_or_stored(whole.path, whole.config, records),
+        isolation=_store_isolation(whole, shards),
+        replays=whole.restarts,
     )
-    result_file.store_result(out, result)
+    result_file.store_result(whole.path, result)
     return result
 
 
-def _store_isolation(out: Path, folders: Sequence[Path]) -> Isolation | None:
-    """How agents were held at the least, over all shards; kept with the whole run."""
-    held = run_isolation.load_isolation(out)
-    for folder in folders:
-        held = run_isolation.weakest_isolation(folder, held, "")
-    if held is not None:
-        jsonio.write(out / run_isolation.NAME, jsonio.pretty(held))
-    return held
+def _effort(shards: Sequence[RunFolder]) -> Effort | None:
+    """The longest wall time of all shards, and the sum of all else that they took."""
+    hint = "it only says what the run cost: delete it, and go on"
+    efforts = [
+        documents.read(shard.effort_file, Effort, RunError, hint=hint)
+        for shard in shards
+        if shard.effort_file.is_file()
+    ]
+    if not efforts:
+        return None
+    return Effort(
+        wall_s=max(effort.wall_s for effort in efforts),
+        cpu_s=round(sum(effort.cpu_s for effort in efforts), 3),
+        trials=sum(effort.trials for effort in efforts),
+        replays=sum(effort.replays for effort in efforts),
+    )
+
+
+def _store_isolation(whole: RunFolder, shards: Sequence[RunFolder]) -> Isolation | None:
+    """The weakest isolation of all shards, stored with the whole run."""
+    isolation = whole.isolation
+    for shard in shards:
+        isolation = run_isolation.weakest_isolation(shard.path, isolation, "")
+    if isolation is not None:
+        whole.write(run_isolation.NAME, jsonio.pretty(isolation))
+    return isolation

@@ -1,1 +1,1 @@
-"""The files of a run: trial records, the log, isolation and platform."""
+"""The files of a run. Begin with `run_folder`, which opens them; `trial_record` is one line of the log."""

@@ -1,32 +1,30 @@
-"""Finding one trial of a run by whatever the user calls it."""
+"""Finding one trial of a run by what the user calls it, and describing its first fault."""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
-from pathlib import Path
 
 from hthor import rules
 from hthor.errors import RunError, UnknownName
-from hthor.eval.config import run_config
-from hthor.eval.records import reader
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 
 _SHOWN = 10
-_TRACED = 12
+_TRACEBACK_LINES = 12
 
 
-def find_trial(folder: Path, name: str) -> TrialRecord:
+def find_trial(folder: RunFolder, name: str) -> TrialRecord:
     """The trial of a run that ``name`` stands for.
 
     Args:
         name: the start of a key, a task's id, or a number: the trial's place among all trials, counted from 0.
 
     Raises:
-        UnknownName: when nothing answers to it.
-        RunError: when more than one trial does, or the run cannot be read.
+        UnknownName: when no trial fits.
+        RunError: when several trials fit, or the run cannot be read.
     """
-    _, records = reader.records(folder, run_config.load_config(folder))
+    records = folder.records()
     by_task = [record for record in records if record.spec.task.id == name]
     if by_task:
         return _only(by_task, name)
@@ -43,33 +41,33 @@ def find_trial(folder: Path, name: str) -> TrialRecord:
     raise UnknownName("trial", name, near, more if records else "The run has no trials yet.")
 
 
-def _only(found: Sequence[TrialRecord], name: str) -> TrialRecord:
-    if len(found) > 1:
-        listed = ", ".join(f"{record.key} (participant {record.spec.participant})" for record in found[:10])
-        raise RunError(f"'{name}' stands for {len(found)} trials: {listed}. Give a key, or more of it.")
-    return found[0]
+def _only(records: Sequence[TrialRecord], name: str) -> TrialRecord:
+    if len(records) > 1:
+        listed = ", ".join(f"{record.key} (participant {record.spec.participant})" for record in records[:_SHOWN])
+        raise RunError(f"'{name}' stands for {len(records)} trials: {listed}. Give a key, or more of it.")
+    return records[0]
 
 
-def first_fault(folder: Path) -> TrialRecord:
-    """The first trial of a run in which the agent failed.
+def first_fault(folder: RunFolder) -> TrialRecord:
+    """The first trial of a run in which an agent failed.
 
     Raises:
-        LookupError: when it never did.
+        LookupError: when none did.
     """
-    _, records = reader.digest(folder, run_config.load_config(folder))
+    _, records = folder.digest()
     return next(record for record in records if record.faults)
 
 
 def fault_lines(record: TrialRecord) -> list[str]:
-    """The end of the traceback of a trial's first fault; none where it was no exception."""
+    """The end of the traceback of a trial's first fault; empty where it was no exception."""
     lines = record.faults[0].detail.strip().splitlines()
-    return lines[-_TRACED:] if len(lines) > 1 else []
+    return lines[-_TRACEBACK_LINES:] if len(lines) > 1 else []
 
 
 def fault_words(record: TrialRecord) -> str:
-    """A trial's first fault in words: whose, of several robots, when, what, and the last line of its detail."""
+    """A trial's first fault in words: which robot (of several), when, what, and the last line of its detail."""
     fault = record.faults[0]
     last = fault.detail.strip().splitlines()[-1] if fault.detail.strip() else ""
     names = {robot.seat: robot.agent.name for robot in record.spec.robots}
-    whose = f"{fault.seat} ({names[fault.seat]}), " if len(names) > 1 else ""
-    return f"{whose}after {fault.tick * rules.TICK_S:.1f} s: {fault.kind}" + (f": {last}" if last else "")
+    robot = f"{fault.seat} ({names[fault.seat]}), " if len(names) > 1 else ""
+    return f"{robot}after {fault.tick * rules.TICK_S:.1f} s: {fault.kind}" + (f": {last}" if last else "")

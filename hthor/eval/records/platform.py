@@ -1,40 +1,62 @@
-"""Which platforms played a run, noted beside its log; decides nothing.
+"""The platforms that ran a run's trials, kept in `platform.json`.
 
-A run can be played by several commands on several machines, so its folder keeps a list, `platform.json`. It is no part
-of the run's configuration: equal platforms give equal bytes, and others may.
+Several commands on several machines may work on one run, so the file is a list. It is no part of the run's
+configuration: equal platforms give equal bytes, different ones may not.
 """
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Iterable
 from pathlib import Path
 
-from hthor import documents, jsonio
+from hthor import documents, installation, jsonio
 from hthor.errors import RunError
-from hthor.eval.records import platform_fingerprint
 
 NAME = "platform.json"
 Platform = dict[str, str]
-"""As `hthor.eval.records.platform_fingerprint` describes it."""
+"""What of a machine and its libraries can change the last bits of a number, by name; see `this_platform`."""
+
+
+def this_platform() -> Platform:
+    """The platform of this process. Where all of it is equal, records are equal byte for byte."""
+    import llvmlite.binding
+    import numpy
+
+    extensions = numpy.show_config(mode="dicts")["SIMD Extensions"]
+    return {
+        "system": platform.system(),
+        "machine": platform.machine(),
+        "cpu": llvmlite.binding.get_host_cpu_name(),
+        "simd": " ".join(sorted((*extensions["baseline"], *extensions.get("found", ())))),
+        "libc": " ".join(platform.libc_ver()),
+        **{name: version for name, version in installation.versions().items() if name != "hthor"},
+    }
+
+
+def platform_differences(there: Platform, here: Platform) -> list[str]:
+    """What differs between two platforms, in words."""
+    names = [name for name in sorted({*there, *here}) if there.get(name) != here.get(name)]
+    return [f"{name} {here.get(name, 'unknown')} here, {there.get(name, 'unknown')} there" for name in names]
 
 
 def note(folder: Path) -> None:
-    """Add this machine to those that played a part of the run in a folder."""
-    join(folder, (), (platform_fingerprint.this_platform(),))
+    """Add this machine to the platforms of the run in a folder."""
+    join(folder, (), (this_platform(),))
 
 
 def join(out: Path, folders: Iterable[Path], more: Iterable[Platform] = ()) -> None:
     """Keep the platforms of several folders, and ``more``, with the run in ``out``."""
     before = load(out)
-    all_ = (*before, *(one for folder in folders for one in load(folder)), *more)
-    found = {jsonio.sha256(one): one for one in all_}
-    kept = tuple(found[digest] for digest in sorted(found))
-    if kept != before:
-        jsonio.write(out / NAME, jsonio.pretty(kept))
+    platforms = (*before, *(one for folder in folders for one in load(folder)), *more)
+    by_hash = {jsonio.sha256(one): one for one in platforms}
+    after = tuple(by_hash[digest] for digest in sorted(by_hash))
+    if after != before:
+        jsonio.write(out / NAME, jsonio.pretty(after))
 
 
 def load(folder: Path) -> tuple[Platform, ...]:
-    """The platforms that played the run in a folder; none where that was not noted.
+    """The platforms of the run in a folder; empty where they were not noted.
 
     Raises:
         RunError: when the file cannot be read.

@@ -1,7 +1,7 @@
-"""How a run's agents are held: settled before the first trial, kept beside the log, told in the result.
+"""How a run's agents are isolated: resolved before the first trial, kept in `isolation.json`, stated in the result.
 
-A run may be played by several commands, on several levels. What counts is the weakest of them, so the run's folder
-keeps it in `isolation.json`. It decides no record and is no part of the run's configuration.
+Several commands may work on one run at different levels. The weakest of them counts, so that is what the file has. It
+decides no record and is no part of the run's configuration.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from pathlib import Path
 
-from hthor import documents
+from hthor import documents, guest
 from hthor.errors import RunError
 from hthor.guest import Isolation, IsolationError
 from hthor.guest.confinement import check_level, suffices
@@ -17,58 +17,62 @@ from hthor.guest.confinement import check_level, suffices
 NAME = "isolation.json"
 
 
-def resolve_isolation(wanted: str, required: str, minds: Collection[str]) -> Isolation | None:
-    """What will hold a run's agents; None when all of them are built in.
+def resolve_isolation(wanted: str, required: str, agents: Collection[str]) -> Isolation | None:
+    """The isolation of a run's agents on this machine; None when all of them are built in.
 
     Args:
-        wanted: a level, or "auto". required: the least level, empty for any.
-        minds: the submitted agents; one that is served elsewhere is held by nothing.
+        wanted: a level, or "auto".
+        required: the lowest acceptable level, empty for any.
+        agents: the submitted agents; one that is served elsewhere is not isolated at all.
 
     Raises:
-        IsolationError: when the level cannot be had, or is less than required.
+        IsolationError: when the level is not available, or lower than required.
     """
     if required:
         check_level(required, auto=False)
-    if not minds:
+    if not agents:
         return None
-    from hthor import guest
     from hthor.guest.host import websocket_client
 
-    held = guest.in_force(wanted)
-    if served := [mind for mind in minds if guest.is_served(mind)]:
-        _demand(websocket_client.ISOLATION, required, f"{served[0]} is")
-    _demand(held, required, "this machine gives" if wanted == "auto" else "--isolation asks for")
-    return held
+    isolation = guest.in_force(wanted)
+    if served := [agent for agent in agents if guest.is_served(agent)]:
+        _require(websocket_client.ISOLATION, required, f"{served[0]} is")
+    _require(isolation, required, "this machine gives" if wanted == "auto" else "--isolation asks for")
+    return isolation
 
 
-def weakest_isolation(folder: Path, held: Isolation | None, required: str) -> Isolation | None:
-    """The weaker of what holds the agents now and what held them when an earlier command played a part of the run.
+def isolation_of(isolation: Isolation | None, agents: Collection[str]) -> Isolation | None:
+    """The isolation of one run's agents among several runs: none where an agent is served; None when all are built in.
+
+    Args:
+        isolation: what `resolve_isolation` gave for the agents of all runs.
+        agents: the submitted agents of this run.
+    """
+    from hthor.guest.host import websocket_client
+
+    if any(guest.is_served(agent) for agent in agents):
+        return websocket_client.ISOLATION
+    return isolation if agents else None
+
+
+def weakest_isolation(folder: Path, isolation: Isolation | None, required: str) -> Isolation | None:
+    """The weaker of ``isolation`` and what earlier commands ran this folder's trials at.
 
     Raises:
-        IsolationError: when the earlier command had less than is required now.
+        IsolationError: when an earlier command had less than is required now.
     """
     before = load_isolation(folder)
     if before is None:
-        return held
-    _demand(before, required, f"{folder} has trials played at")
-    return before if held is None or suffices(held.level, before.level) else held
-
-
-def isolation_of(held: Isolation | None, minds: Collection[str]) -> Isolation | None:
-    """What holds the agents of one of several runs: nothing where one is served; None when all are built in."""
-    from hthor import guest
-    from hthor.guest.host import websocket_client
-
-    if any(guest.is_served(mind) for mind in minds):
-        return websocket_client.ISOLATION
-    return held if minds else None
+        return isolation
+    _require(before, required, f"{folder} has trials played at")
+    return before if isolation is None or suffices(isolation.level, before.level) else isolation
 
 
 def load_isolation(folder: Path) -> Isolation | None:
-    """What held a run's agents at the least; None when all were built in.
+    """The weakest isolation of the run in a folder; None when all agents were built in.
 
     Raises:
-        RunError: when it cannot be read.
+        RunError: when the file cannot be read.
     """
     path = folder / NAME
     if not path.is_file():
@@ -77,9 +81,10 @@ def load_isolation(folder: Path) -> Isolation | None:
     return documents.read(path, Isolation, RunError, hint=hint)
 
 
-def _demand(held: Isolation, required: str, whose: str) -> None:
-    if required and not suffices(held.level, required):
-        why = f" ({held.reason_not_higher})" if held.reason_not_higher else ""
+def _require(isolation: Isolation, required: str, subject: str) -> None:
+    if required and not suffices(isolation.level, required):
+        why = f" ({isolation.reason_not_higher})" if isolation.reason_not_higher else ""
         raise IsolationError(
-            f"isolation {required} is required, but {whose} {held.level}{why}. See docs/isolation.md for what it takes."
+            f"isolation {required} is required, but {subject} {isolation.level}{why}. "
+            "See docs/isolation.md for what it takes."
         )

@@ -1,8 +1,8 @@
-"""Sessions of a run that were played again because an agent's process was killed: one at most, and never unseen.
+"""Sessions that were run again because an agent's process was killed; `replays.json` counts them.
 
-Mostly that comes from outside, from a kernel that ran out of memory or a machine that goes down, and then it is not
-the agent's failure. But an agent that got as many tries as it liked would take them when it is losing. So a run has
-one, which the result counts; after that a trial in which a process is killed has the fault `killed`.
+The kernel kills processes when memory runs out, and machines go down; that is not the agent's failure. But an agent
+with unlimited retries could kill itself whenever it is losing. So each run has one restart, which the result counts.
+After that, a trial in which a process is killed has the fault `killed`.
 """
 
 from __future__ import annotations
@@ -17,24 +17,24 @@ from hthor.errors import RunError
 
 NAME = "replays.json"
 MOST = 1
-"""How many a run has."""
+"""How many restarts a run has. Our choice."""
 
 
 class Replays(Struct, frozen=True, kw_only=True):
-    """A run's file of them: the participants whose sessions were begun again."""
+    """The file: the participants whose sessions were restarted."""
 
     participants: tuple[int, ...] = ()
 
 
 class SessionRestarts:
-    """Those of a run, kept in its folder before they are taken, so that no later command has them again."""
+    """The restarts of one run. Each is written to the folder before it is used, so that no later command repeats it."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._participants = load(folder).participants
 
     def take(self, participant: int) -> bool:
-        """Have this session played again; false when the run has had its share."""
+        """Use a restart for this participant's session; False when the run has none left."""
         if len(self._participants) >= MOST:
             return False
         self._participants += (participant,)
@@ -43,10 +43,10 @@ class SessionRestarts:
 
 
 def load(folder: Path) -> Replays:
-    """What a run has had so far.
+    """The restarts that the run in a folder has used.
 
     Raises:
-        RunError: when its file cannot be read.
+        RunError: when the file cannot be read.
     """
     path = folder / NAME
     if not path.is_file():
@@ -55,15 +55,15 @@ def load(folder: Path) -> Replays:
 
 
 def count(folder: Path) -> int:
-    """How many a run has had so far."""
+    """How many restarts the run in a folder has used."""
     return len(load(folder).participants)
 
 
-def join(folder: Path, parts: Iterable[Path]) -> None:
-    """Keep with a whole run what its shards have had; each shard has a share of its own."""
-    every = [participant for part in (folder, *parts) for participant in load(part).participants]
+def join(folder: Path, shards: Iterable[Path]) -> None:
+    """Keep the restarts of all shards with the whole run; each shard has its own allowance."""
+    every = {participant for part in (folder, *shards) for participant in load(part).participants}
     if every:
-        _store(folder, tuple(sorted(set(every))))
+        _store(folder, tuple(sorted(every)))
 
 
 def _store(folder: Path, participants: tuple[int, ...]) -> None:

@@ -16,10 +16,12 @@ from hthor import jsonio
 from hthor.errors import RunError, RunLocked
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner.queue import BEAT_S
 
+NAME = "trials.jsonl"
+BEAT_S = 0.05
+"""How often [s] a log's writer should call `TrialLog.sync`."""
 SYNC_S = 0.25
-"""Longest time that a written record may wait for the disk, if `Log.sync` is called with every beat."""
+"""The longest time [s] that a written record waits for the disk, if `TrialLog.sync` is called every `BEAT_S`."""
 _BLOCK = 1 << 16
 _UNSYNCED = 1 << 22
 """More than is ever written between two syncs."""
@@ -87,7 +89,7 @@ class TrialLog:
     """
 
     def __init__(self, folder: Path) -> None:
-        self.path = folder / "trials.jsonl"
+        self.path = folder / NAME
         jsonio.make_folder(folder)
         self._lock = lock(folder)
         try:

@@ -1,38 +1,59 @@
-"""What it takes to play a logged trial again: the session before it and where everything lies; plays nothing."""
+"""What it takes to run a logged trial again: the participant's session up to it, and where everything lies."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+
+from msgspec import Struct
 
 from hthor import code_identity, plugins
 from hthor.errors import HthorError, RunError
 from hthor.eval.config import robot_team, run_config
-from hthor.eval.config.robot_team import AgentInfo
-from hthor.eval.records import reader
+from hthor.eval.config.robot_team import AgentInfo, RobotInfo, RobotTeam
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner import trial_runner
-from hthor.guest import AgentInputs, GuestConfig
+from hthor.eval.runner.run_job import make_sources
+from hthor.eval.runner.sources import Sources
+from hthor.guest import GuestConfig
 from hthor.guest.agent import manifest
 from hthor.types import RobotSeat, TrialSpec
 
+Choose = Callable[[RunFolder, RobotSeat, Sequence[AgentInfo]], AgentInfo]
+"""Chooses the agent of a seat among those that the user gave."""
 
-def session_before(folder: Path, wanted: TrialRecord) -> tuple[TrialSpec, ...]:
-    """The trials of the person's session up to this one.
+
+class RunFiles(Struct, frozen=True, kw_only=True):
+    """The user's files that a trial needs and a run's folder does not hold, as the user typed them.
+
+    Attributes:
+        agents: the submitted agents.
+        robots: files of the user's own robots.
+        kind: the file of the user's own task kind.
+        humans: the word that finds the human population, when the name in the log does not.
+    """
+
+    agents: tuple[str, ...] = ()
+    robots: tuple[str, ...] = ()
+    kind: str = ""
+    humans: str = ""
+
+
+def session_before(folder: RunFolder, trial: TrialRecord) -> tuple[TrialSpec, ...]:
+    """The trials of the participant's session up to this one.
 
     Raises:
-        RunError: when trials before it are missing, or another version of hthor played them.
+        RunError: when trials before it are missing, or another version of hthor ran them.
     """
-    plan = run_config.load_config(folder)
-    here, logged = code_identity.code_sha256(plan.humans.model, plan.kinds), wanted.spec.code_sha256
+    config, spec = folder.config, trial.spec
+    here, logged = code_identity.code_sha256(config.humans.model, config.kinds), spec.code_sha256
     if here != logged:
         raise RunError(
             f"{folder} was played by another version of hthor (its code's hash was {logged[:10]} and is {here[:10]}), "
             "in which people may think otherwise. Play the run again with 'hthor eval', or look with that version."
         )
-    spec = wanted.spec
-    _, records = reader.records(folder, plan)
-    mine = [one.spec for one in records if one.spec.participant == spec.participant and one.spec.index <= spec.index]
+    specs = [record.spec for record in folder.records()]
+    mine = [one for one in specs if one.participant == spec.participant and one.index <= spec.index]
     if [one.index for one in mine] != list(range(spec.index + 1)):
         raise RunError(
             f"{folder} lacks some of the trials that participant {spec.participant} did before this one, which shaped "
@@ -41,45 +62,78 @@ def session_before(folder: Path, wanted: TrialRecord) -> tuple[TrialSpec, ...]:
     return tuple(mine)
 
 
-def replay_sources(
-    folder: Path, spec: TrialSpec, agents: Sequence[str] = (), humans: str = "", given: AgentInputs | None = None
-) -> trial_runner.Sources:
-    """Where that lies which a trial needs.
+def replay_team(
+    folder: RunFolder, spec: TrialSpec, files: RunFiles, guests: GuestConfig, choose: Choose | None = None
+) -> RobotTeam:
+    """The robots of a logged trial, with the user's files for those that did not ship with hthor.
 
     Args:
-        folder: the run's. agents: files of its agents that are not built in. humans: where its people come from.
-        given: arguments and files that the agents are given.
+        guests: how submitted agents are isolated, and what they are given.
+        choose: finds the agent of a seat among those that were given; by default it must be unchanged.
 
     Raises:
-        HthorError: when an agent's file is needed and not given.
+        HthorError: when a file is needed and not given.
     """
-    theirs = [seat for seat in spec.robots if seat.agent.name not in plugins.names("agent")]
-    guests = GuestConfig(hidden=(str(folder.resolve()),), inputs=given or AgentInputs())
-    found = [robot_team.load_agent_info(path, guests) for path in agents] if theirs else []
-    minds = {seat.seat: _same(folder, seat, found) for seat in theirs}
-    own = folder / "houses"
-    return trial_runner.Sources(
-        minds={seat: one.path for seat, one in minds.items()},
-        manifests={seat: one.manifest for seat, one in minds.items() if one.manifest is not None},
-        people=humans,
-        houses=str(own.resolve()) if own.is_dir() else "",
+    submitted = [seat for seat in spec.robots if seat.agent.name not in plugins.names("agent")]
+    given = [robot_team.load_agent_info(path, guests) for path in files.agents] if submitted else []
+    choose = choose or same_agent
+    agents = [choose(folder, seat, given) if seat in submitted else AgentInfo(ref=seat.agent) for seat in spec.robots]
+    robots = [_robot(seat, files.robots) for seat in spec.robots]
+    return RobotTeam(robots=tuple(zip(robots, agents, strict=True)))
+
+
+def replay_sources(
+    folder: RunFolder, spec: TrialSpec, files: RunFiles, guests: GuestConfig, team: RobotTeam | None = None
+) -> Sources:
+    """Where everything is that a logged trial needs.
+
+    Args:
+        team: its robots; by default as `replay_team` finds them, unchanged.
+
+    Raises:
+        HthorError: when a file is needed and not given.
+    """
+    if spec.kind_sha256 and not files.kind:
+        raise HthorError(f"the kind '{spec.task.kind}' of this trial came from a file of its own. Give it with --kind.")
+    assets = folder.config.assets.name
+    return make_sources(
+        team or replay_team(folder, spec, files, guests),
+        kind_path=str(Path(files.kind).resolve()) if files.kind else "",
+        assets="" if assets == run_config.PROCEDURAL else assets,
+        houses=folder.houses,
+        humans=files.humans,
         guests=guests,
     )
 
 
-def _same(folder: Path, seat: RobotSeat, given: Sequence[AgentInfo]) -> AgentInfo:
-    """The agent among those that were given which the run was played with."""
-    for character in given:
-        if character.ref.sha256 == seat.agent.sha256:
-            return character
-    known = next((one for one in run_config.load_config(folder).agents if one.sha256 == seat.agent.sha256), None)
+def same_agent(folder: RunFolder, seat: RobotSeat, given: Sequence[AgentInfo]) -> AgentInfo:
+    """The agent that the run was run with, unchanged.
+
+    Raises:
+        HthorError: when it is not among those that were given; says which of its files changed.
+    """
+    for agent in given:
+        if agent.ref.sha256 == seat.agent.sha256:
+            return agent
+    known = next((one for one in folder.config.agents if one.sha256 == seat.agent.sha256), None)
     near = next((one.manifest for one in given if one.manifest and known and one.manifest.source == known.source), None)
     what = ""
     if near is not None and known is not None:
-        found = manifest.differences(known.files, near.files)
-        found += ["--agent-args are others"] if near.args != known.args else []
-        what = f" It is not as it was: {'; '.join(found)}."
+        changes = manifest.differences(known.files, near.files)
+        changes += ["--agent-args are others"] if near.args != known.args else []
+        what = f" It is not as it was: {'; '.join(changes)}."
     raise HthorError(
         f"the agent '{seat.agent.name}' of this run came from the file {seat.agent.source}. Give that file, unchanged, "
         f"with --agent.{what}"
     )
+
+
+def _robot(seat: RobotSeat, paths: Sequence[str]) -> RobotInfo:
+    if plugins.is_built_in("robot", seat.robot):
+        return RobotInfo(name=seat.robot, sha256=seat.robot_sha256)
+    path = next((path for path in paths if plugins.sha256(path) == seat.robot_sha256), "")
+    if not path:
+        raise HthorError(
+            f"the body '{seat.robot}' of this run came from a file of its own. Give it, unchanged, with --robot."
+        )
+    return RobotInfo(name=seat.robot, sha256=seat.robot_sha256, path=str(Path(path).resolve()))

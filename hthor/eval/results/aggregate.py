@@ -9,11 +9,11 @@ from pathlib import Path
 
 import msgspec
 
-from hthor.eval.config import run_config
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.metrics.metric import Metric
-from hthor.eval.records import opened_files, reader, run_isolation, session_restarts
+from hthor.eval.records import opened_files
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline, result_file
 from hthor.eval.results.result_file import Counts, Effort, Hashes, RunResult, Scores
@@ -135,22 +135,23 @@ def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
     Every trial's metrics are worked out anew from its events. The stored effort is kept, as no log has it. A stored
     result of another version of the format counts as none: the log has all that it takes.
     """
-    plan = run_config.load_config(folder)
-    lines, kept = reader.records(folder, plan)
+    run = RunFolder(folder)
+    plan = run.config
+    lines, kept = run.lines()
     fresh, stored = (
         _measured(kept),
         None if result_file.is_outdated(folder / "result.json") else result_file.load_result(folder),
     )
     effort = stored.effort if stored else None
-    beside, held = baseline.uplift_or_stored(folder, plan, fresh), run_isolation.load_isolation(folder)
-    again = session_restarts.count(folder)
+    beside, held = baseline.uplift_or_stored(folder, plan, fresh), run.isolation
+    again = run.restarts
     return plan, make_result(plan, lines, fresh, effort, uplift=beside, isolation=held, replays=again), stored
 
 
 def load_measured(folder: Path) -> tuple[RunConfig, list[TrialRecord]]:
     """A run's configuration and its records, every trial's metrics worked out anew from its events."""
-    plan = run_config.load_config(folder)
-    return plan, _measured(reader.records(folder, plan)[1])
+    run = RunFolder(folder)
+    return run.config, _measured(run.records())
 
 
 def _measured(kept: Iterable[TrialRecord]) -> list[TrialRecord]:

@@ -9,10 +9,10 @@ from pathlib import Path
 import msgspec
 
 from hthor.errors import RunError
-from hthor.eval.config import run_config
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.records import trial_log
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import pairing, result_file, uplift
 from hthor.eval.results.uplift import StoredUplift, Uplift
@@ -75,7 +75,7 @@ def _whole(
 def _fits(candidate: Path, plan: RunConfig) -> RunConfig | None:
     """The configuration of a run that is a control by what it is: same people, suite, seed, rules and code."""
     try:
-        there = run_config.load_config(candidate)
+        there = RunFolder(candidate).config
     except RunError:  # of another version, or damaged
         return None
     fits = not there.seats and not pairing.differing_field(plan, there) and there.participants >= plan.participants

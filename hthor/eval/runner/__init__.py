@@ -1,1 +1,1 @@
-"""Playing a run's trials in worker processes and collecting their records."""
+"""Running trials: `experiment` is `hthor eval` as a function, `run` one run, `trial_runner` what a worker does."""

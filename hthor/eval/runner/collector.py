@@ -1,4 +1,4 @@
-"""Listening to an engine: what is new goes to the log, what is lost is told."""
+"""Collecting an engine's messages: new trials go to the log, lost sessions are reported."""
 
 from __future__ import annotations
 
@@ -6,158 +6,166 @@ import threading
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING
 
-from hthor import jsonio
 from hthor.errors import HthorError, RunError
+from hthor.eval.config.sessions import Session
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.session_restarts import SessionRestarts
-from hthor.eval.runner.messages import Finished, SessionAbandoned, SessionRestarted, TrialDone
-
-if TYPE_CHECKING:
-    from hthor.eval.config.sessions import Session
-    from hthor.eval.records.trial_log import TrialLog
-    from hthor.eval.runner.engines import Engine, RunnerFactory
-    from hthor.eval.runner.fault_report import FaultArchive
-    from hthor.eval.runner.run import Watcher
+from hthor.eval.records.trial_log import TrialLog
+from hthor.eval.runner.engines import Engine
+from hthor.eval.runner.fault_report import FaultArchive
+from hthor.eval.runner.messages import Finished, News, RunnerFactory, SessionAbandoned, SessionRestarted, TrialDone
+from hthor.eval.runner.progress import Watcher
 
 ERRORS = "error.txt"
 _HOPELESS = 3
-"""So many sessions are given up before a run ends of which nothing at all could be played."""
+"""A run ends when so many sessions were given up before a single trial was finished. Our choice."""
 
 
 class Unfinished(RunError):
-    """Some sessions could not be played; what could is kept."""
+    """Some sessions could not be run; all finished trials are kept."""
 
     exit_code = 1
 
 
 class InternalFailure(HthorError):
-    """A trial failed by our own fault."""
+    """A trial failed because of a bug of ours."""
 
     exit_code = 1
 
 
 @dataclass
 class CollectedTrials:
-    """What came of playing: CPU time [s], new trials, sessions that began again, and those that were given up.
+    """What came of running sessions.
 
-    ``void`` are the participants whose sessions are to be played again: what came of them does not count.
+    Attributes:
+        cpu_s: CPU time [s].
+        new: trials that were added to the log.
+        different: trials that were run again with another outcome than in the log.
+        received: trials that workers reported.
+        restarts: sessions that were run again.
+        lost: sessions that were given up.
+        void: participants whose sessions are to be run again; what their workers still report does not count.
     """
 
     cpu_s: float = 0.0
     new: int = 0
-    other: int = 0
-    played: int = 0
-    replays: int = 0
+    different: int = 0
+    received: int = 0
+    restarts: int = 0
     lost: list[SessionAbandoned] = field(default_factory=list)
     void: set[int] = field(default_factory=set)
 
     @property
     def hopeless(self) -> bool:
-        """Whether it is no use to go on."""
-        return not self.played and len(self.lost) >= _HOPELESS
+        """Whether nothing works, so that the remaining sessions need not be tried."""
+        return not self.received and len(self.lost) >= _HOPELESS
 
 
-def collect(
-    book: TrialLog,
-    engine: Engine,
-    sessions: Sequence[Session],
-    make: RunnerFactory,
-    watch: Watcher,
-    keeper: FaultArchive,
-    stop: threading.Event,
-    *,
-    steady: bool = True,
-) -> CollectedTrials:
-    """Play sessions and write down what is new, and beside the log what is left of agents that failed.
+class Collector:
+    """Runs sessions on an engine, and writes new trials to the log and fault reports beside it.
 
     Args:
-        steady: whether a trial that is played again has to go the same way.
+        folder: the run's, whose ``log`` is open.
+        faults: keeps the reports of agents that failed.
+        stop: set when the user wants the run to end.
     """
-    came, do_overs = CollectedTrials(), SessionRestarts(book.path.parent)
-    _listen(book, engine, sessions, make, watch, keeper, stop, came, do_overs)
-    if (left := [session for session in sessions if session.participant in came.void]) and not stop.is_set():
-        came.void.clear()
-        _listen(book, engine, left, make, watch, keeper, stop, came, do_overs)
-    if came.other and steady:
-        watch.note(
-            f"{came.other} trials went otherwise when they were played again: something here does not repeat itself"
-        )
-    return came
+
+    def __init__(
+        self,
+        folder: RunFolder,
+        log: TrialLog,
+        engine: Engine,
+        watcher: Watcher,
+        faults: FaultArchive,
+        stop: threading.Event,
+    ) -> None:
+        self._log, self._engine, self._watcher, self._faults, self._stop = log, engine, watcher, faults, stop
+        self._restarts = SessionRestarts(folder.path)
+        self._collected = CollectedTrials()
+
+    def collect(self, sessions: Sequence[Session], make: RunnerFactory, *, repeatable: bool = True) -> CollectedTrials:
+        """Run these sessions, and again those in which an agent's process was killed, as far as the run may.
+
+        Args:
+            repeatable: whether a trial that is run again must give the same record.
+        """
+        collected = self._collected
+        self._listen(sessions, make)
+        if (left := [one for one in sessions if one.participant in collected.void]) and not self._stop.is_set():
+            collected.void.clear()
+            self._listen(left, make)
+        if collected.different and repeatable:
+            self._watcher.note(
+                f"{collected.different} re-run trials differ from the log: something on this machine is not "
+                "deterministic"
+            )
+        return collected
+
+    def _listen(self, sessions: Sequence[Session], make: RunnerFactory) -> None:
+        draining = False
+        with closing(self._engine.run_sessions(sessions, make)) as messages:
+            for message in messages:
+                self._receive(message)
+                self._log.sync(due=True)
+                self._watcher.beat()
+                if self._collected.hopeless:
+                    break
+                if self._stop.is_set() and not draining:
+                    draining = True
+                    self._engine.drain()
+                    self._watcher.note(
+                        "stopping when the trials that are being played are over; Ctrl-C again stops at once"
+                    )
+
+    def _receive(self, message: News | None) -> None:
+        collected = self._collected
+        if isinstance(message, TrialDone):
+            collected.received += 1
+            if not self._is_void(message, known=message.key in self._log):
+                self._keep(message)
+        elif isinstance(message, Finished):
+            collected.cpu_s += message.cpu_s
+        elif isinstance(message, SessionRestarted):
+            collected.restarts += 1
+            self._watcher.note(f"the session of participant {message.participant} begins again: {message.cause}")
+        elif isinstance(message, SessionAbandoned) and not self._is_void(message):
+            collected.lost.append(message)
+            self._watcher.note(f"the session of participant {message.participant} is given up: {message.cause}")
+
+    def _keep(self, trial: TrialDone) -> None:
+        if not self._log.append(trial.key, trial.line):
+            self._collected.different += not self._log.agrees(trial.key, trial.line)
+            return
+        self._collected.new += 1
+        self._watcher.played(trial.met, trial.faulty)
+        if trial.fault_report is not None:
+            self._faults.keep(trial.fault_report)
+
+    def _is_void(self, message: TrialDone | SessionAbandoned, *, known: bool = False) -> bool:
+        """Whether a message does not count, because its session is to be run again after a killed agent."""
+        if message.participant not in self._collected.void:
+            if known or not message.killed or not self._restarts.take(message.participant):
+                return False
+            self._collected.void.add(message.participant)
+            self._collected.restarts += 1
+            self._watcher.note(
+                f"the session of participant {message.participant} begins again: an agent's process was killed"
+            )
+        return True
 
 
-def _listen(
-    book: TrialLog,
-    engine: Engine,
-    sessions: Sequence[Session],
-    make: RunnerFactory,
-    watch: Watcher,
-    keeper: FaultArchive,
-    stop: threading.Event,
-    came: CollectedTrials,
-    do_overs: SessionRestarts,
-) -> None:
-    """Take in what an engine tells of sessions, until all are over; `CollectedTrials` has what came of it."""
-    draining = False
-    with closing(engine.perform(sessions, make)) as stream:
-        for news in stream:
-            if isinstance(news, TrialDone):
-                came.played += 1
-                if _voided(news, came, do_overs, watch, known=news.key in book):
-                    continue
-                if book.append(news.key, news.line):
-                    came.new += 1
-                    watch.played(news.met, news.faulty)
-                    if news.left is not None:
-                        keeper.keep(news.left)
-                else:
-                    came.other += not book.agrees(news.key, news.line)
-            elif isinstance(news, Finished):
-                came.cpu_s += news.cpu_s
-            elif isinstance(news, SessionRestarted):
-                came.replays += 1
-                watch.note(f"the session of participant {news.participant} begins again: {news.cause}")
-            elif isinstance(news, SessionAbandoned) and not _voided(news, came, do_overs, watch):
-                came.lost.append(news)
-                watch.note(f"the session of participant {news.participant} is given up: {news.cause}")
-            book.sync(due=True)
-            watch.beat()
-            if came.hopeless:
-                break
-            if stop.is_set() and not draining:
-                draining = True
-                engine.drain()
-                watch.note("stopping when the trials that are being played are over; Ctrl-C again stops at once")
-
-
-def _voided(
-    news: TrialDone | SessionAbandoned,
-    came: CollectedTrials,
-    do_overs: SessionRestarts,
-    watch: Watcher,
-    *,
-    known: bool = False,
-) -> bool:
-    """Whether news is of a session that is to be played again, as an agent's process was killed in it."""
-    if news.participant not in came.void:
-        if known or not news.killed or not do_overs.take(news.participant):
-            return False
-        came.void.add(news.participant)
-        came.replays += 1
-        watch.note(f"the session of participant {news.participant} begins again: an agent's process was killed")
-    return True
-
-
-def unfinished_error(folder: Path, lost: Sequence[SessionAbandoned], missing: int, wanted: int) -> HthorError:
-    """What to tell of sessions that were given up; their tracebacks go to a file."""
-    told = "; ".join(f"participant {one.participant}: {one.cause.rstrip('.')}" for one in lost[:_HOPELESS])
+def unfinished_error(
+    folder: RunFolder, lost: Sequence[SessionAbandoned], missing: int, expected: int
+) -> Unfinished | InternalFailure:
+    """The error for sessions that were given up; their tracebacks go to a file."""
+    causes = "; ".join(f"participant {one.participant}: {one.cause.rstrip('.')}" for one in lost[:_HOPELESS])
     more = f"; and {len(lost) - _HOPELESS} more" if len(lost) > _HOPELESS else ""
-    tail = f"{missing} of {wanted} trials are missing, all others are kept."
+    tail = f"{missing} of {expected} trials are missing, all others are kept."
     if details := [f"participant {one.participant}\n{one.detail}" for one in lost if one.detail]:
-        jsonio.write(folder / ERRORS, "\n".join(details).encode())
-        return InternalFailure(f"{told}{more}. {tail} The traceback is in {folder / ERRORS}.")
+        folder.write(ERRORS, "\n".join(details).encode())
+        return InternalFailure(f"{causes}{more}. {tail} The traceback is in {folder.path / ERRORS}.")
     return Unfinished(
-        f"{told}{more}. {tail} The same command tries them again; if memory ran out, with fewer --jobs, and if a trial "
-        "needs longer, with a higher --trial-limit."
+        f"{causes}{more}. {tail} The same command tries them again; if memory ran out, with fewer --jobs, and if a "
+        "trial needs longer, with a higher --trial-limit."
     )

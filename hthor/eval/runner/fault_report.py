@@ -1,34 +1,80 @@
-"""What is left of an agent that failed, for its author; decides nothing, and no score depends on it.
+"""How an agent came to fail, for its author; no score depends on it.
 
-The record has the fault. Why it came to that is told by what the agent printed last, what it was given and what it
-did. A run keeps this as `faults/KEY.json`, for the first trials of each kind of fault: a thousand faults fill no disk.
+The trial's record has the fault itself. A fault report adds what the agent printed last, what it was given and what it
+did. A run keeps the first reports of each kind of fault as `faults/KEY.json`, so that many faults fill no disk.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 from msgspec import Struct
 
 from hthor import documents, jsonio, rules
-from hthor.episode import Fault
-from hthor.errors import HthorError, RunError
-from hthor.eval.runner.agent_recorder import RecordedAgent
-from hthor.types import Action, Observation, TrialSpec
+from hthor.errors import RunError
+from hthor.types import Action, Briefing, Mind, Observation, TrialSpec
+
+if TYPE_CHECKING:
+    from hthor.episode import Fault
 
 SCHEMA = "hthor.faults/1"
 FOLDER = "faults"
 MOST_OF_A_KIND, MOST = 20, 200
-"""Trials whose remains a run keeps: of one kind of fault, and of all."""
+"""How many reports a run keeps: of one kind of fault, and in all. Our choice."""
+LAST = 20
+"""How many of an agent's last steps are kept. Our choice."""
 _OUTPUT_CHARACTERS = 8000
+_SCRATCH = re.compile(r"[^\s'\"]*/hthor-guest(?:-\w+)?(?=[/\s'\":,)]|$)")
+_ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")
+
+
+class RecordedAgent:
+    """An agent that is recorded while it acts; this changes nothing of what it does.
+
+    Args:
+        mind: the agent.
+        last: how many steps to keep; None for all of the trial.
+
+    Attributes:
+        looks: the last observations with the actions that followed; the last action is None when the agent failed.
+    """
+
+    def __init__(self, mind: Mind, last: int | None = LAST) -> None:
+        self.mind: Any = mind
+        self.looks: deque[tuple[Observation, Action | None]] = deque(maxlen=last)
+
+    def begin(self, briefing: Briefing) -> None:
+        self.looks.clear()
+        self.mind.begin(briefing)
+
+    def act(self, observation: Observation) -> Action:
+        self.looks.append((observation, None))
+        action: Action = self.mind.act(observation)
+        self.looks[-1] = (observation, action)
+        return action
+
+    def finish(self) -> None:
+        """Its trial is over."""
+        if (finish := getattr(self.mind, "finish", None)) is not None:
+            finish()
+
+    def close(self) -> None:
+        """End the agent's process."""
+        self.mind.close()
+
+    @property
+    def output(self) -> str:
+        """The end of what it printed."""
+        return str(getattr(self.mind, "log", ""))
 
 
 class Look(Struct, frozen=True, kw_only=True):
-    """One time that the agent was asked: what it could read at once, and what it did; null when that was its end."""
+    """One step of the agent: what it could read at once, and its action; null when it failed there."""
 
     tick: int
     observation: dict[str, Any]
@@ -36,7 +82,7 @@ class Look(Struct, frozen=True, kw_only=True):
 
 
 class Failure(Struct, frozen=True, kw_only=True):
-    """One robot's failure ``time_s`` into the trial: its traceback or what it did, its last output and last looks."""
+    """One agent's failure, ``time_s`` [s] into the trial: its traceback or what it did, its last output and steps."""
 
     seat: str
     agent: str
@@ -49,7 +95,7 @@ class Failure(Struct, frozen=True, kw_only=True):
 
 
 class FaultReport(Struct, frozen=True, kw_only=True):
-    """A trial in which agents failed. ``again`` is the command that plays it once more."""
+    """A trial in which agents failed. ``again`` is the command that runs it once more."""
 
     schema: str = SCHEMA
     key: str
@@ -60,13 +106,17 @@ class FaultReport(Struct, frozen=True, kw_only=True):
     again: str = ""
 
 
-def describe_faults(key: str, trial: TrialSpec, faults: Sequence[Fault], minds: Mapping[str, Any]) -> FaultReport:
-    """What is left of the agents that failed in a trial; of those that were not watched only the fault."""
+def describe_faults(key: str, trial: TrialSpec, faults: Sequence[Fault], agents: Mapping[str, Any]) -> FaultReport:
+    """The report of a trial's faults; of agents that were not recorded only the fault itself.
+
+    Args:
+        agents: by seat.
+    """
     names = {robot.seat: robot.agent.name for robot in trial.robots}
     failures = []
     for fault in faults:
-        mind = minds.get(fault.seat)
-        output, looks = (mind.output, tuple(mind.looks)) if isinstance(mind, RecordedAgent) else ("", ())
+        agent = agents.get(fault.seat)
+        output, looks = (agent.output, tuple(agent.looks)) if isinstance(agent, RecordedAgent) else ("", ())
         failures.append(
             Failure(
                 seat=fault.seat,
@@ -85,50 +135,54 @@ def describe_faults(key: str, trial: TrialSpec, faults: Sequence[Fault], minds: 
 
 
 def _look(observation: Observation, action: Action | None) -> Look:
-    told = {
+    fields = {
         name: msgspec.to_builtins(getattr(observation, name))
         for name in ("pose", "idle", "room", "holding", "outcome", "receipt")
     }
-    return Look(tick=observation.tick, observation=told, action=action)
+    return Look(tick=observation.tick, observation=fields, action=action)
 
 
-_box: dict[str, FaultReport] = {}
+def redact(text: str, files: Iterable[str]) -> str:
+    """A fault's text without what differs between machines: paths become relative to these files, addresses go.
 
+    The text is part of the trial's record, which must be the same bytes wherever the agent's file is.
 
-def leave(left: FaultReport) -> None:
-    """Lay it down in this process until whoever sends the trial's record takes it along."""
-    _box[left.key] = left
-
-
-def take(key: str) -> FaultReport | None:
-    """What was laid down of a trial, which is then gone from here."""
-    return _box.pop(key, None)
+    Args:
+        files: paths of files, or of classes in files (``agent.py:Class``).
+    """
+    scripts = [file for file in files if file.endswith(".py") or ".py:" in file]
+    folders = {str(Path(file.rpartition(":")[0] if ".py:" in file else file).resolve().parent) for file in scripts}
+    for folder in sorted(folders, key=len, reverse=True):
+        if folder != "/":
+            text = text.replace(f"{folder}/", "")
+    return _ADDRESS.sub("0x...", _SCRATCH.sub("$TMPDIR", text))
 
 
 class FaultArchive:
-    """Writes remains into a run's folder, as many as there is room for.
+    """Writes fault reports into a run's folder, up to `MOST_OF_A_KIND` and `MOST`.
 
     Args:
-        folder: the run's. again: the command that plays a trial once more, but for the trial's key; may be empty.
+        folder: the run's.
+        command: the command that runs a trial once more, without the trial's key; may be empty.
     """
 
-    def __init__(self, folder: Path, again: str = "") -> None:
-        self._folder, self._again = folder / FOLDER, again
+    def __init__(self, folder: Path, command: str = "") -> None:
+        self._folder, self._command = folder / FOLDER, command
         self._kinds: dict[str, int] | None = None
 
-    def keep(self, left: FaultReport) -> None:
-        """Write a trial's remains, unless there are enough of its kind."""
+    def keep(self, report: FaultReport) -> None:
+        """Write a report, unless there are enough of its kind."""
         if self._kinds is None:
-            self._kinds = self._counted()
-        kind = left.failures[0].kind if left.failures else ""
+            self._kinds = self._counts()
+        kind = report.failures[0].kind if report.failures else ""
         if self._kinds.get(kind, 0) >= MOST_OF_A_KIND or sum(self._kinds.values()) >= MOST:
             return
         self._kinds[kind] = self._kinds.get(kind, 0) + 1
-        told = msgspec.structs.replace(left, again=f"{self._again} {left.key}" if self._again else "")
-        jsonio.write(self._folder / f"{left.key}.json", jsonio.pretty(told))
+        report = msgspec.structs.replace(report, again=f"{self._command} {report.key}" if self._command else "")
+        jsonio.write(self._folder / f"{report.key}.json", jsonio.pretty(report))
 
-    def _counted(self) -> dict[str, int]:
-        """How many an earlier command kept, by kind; it may also have left half a file."""
+    def _counts(self) -> dict[str, int]:
+        """How many reports earlier commands kept, by kind; half-written files are removed."""
         for torn in self._folder.glob(".*.json.*"):
             torn.unlink(missing_ok=True)
         kinds: dict[str, int] = {}
@@ -139,7 +193,7 @@ class FaultArchive:
 
 
 def load_fault_report(path: Path) -> FaultReport:
-    """What a file says.
+    """The report in a file.
 
     Raises:
         RunError: when it cannot be read.
@@ -148,22 +202,6 @@ def load_fault_report(path: Path) -> FaultReport:
 
 
 def rerun_command(folder: Path, key: str) -> str:
-    """What plays a trial of a run once more, as its remains have it; empty where it has none."""
+    """The command that runs a trial of a run once more, from its fault report; empty where it has none."""
     path = folder / FOLDER / f"{key}.json"
     return load_fault_report(path).again if path.is_file() else ""
-
-
-def parse_max_faults(words: str) -> Callable[[int], float]:
-    """How many of so many trials may have a fault: "3", or "5%" of them.
-
-    Raises:
-        HthorError: when it is neither.
-    """
-    number, percent = words.strip().removesuffix("%"), words.strip().endswith("%")
-    try:
-        value = float(number) if percent else int(number)
-    except ValueError:
-        value = -1.0
-    if not 0.0 <= value < math.inf or (percent and value > 100.0):
-        raise HthorError(f"--max-faults '{words}' is no number of trials, such as 3, and no share of them, such as 5%.")
-    return lambda trials: value / 100.0 * trials if percent else value

@@ -1,4 +1,4 @@
-"""Ending a command early: the first signal asks, the second one insists."""
+"""Ending a command early: the first signal lets running trials finish, the second one ends at once."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hthor.errors import HthorError
 
 
 class Interrupted(HthorError):
-    """The user stopped the run; what was played is kept."""
+    """The user stopped the run; finished trials are kept."""
 
     exit_code = 130
 

@@ -1,19 +1,33 @@
-"""What engines and workers tell of sessions."""
+"""What workers and engines report of sessions."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
 if TYPE_CHECKING:
+    from hthor.eval.config.sessions import Session
+    from hthor.eval.records.trial_record import TrialRecord
     from hthor.eval.runner.fault_report import FaultReport
 
 
-class TrialDone(Struct, frozen=True, kw_only=True):
-    """A trial is over. ``line`` is its whole record, ``left`` what is left of agents that failed in it.
+class TrialOutcome(Struct, frozen=True, kw_only=True):
+    """A trial that was run: its record, and for the author of an agent that failed in it, how that came about."""
 
-    ``killed`` says that an agent's process was ended as if from outside; its session may be played again.
+    record: TrialRecord
+    fault_report: FaultReport | None = None
+
+
+class TrialDone(Struct, frozen=True, kw_only=True):
+    """A trial is over.
+
+    Attributes:
+        line: its record as a line of the log.
+        met: the goal was met.
+        faulty: an agent failed in it; ``fault_report`` says how, where that is known.
+        killed: an agent's process was killed, apparently from outside; its session may be restarted.
     """
 
     key: str
@@ -21,27 +35,29 @@ class TrialDone(Struct, frozen=True, kw_only=True):
     line: bytes
     met: bool
     faulty: bool
-    left: FaultReport | None = None
+    fault_report: FaultReport | None = None
     killed: bool = False
 
 
 class Finished(Struct, frozen=True, kw_only=True):
-    """A session is over; ``cpu_s`` [s] is what it cost, with its agents' processes."""
+    """A session is over; ``cpu_s`` is the CPU time [s] that it took, with its agents' processes."""
 
     cpu_s: float
 
 
 class SessionRestarted(Struct, frozen=True, kw_only=True):
-    """A session begins again, as its worker was lost."""
+    """A session is run again from its first trial, because its worker was lost."""
 
     participant: int
     cause: str
 
 
 class SessionAbandoned(Struct, frozen=True, kw_only=True):
-    """A session was given up; the others go on. ``detail`` is the traceback of a bug, empty when there is none.
+    """A session was given up; the others go on.
 
-    ``killed`` says that an agent's process was ended as if from outside before it could say what it is.
+    Attributes:
+        detail: the traceback of a bug, otherwise empty.
+        killed: an agent's process was killed, apparently from outside, before it could say what it is.
     """
 
     participant: int
@@ -51,10 +67,14 @@ class SessionAbandoned(Struct, frozen=True, kw_only=True):
 
 
 class Failed(Struct, frozen=True, kw_only=True):
-    """No session can be played, for a reason that is the user's to mend: ``exit_code`` and ``message``."""
+    """No session can be run until the user has mended something: ``message`` says what."""
 
     exit_code: int
     message: str
 
 
+SessionRunner = Callable[["Session"], "Iterator[TrialOutcome]"]
+"""Runs a session, trial by trial."""
+RunnerFactory = Callable[[], SessionRunner]
+"""Makes a session runner; must be picklable, and is called once in each worker."""
 News = TrialDone | Finished | SessionRestarted | SessionAbandoned | Failed

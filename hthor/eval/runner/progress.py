@@ -1,9 +1,9 @@
-"""How a run goes, told on standard error: a live line on a terminal, plain lines in a pipe; decides nothing."""
+"""Reporting a run's progress on standard error: a live line on a terminal, plain lines in a pipe."""
 
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -11,27 +11,46 @@ if TYPE_CHECKING:
 _LINE_EVERY_S = 30.0
 
 
-class Silent:
-    """Says nothing."""
+class Watcher(Protocol):
+    """What follows the progress of a run."""
 
     def begin(self, total: int, kept: int) -> None:
-        """See `hthor.eval.runner.run.Watcher`."""
+        """The run has ``total`` trials, of which earlier commands ran ``kept``."""
 
     def played(self, met: bool, faulty: bool) -> None:
-        """See `hthor.eval.runner.run.Watcher`."""
+        """A trial is over: whether its goal was met, and whether an agent failed in it."""
 
     def beat(self) -> None:
-        """See `hthor.eval.runner.run.Watcher`."""
+        """Some time passed; called at least every `hthor.eval.records.trial_log.BEAT_S`."""
 
     def note(self, text: str) -> None:
-        """See `hthor.eval.runner.run.Watcher`."""
+        """Something that the user should read."""
+
+    def close(self) -> None:
+        """The run is over."""
+
+
+class Silent:
+    """A watcher that prints nothing."""
+
+    def begin(self, total: int, kept: int) -> None:
+        """See `hthor.eval.runner.progress.Watcher`."""
+
+    def played(self, met: bool, faulty: bool) -> None:
+        """See `hthor.eval.runner.progress.Watcher`."""
+
+    def beat(self) -> None:
+        """See `hthor.eval.runner.progress.Watcher`."""
+
+    def note(self, text: str) -> None:
+        """See `hthor.eval.runner.progress.Watcher`."""
 
     def close(self) -> None:
         """The run is over."""
 
 
 class Tally:
-    """Counts of the trials that this command played, and its pace."""
+    """Counts of the trials that this command ran, and its pace."""
 
     def __init__(self, total: int, kept: int) -> None:
         self.total, self.kept = total, kept
@@ -52,7 +71,7 @@ class Tally:
 
     @property
     def pace(self) -> float | None:
-        """Trials a second since the first one, which had to wait for the workers to start."""
+        """Trials per second since the first one, which had to wait for the workers to start."""
         if self._first is None or self.new < 3:
             return None
         spent = time.monotonic() - self._first
@@ -60,7 +79,7 @@ class Tally:
 
     @property
     def words(self) -> str:
-        """The state of the run in a line."""
+        """The state of the run in one line."""
         parts = [f"{self.done}/{self.total} trials"]
         if self.new:
             parts.append(f"success {100.0 * self.met / self.new:.0f} %")
@@ -74,7 +93,7 @@ class Tally:
 
 
 class Plain:
-    """A line for about every tenth of the run, and at least every 30 s."""
+    """Prints a line for about every tenth of the run, and at least every 30 s."""
 
     def __init__(self, console: Console, name: str) -> None:
         self._console, self._name = console, name
@@ -101,7 +120,7 @@ class Plain:
         self._say(f"note: {text}")
 
     def close(self) -> None:
-        """Nothing is left on the screen that would have to go."""
+        """Nothing has to be removed from the screen."""
 
     def _say(self, text: str) -> None:
         self._last = time.monotonic()
@@ -109,7 +128,7 @@ class Plain:
 
 
 class Live:
-    """A bar on the terminal that goes when the run is over."""
+    """A bar on the terminal that disappears when the run is over."""
 
     def __init__(self, console: Console, name: str) -> None:
         self._console, self._name = console, name
@@ -137,7 +156,7 @@ class Live:
         self._bar.update(self._task, completed=self._tally.done, words=self._tally.words)
 
     def beat(self) -> None:
-        """The bar's own thread keeps it fresh."""
+        """The bar updates itself."""
 
     def note(self, text: str) -> None:
         self._console.print(f"{self._name}: note: {text}", markup=False, highlight=False)

@@ -1,152 +1,135 @@
-"""One run from its configuration to its result: claim the folder, play what is missing, score; prints nothing."""
+"""One run from its configuration to its result: claim the folder, run the missing trials, score; prints nothing."""
 
 from __future__ import annotations
 
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
-from typing import Protocol
 
 from hthor import jsonio
-from hthor.eval.config import run_config
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Session
-from hthor.eval.records import platform, reader, run_isolation, session_restarts, trial_log, trial_record
+from hthor.eval.records import platform, trial_log, trial_record
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import TrialLog
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, baseline, result_file
 from hthor.eval.results.result_file import Effort, RunResult
-from hthor.eval.runner import collector, engines
-from hthor.eval.runner.engines import Engine, RunnerFactory
+from hthor.eval.runner import engines
+from hthor.eval.runner.collector import CollectedTrials, Collector, unfinished_error
+from hthor.eval.runner.engines import Engine
 from hthor.eval.runner.fault_report import FaultArchive
 from hthor.eval.runner.interrupt import Interrupted, stoppable
-
-EFFORT = "effort.json"
-"""What a shard took. A result it has none, as that is of whole runs."""
-
-
-class Watcher(Protocol):
-    """Who wants to know how a run goes."""
-
-    def begin(self, total: int, kept: int) -> None:
-        """The run has ``total`` trials, of which ``kept`` were played by an earlier command."""
-
-    def played(self, met: bool, faulty: bool) -> None:
-        """A trial was played."""
-
-    def beat(self) -> None:
-        """Some time passed."""
-
-    def note(self, text: str) -> None:
-        """Something that the user should read."""
+from hthor.eval.runner.messages import RunnerFactory
+from hthor.eval.runner.progress import Watcher
 
 
 def run_evaluation(
-    plan: RunConfig,
+    config: RunConfig,
     sessions: Sequence[Session],
     make: RunnerFactory,
     *,
-    folder: Path,
+    folder: RunFolder,
+    watcher: Watcher,
     jobs: int | None = None,
     engine: Engine | None = None,
-    watch: Watcher,
     extra: Mapping[str, bytes] | None = None,
-    again: str = "",
+    rerun_command: str = "",
     check: Callable[[RunConfig, Sequence[TrialRecord]], None] | None = None,
 ) -> RunResult:
-    """Play what a run still lacks, and score it.
+    """Run the trials that a run still lacks, and score it.
 
     Args:
-        plan: the configuration. sessions: its trials, or those of its shard.
-        make: picklable; called in each worker, gives what plays a session.
-        folder: the run's folder; made when absent, finished when it holds a part of this run.
+        config: the run's configuration.
+        sessions: its trials, or those of its shard.
+        make: picklable; called in each worker, makes what runs a session.
+        folder: made when absent, completed when it holds a part of this run.
         jobs: number of worker processes, when no ``engine`` is given.
-        engine: where sessions are played; on this machine when not given.
-        extra: other files to leave in the folder, by name, such as a suite that was made for this run.
-        again: the command that plays one of its trials once more, but for the trial's key.
-        check: looks at what was played before, and raises when no more may be added to it.
+        engine: where sessions are run; this machine by default.
+        extra: other files to write into the folder, by name, such as a suite that was generated for this run.
+        rerun_command: the command that runs one of its trials once more, without the trial's key.
+        check: looks at the trials of earlier commands, and raises when none may be added to them.
 
     Raises:
         RunLocked: when another process writes this run.
         RunError: when the folder holds another run or is damaged.
-        Unfinished, InternalFailure: when sessions had to be given up. All others are played first.
+        Unfinished, InternalFailure: when sessions had to be given up. All others are finished first.
         Interrupted: on Ctrl-C or SIGTERM.
     """
     with stoppable() as stop:
-        where = engine or engines.find_engine(engines.LOCAL, jobs=jobs)
-        result = _evaluate(plan, sessions, make, folder, where, watch, extra, again, check, stop)
+        engine = engine or engines.find_engine(engines.LOCAL, jobs=jobs)
+        started = time.monotonic()
+        folder.check_free(config)
+        with folder.open_log() as log:
+            config = folder.write_config(config)
+            for name, data in (extra or {}).items():
+                folder.write(name, data)
+            if check is not None and len(log):
+                check(config, folder.digest()[1])
+            faults = FaultArchive(folder.path, rerun_command)
+            collector = Collector(folder, log, engine, watcher, faults, stop)
+            collected = _run_missing(config, sessions, make, folder, log, collector, watcher, stop)
+        effort = None
+        if collected is not None:
+            effort = Effort(
+                wall_s=round(time.monotonic() - started, 3),
+                cpu_s=round(collected.cpu_s, 3),
+                trials=collected.new,
+                replays=collected.restarts,
+            )
+        result = _score(folder, effort)
         if stop.is_set():
             raise Interrupted("interrupted; resume with the same command.")
         return result
 
 
-def _evaluate(
-    plan: RunConfig,
+def _run_missing(
+    config: RunConfig,
     sessions: Sequence[Session],
     make: RunnerFactory,
-    folder: Path,
-    engine: Engine,
-    watch: Watcher,
-    extra: Mapping[str, bytes] | None,
-    again: str,
-    check: Callable[[RunConfig, Sequence[TrialRecord]], None] | None,
+    folder: RunFolder,
+    log: TrialLog,
+    collector: Collector,
+    watcher: Watcher,
     stop: threading.Event,
-) -> RunResult:
-    began = time.monotonic()
-    run_config.check_folder(folder, plan)
-    plan = run_config.with_stored_title(folder, plan)
-    with TrialLog(folder) as book:
-        run_config.write_config(folder, plan)
-        for name, data in (extra or {}).items():
-            jsonio.write(folder / name, data)
-        keys = [[trial_record.key(trial) for trial in session.trials] for session in sessions]
-        wanted = [key for some in keys for key in some]
-        left = [session for session, some in zip(sessions, keys, strict=True) if any(key not in book for key in some)]
-        if check is not None and len(book):
-            check(plan, reader.digest(folder, plan)[1])
-        watch.begin(len(wanted), sum(key in book for key in wanted))
-        if book.torn:
-            watch.note(f"cut {book.torn} bytes of a trial that was being written when the last command ended")
-        keeper = FaultArchive(folder, again)
-        if left:
-            platform.note(folder)
-        came = (
-            collector.collect(book, engine, left, make, watch, keeper, stop, steady=not plan.realtime) if left else None
-        )
-        if stop.is_set():
-            raise Interrupted(f"interrupted after {len(book)} trials; resume with the same command.")
-        missing = [key for key in wanted if key not in book]
-        if missing:
-            raise collector.unfinished_error(folder, came.lost if came else [], len(missing), len(wanted))
-    if came is None:
-        return _finish(folder, plan, None)
-    effort = Effort(
-        wall_s=round(time.monotonic() - began, 3),
-        cpu_s=round(came.cpu_s, 3),
-        trials=came.new,
-        replays=came.replays,
-    )
-    return _finish(folder, plan, effort)
+) -> CollectedTrials | None:
+    """Run the sessions that lack trials; None when none does."""
+    keys = {session.participant: [trial_record.key(trial) for trial in session.trials] for session in sessions}
+    expected = [key for some in keys.values() for key in some]
+    left = [session for session in sessions if any(key not in log for key in keys[session.participant])]
+    watcher.begin(len(expected), sum(key in log for key in expected))
+    if log.torn:
+        watcher.note(f"cut {log.torn} bytes of a trial that was being written when the last command ended")
+    collected = None
+    if left:
+        platform.note(folder.path)
+        collected = collector.collect(left, make, repeatable=not config.realtime)
+    if stop.is_set():
+        raise Interrupted(f"interrupted after {len(log)} trials; resume with the same command.")
+    missing = [key for key in expected if key not in log]
+    if missing:
+        raise unfinished_error(folder, collected.lost if collected else [], len(missing), len(expected))
+    return collected
 
 
-def _finish(folder: Path, plan: RunConfig, effort: Effort | None) -> RunResult:
-    """Score what is there, and store that: a whole run's result, or what a shard took."""
-    there, records = reader.digest(folder, plan)
-    if plan.shard:
+def _score(folder: RunFolder, effort: Effort | None) -> RunResult:
+    """Score the run and store the result of a whole run, or the effort of a shard."""
+    config = folder.config
+    places, records = folder.digest()
+    if config.shard:
         if effort is not None:
-            jsonio.write(folder / EFFORT, jsonio.pretty(effort))
-        return aggregate.make_result(plan, trial_log.fetch(there), records, effort)
-    stored = result_file.load_result(folder)
+            jsonio.write(folder.effort_file, jsonio.pretty(effort))
+        return aggregate.make_result(config, trial_log.fetch(places), records, effort)
+    stored = result_file.load_result(folder.path)
     result = aggregate.make_result(
-        plan,
-        trial_log.fetch(there),
+        config,
+        trial_log.fetch(places),
         records,
         effort or (stored.effort if stored else None),
-        uplift=baseline.uplift_or_stored(folder, plan, records),
-        isolation=run_isolation.load_isolation(folder),
-        replays=session_restarts.count(folder),
+        uplift=baseline.uplift_or_stored(folder.path, config, records),
+        isolation=folder.isolation,
+        replays=folder.restarts,
     )
     if result != stored:
-        result_file.store_result(folder, result)
+        result_file.store_result(folder.path, result)
     return result

@@ -1,22 +1,25 @@
-"""What `hthor eval` is asked to play: which runs, with whom, written where."""
+"""The options of `hthor eval`, and the runs that they stand for."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import msgspec
 from msgspec import Struct
 
-from hthor import code_identity
+from hthor import code_identity, guest
 from hthor.errors import HthorError
 from hthor.eval.config import human_populations, robot_team, run_config, shard, task_selection
 from hthor.eval.config.robot_team import RobotTeam
-from hthor.eval.config.run_config import RunConfig
+from hthor.eval.config.run_config import AssetsRef, RunConfig
 from hthor.eval.config.task_selection import TaskSelection
 from hthor.eval.records import run_isolation
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import baseline
 from hthor.eval.runner import engines, trial_runner
+from hthor.eval.runner.run_job import ScheduledRun, make_sources
 from hthor.guest import GuestConfig, Isolation
 from hthor.guest.agent import inputs
 from hthor.humans.population.resolve import PROXY, ParticipantSource
@@ -27,9 +30,9 @@ RUNS = Path("runs")
 
 
 class RunOptions(Struct, frozen=True, kw_only=True):
-    """What the user asked for, empty where the default depends on the rest. ``name`` is the user's own for the run.
+    """What the user asked for, as docs/cli.md lists it under `hthor eval`; empty where the default depends on the rest.
 
-    With ``control``, the same people also do the same tasks without a robot, unless such a run lies there already.
+    ``control`` asks for a run of the same people at the same tasks without a robot, unless there is one already.
     """
 
     agents: tuple[str, ...] = ()
@@ -64,39 +67,35 @@ class RunOptions(Struct, frozen=True, kw_only=True):
     readable: tuple[Path, ...] = ()
 
 
-class RunJob(Struct, frozen=True, kw_only=True):
-    """One run of several: who is evaluated with whom, and where that is written."""
-
-    crew: RobotTeam
-    people: ParticipantSource
-    plan: RunConfig
-    folder: Path
-    title: str
-
-
 class ResolvedRuns(Struct, frozen=True, kw_only=True):
-    """What a command stands for, when everything is settled and before anything is written: the tasks, the runs that
-    were asked for, and what will hold agents of the user's own. ``control_of`` has, for the folder of each run that has
-    no control yet, the run that becomes it, which may be one that was asked for.
+    """What the options stand for, before anything is written.
+
+    Attributes:
+        tasks: the tasks of every run.
+        runs: the runs that were asked for.
+        baseline_of: for the folder of each run that has no baseline yet, the run that becomes it; that may be one of
+            ``runs``.
+        isolation: how submitted agents are isolated on this machine; None where all agents are built in.
     """
 
-    chosen: TaskSelection
-    parts: tuple[RunJob, ...]
-    control_of: dict[Path, RunJob]
-    held: Isolation | None
+    tasks: TaskSelection
+    runs: tuple[ScheduledRun, ...]
+    baseline_of: dict[Path, ScheduledRun]
+    isolation: Isolation | None
 
     @property
-    def controls(self) -> tuple[RunJob, ...]:
-        """Runs that nobody asked for, played as the control of others."""
-        asked = {part.folder for part in self.parts}
-        return tuple({part.folder: part for part in self.control_of.values() if part.folder not in asked}.values())
+    def baselines(self) -> tuple[ScheduledRun, ...]:
+        """Runs that nobody asked for, which serve as baselines of others."""
+        asked = {run.folder.path for run in self.runs}
+        others = (run for run in self.baseline_of.values() if run.folder.path not in asked)
+        return tuple({run.folder.path: run for run in others}.values())
 
 
 def resolve_options(options: RunOptions) -> ResolvedRuns:
-    """Find out what is asked for. Nothing is written.
+    """Find out which runs are asked for. Nothing is written.
 
     Raises:
-        HthorError: for whatever the user can have got wrong, but for what lies in the runs' folders already.
+        HthorError: for any invalid option; what lies in the runs' folders is not looked at.
     """
     if not options.agents and not options.robots:
         raise HthorError(
@@ -104,136 +103,200 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
         )
     guests = guest_config(options)
     code_identity.keep_compiled()
-    whom = human_populations.find_populations(options.humans)
-    detector = detector_specs.canonical_name(options.detector)
-    camera = cameras.canonical_name(options.camera, options.camera_size)
+    populations = human_populations.find_populations(options.humans)
     pack = trial_runner.load_pack(options.assets)
-    shown = run_config.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
-    whole = task_selection.select_tasks(options.suite, options.kind)
-    chosen = task_selection.limit_selection(
-        task_selection.narrow_selection(whole, options.houses, options.difficulty), options.limit
+    assets = run_config.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
+    tasks = _select_tasks(options)
+    planner = _Planner(options, tasks, assets, guests)
+    drafts = planner.runs(_teams(options, tasks, guests), populations)
+    baselines = planner.baselines(drafts) if options.control and not options.shard else {}
+    agents = sorted({agent for run in drafts for agent in run.team.agent_paths.values()})
+    isolation = run_isolation.resolve_isolation(options.isolation, options.require_isolation, agents)
+    runs = tuple(planner.isolated(run, isolation) for run in drafts)
+    by_folder = {run.folder.path: run for run in runs}
+    return ResolvedRuns(
+        tasks=tasks,
+        runs=runs,
+        baseline_of={folder: by_folder.get(run.folder.path, run) for folder, run in baselines.items()},
+        isolation=isolation,
     )
-    parts = _parts(options, chosen, _crews(options, chosen, detector, camera, guests), whom, shown)
-    controls = _controls(options, chosen, parts) if options.control and not options.shard else {}
-    minds = sorted({mind for part in parts for mind in part.crew.minds.values()})
-    held = run_isolation.resolve_isolation(options.isolation, options.require_isolation, minds)
-    return ResolvedRuns(chosen=chosen, parts=tuple(parts), control_of=controls, held=held)
 
 
-def _controls(options: RunOptions, chosen: TaskSelection, parts: Sequence[RunJob]) -> dict[Path, RunJob]:
-    """For the folder of each run with robots that has no control yet, the run that is its control."""
-    crew = robot_team.form_team(["scout"], [robot_team.NO_ROBOT_AGENT])
-    found: dict[Path, RunJob] = {}
-    for part in parts:
-        if not part.plan.seats or baseline.find_baseline(part.folder, part.plan) is not None:
-            continue
-        same = [other for other in parts if other.people.sha256 == part.people.sha256]
-        asked = next((other for other in same if not other.plan.seats), None)
-        if asked is not None:
-            found[part.folder] = asked
-            continue
-        assets = part.plan.assets if options.assets else None
-        plan = run_config.build_config(
-            chosen.suite,
-            crew,
-            human=part.people,
+def _select_tasks(options: RunOptions) -> TaskSelection:
+    tasks = task_selection.select_tasks(options.suite, options.kind)
+    narrowed = task_selection.narrow_selection(tasks, options.houses, options.difficulty)
+    return task_selection.limit_selection(narrowed, options.limit)
+
+
+class _Planner:
+    """Makes the runs that some options stand for; all have the same tasks and furniture."""
+
+    def __init__(
+        self, options: RunOptions, tasks: TaskSelection, assets: AssetsRef | None, guests: GuestConfig
+    ) -> None:
+        self._options, self._tasks, self._assets, self._guests = options, tasks, assets, guests
+        self._brings_houses = bool(own_houses(options))
+
+    def runs(self, teams: Sequence[RobotTeam], populations: Sequence[ParticipantSource]) -> list[ScheduledRun]:
+        """Every team with every population, each in a folder of its own."""
+        sizes = len(teams), len(populations)
+        runs = [self._run(team, people, *sizes) for people in populations for team in teams]
+        names = [run.config.name for run in runs[: len(teams)]]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise HthorError(
+                f"two agents are called '{twice[0]}'. Rename one of the files, or evaluate them one by one."
+            )
+        return runs
+
+    def baselines(self, runs: Sequence[ScheduledRun]) -> dict[Path, ScheduledRun]:
+        """For the folder of each run with robots that has no baseline yet, the run that becomes it."""
+        team = robot_team.form_team(["scout"], [robot_team.NO_ROBOT_AGENT])
+        found: dict[Path, ScheduledRun] = {}
+        for run in runs:
+            if not run.config.seats or baseline.find_baseline(run.folder.path, run.config) is not None:
+                continue
+            same = [other for other in runs if other.population.sha256 == run.population.sha256]
+            asked = next((other for other in same if not other.config.seats), None)
+            found[run.folder.path] = asked or self._baseline(run, team, only=len(same) == 1)
+        return found
+
+    def isolated(self, run: ScheduledRun, isolation: Isolation | None) -> ScheduledRun:
+        """The run with the isolation of its agents, from which its folder is hidden."""
+        own = run_isolation.isolation_of(isolation, run.team.agent_paths.values())
+        if own is None:
+            return run
+        level = self._options.isolation if own.level == guest.SERVED else own.level  # of agents beside a served one
+        hidden = (*self._guests.hidden, str(run.folder.path.resolve()))
+        guests = GuestConfig(isolation=level, hidden=hidden, inputs=self._guests.inputs)
+        sources = msgspec.structs.replace(run.sources, guests=guests)
+        return msgspec.structs.replace(run, sources=sources, isolation=own)
+
+    def _run(self, team: RobotTeam, people: ParticipantSource, teams: int, populations: int) -> ScheduledRun:
+        options = self._options
+        config = self._config(team, people, self._assets)
+        if options.name:
+            own = run_config.check_title(options.name) + (f"-{config.team_name}" if teams > 1 else "")
+            config = msgspec.structs.replace(config, title=own)
+        title = config.name if populations == 1 else f"{config.name}, {people.name} people"
+        path = _folder(options, config, teams, populations)
+        if options.shard:
+            number = shard.parse_shard(options.shard)
+            config = run_config.shard_config(config, number, len(self._tasks.suite.tasks))
+            title, path = f"{title}, shard {number.words}", number.folder(path)
+        return self._job(team, people, config, path, title)
+
+    def _baseline(self, run: ScheduledRun, team: RobotTeam, *, only: bool) -> ScheduledRun:
+        """A run without a robot for this one; ``only`` when no other run has the same people."""
+        config = self._config(team, run.population, run.config.assets if self._options.assets else None, baseline=True)
+        if self._options.out is None and not self._options.name:
+            path = RUNS / config.folder_name
+        else:
+            own = run.folder.path
+            path = own / baseline.FOLDER if only else own.parent / config.team_name
+        title = run.title.replace(run.config.name, robot_team.NO_ROBOT, 1)
+        return self._job(team, run.population, config, path, title)
+
+    def _config(
+        self, team: RobotTeam, people: ParticipantSource, assets: AssetsRef | None, *, baseline: bool = False
+    ) -> RunConfig:
+        options, tasks = self._options, self._tasks
+        return run_config.build_config(
+            tasks.suite,
+            team,
+            human=people,
             seed=options.seed,
             participants=options.participants,
-            kind=chosen.kind,
+            kind=tasks.kind,
             assets=assets,
-            limit=chosen.limit,
-            houses=chosen.houses,
-            difficulty=chosen.difficulty,
+            realtime=options.realtime and not baseline,
+            limit=tasks.limit,
+            houses=tasks.houses,
+            difficulty=tasks.difficulty,
+            step_limit_s=None if baseline else options.step_limit,
         )
-        if options.out is None and not options.name:
-            folder = RUNS / plan.folder_name
-        else:
-            folder = part.folder / baseline.FOLDER if len(same) == 1 else part.folder.parent / plan.crew
-        title = part.title.replace(part.plan.name, robot_team.NO_ROBOT, 1)
-        found[part.folder] = RunJob(crew=crew, people=part.people, plan=plan, folder=folder, title=title)
-    return found
+
+    def _job(
+        self, team: RobotTeam, people: ParticipantSource, config: RunConfig, path: Path, title: str
+    ) -> ScheduledRun:
+        return ScheduledRun(
+            config=config,
+            team=team,
+            population=people,
+            tasks=self._tasks,
+            sources=make_sources(
+                team,
+                kind_path=self._tasks.kind_path,
+                assets=self._options.assets,
+                houses=path / "houses" if self._brings_houses else None,
+                humans=people.word,
+                guests=self._guests,
+            ),
+            folder=RunFolder(path),
+            title=title,
+            isolation=None,
+        )
 
 
-def _parts(
-    options: RunOptions,
-    chosen: TaskSelection,
-    found: Sequence[RobotTeam],
-    whom: Sequence[ParticipantSource],
-    shown: run_config.AssetsRef | None,
-) -> list[RunJob]:
-    """Every run, each with a folder of its own."""
-    parts: list[RunJob] = []
-    for people in whom:
-        for crew in found:
-            plan = run_config.build_config(
-                chosen.suite,
-                crew,
-                human=people,
-                seed=options.seed,
-                participants=options.participants,
-                kind=chosen.kind,
-                assets=shown,
-                realtime=options.realtime,
-                limit=chosen.limit,
-                houses=chosen.houses,
-                difficulty=chosen.difficulty,
-                step_limit_s=options.step_limit,
-            )
-            if options.name:
-                own = run_config.check_title(options.name) + (f"-{plan.crew}" if len(found) > 1 else "")
-                plan = msgspec.structs.replace(plan, title=own)
-            title = plan.name if len(whom) == 1 else f"{plan.name}, {people.name} people"
-            folder = _folder(options, plan, len(found), len(whom))
-            if options.shard:
-                plan = run_config.shard_config(plan, shard.parse_shard(options.shard), len(chosen.suite.tasks))
-                assert plan.shard
-                title, folder = f"{title}, shard {plan.shard.words}", plan.shard.folder(folder)
-            parts.append(RunJob(crew=crew, people=people, plan=plan, folder=folder, title=title))
-    names = [part.plan.name for part in parts[: len(found)]]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise HthorError(f"two agents are called '{twice[0]}'. Rename one of the files, or evaluate them one by one.")
-    return parts
+def own_houses(options: RunOptions) -> dict[str, bytes]:
+    """The house files that the suite brings with it, by name; none for a suite that ships with hthor."""
+    return library.house_files(options.suite) if options.suite and Path(options.suite).exists() else {}
 
 
 def guest_config(options: RunOptions) -> GuestConfig:
     """How submitted agents are isolated, and what they are given."""
-    given = inputs.parse_inputs(options.agent_args, options.readable)
-    return GuestConfig(isolation=options.isolation, hidden=hidden(options), inputs=given)
+    agent_inputs = inputs.parse_inputs(options.agent_args, options.readable)
+    return GuestConfig(isolation=options.isolation, hidden=_hidden_paths(options), inputs=agent_inputs)
 
 
-def hidden(options: RunOptions) -> tuple[str, ...]:
-    """What no agent may read, even if it lies in its own folder: runs, tasks and people."""
+def _hidden_paths(options: RunOptions) -> tuple[str, ...]:
+    """What no agent may read, even in its own folder: runs, tasks and human populations."""
     words = (*options.humans, options.suite, options.kind, str(options.out or ""))
-    places = [RUNS, *(Path(word.rpartition("@")[2]) for word in words if word)]
+    paths = [RUNS, *(Path(word.rpartition("@")[2]) for word in words if word)]
     if options.suite and Path(options.suite).is_file():
-        places.append(library.houses_folder(Path(options.suite)))
-    return tuple(str(path.resolve()) for path in places if path.exists())
+        paths.append(library.houses_folder(Path(options.suite)))
+    return tuple(str(path.resolve()) for path in paths if path.exists())
 
 
-def _crews(
-    options: RunOptions, chosen: TaskSelection, detector: str, camera: str, guests: GuestConfig | None = None
-) -> list[RobotTeam]:
-    """Who is evaluated, one run each."""
+def parse_max_faults(text: str) -> Callable[[int], float]:
+    """How many of a number of trials may have a fault, for a text such as "3" or "5%".
+
+    Raises:
+        HthorError: when it is neither a number nor a share of trials.
+    """
+    number, percent = text.strip().removesuffix("%"), text.strip().endswith("%")
+    try:
+        value = float(number) if percent else int(number)
+    except ValueError:
+        value = -1.0
+    if not 0.0 <= value < math.inf or (percent and value > 100.0):
+        raise HthorError(f"--max-faults '{text}' is no number of trials, such as 3, and no share of them, such as 5%.")
+    return lambda trials: value / 100.0 * trials if percent else value
+
+
+def _teams(options: RunOptions, tasks: TaskSelection, guests: GuestConfig) -> list[RobotTeam]:
+    """The teams that are evaluated, one run each."""
+    detector = detector_specs.canonical_name(options.detector)
+    camera = cameras.canonical_name(options.camera, options.camera_size)
     if options.robots:
         if options.robot:
-            raise HthorError("--robots names all the bodies; leave out --robot.")
+            raise HthorError("--robots names all the robots; leave out --robot.")
         return robot_team.parse_teams(options.robots, options.agents, detector, camera, guests=guests)
-    bodies = (options.robot,) if options.robot else chosen.crew
-    if not bodies:
+    names = (options.robot,) if options.robot else tasks.robots
+    if not names:
         raise HthorError(
-            f"the kinds of task in the suite '{chosen.suite.name}' want different robots; name them with --robots, "
+            f"the task kinds in the suite '{tasks.suite.name}' are made for different robots; name them with --robots, "
             "or choose one kind with --kind."
         )
-    shapes = [robot_team.load_robot_info(body) for body in bodies]
-    minds = [robot_team.load_agent_info(agent, guests) for agent in options.agents]
-    return [robot_team.form_team(shapes, [mind] * len(shapes), detector, camera) for mind in minds]
+    robots = [robot_team.load_robot_info(name) for name in names]
+    agents = [robot_team.load_agent_info(agent, guests) for agent in options.agents]
+    return [robot_team.form_team(robots, [agent] * len(robots), detector, camera) for agent in agents]
 
 
-def _folder(options: RunOptions, plan: RunConfig, crews: int, whom: int) -> Path:
-    """Where a run is written: peoples have folders of their own, and agents have theirs in these."""
+def _folder(options: RunOptions, config: RunConfig, teams: int, populations: int) -> Path:
+    """Where a run is written: populations have folders of their own, and in these teams have theirs."""
     base = options.out or (RUNS / options.name if options.name else None)
     if base is None:
-        return RUNS / plan.folder_name
-    folder = base if whom == 1 else base / plan.humans.name
-    return folder if crews == 1 else folder / plan.crew
+        return RUNS / config.folder_name
+    folder = base if populations == 1 else base / config.humans.name
+    return folder if teams == 1 else folder / config.team_name

@@ -1,4 +1,4 @@
-"""Who plays in a trial: worlds, people and robots' minds made from their names."""
+"""Running the trials of a session in one process: makes worlds, humans and agents from their names."""
 
 from __future__ import annotations
 
@@ -8,44 +8,28 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
-from msgspec import Struct
 
 from hthor import code_identity, gc_freeze, plugins
 from hthor.errors import AgentError, HthorError
-from hthor.eval.runner.agent_recorder import RecordedAgent
+from hthor.eval.runner import fault_report
+from hthor.eval.runner.fault_report import RecordedAgent
+from hthor.eval.runner.messages import TrialOutcome
+from hthor.eval.runner.sources import Sources
 from hthor.guest.agent import agent_files
-from hthor.guest.agent.manifest import File, Manifest
-from hthor.guest.host.config import GuestConfig
-from hthor.types import Mind, RobotSeat, TrialSpec
+from hthor.guest.agent.manifest import File
+from hthor.types import Mind, RobotSeat, RobotSpec, TrialSpec
 from hthor.types.cameras import OWN
 
 CODE_ROOT = "trial"
 
 if TYPE_CHECKING:
-    from hthor.episode import EpisodeLog
+    from hthor.episode import EpisodeLog, TrialWorld
     from hthor.eval.config.sessions import Session
-    from hthor.eval.records.trial_record import TrialRecord
     from hthor.guest import GuestPool
     from hthor.humans.model import HumanModel
     from hthor.humans.population.resolve import ParticipantSource
     from hthor.looks.pack import Pack
     from hthor.world import World
-
-
-class Sources(Struct, frozen=True, kw_only=True):
-    """Where that lies which is not ours: files of minds and of bodies by their seats, what these minds consist of,
-    the file of a kind of task, the name of the furniture pack that pictures show, the folder of the suite's own houses,
-    the word that finds the people again (empty: the name in the trial does), and how submitted agents are isolated.
-    """
-
-    minds: dict[str, str] = {}
-    manifests: dict[str, Manifest] = {}
-    bodies: dict[str, str] = {}
-    kind: str = ""
-    assets: str = ""
-    houses: str = ""
-    people: str = ""
-    guests: GuestConfig = GuestConfig()
 
 
 def load_pack(assets: str) -> Pack | None:
@@ -62,42 +46,43 @@ def load_pack(assets: str) -> Pack | None:
 
 
 class TrialRunner:
-    """Makes worlds and companies, and keeps worlds for the next trial in the same house.
+    """Runs trials, and keeps worlds for the next trial in the same house.
 
     Args:
-        sources: where that lies which is not ours.
+        sources: where everything is that does not ship with hthor.
         pool: idle processes of submitted agents to use and to leave; without one they end with their session.
     """
 
     def __init__(self, sources: Sources | None = None, pool: GuestPool | None = None) -> None:
         self._sources, self._pool = sources or Sources(), pool
         self._worlds: dict[object, World] = {}
-        self._people: ParticipantSource | None = None
-        self._seen: dict[str, tuple[File, ...]] = {}  # what agents opened and their manifests do not list, by seat
+        self._population: ParticipantSource | None = None
+        self._opened: dict[str, tuple[File, ...]] = {}  # files that agents opened beyond their manifests, by seat
         gc_freeze.unfreeze_after(self)
-        if self._sources.kind:
-            plugins.load("task kind", self._sources.kind)
+        if self._sources.kind_path:
+            plugins.load("task kind", self._sources.kind_path)
 
     def enter(self, session: Session) -> Participants:
-        """The person and the robots of a session, new to one another."""
+        """The human and the agents of a session, none of which has met the others before."""
         first = session.trials[0]
-        mind = functools.partial(self._mind, step_limit_s=first.step_limit_s or None)
-        return Participants(self._persons(first).make_model(first.seed, first.participant), first.robots, mind)
+        make_agent = functools.partial(self._make_agent, step_limit_s=first.step_limit_s or None)
+        human = self._population_of(first).make_model(first.seed, first.participant)
+        return Participants(human, first.robots, make_agent)
 
     def world(self, trial: TrialSpec) -> World:
-        """The world of a trial: that of an earlier one where house, objects, robots and senses are the same."""
+        """The world of a trial: an earlier one's where house, objects, robots and sensors are the same."""
         task = trial.task
-        _unchanged(self._sources.kind, trial.kind_sha256)
-        bodies = tuple(seat.robot for seat in trial.robots)
+        _check_unchanged(self._sources.kind_path, trial.kind_sha256)
+        robots = tuple(seat.robot for seat in trial.robots)
         objects = tuple((placed.id, placed.kind) for placed in task.objects)
         detectors = tuple(seat.detector for seat in trial.robots)
         cameras = tuple(seat.camera or OWN for seat in trial.robots)
-        key = (task.house, task.house_sha256, bodies, detectors, cameras, objects)
+        key = (task.house, task.house_sha256, robots, detectors, cameras, objects)
         if key not in self._worlds:
             from hthor.houses import HouseLibrary
             from hthor.world import World
 
-            specs = tuple(self._body(seat) for seat in trial.robots)
+            specs = tuple(self._robot(seat) for seat in trial.robots)
             own = Path(self._sources.houses) if self._sources.houses else None
             pack = load_pack(self._sources.assets)
             if pack is not None and code_identity.pictures_sha256(pack.sha256) != trial.assets_sha256:
@@ -116,93 +101,95 @@ class TrialRunner:
             gc_freeze.freeze_existing()
         return self._worlds[key]
 
-    def play(self, company: Participants, trial: TrialSpec, world: Any = None) -> TrialRecord:
-        """The company's next trial. A mind that failed is let go, and what is left of it laid down.
+    def run(self, participants: Participants, trial: TrialSpec, world: TrialWorld | None = None) -> TrialOutcome:
+        """Run the session's next trial. An agent that failed is ended and reported.
 
         Args:
-            world: stands for the trial's world, for somebody who looks on.
+            world: takes the place of the trial's world, for an observer.
         """
         from hthor.eval.records import trial_record
-        from hthor.eval.runner import fault_report, redact
 
-        self._examine(company)
-        log = _run_trial(world or self.world(trial), company, trial)
-        company.rest()
-        self._examine(company)  # before its record is written: what was played halfway with another file is no trial
-        opened = self._opened(company)
+        self._check_files(participants)
+        log = _run_trial(world or self.world(trial), participants, trial)
+        participants.finish_trial()
+        self._check_files(participants)  # again: a trial in which a file changed halfway does not count
+        opened = self._opened_files(participants) or msgspec.UNSET
         if not log.faults:
-            return msgspec.structs.replace(trial_record.make_record(trial, log), files=opened or msgspec.UNSET)
-        files = self._sources.minds.values()
-        told = (msgspec.structs.replace(one, detail=redact.redact(one.detail, files)) for one in log.faults)
-        done = trial_record.make_record(trial, msgspec.structs.replace(log, faults=tuple(told)))
-        done = msgspec.structs.replace(done, files=opened or msgspec.UNSET)
-        fault_report.leave(fault_report.describe_faults(done.key, trial, done.faults, company.minds))
+            record = trial_record.make_record(trial, log)
+            return TrialOutcome(record=msgspec.structs.replace(record, files=opened))
+        files = self._sources.agent_paths.values()
+        faults = (
+            msgspec.structs.replace(fault, detail=fault_report.redact(fault.detail, files)) for fault in log.faults
+        )
+        record = trial_record.make_record(trial, msgspec.structs.replace(log, faults=tuple(faults)))
+        record = msgspec.structs.replace(record, files=opened)
+        report = fault_report.describe_faults(record.key, trial, record.faults, participants.agents)
         for seat in dict.fromkeys(fault.seat for fault in log.faults):
-            company.dismiss(seat)
-        return done
+            participants.dismiss(seat)
+        return TrialOutcome(record=record, fault_report=report)
 
-    def _examine(self, company: Participants) -> None:
-        """See that the agents' files are the ones that the run began with."""
-        for seat, mind in company.minds.items():
-            if isinstance(mind, RecordedAgent) and seat in self._sources.manifests:
-                agent_files.check_unchanged(self._sources.manifests[seat], mind.mind.paths)
-                agent_files.check_hashes(self._seen.get(seat, ()), mind.mind.paths)
+    def _check_files(self, participants: Participants) -> None:
+        """Check that the agents' files are those that the run began with."""
+        for seat, agent in participants.agents.items():
+            if isinstance(agent, RecordedAgent) and seat in self._sources.manifests:
+                agent_files.check_unchanged(self._sources.manifests[seat], agent.mind.paths)
+                agent_files.check_hashes(self._opened.get(seat, ()), agent.mind.paths)
 
-    def _opened(self, company: Participants) -> dict[str, tuple[File, ...]]:
-        """What agents opened of their own in the trial that was played, and no manifest lists."""
-        found: dict[str, tuple[File, ...]] = {}
-        for seat, mind in company.minds.items():
-            if isinstance(mind, RecordedAgent) and seat in self._sources.manifests:
-                known, grounds = self._sources.manifests[seat], mind.mind.paths
-                if files := agent_files.unlisted_files(
-                    mind.mind.take_opened(), known, grounds, mind.mind.reference.path
-                ):
-                    found[seat] = files
-                    self._seen[seat] = tuple(sorted({*self._seen.get(seat, ()), *files}))
-        return found
+    def _opened_files(self, participants: Participants) -> dict[str, tuple[File, ...]]:
+        """The agents' own files that they opened in this trial and that their manifests do not list, by seat."""
+        opened: dict[str, tuple[File, ...]] = {}
+        for seat, agent in participants.agents.items():
+            if isinstance(agent, RecordedAgent) and seat in self._sources.manifests:
+                manifest, guest = self._sources.manifests[seat], agent.mind
+                files = agent_files.unlisted_files(guest.take_opened(), manifest, guest.paths, guest.reference.path)
+                if files:
+                    opened[seat] = files
+                    self._opened[seat] = tuple(sorted({*self._opened.get(seat, ()), *files}))
+        return opened
 
-    def _persons(self, trial: TrialSpec) -> ParticipantSource:
-        """Whom the person of a trial is drawn from; kept, as all trials of a run have the same."""
+    def _population_of(self, trial: TrialSpec) -> ParticipantSource:
+        """The population of a trial's human; kept, as all trials of a run have the same."""
         from hthor.humans.population import resolve
 
-        if not self._sources.people:
+        if not self._sources.humans:
             return resolve.resolve_humans(trial.human)
-        if self._people is None:
-            self._people = resolve.resolve_humans(self._sources.people)
-        if self._people.sha256 != trial.human_sha256:
-            raise HthorError(_changed_message(self._sources.people))
-        return self._people
+        if self._population is None:
+            self._population = resolve.resolve_humans(self._sources.humans)
+        if self._population.sha256 != trial.human_sha256:
+            raise HthorError(_changed_message(self._sources.humans))
+        return self._population
 
-    def _body(self, seat: RobotSeat) -> Any:
-        path = self._sources.bodies.get(seat.seat, "")
+    def _robot(self, seat: RobotSeat) -> RobotSpec:
+        path = self._sources.robot_paths.get(seat.seat, "")
         if path:
-            _unchanged(path, seat.robot_sha256)
-        return plugins.load("robot", path or seat.robot)
+            _check_unchanged(path, seat.robot_sha256)
+        spec: RobotSpec = plugins.load("robot", path or seat.robot)
+        return spec
 
-    def _mind(self, seat: RobotSeat, step_limit_s: float | None) -> Mind:
-        path = self._sources.minds.get(seat.seat, "")
+    def _make_agent(self, seat: RobotSeat, step_limit_s: float | None) -> Mind:
+        path = self._sources.agent_paths.get(seat.seat, "")
         if not path:
-            mind: Mind = plugins.load("agent", seat.agent.name)()
-            return mind
+            agent: Mind = plugins.load("agent", seat.agent.name)()
+            return agent
         from hthor.guest import Guest, Unreachable
 
         make = functools.partial(Guest, path, config=self._sources.guests, pool=self._pool)
         guest = make() if step_limit_s is None else make(step_s=step_limit_s, bank_s=0.0)
-        known = self._sources.manifests.get(seat.seat)
-        if known is not None:
-            agent_files.check_unchanged(known, guest.paths)
+        manifest = self._sources.manifests.get(seat.seat)
+        if manifest is not None:
+            agent_files.check_unchanged(manifest, guest.paths)
         try:
             changed = guest.load().sha256 != seat.agent.sha256
         except Unreachable:  # a server that is gone for a while costs its trials, not the run
             return RecordedAgent(guest)
-        if changed and known is not None and known.claimed:
+        if changed and manifest is not None and manifest.claimed:
             guest.close()
             raise AgentError(_changed_message(path))
         return RecordedAgent(guest)
 
 
-def _unchanged(path: str, sha256: str) -> None:
-    """See that a user's file is the one that the run began with."""
+def _check_unchanged(path: str, sha256: str) -> None:
+    """Check that a user's file is the one that the run began with."""
     if sha256 and plugins.sha256(path) != sha256:
         raise HthorError(_changed_message(path))
 
@@ -215,66 +202,72 @@ def _changed_message(path: str) -> str:
 
 
 class Participants:
-    """One session's person and minds. Use as a context manager: guests are processes and must be let go."""
+    """The human and the agents of one session. A context manager: submitted agents are processes, which it ends.
 
-    def __init__(self, human: HumanModel, seats: Sequence[RobotSeat], make: Callable[[RobotSeat], Mind]) -> None:
-        self.human: Any = human
+    Args:
+        human: remembers earlier trials of the session.
+        seats: the robots.
+        make_agent: makes the agent of a seat.
+    """
+
+    def __init__(self, human: HumanModel, seats: Sequence[RobotSeat], make_agent: Callable[[RobotSeat], Mind]) -> None:
+        self.human = human
         self._seats = tuple(seats)
-        self._make = make
-        self._minds: dict[str, Mind] = {}
+        self._make_agent = make_agent
+        self._agents: dict[str, Mind] = {}
 
     def __enter__(self) -> Participants:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for seat in tuple(self._minds):
+        for seat in tuple(self._agents):
             self.dismiss(seat)
 
-    def robots(self) -> Mapping[str, Mind]:
-        """A mind for each robot's seat: the one of the trial before, unless it was dismissed."""
+    def ready_agents(self) -> Mapping[str, Mind]:
+        """An agent for each robot, by seat: that of the trial before, or a new one where that was dismissed."""
         for robot in self._seats:
-            if robot.seat not in self._minds:
-                self._minds[robot.seat] = self._make(robot)
-        return dict(self._minds)
+            if robot.seat not in self._agents:
+                self._agents[robot.seat] = self._make_agent(robot)
+        return dict(self._agents)
 
     @property
-    def minds(self) -> Mapping[str, Mind]:
-        """The minds of the trial that was played, by seat."""
-        return self._minds
+    def agents(self) -> Mapping[str, Mind]:
+        """The agents of the last trial, by seat."""
+        return self._agents
 
-    def rest(self) -> None:
-        """The trial is over: whoever clears up for the next may do so now."""
-        for mind in self._minds.values():
-            if (finish := getattr(mind, "finish", None)) is not None:
+    def finish_trial(self) -> None:
+        """The trial is over: agents that clean up for the next one may do so now."""
+        for agent in self._agents.values():
+            if (finish := getattr(agent, "finish", None)) is not None:
                 finish()
 
     def dismiss(self, seat: str) -> None:
-        """Let a mind go; the next trial gets a fresh one."""
-        mind: Any = self._minds.pop(seat)
-        if hasattr(mind, "close"):
-            mind.close()
+        """End an agent; the next trial gets a new one."""
+        agent: Any = self._agents.pop(seat)
+        if hasattr(agent, "close"):
+            agent.close()
 
 
-def make_runner(sources: Sources | None = None) -> Callable[[Session], Iterator[TrialRecord]]:
-    """What a worker does with each session: play its trials in order. Called in the worker; imports what is heavy."""
+def make_runner(sources: Sources | None = None) -> Callable[[Session], Iterator[TrialOutcome]]:
+    """What a worker does with each session: run its trials in order. Called in the worker; imports what is heavy."""
     from hthor.guest import GuestPool
 
-    stage = TrialRunner(sources, GuestPool())
+    runner = TrialRunner(sources, GuestPool())
 
-    def perform(session: Session) -> Iterator[TrialRecord]:
-        with stage.enter(session) as company:
+    def run_session(session: Session) -> Iterator[TrialOutcome]:
+        with runner.enter(session) as participants:
             for trial in session.trials:
-                yield stage.play(company, trial)
+                yield runner.run(participants, trial)
 
-    return perform
+    return run_session
 
 
-def _run_trial(world: Any, company: Participants, trial: TrialSpec) -> EpisodeLog:
-    """One trial; a failure in a plug-in of the user's is theirs to mend, and told as such."""
+def _run_trial(world: TrialWorld, participants: Participants, trial: TrialSpec) -> EpisodeLog:
+    """Run one trial. An error in a plug-in of the user's is reported as theirs to mend."""
     from hthor.episode import run_episode
 
     try:
-        return run_episode(trial, world, company.human, company.robots())
+        return run_episode(trial, world, participants.human, participants.ready_agents())
     except (Exception, SystemExit) as error:
         if (own := plugins.user_error(error)) is None:
             raise

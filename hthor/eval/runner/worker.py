@@ -1,4 +1,4 @@
-"""What happens in a worker process: sessions in, lines of trials out."""
+"""A worker process: takes sessions, and sends back what happened in them, trial by trial."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import os
 import signal
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import closing
 from typing import TYPE_CHECKING, cast
 
@@ -20,64 +20,65 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
     from hthor.eval.config.sessions import Session
-    from hthor.eval.records.trial_record import TrialRecord
+    from hthor.eval.runner.messages import RunnerFactory, SessionRunner, TrialOutcome
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
-"""One thread a worker: more would only fight over the cores, and sums of floats would depend on their number."""
+"""One thread for each worker: more would compete for the cores, and sums of floats would depend on their number."""
 _MENDABLE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 
 
-def run_worker(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[TrialRecord]]], parent: int) -> None:
-    """Play every session that comes through the pipe, until it says None or closes.
+def run_worker(pipe: Connection, make: RunnerFactory, parent: int) -> None:
+    """Run every session that comes through the pipe, until None comes or the pipe closes.
 
     Args:
-        make: called once, here: gives what plays a session. Must be picklable.
+        make: called once, in the worker; makes what runs a session.
         parent: id of the process that started this one; this one ends with it.
     """
     end_with_parent(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides what it means
-    signal.signal(signal.SIGTERM, lambda *_: None)  # likewise; not ignored, as those whom it starts would ignore it too
+    signal.signal(
+        signal.SIGTERM, lambda *_: None
+    )  # likewise; not ignored, as the processes that it starts would then ignore it too
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     try:
         _serve(pipe, make)
     except (EOFError, BrokenPipeError, ConnectionResetError):
-        return  # the parent is gone, and so is the reason to go on
+        return  # the parent is gone
 
 
-def _serve(pipe: Connection, make: Callable[[], Callable[[Session], Iterator[TrialRecord]]]) -> None:
+def _serve(pipe: Connection, make: RunnerFactory) -> None:
     player = SessionPlayer(make)
     for session in iter(pipe.recv, None):
-        for news in player.play(session):
+        for news in player.run(session):
             pipe.send(news)
 
 
 class SessionPlayer:
-    """What every worker does with sessions, whoever started it and wherever it sends what it tells."""
+    """What a worker of any engine does with sessions."""
 
-    def __init__(self, make: Callable[[], Callable[[Session], Iterator[TrialRecord]]]) -> None:
+    def __init__(self, make: RunnerFactory) -> None:
         self._make = make
-        self._perform: Callable[[Session], Iterator[TrialRecord]] | None = None
+        self._run_session: SessionRunner | None = None
         self._cpu_s = _cpu_s()
 
-    def play(self, session: Session) -> Iterator[News]:
-        """Tell of each trial when it is over; the last piece of news is that the session is over, lost, or failed."""
+    def run(self, session: Session) -> Iterator[News]:
+        """Report each trial when it is over; the last message is that the session is over, abandoned or failed."""
         from hthor.eval.records import trial_record
-        from hthor.eval.runner import fault_report
 
         try:
-            if self._perform is None:
-                self._perform = self._make()
-            with closing(cast("Generator[TrialRecord, None, None]", self._perform(session))) as trials:
-                for done in trials:
-                    left, faulty = fault_report.take(done.key), bool(done.faults)  # it may be of a start before this
+            if self._run_session is None:
+                self._run_session = self._make()
+            with closing(cast("Generator[TrialOutcome, None, None]", self._run_session(session))) as outcomes:
+                for outcome in outcomes:
+                    record = outcome.record
                     yield TrialDone(
-                        key=done.key,
+                        key=record.key,
                         participant=session.participant,
-                        line=trial_record.encode(done),
-                        met=done.met,
-                        faulty=faulty,
-                        left=left if faulty else None,
-                        killed=any(fault.kind == KILLED for fault in done.faults),
+                        line=trial_record.encode(record),
+                        met=record.met,
+                        faulty=bool(record.faults),
+                        fault_report=outcome.fault_report,
+                        killed=any(fault.kind == KILLED for fault in record.faults),
                     )
         except Exception as error:
             yield _failure(session.participant, error)
@@ -87,7 +88,7 @@ class SessionPlayer:
 
 
 def _failure(participant: int, error: Exception) -> Failed | SessionAbandoned:
-    """What the user can mend ends the run; a bug, or a machine that kills agents, costs the session alone."""
+    """An error that the user can mend ends the run; a bug, or a killed agent, only costs the session."""
     if isinstance(error, AgentKilled):
         return SessionAbandoned(participant=participant, cause=str(error), killed=True)
     if isinstance(error, HthorError):
@@ -99,15 +100,15 @@ def _failure(participant: int, error: Exception) -> Failed | SessionAbandoned:
 
 
 def end_with_parent(parent: int) -> None:
-    """Ask the kernel to kill this process when its parent ends, so that no run leaves orphans."""
+    """Have the kernel kill this process when its parent ends, so that no run leaves orphans."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(1, int(signal.SIGKILL), 0, 0, 0)  # 1 is PR_SET_PDEATHSIG
     if os.getppid() != parent:
-        os._exit(1)  # it ended before the kernel was asked
+        os._exit(1)  # the parent ended before this call
 
 
 def _cpu_s() -> float:
-    """Processor time of this process, and of all that it started and that has ended or waits for its next session."""
+    """CPU time [s] of this process and of its child processes that have ended or wait for their next session."""
     times, guests = os.times(), sys.modules.get("hthor.guest.process_tools.resource_usage")
     lost = guests.uncollected_cpu_s() if guests else 0.0
     return float(times.user + times.system + times.children_user + times.children_system + lost)

@@ -18,6 +18,7 @@ from hthor import jsonio, tasks
 from hthor.eval.config import sessions, task_selection
 from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.metrics.metric import DIGITS
+from hthor.eval.runner.trial_runner import make_runner
 from hthor.eval.statistics import intervals
 from hthor.eval.task_check import solvability
 from hthor.guest import AgentInputs
@@ -65,7 +66,8 @@ def verify(
         crew, who = replay.crew_of(entry, agent, given), resolve.resolve_humans(entry.run.humans.source)
         clock = {name: value for name, value in replay.dealt(entry).items() if name != "participants"}
         whole = sessions.make_sessions(chosen.suite, agent=crew, human=who, **clock)
-        played = replay.perform(entry, whole, replay.player(folder, crew, who, required, given), jobs)
+        sources = replay.make_sources_of(folder, crew, who, required, given)
+        played = replay.perform(entry, whole, functools.partial(make_runner, sources), jobs)
     records = sorted((one for one, _ in played), key=lambda one: (one.spec.participant, one.spec.index))
     owners = [one.spec.participant for one in records]
     values = {name: trial_metrics.column((one.metrics for one in records), name) for name in ("sr", "twsr")}

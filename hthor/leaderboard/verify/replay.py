@@ -5,7 +5,6 @@ A person remembers earlier trials, so those before a wanted one in the same sess
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
@@ -14,15 +13,17 @@ from typing import Any
 import msgspec
 
 from hthor import code_identity
-from hthor.eval.config import robot_team, run_config, sessions, task_selection
+from hthor.eval.config import robot_team, run_config, task_selection
 from hthor.eval.config.robot_team import RobotTeam
+from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Session
 from hthor.eval.config.task_selection import TaskSelection
 from hthor.eval.records import run_isolation, trial_record
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner import engines, trial_runner
-from hthor.eval.runner.engines import RunnerFactory
-from hthor.eval.runner.messages import SessionAbandoned, TrialDone
+from hthor.eval.runner import engines
+from hthor.eval.runner.messages import RunnerFactory, SessionAbandoned, TrialDone
+from hthor.eval.runner.run_job import RunJob, make_sources
+from hthor.eval.runner.sources import Sources
 from hthor.guest import AgentInputs, GuestConfig
 from hthor.humans.population import resolve
 from hthor.humans.population.resolve import ParticipantSource
@@ -57,10 +58,15 @@ def play(
     """
     chosen = task_selection.select_tasks(suite or entry.run.suite.name, "")
     crew, who = crew_of(entry, agent, given), resolve.resolve_humans(entry.run.humans.source)
-    _same(entry, chosen, crew, who)
-    whole = sessions.make_sessions(chosen.suite, agent=crew, human=who, **dealt(entry))
-    wanted, seats = _cut(whole, places)
-    played = perform(entry, wanted, player(suite, crew, who, require_isolation, given), jobs)
+    job = RunJob(
+        config=_same_config(entry, chosen, crew, who),
+        team=crew,
+        population=who,
+        tasks=chosen,
+        sources=make_sources_of(suite, crew, who, require_isolation, given),
+    )
+    wanted, seats = _cut(job.sessions, places)
+    played = perform(entry, wanted, job.make_runner, jobs)
     return {seats[one.spec.participant, one.spec.index]: (one, line) for one, line in played}
 
 
@@ -74,7 +80,7 @@ def perform(
     """
     found: list[tuple[TrialRecord, bytes]] = []
     lost: list[str] = []
-    with closing(engines.find_engine(engines.LOCAL, jobs=jobs).perform(wanted, make)) as stream:
+    with closing(engines.find_engine(engines.LOCAL, jobs=jobs).run_sessions(wanted, make)) as stream:
         for news in stream:
             if isinstance(news, TrialDone):
                 found.append((trial_record.decode(news.line), news.line))
@@ -111,13 +117,14 @@ def crew_of(entry: Entry, agent: str, given: AgentInputs | None = None) -> Robot
     )
 
 
-def _same(entry: Entry, chosen: TaskSelection, crew: RobotTeam, who: ParticipantSource) -> None:
-    """See that the same configuration comes out; versions of libraries belong to the platform."""
-    here = run_config.build_config(chosen.suite, crew, human=who, **dealt(entry))
-    there, here = (msgspec.structs.replace(plan, versions={}) for plan in (entry.run, here))
+def _same_config(entry: Entry, chosen: TaskSelection, crew: RobotTeam, who: ParticipantSource) -> RunConfig:
+    """The run's configuration here, if it is that of the entry; versions of libraries belong to the platform."""
+    config = run_config.build_config(chosen.suite, crew, human=who, **dealt(entry))
+    there, here = (msgspec.structs.replace(plan, versions={}) for plan in (entry.run, config))
     if there != here:
         told = "; ".join(run_config.differences(there, here))
         raise BoardError(f"{entry.id}: this is not what was played: {told} ('there' is the entry).")
+    return config
 
 
 def dealt(entry: Entry) -> dict[str, Any]:
@@ -141,31 +148,23 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
     return wanted, seats
 
 
-def player(
+def make_sources_of(
     suite: str, crew: RobotTeam, who: ParticipantSource, required: str, given: AgentInputs | None = None
-) -> RunnerFactory:
-    """What plays a session, as in the run that the entry is of.
+) -> Sources:
+    """Where everything is that the entry's run needs.
 
     Args:
-        suite: where the suite lies, empty for one of hthor's own. required: the least level that holds the agents.
-        given: arguments and files that they are given.
+        suite: where the suite is, empty for one of hthor's own.
+        required: the lowest acceptable isolation of a submitted agent.
+        given: its arguments and readable files.
     """
     code_identity.keep_compiled()
     own = bool(suite) and Path(suite).exists() and bool(library.house_files(suite))
     folder = Path(suite) if Path(suite).is_dir() else Path(suite).parent
-    houses = str((folder / "houses").resolve()) if own else ""
-    held = run_isolation.resolve_isolation("auto", required, sorted(set(crew.minds.values())))
+    isolation = run_isolation.resolve_isolation("auto", required, sorted(set(crew.agent_paths.values())))
     guests = GuestConfig(
-        isolation=held.level if held else "auto",
+        isolation=isolation.level if isolation else "auto",
         hidden=(str(folder.resolve()),) if suite else (),
         inputs=given or AgentInputs(),
     )
-    sources = trial_runner.Sources(
-        minds=crew.minds,
-        manifests=crew.manifests,
-        bodies=crew.bodies,
-        houses=houses,
-        people=who.word,
-        guests=guests,
-    )
-    return functools.partial(trial_runner.make_runner, sources)
+    return make_sources(crew, houses=folder / "houses" if own else None, humans=who.word, guests=guests)

@@ -11,7 +11,7 @@ from msgspec import Struct
 from hthor import jsonio
 from hthor.errors import HthorError
 from hthor.eval.config import task_selection
-from hthor.eval.records import platform_fingerprint
+from hthor.eval.records import platform
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.guest import AgentInputs
 from hthor.leaderboard import board_check
@@ -70,7 +70,7 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
         trials=replayed(entry, drawn, _again(entry, drawn, request)),
         control=None if control is None else replayed(control, drawn, _again(control, drawn, request)),
         official=request.official,
-        platform=jsonio.sha256(platform_fingerprint.this_platform()),
+        platform=jsonio.sha256(platform.this_platform()),
         by=request.by,
         date=request.date,
     )
@@ -91,7 +91,7 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
 
 def replayed(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[TrialRecord, bytes]]) -> Replayed:
     """The verdict over these records, and how surely it would have been another over a forged entry."""
-    here = platform_fingerprint.this_platform()
+    here = platform.this_platform()
     by = tier(entry)
     places = sorted(again)
     held = trial_outcomes.of(
@@ -120,7 +120,7 @@ def replayed(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[TrialRec
 def tier(entry: Entry) -> Tier:
     """How an entry can be compared with what is played here."""
     repeats = entry.alone or (entry.agent.deterministic and entry.mode != REALTIME)
-    return verdict.tier(repeats=repeats, same_platform=entry.platforms == (platform_fingerprint.this_platform(),))
+    return verdict.tier(repeats=repeats, same_platform=entry.platforms == (platform.this_platform(),))
 
 
 def _size(entry: Entry, request: Request) -> int:
@@ -164,5 +164,5 @@ def _grounds(by: Tier, entry: Entry, here: dict[str, str]) -> str:
     if by == "V2":
         if len(entry.platforms) != 1:
             return "several platforms" if entry.platforms else "a platform that was not noted"
-        return f"another platform ({'; '.join(platform_fingerprint.platform_differences(entry.platforms[0], here))})"
+        return f"another platform ({'; '.join(platform.platform_differences(entry.platforms[0], here))})"
     return "thinking takes time" if entry.mode == REALTIME else "the agent does not claim to repeat itself"

@@ -10,11 +10,10 @@ import msgspec
 from msgspec import Struct
 
 from hthor.errors import RunError
-from hthor.eval.config import run_config
 from hthor.eval.config.robot_team import NO_ROBOT
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import trial_metrics
-from hthor.eval.records import reader
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline
 
@@ -78,8 +77,9 @@ def with_baselines(found: Sequence[Run]) -> list[Run]:
 
 
 def _read(folder: Path) -> Run:
-    plan = run_config.load_config(folder)
-    lines, records = reader.records(folder, plan)
+    run = RunFolder(folder)
+    plan = run.config
+    lines, records = run.lines()
     if not records:
         raise RunError(f"{folder / 'trials.jsonl'} has no trials yet. Finish the run with 'hthor eval' first.")
     fresh = (msgspec.structs.replace(one, metrics=trial_metrics.measure(one.spec, one.log)) for one in records)

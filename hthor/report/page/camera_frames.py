@@ -15,10 +15,12 @@ from hthor import activity
 from hthor.errors import RunError
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import session_history
+from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner import trial_runner
-from hthor.guest import AgentInputs
+from hthor.guest import AgentInputs, GuestConfig
 from hthor.types import Event, TaskSpec
 
 SIZE = (400, 300)
@@ -82,14 +84,16 @@ def render_frames(
         RunError: when trials before it are missing, another version of hthor played them, or it goes otherwise now.
         HthorError: when a file is needed.
     """
-    spec = wanted.spec
-    session = Session(participant=spec.participant, trials=session_history.session_before(folder, wanted))
-    stage = trial_runner.TrialRunner(session_history.replay_sources(folder, spec, agents, humans, given))
+    spec, run = wanted.spec, RunFolder(folder)
+    session = Session(participant=spec.participant, trials=session_history.session_before(run, wanted))
+    guests = GuestConfig(hidden=(str(folder.resolve()),), inputs=given or AgentInputs())
+    files = RunFiles(agents=tuple(agents), humans=humans)
+    stage = trial_runner.TrialRunner(session_history.replay_sources(run, spec, files, guests))
     with stage.enter(session) as company:
         for number, trial in enumerate(session.trials, 1):
             activity.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")
             world = CameraFrames(stage.world(trial), ticks if trial == spec else (), profile)
-            done = stage.play(company, trial, world)
+            done = stage.run(company, trial, world).record
         if _course(done) != _course(wanted):
             raise RunError(
                 f"{folder}: trial {wanted.key} went otherwise than it was logged, so its views would be of another "

@@ -15,9 +15,11 @@ from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.config import cli_command, robot_team, sessions
 from hthor.eval.config.run_config import team_name
 from hthor.eval.records import find, trial_record
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate
 from hthor.eval.runner import experiment, progress, run, run_options, trial_runner
+from hthor.eval.runner.run_job import make_sources
 from hthor.guest import GuestConfig
 from hthor.report.drawing import trial_figure
 from hthor.tasks.suite import encode_suite, make_suite
@@ -87,9 +89,9 @@ def test_a_crew_of_nobody_is_one_silent_agent():
 @pytest.mark.parametrize(
     ("robots", "agents", "told"),
     [
-        ("tall:oracle,", (), "'' is not BODY:AGENT; expected something like --robots tall:oracle"),
-        ("tall:,small:oracle", (), "'tall:' is not BODY:AGENT"),
-        ("tall,small:oracle", (), "'tall' has no mind. Write tall:AGENT"),
+        ("tall:oracle,", (), "'' is not ROBOT:AGENT; expected something like --robots tall:oracle"),
+        ("tall:,small:oracle", (), "'tall:' is not ROBOT:AGENT"),
+        ("tall,small:oracle", (), "'tall' has no agent. Write tall:AGENT"),
         ("tall:oracle", ("oracle",), "--agent has nobody to be"),
         ("tal:oracle", (), "unknown robot 'tal'. Did you mean 'tall'?"),
         ("tall:orcale", (), "unknown agent 'orcale'. Did you mean 'oracle'?"),
@@ -102,7 +104,7 @@ def test_wrong_crews_are_told_what_is_right(robots: str, agents: tuple[str, ...]
 
 
 def test_a_mind_made_for_other_bodies_is_refused():
-    picky = robot_team.AgentInfo(ref=fakes.character().ref, bodies=("porter",))
+    picky = robot_team.AgentInfo(ref=fakes.character().ref, robots=("porter",))
     with pytest.raises(UnknownName, match="unknown robot for the agent helper 'puck'"):
         robot_team.form_team(["puck"], [picky])
 
@@ -125,10 +127,9 @@ def played(robots: str, count: int = 1, config: GuestConfig | None = None) -> li
     (crew,) = robot_team.parse_teams(robots, ())
     few = make_suite("few", 1, tuple(task for task in tasks.load_suite("smoke").tasks if task.house == HOUSE))
     whole = sessions.make_sessions(few, agent=crew, participants=1)[0]
-    perform = trial_runner.make_runner(
-        trial_runner.Sources(minds=crew.minds, bodies=crew.bodies, guests=config or GuestConfig())
-    )
-    return list(perform(msgspec.structs.replace(whole, trials=whole.trials[:count])))
+    perform = trial_runner.make_runner(make_sources(crew, guests=config))
+    some = msgspec.structs.replace(whole, trials=whole.trials[:count])
+    return [done.record for done in perform(some)]
 
 
 def said(record_: TrialRecord, seat: str) -> list[str]:
@@ -189,16 +190,16 @@ def test_a_run_of_several_robots_is_resumed_and_told_from_others(tmp_path: Path)
     plan, dealt = fakes.run_of(20, name="helper+other")
     assert plan.name == "scout-helper+scout-other"
     assert plan.folder_name.startswith("scout-helper+scout-other-fake-")
-    whole = run.run_evaluation(plan, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
+    whole = run.run_evaluation(plan, dealt, fakes.player, folder=RunFolder(tmp_path), jobs=1, watcher=progress.Silent())
     before = _lines(tmp_path)
     (tmp_path / "trials.jsonl").write_bytes(b"".join(before[::2]))
-    again = run.run_evaluation(plan, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
+    again = run.run_evaluation(plan, dealt, fakes.player, folder=RunFolder(tmp_path), jobs=1, watcher=progress.Silent())
     assert _lines(tmp_path) == before
     assert again.metrics == whole.metrics
     assert whole.counts.faults_by_seat == {"robot": 0, "robot2": 0}
     other, _ = fakes.run_of(20, name="other+helper")
     with pytest.raises(RunError, match=r"robots\.0\.agent\.name is helper there and other here"):
-        run.run_evaluation(other, dealt, fakes.player, folder=tmp_path, jobs=1, watch=progress.Silent())
+        run.run_evaluation(other, dealt, fakes.player, folder=RunFolder(tmp_path), jobs=1, watcher=progress.Silent())
     (tmp_path / "run.json").unlink()
     run.setup.write(tmp_path, other)
     with pytest.raises(RunError, match=r"spec\.robots is not the one in run\.json"):

@@ -16,6 +16,7 @@ from hthor.eval.config.sessions import make_sessions
 from hthor.eval.records import trial_record
 from hthor.eval.results import aggregate
 from hthor.eval.runner import experiment, progress, run_options
+from hthor.eval.runner.sources import Sources
 from hthor.report.drawing import trial_figure
 
 HOUSES = ("elder", "rowan")
@@ -44,7 +45,7 @@ def conducted(**asked) -> experiment.FinishedRun:
 
 def test_a_suite_is_narrowed_to_a_kind():
     whole = task_selection.select_tasks("smoke", "")
-    assert (whole.kind, whole.crew, len(whole.suite.tasks)) == (None, ("scout",), 60)
+    assert (whole.kind, whole.robots, len(whole.suite.tasks)) == (None, ("scout",), 60)
     for name in ("manipulation", "mobile_manipulation"):
         part = task_selection.select_tasks("smoke", name)
         assert part.kind.name == "mobile_manipulation"
@@ -74,7 +75,7 @@ def test_a_kind_with_a_suite_of_its_own_needs_no_other(name: str):
     chosen = task_selection.select_tasks("", name)
     assert chosen.kind is None, "it is all of that suite"
     assert {task.kind for task in chosen.suite.tasks} == {task_selection.find_kind(name).name}
-    assert chosen.crew == tuple(task_selection.find_kind(name).crew)
+    assert chosen.robots == tuple(task_selection.find_kind(name).crew)
 
 
 # --------------------------------------------------------------------------------------------------- a user's own kind
@@ -85,17 +86,17 @@ def test_the_example_kind_runs_as_it_is(root: Path, few: None, tmp_path: Path):
     assert len(file.read_text().splitlines()) < 100
     assert file.read_text().strip() in (root / "docs" / "kinds.md").read_text(), "the docs show it as it is"
     done = conducted(kind=str(file), agents=("oracle",), out=tmp_path / "run", participants=1, jobs=1)
-    assert done.plan.kind.name == "put_away"
-    assert [robot.robot for robot in done.plan.robots] == ["tender"], "the kind's own crew"
+    assert done.config.kind.name == "put_away"
+    assert [robot.robot for robot in done.config.robots] == ["tender"], "the kind's own crew"
     assert (done.result.counts.trials, done.result.counts.faults) == (2, 0)
     assert done.result.metrics.progress.n == 2
     suite = tasks.load_suite(str(tmp_path / "run" / "suite.json"))
     assert [task.house for task in suite.tasks] == list(HOUSES)
     assert suite.tasks[0].instruction == "Put the tomato and the lettuce in the fridge."
-    assert suite.sha256 == done.plan.suite.sha256
+    assert suite.sha256 == done.config.suite.sha256
     lines = (tmp_path / "run" / "trials.jsonl").read_bytes().splitlines(keepends=True)
     records = [trial_record.decode(line) for line in lines]
-    assert {one.spec.kind_sha256 for one in records} == {done.plan.kind.sha256}
+    assert {one.spec.kind_sha256 for one in records} == {done.config.kind.sha256}
     sheet = trial_figure.trial_figure(records[0].spec, records[0].log, houses.load(records[0].spec.task.house))
     assert [tick.get_text() for tick in sheet.axes[1].get_yticklabels()] == ["person", "robot", "progress"]
     names = {text.get_text() for text in sheet.axes[0].texts}
@@ -107,8 +108,8 @@ def test_the_example_kind_runs_as_it_is(root: Path, few: None, tmp_path: Path):
 def test_the_same_file_gives_the_same_tasks(root: Path, few: None):
     one, two = (task_selection.select_tasks("", str(root / "examples" / "put_away.py")) for _ in range(2))
     assert one == two
-    assert one.drawn
-    assert one.crew == ("tender",)
+    assert one.generated
+    assert one.robots == ("tender",)
 
 
 KIND = """
@@ -191,7 +192,7 @@ def test_a_kind_that_changes_during_its_run_ends_it(few: None, tmp_path: Path):
     file = written(tmp_path, "fickle")
     chosen = task_selection.select_tasks("", str(file))
     (dealt,) = make_sessions(chosen.suite, agent="silent", participants=1, kind_sha256=chosen.kind.sha256)
-    perform = trial_runner.make_runner(trial_runner.Sources(kind=chosen.path))
+    perform = trial_runner.make_runner(Sources(kind_path=chosen.kind_path))
     written(tmp_path, "fickle", met="return False")
     with pytest.raises(HthorError, match=r"fickle\.py was changed while its run was going on"):
         next(perform(dealt))

@@ -93,8 +93,8 @@ def test_a_changed_value_fails_the_check(tmp_path: Path):
 
 def test_a_second_writer_is_refused_with_the_first_ones_number(tmp_path: Path):
     script = (
-        "import sys; from pathlib import Path; from hthor.eval.records.trial_log import Log\n"
-        "with Log(Path(sys.argv[1])): print('locked', flush=True); sys.stdin.read()"
+        "import sys; from pathlib import Path; from hthor.eval.records.trial_log import TrialLog\n"
+        "with TrialLog(Path(sys.argv[1])): print('locked', flush=True); sys.stdin.read()"
     )
     with subprocess.Popen(
         [sys.executable, "-c", script, str(tmp_path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True

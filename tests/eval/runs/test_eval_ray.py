@@ -19,6 +19,7 @@ import pytest
 
 from hthor.errors import AgentError, HthorError, MissingExtra
 from hthor.eval.config import robot_team
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner import engines, progress, run
 
 WITHOUT = importlib.util.find_spec("ray") is None
@@ -120,7 +121,7 @@ def _actors() -> list[int]:
 def test_two_nodes_give_the_local_records_though_actors_are_killed(address: str, tmp_path: Path):
     plan, dealt = fakes.run_of(200)
     local = run.run_evaluation(
-        plan, dealt, fakes.player, folder=tmp_path / "local", engine=fakes.Here(), watch=progress.Silent()
+        plan, dealt, fakes.player, folder=RunFolder(tmp_path / "local"), engine=fakes.Here(), watcher=progress.Silent()
     )
     with _start(tmp_path / "ray", 200, address) as process:
         for aim in (20, 60):
@@ -142,7 +143,7 @@ def test_a_node_that_is_lost_costs_guests_nothing(nodes: subprocess.Popen[str], 
     plan, dealt = fakes.run_of(60)
     make = functools.partial(guest_fakes.player, str(agent), "auto")
     local = engines.find_engine("local", jobs=2)
-    run.run_evaluation(plan, dealt, make, folder=tmp_path / "local", engine=local, watch=progress.Silent())
+    run.run_evaluation(plan, dealt, make, folder=RunFolder(tmp_path / "local"), engine=local, watcher=progress.Silent())
     with _start(tmp_path / "ray", 60, address, str(agent)) as process:
         end = time.monotonic() + 120
         while len(_lines(tmp_path / "ray")) < 15 and time.monotonic() < end and process.poll() is None:

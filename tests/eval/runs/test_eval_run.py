@@ -17,15 +17,14 @@ import pytest
 
 from hthor import rules, tasks
 from hthor.errors import KILLED, RunError
-from hthor.eval.config import run_config
 from hthor.eval.records import session_restarts, trial_log
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import aggregate, result_file
 from hthor.eval.results.result_file import RunResult
 from hthor.eval.runner import (
     collector,
     engines,
     experiment,
-    local_runner,
     progress,
     queue,
     run,
@@ -52,7 +51,9 @@ class Notes(progress.Silent):
 
 def _run(folder: Path, make=fakes.player, *, jobs: int = 2, count: int = 30, watch=None, **how) -> RunResult:
     plan, dealt = fakes.run_of(count, **how)
-    return run.run_evaluation(plan, dealt, make, folder=folder, jobs=jobs, watch=watch or progress.Silent())
+    return run.run_evaluation(
+        plan, dealt, make, folder=RunFolder(folder), jobs=jobs, watcher=watch or progress.Silent()
+    )
 
 
 def _lines(folder: Path) -> list[bytes]:
@@ -128,7 +129,7 @@ def test_a_worker_that_hangs_is_ended_and_its_session_played_again(tmp_path: Pat
     plan, dealt = fakes.run_of(60)
     engine = engines.find_engine("local", jobs=2, limit_s=6.0)
     make, watch = functools.partial(fakes.sick_player, str(tmp_path), "hang"), Notes()
-    result = run.run_evaluation(plan, dealt, make, folder=tmp_path / "run", engine=engine, watch=watch)
+    result = run.run_evaluation(plan, dealt, make, folder=RunFolder(tmp_path / "run"), engine=engine, watcher=watch)
     assert "participant 3 begins again: its worker was ended by the limit of 6 s for a trial" in watch.notes[0]
     assert result.effort.replays == 1
     assert _lines(tmp_path / "run") == _lines(reference)
@@ -162,7 +163,7 @@ def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path
     assert result_file.load_result(tmp_path / "frontier").counts.trials == 20
     assert result_file.load_result(tmp_path / "none") is None
     monkeypatch.setattr(trial_runner, "make_runner", fakes.player)
-    done = [one.plan.name for one in experiment.run_experiment(options, lambda _: progress.Silent())]
+    done = [one.config.name for one in experiment.run_experiment(options, lambda _: progress.Silent())]
     assert done == ["none", "frontier"]
     assert result_file.load_result(tmp_path / "frontier").uplift is not None
 
@@ -174,7 +175,7 @@ def test_a_worker_has_as_long_as_its_agents_deadlines_allow():
 
 
 def test_a_users_error_in_a_worker_keeps_its_exit_code(tmp_path: Path):
-    with pytest.raises(local_runner.SessionFailed, match="the agent is no good") as caught:
+    with pytest.raises(engines.SessionFailed, match="the agent is no good") as caught:
         _run(tmp_path, functools.partial(fakes.failing_player, "user"))
     assert caught.value.exit_code == 4
 
@@ -184,7 +185,9 @@ def test_a_run_has_one_do_over_for_killed_agents(tmp_path: Path, times: int, fau
     """Of three sessions in which an agent is killed one is played again; whatever comes of that stands."""
     plan, dealt = fakes.run_of(30)
     make = functools.partial(fakes.killing_player, times, {})
-    result = run.run_evaluation(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
+    result = run.run_evaluation(
+        plan, dealt, make, folder=RunFolder(tmp_path), engine=fakes.Here(), watcher=progress.Silent()
+    )
     again = int(times > 0)
     assert (result.counts.trials, result.counts.faults, result.counts.replays) == (30, faults, again)
     assert result.effort is not None
@@ -195,9 +198,11 @@ def test_a_run_has_one_do_over_for_killed_agents(tmp_path: Path, times: int, fau
 def test_no_later_command_has_another_do_over(tmp_path: Path):
     plan, dealt = fakes.run_of(30)
     make = functools.partial(fakes.killing_player, 1, {})
-    run_config.write_config(tmp_path, plan)
+    RunFolder(tmp_path).write_config(plan)
     assert session_restarts.SessionRestarts(tmp_path).take(7)
-    result = run.run_evaluation(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
+    result = run.run_evaluation(
+        plan, dealt, make, folder=RunFolder(tmp_path), engine=fakes.Here(), watcher=progress.Silent()
+    )
     assert (result.counts.faults_by_kind, result.counts.replays) == ({KILLED: 3}, 1)
 
 
@@ -205,11 +210,11 @@ def test_what_was_played_beside_a_killed_agent_does_not_count(tmp_path: Path):
     """Trials after the one that is played again went otherwise: their person had another trial before."""
     plan, dealt = fakes.run_of(10)
     calm = run.run_evaluation(
-        plan, dealt, fakes.player, folder=tmp_path / "calm", engine=fakes.Here(), watch=progress.Silent()
+        plan, dealt, fakes.player, folder=RunFolder(tmp_path / "calm"), engine=fakes.Here(), watcher=progress.Silent()
     )
     make = functools.partial(fakes.killing_player, 1, {})
     other = run.run_evaluation(
-        plan, dealt, make, folder=tmp_path / "killed", engine=fakes.Here(), watch=progress.Silent()
+        plan, dealt, make, folder=RunFolder(tmp_path / "killed"), engine=fakes.Here(), watcher=progress.Silent()
     )
     assert other.hashes.trials == calm.hashes.trials
     assert session_restarts.load(tmp_path / "killed").participants == (dealt[0].participant,)
@@ -221,7 +226,7 @@ def test_an_agent_that_is_killed_while_it_starts_is_started_once_more(tmp_path: 
     make, watch = functools.partial(fakes.late_player, times, {}), Notes()
 
     def whole() -> RunResult:
-        return run.run_evaluation(plan, dealt, make, folder=tmp_path, engine=fakes.Here(), watch=watch)
+        return run.run_evaluation(plan, dealt, make, folder=RunFolder(tmp_path), engine=fakes.Here(), watcher=watch)
 
     if times == 2:
         with pytest.raises(collector.Unfinished, match=r"participant 1: helper\.py: its process was killed.*10 of 30"):
@@ -246,13 +251,15 @@ def test_a_full_disk_leaves_whole_lines(tmp_path: Path, monkeypatch: pytest.Monk
 
     monkeypatch.setattr(trial_log.os, "write", write)
     with pytest.raises(RunError, match=r"trials\.jsonl: No space left on device\. The \d+ trials .* are kept"):
-        run.run_evaluation(plan, dealt, fakes.player, folder=tmp_path, engine=fakes.Here(), watch=progress.Silent())
+        run.run_evaluation(
+            plan, dealt, fakes.player, folder=RunFolder(tmp_path), engine=fakes.Here(), watcher=progress.Silent()
+        )
     monkeypatch.undo()
     held = _lines(tmp_path)
     assert 0 < len(held) < 30
     assert all(line.endswith(b"\n") for line in held)
     watch = Notes()
-    run.run_evaluation(plan, dealt, fakes.player, folder=tmp_path, engine=fakes.Here(), watch=watch)
+    run.run_evaluation(plan, dealt, fakes.player, folder=RunFolder(tmp_path), engine=fakes.Here(), watcher=watch)
     assert (watch.kept, watch.new, watch.notes) == (len(held), 30 - len(held), [])
 
 

@@ -14,6 +14,7 @@ from hthor.errors import RunError
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.metrics.trial_metrics import TrialMetrics
 from hthor.eval.records import trial_record
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import aggregate
 from hthor.eval.runner import progress, run
 from hthor.types import Event
@@ -101,7 +102,7 @@ def test_without_a_robot_there_is_neither_adoption_nor_trust():
 
 def _played(folder, name: str = "helper"):
     plan, dealt = fakes.run_of(20, name=name)
-    return run.run_evaluation(plan, dealt, fakes.player, folder=folder, jobs=1, watch=progress.Silent())
+    return run.run_evaluation(plan, dealt, fakes.player, folder=RunFolder(folder), jobs=1, watcher=progress.Silent())
 
 
 def test_scoring_again_gives_the_stored_result(tmp_path):

@@ -18,7 +18,7 @@ from hthor.cli import app
 from hthor.errors import HthorError, RunError
 from hthor.eval.config import run_config, sessions, shard
 from hthor.eval.merge import merge_shards
-from hthor.eval.records import reader
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner import progress, run
 
 COUNT = 57
@@ -31,7 +31,7 @@ def _play(folder: Path, words: str = "", *, make=fakes.player, **how) -> Path:
     if words:
         plan = run_config.shard_config(plan, shard.parse_shard(words), COUNT)
         folder, dealt = plan.shard.folder(folder), plan.shard.share(dealt)
-    run.run_evaluation(plan, dealt, make, folder=folder, engine=fakes.Here(), watch=progress.Silent())
+    run.run_evaluation(plan, dealt, make, folder=RunFolder(folder), engine=fakes.Here(), watcher=progress.Silent())
     return folder
 
 
@@ -83,7 +83,7 @@ def test_merged_shards_are_the_undivided_run(undivided: Path, shards: Sequence[P
     assert (done.trials, done.new, done.gaps) == (COUNT, COUNT, ())
     assert _result(tmp_path / "whole") == _result(undivided)
     assert (tmp_path / "whole" / "run.json").read_bytes() == (undivided / "run.json").read_bytes()
-    there = reader.records(undivided, run_config.load_config(undivided))[0]
+    there = RunFolder(undivided).lines()[0]
     assert (tmp_path / "whole" / "trials.jsonl").read_bytes() == b"".join(there)
     again = merge_shards.merge_shards([*shards, shards[1]], tmp_path / "whole")
     assert (again.trials, again.new, again.result) == (COUNT, 0, done.result)

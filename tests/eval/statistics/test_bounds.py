@@ -131,7 +131,7 @@ def test_counts_have_no_interval_below_nothing(values: list[int]):
 
 def test_a_runs_times_are_held_within_their_limits():
     _, dealt = fakes.run_of(20)
-    kept = [one for session in dealt for one in fakes.player()(session)]
+    kept = [one for session in dealt for one in fakes.records(session)]
     slow = [
         msgspec.structs.replace(
             one, metrics=msgspec.structs.replace(one.metrics, time_s=one.spec.task.time_limit - (k % 10 == 0) * 80.0)

@@ -1,54 +1,54 @@
-"""Where sessions are played: one file an engine; what they share stands here.
+"""Engines run sessions on one machine or many: one file for each engine, and here what they share.
 
-An engine gets sessions, and tells of every trial at least once: trials depend on nothing but their specification, so
-one that is played again is the same again, and whoever listens writes it down once. Engines know nothing of files.
+An engine reports every trial at least once. A trial depends only on its specification, so one that is run again gives
+the same record, and the listener keeps it once. Engines read and write no files.
 """
 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.runner.messages import Failed, News
+from hthor.eval.runner.messages import Failed, News, RunnerFactory
 from hthor.eval.runner.queue import LIMIT_S
 
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
-    from hthor.eval.records.trial_record import TrialRecord
 
 LOCAL = "local"
 
-RunnerFactory = Callable[[], "Callable[[Session], Iterator[TrialRecord]]"]
-"""Picklable; called once in each worker, gives what plays a session."""
-
 
 class Engine(Protocol):
-    """What plays sessions. A file of `hthor.eval.runner.engines` defines a class ``Engine`` that can do this."""
+    """What runs sessions. A file in `hthor.eval.runner.engines` defines a class ``Engine`` with these methods."""
 
     def __init__(self, *, jobs: int | None, address: str, gpus: float, limit_s: float) -> None:
-        """``jobs`` workers, None for as many as there is room for.
+        """Prepare the engine.
 
-        ``gpus`` is what one of them needs; one that plays a trial for more than ``limit_s`` [s] is ended.
+        Args:
+            jobs: how many workers; None for as many as there is room for.
+            address: where the engine is, such as a cluster; empty for the default.
+            gpus: how much of a GPU each worker needs.
+            limit_s: a worker that takes longer for a trial [s] is ended.
         """
 
-    def perform(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
-        """Play sessions and tell what happens; None when nothing does. Closing the generator ends the workers.
+    def run_sessions(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
+        """Run sessions and report what happens, None from time to time. Closing the generator ends the workers.
 
-        A session that costs `hthor.eval.runner.queue.ATTEMPTS` workers is `SessionAbandoned`, and the others go on.
+        A session that ends `hthor.eval.runner.queue.ATTEMPTS` workers is `SessionAbandoned`, and the others go on.
 
         Raises:
-            SessionFailed: when there is something that the user has to mend first.
+            SessionFailed: when the user has to mend something first.
         """
 
     def drain(self) -> None:
-        """Begin no more trials; those that are being played come to their end."""
+        """Start no more trials; those that are running are finished."""
 
 
 class SessionFailed(HthorError):
-    """No session could be played; the message is for the user."""
+    """No session could be run; the message is for the user."""
 
     def __init__(self, failed: Failed) -> None:
         self.exit_code = failed.exit_code
@@ -56,15 +56,15 @@ class SessionFailed(HthorError):
 
 
 def engine_names() -> list[str]:
-    """The engines that there are, the usual one first."""
-    found = (path.stem for path in Path(__file__).parent.glob("*.py") if not path.stem.startswith("_"))
-    return sorted(found, key=lambda name: (name != LOCAL, name))
+    """The names of all engines, the default first."""
+    stems = (path.stem for path in Path(__file__).parent.glob("*.py") if not path.stem.startswith("_"))
+    return sorted(stems, key=lambda name: (name != LOCAL, name))
 
 
 def find_engine(
     name: str, *, jobs: int | None = None, address: str = "", gpus: float = 0.0, limit_s: float = LIMIT_S
 ) -> Engine:
-    """The engine of this name, ready to be told what to play.
+    """The engine of this name, ready to run sessions.
 
     Raises:
         UnknownName: when there is none.

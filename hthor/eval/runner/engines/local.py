@@ -1,4 +1,4 @@
-"""Worker processes on this machine: hands out sessions, replaces workers that die."""
+"""Worker processes on this machine: gives them sessions, and replaces workers that die."""
 
 from __future__ import annotations
 
@@ -6,111 +6,113 @@ import multiprocessing
 import os
 import signal
 from collections.abc import Generator, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from multiprocessing.connection import Connection, wait
 from typing import TYPE_CHECKING
 
 from hthor import code_identity
 from hthor.errors import HthorError
-from hthor.eval.runner import worker
-from hthor.eval.runner.engines import RunnerFactory, SessionFailed
-from hthor.eval.runner.messages import Failed, Finished, News, SessionAbandoned, TrialDone
-from hthor.eval.runner.queue import BEAT_S, LIMIT_S, PausableClock, Queue
+from hthor.eval.records.trial_log import BEAT_S
+from hthor.eval.runner.engines import SessionFailed
+from hthor.eval.runner.messages import Failed, Finished, News, RunnerFactory, SessionAbandoned, TrialDone
+from hthor.eval.runner.queue import LIMIT_S, PausableClock, Queue
+from hthor.eval.runner.worker import ONE_THREAD, run_worker
 
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
 
 _FAREWELL_S = 10.0
+"""How long [s] an idle worker may take to end by itself. Our choice."""
 
 
 class Engine:
-    """The supervisor. Workers are fresh processes that die with it.
+    """The supervisor of the workers, which are new processes that die with it.
 
     Args:
-        jobs: how many workers; None is one a CPU.
+        jobs: how many workers; None for one per CPU.
         address: must be empty.
-        limit_s: how long [s] a worker may play a trial before it counts as stuck.
+        limit_s: how long [s] a worker may take for a trial before it counts as stuck.
     """
 
     def __init__(
         self, *, jobs: int | None = None, address: str = "", gpus: float = 0.0, limit_s: float = LIMIT_S
     ) -> None:
-        del gpus  # whoever shares a machine's GPU shares it among the jobs
+        del gpus  # the jobs share the machine's GPU
         if address:
             raise HthorError(f"--address {address}: the engine 'local' has none. Leave it out, or add --engine ray.")
         self._jobs = jobs or len(os.sched_getaffinity(0))
         self._limit_s, self._clock, self._draining = limit_s, PausableClock(), False
 
-    def perform(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
+    def run_sessions(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
         """See `hthor.eval.runner.engines.Engine`."""
         queue = Queue(sessions)
-        hands: list[_Hand] = []
+        workers: list[_Worker] = []
         try:
-            while queue or any(hand.task for hand in hands):
-                hands = [hand for hand in hands if not hand.dead]
-                while len(hands) < min(self._jobs, len(queue) + sum(1 for hand in hands if hand.task)):
-                    hands.append(_Hand(make))
-                for hand in hands:
-                    if queue and not hand.task:
-                        hand.give(*queue.take(), self._clock.now())
-                yield from self._listen(hands, queue)
+            while queue or any(one.task for one in workers):
+                workers = [one for one in workers if not one.dead]
+                while len(workers) < min(self._jobs, len(queue) + sum(1 for one in workers if one.task)):
+                    workers.append(_Worker(make))
+                for worker in workers:
+                    if queue and not worker.task:
+                        worker.give(*queue.take(), self._clock.now())
+                yield from self._listen(workers, queue)
                 if self._draining:
                     queue.clear()
         finally:
-            for hand in hands:
-                hand.end()
+            for worker in workers:
+                worker.end()
 
     def drain(self) -> None:
         """See `hthor.eval.runner.engines.Engine`."""
         self._draining = True
 
-    def _listen(self, hands: list[_Hand], queue: Queue) -> Iterator[News | None]:
-        ready, now = wait([hand.pipe for hand in hands], timeout=BEAT_S), self._clock.now()
+    def _listen(self, workers: list[_Worker], queue: Queue) -> Iterator[News | None]:
+        ready, now = wait([worker.pipe for worker in workers], timeout=BEAT_S), self._clock.now()
         if not ready:
             yield None
-        for hand in hands:
-            if hand.pipe not in ready:
-                if hand.task and now - hand.since > self._limit_s:
-                    hand.give_up(self._limit_s)
+        for worker in workers:
+            if worker.pipe not in ready:
+                if worker.task and now - worker.since > self._limit_s:
+                    worker.give_up(self._limit_s)
                 continue
-            news, hand.since = hand.hear(), now
+            news, worker.since = worker.receive(), now
             if isinstance(news, Failed):
                 raise SessionFailed(news)
             if news is not None:
                 yield news
-            elif hand.task:
-                yield queue.again(*hand.task, hand.cause)
-                hand.task = None
+            elif worker.task:
+                yield queue.again(*worker.task, worker.cause)
+                worker.task = None
             if self._draining and isinstance(news, TrialDone):
-                hand.end()
+                worker.end()
 
 
-class _Hand:
-    """A worker process, the pipe to it, and the session it has in hand."""
+class _Worker:
+    """A worker process, the pipe to it, and the session that it runs."""
 
     def __init__(self, make: RunnerFactory) -> None:
         context = multiprocessing.get_context("spawn")
         self.pipe: Connection
         self.pipe, far = context.Pipe(duplex=True)
-        self.process = context.Process(target=worker.run_worker, args=(far, make, os.getpid()), daemon=True)
+        self.process = context.Process(target=run_worker, args=(far, make, os.getpid()), daemon=True)
         with _quiet_environment():
             self.process.start()
-        far.close()  # so that the worker's end closes with the worker
+        far.close()  # so that the pipe closes when the worker ends
         self.task: tuple[Session, int] | None = None
         self.since = 0.0
         self.dead = False
         self._stuck = ""
 
     def give(self, session: Session, attempt: int, now: float) -> None:
-        """Hand over a session; a worker that is already dead is noticed by `hear`."""
+        """Give it a session; `receive` notices a worker that is already dead."""
         self.task, self.since = (session, attempt), now
         try:
             self.pipe.send(session)
         except OSError:
             return
 
-    def hear(self) -> News | None:
-        """The next piece of news, None when the worker died."""
+    def receive(self) -> News | None:
+        """The next message, None when the worker died."""
         try:
             news: News = self.pipe.recv()
         except (EOFError, OSError):
@@ -123,7 +125,7 @@ class _Hand:
         return news
 
     def give_up(self, after_s: float) -> None:
-        """End a worker that is stuck; `hear` notices."""
+        """Kill a worker that is stuck; `receive` notices."""
         self._stuck = f"the limit of {after_s:.0f} s for a trial"
         self.process.kill()
 
@@ -136,7 +138,7 @@ class _Hand:
         return f"signal {signal.Signals(-code).name}" if code is not None and code < 0 else f"exit status {code}"
 
     def end(self) -> None:
-        """End the worker, kindly when it has nothing to do."""
+        """End the worker; one that is idle may end by itself."""
         if self.dead:
             return
         if self.task is not None:
@@ -150,10 +152,10 @@ class _Hand:
 
 @contextmanager
 def _quiet_environment() -> Iterator[None]:
-    """What workers inherit: one thread a library, compiled code of this version alone, and no Ctrl-C for now."""
+    """What new workers inherit: one thread per library, compiled code of this version only, and no Ctrl-C for now."""
     before = dict(os.environ)
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    os.environ.update(worker.ONE_THREAD, PYTHONHASHSEED="0")
+    os.environ.update(ONE_THREAD, PYTHONHASHSEED="0")
     code_identity.keep_compiled()
     try:
         yield
@@ -161,3 +163,26 @@ def _quiet_environment() -> Iterator[None]:
         os.environ.clear()
         os.environ.update(before)
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+
+
+class SessionLost(HthorError):
+    """A session could not be run. ``detail`` is the traceback of a bug, otherwise empty."""
+
+    def __init__(self, lost: SessionAbandoned) -> None:
+        self.exit_code, self.detail = 1 if lost.detail else HthorError.exit_code, lost.detail
+        super().__init__(lost.cause if lost.detail else f"the session of participant {lost.participant}: {lost.cause}")
+
+
+def run_all_sessions(
+    sessions: Sequence[Session], make: RunnerFactory, *, jobs: int
+) -> Generator[News | None, None, None]:
+    """Run sessions in ``jobs`` worker processes of this machine, as `Engine.run_sessions`, when none may be missing.
+
+    Raises:
+        SessionLost: when one is lost.
+    """
+    with closing(Engine(jobs=jobs).run_sessions(sessions, make)) as messages:
+        for message in messages:
+            if isinstance(message, SessionAbandoned):
+                raise SessionLost(message)
+            yield message

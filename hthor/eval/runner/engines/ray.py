@@ -1,6 +1,6 @@
-"""Actors on the machines of a Ray cluster, which play session after session; needs the extra `hthor[cluster]`.
+"""Ray actors on the machines of a cluster, which run session after session; needs the extra `hthor[cluster]`.
 
-Records come back trial by trial, so that a machine that is lost costs only the trial that it was playing.
+Records come back trial by trial, so that a lost machine costs only the trial that it was running.
 """
 
 from __future__ import annotations
@@ -13,30 +13,31 @@ from typing import TYPE_CHECKING, Any
 
 from hthor import code_identity, installation
 from hthor.errors import HthorError, MissingExtra
-from hthor.eval.runner.engines import RunnerFactory, SessionFailed
-from hthor.eval.runner.messages import Failed, Finished, News, SessionAbandoned, TrialDone
-from hthor.eval.runner.queue import ATTEMPTS, BEAT_S, LIMIT_S, PausableClock, Queue
+from hthor.eval.records.trial_log import BEAT_S
+from hthor.eval.runner.engines import SessionFailed
+from hthor.eval.runner.messages import Failed, Finished, News, RunnerFactory, SessionAbandoned, TrialDone
+from hthor.eval.runner.queue import ATTEMPTS, LIMIT_S, PausableClock, Queue
 from hthor.eval.runner.worker import ONE_THREAD, SessionPlayer
 
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
 
-_KNOCK_S = 10.0
+_CONNECT_S = 10.0
 
 
 class Engine:
-    """Has actors play, as many as the cluster has room for.
+    """Runs sessions in Ray actors, as many as the cluster has room for.
 
     Args:
-        jobs: how many actors; None is one a CPU of the cluster, or as many as share its GPUs.
+        jobs: how many actors; None for one per CPU of the cluster, or as many as share its GPUs.
         address: of the cluster that this machine belongs to, such as ``10.0.0.1:6379``; empty for the one that is
             here, or a new one of this machine alone.
         gpus: how much of a GPU each actor needs, such as 0.25.
-        limit_s: how long [s] an actor may play a trial before it counts as stuck.
+        limit_s: how long [s] an actor may take for a trial before it counts as stuck.
 
     Raises:
         MissingExtra: when Ray is not installed.
-        HthorError: for the address of a Ray client, which cannot hear of trials one by one.
+        HthorError: for the address of a Ray client, which cannot stream trials one by one.
     """
 
     def __init__(
@@ -51,60 +52,60 @@ class Engine:
         self._ray: Any = ray
         self._jobs, self._address, self._gpus = jobs, address, gpus
         self._limit_s, self._clock, self._draining = limit_s, PausableClock(), False
-        self._stillborn = 0
+        self._failed_starts = 0
 
-    def perform(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
+    def run_sessions(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
         """See `hthor.eval.runner.engines.Engine`."""
         with self._connected():
-            queue, jobs, cast = Queue(sessions), self._jobs or self._room(), self._cast()
-            hands: list[_Hand] = []
+            queue, jobs, actors = Queue(sessions), self._jobs or self._room(), self._actor_class()
+            workers: list[_Worker] = []
             try:
-                while queue or any(hand.task for hand in hands):
-                    hands = [hand for hand in hands if not hand.dead]
-                    while len(hands) < min(jobs, len(queue) + sum(1 for hand in hands if hand.task)):
-                        hands.append(_Hand(self._ray, cast.remote(make)))
-                    for hand in hands:
-                        if queue and hand.ready and not hand.task:
-                            hand.give(*queue.take(), self._clock.now())
-                    yield from self._listen(hands, queue)
+                while queue or any(one.task for one in workers):
+                    workers = [one for one in workers if not one.dead]
+                    while len(workers) < min(jobs, len(queue) + sum(1 for one in workers if one.task)):
+                        workers.append(_Worker(self._ray, actors.remote(make)))
+                    for worker in workers:
+                        if queue and worker.ready and not worker.task:
+                            worker.give(*queue.take(), self._clock.now())
+                    yield from self._listen(workers, queue)
                     if self._draining:
                         queue.clear()
             finally:
-                for hand in hands:
-                    hand.end()
+                for worker in workers:
+                    worker.end()
 
     def drain(self) -> None:
         """See `hthor.eval.runner.engines.Engine`."""
         self._draining = True
 
-    def _listen(self, hands: list[_Hand], queue: Queue) -> Iterator[News | None]:
-        awaited = {hand.awaited: hand for hand in hands if hand.awaited is not None}
+    def _listen(self, workers: list[_Worker], queue: Queue) -> Iterator[News | None]:
+        awaited = {worker.awaited: worker for worker in workers if worker.awaited is not None}
         ready, _ = self._ray.wait(list(awaited), num_returns=1, timeout=BEAT_S, fetch_local=False)
         now = self._clock.now()
         if not ready:
             yield None
-        for hand in hands:
-            if hand.task and hand.awaited not in ready and now - hand.since > self._limit_s:
-                hand.give_up(self._limit_s)
+        for worker in workers:
+            if worker.task and worker.awaited not in ready and now - worker.since > self._limit_s:
+                worker.give_up(self._limit_s)
         for one in ready:
-            hand = awaited[one]
-            news, hand.since = hand.hear(), now
+            worker = awaited[one]
+            news, worker.since = worker.receive(), now
             if isinstance(news, Failed):
                 raise SessionFailed(news)
             if news is not None:
                 yield news
-            elif hand.dead and hand.task:
-                yield queue.again(*hand.task, hand.cause)
-                hand.task = None
+            elif worker.dead and worker.task:
+                yield queue.again(*worker.task, worker.cause)
+                worker.task = None
             if self._draining and isinstance(news, TrialDone):
-                hand.task, hand.dead = None, True
-                hand.end()
-            self._stillborn = self._stillborn + 1 if hand.dead and not hand.ready else 0
-            if self._stillborn >= ATTEMPTS:
-                raise HthorError(f"workers do not start on the Ray cluster: {hand.cause}. Is hthor installed there?")
+                worker.task, worker.dead = None, True
+                worker.end()
+            self._failed_starts = self._failed_starts + 1 if worker.dead and not worker.ready else 0
+            if self._failed_starts >= ATTEMPTS:
+                raise HthorError(f"workers do not start on the Ray cluster: {worker.cause}. Is hthor installed there?")
 
-    def _cast(self) -> Any:
-        """The actors' class, with what each needs of a machine."""
+    def _actor_class(self) -> Any:
+        """The class of the actors, with the resources that each needs."""
         return self._ray.remote(
             num_cpus=1,
             num_gpus=self._gpus,
@@ -119,10 +120,10 @@ class Engine:
         Raises:
             HthorError: when it has none.
         """
-        there = self._ray.cluster_resources()
-        room = int(there.get("CPU", 0.0))
+        resources = self._ray.cluster_resources()
+        room = int(resources.get("CPU", 0.0))
         if self._gpus:
-            room = min(room, int(there.get("GPU", 0.0) / self._gpus))
+            room = min(room, int(resources.get("GPU", 0.0) / self._gpus))
         if not room:
             wanted = f"a CPU and {self._gpus:g} of a GPU" if self._gpus else "a CPU"
             raise HthorError(f"the Ray cluster has no room: a worker needs {wanted}. Look at 'ray status'.")
@@ -130,12 +131,12 @@ class Engine:
 
     @contextmanager
     def _connected(self) -> Iterator[None]:
-        """Be part of the cluster. Signals stay ours: Ray would have SIGTERM end the process at once."""
-        ours = not self._ray.is_initialized()
-        if ours:
+        """Connect to the cluster. Signal handlers are kept: with Ray's own, SIGTERM would end the process at once."""
+        connects = not self._ray.is_initialized()
+        if connects:
             kept = signal.getsignal(signal.SIGTERM)
             try:
-                self._knock()
+                self._check_address()
                 self._ray.init(address=self._address or None, log_to_driver=False, logging_level="ERROR")
             except (OSError, ValueError, RuntimeError) as error:
                 problem = str(error).strip().splitlines()[0].rstrip(".")
@@ -147,34 +148,34 @@ class Engine:
         try:
             yield
         finally:
-            if ours:
+            if connects:
                 self._ray.shutdown()
 
-    def _knock(self) -> None:
-        """See that somebody is at the address: Ray itself would wait for minutes."""
+    def _check_address(self) -> None:
+        """Check that something answers at the address: Ray itself would wait for minutes."""
         host, colon, port = self._address.rpartition(":")
         if colon:
-            socket.create_connection((host, int(port)), timeout=_KNOCK_S).close()
+            socket.create_connection((host, int(port)), timeout=_CONNECT_S).close()
 
 
-class _Hand:
-    """An actor, what is awaited of it, and the session it has in hand."""
+class _Worker:
+    """An actor, the result that is awaited from it, and the session that it runs."""
 
     def __init__(self, ray: Any, actor: Any) -> None:
         self._ray, self._actor = ray, actor
-        self.awaited: Any = self._actor.greet.remote()
+        self.awaited: Any = self._actor.describe.remote()
         self.ready = self.dead = False
         self.task: tuple[Session, int] | None = None
         self.since = 0.0
         self.cause = ""
 
     def give(self, session: Session, attempt: int, now: float) -> None:
-        """Hand over a session."""
+        """Give it a session."""
         self.task, self.since = (session, attempt), now
-        self.awaited = self._actor.play.options(num_returns="streaming").remote(session)
+        self.awaited = self._actor.run.options(num_returns="streaming").remote(session)
 
-    def hear(self) -> News | None:
-        """What the actor has to say, None when it only greeted, or died.
+    def receive(self) -> News | None:
+        """The next message; None when the actor has only started, or died.
 
         Raises:
             HthorError: when its machine has another hthor.
@@ -186,9 +187,9 @@ class _Hand:
                 return None
             news: News = self._ray.get(next(self.awaited))
         except (self._ray.exceptions.RayError, StopIteration) as error:
-            told = str(error).strip().splitlines() or [""]
+            lines = str(error).strip().splitlines() or [""]
             self.dead = True
-            self.cause = self.cause or f"{type(error).__name__} of Ray: {told[0][:200]}".rstrip(": ")
+            self.cause = self.cause or f"{type(error).__name__} of Ray: {lines[0][:200]}".rstrip(": ")
             self.end()
             return None
         if isinstance(news, (Finished, SessionAbandoned)):
@@ -196,40 +197,40 @@ class _Hand:
         return news
 
     def give_up(self, after_s: float) -> None:
-        """End an actor that is stuck; `hear` notices."""
+        """Kill an actor that is stuck; `receive` notices."""
         self.cause = f"the limit of {after_s:.0f} s for a trial"
         self.end()
 
     def end(self) -> None:
-        """End the actor, and with it the agents that it started."""
+        """End the actor, and the agents that it started."""
         with suppress(Exception):  # it may be gone already, or the whole cluster
             self._ray.kill(self._actor)
 
 
 class Actor:
-    """A worker on some machine."""
+    """A worker on a machine of the cluster."""
 
     def __init__(self, make: RunnerFactory) -> None:
         code_identity.keep_compiled()
         self._player = SessionPlayer(make)
 
-    def greet(self) -> tuple[str, str, dict[str, str]]:
-        """This machine's name, and which hthor it has with which libraries."""
+    def describe(self) -> tuple[str, str, dict[str, str]]:
+        """This machine's name, the hash of its hthor, and the versions of its libraries."""
         return socket.gethostname(), installation.sha256(), installation.versions()
 
-    def play(self, session: Session) -> Iterator[News]:
+    def run(self, session: Session) -> Iterator[News]:
         """See `hthor.eval.runner.worker.SessionPlayer`."""
-        yield from self._player.play(session)
+        yield from self._player.run(session)
 
 
 def _compare(host: str, code: str, versions: dict[str, str]) -> None:
-    """See that a machine has the hthor that this one has: other code would give other trials."""
+    """Check that a machine has the same hthor as this one: other code could give other trials."""
     here = {"code": installation.sha256()[:10], **installation.versions()}
     there = {"code": code[:10], **versions}
-    other = [
+    different = [
         f"{name} is {there.get(name)} there and {here[name]} here" for name in here if there.get(name) != here[name]
     ]
-    if other:
+    if different:
         raise HthorError(
-            f"{host} of the Ray cluster is no match: {'; '.join(other)}. Install the same on all machines."
+            f"{host} of the Ray cluster is no match: {'; '.join(different)}. Install the same on all machines."
         )

@@ -1,0 +1,217 @@
+"""A run's folder: one object that opens each of the run's files where it is first needed."""
+
+from __future__ import annotations
+
+import difflib
+import fnmatch
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+
+import msgspec
+
+from hthor import documents, jsonio
+from hthor.errors import RunError
+from hthor.eval.config.run_config import SCHEMA, RunConfig, differences
+from hthor.eval.records import platform, run_isolation, session_restarts, trial_log
+from hthor.eval.records.platform import Platform
+from hthor.eval.records.trial_log import Place, TrialLog
+from hthor.eval.records.trial_record import TrialRecord
+from hthor.guest import Isolation
+
+_WRITTEN_FIRST = (".lock", trial_log.NAME, ".run.json.*", "control")
+"""What a command that was killed before it wrote `run.json` may leave."""
+
+
+class RunFolder:
+    """The files of one run. Nothing is read before it is asked for; the configuration is read once.
+
+    Args:
+        path: the folder, which need not exist yet.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def __str__(self) -> str:
+        return str(self.path)
+
+    @property
+    def config_file(self) -> Path:
+        """`run.json`."""
+        return self.path / "run.json"
+
+    @property
+    def log_file(self) -> Path:
+        """`trials.jsonl`."""
+        return self.path / trial_log.NAME
+
+    @property
+    def result_file(self) -> Path:
+        """`result.json`, which only whole runs have."""
+        return self.path / "result.json"
+
+    @property
+    def effort_file(self) -> Path:
+        """`effort.json`: what a shard took. A shard has no result to say so."""
+        return self.path / "effort.json"
+
+    @property
+    def houses(self) -> Path | None:
+        """The folder with the houses that the suite brought with it; None where the suite is hthor's own."""
+        houses = self.path / "houses"
+        return houses.resolve() if houses.is_dir() else None
+
+    @property
+    def holds_run(self) -> bool:
+        """Whether a run was begun here."""
+        return self.config_file.exists()
+
+    @cached_property
+    def config(self) -> RunConfig:
+        """The run's configuration.
+
+        Raises:
+            RunError: when the folder holds no run, or its `run.json` is damaged.
+        """
+        if not self.config_file.is_file():
+            raise RunError(f"{self} is not a run's folder: it has no run.json.{self._guess()} 'hthor eval' makes one.")
+        hint = "evaluate it again, into another folder"
+        return documents.read(self.config_file, RunConfig, RunError, schema=SCHEMA, hint=hint)
+
+    @property
+    def isolation(self) -> Isolation | None:
+        """The weakest isolation that any command ran this run's agents at; None when all agents are built in."""
+        return run_isolation.load_isolation(self.path)
+
+    @property
+    def platforms(self) -> tuple[Platform, ...]:
+        """The platforms that ran trials; empty where that was not noted."""
+        return platform.load(self.path)
+
+    @property
+    def restarts(self) -> int:
+        """How many sessions were run again because an agent's process was killed."""
+        return session_restarts.count(self.path)
+
+    def open_log(self) -> TrialLog:
+        """The one writer of the run's log; see `TrialLog` for its errors."""
+        return TrialLog(self.path)
+
+    def lines(self) -> tuple[list[bytes], list[TrialRecord]]:
+        """Every line of the log and its record, in the order of participants and their trials.
+
+        Raises:
+            RunError: when a line is damaged, belongs to another run, or is there twice.
+        """
+        pairs = sorted(trial_log.read(self.log_file), key=lambda pair: _order(pair[1]))
+        records = [record for _, record in pairs]
+        self._check(records)
+        return [line for line, _ in pairs], records
+
+    def records(self) -> list[TrialRecord]:
+        """Every record of the log, in the order of participants and their trials; errors as in `lines`."""
+        return self.lines()[1]
+
+    def digest(self) -> tuple[list[Place], list[TrialRecord]]:
+        """As `lines`, for runs of any length: lines stay on the disk, and records come without paths and journal."""
+        pairs = []
+        for place, _, record in trial_log.places(self.log_file):
+            pairs.append((place, msgspec.structs.replace(record, paths={}, journal=())))
+        pairs.sort(key=lambda pair: _order(pair[1]))
+        records = [record for _, record in pairs]
+        self._check(records)
+        return [place for place, _ in pairs], records
+
+    def check_origin(self, record: TrialRecord) -> None:
+        """Check that a record of the log is one of this run.
+
+        Raises:
+            RunError: names the field in which it differs from `run.json`.
+        """
+        spec, config = record.spec, self.config
+        pairs = {
+            "seed": (spec.seed, config.seed),
+            "human_sha256": (spec.human_sha256, config.humans.sha256),
+            "suite_sha256": (spec.suite_sha256, config.suite.sha256),
+            "rules_sha256": (spec.rules_sha256, config.rules_sha256),
+            "code_sha256": (spec.code_sha256, config.code_sha256),
+            "robots": (spec.robots, config.seats),
+            "kind_sha256": (spec.kind_sha256, config.kind.sha256 if config.kind else ""),
+            "assets_sha256": (spec.assets_sha256, config.assets.sha256),
+            "realtime": (bool(spec.realtime), bool(config.realtime)),
+            "step_limit_s": (spec.step_limit_s, config.step_limit_s),
+        }
+        for field, (here, there) in pairs.items():
+            if here != there:
+                raise RunError(
+                    f"{self.log_file}: trial {record.key}: spec.{field} is not the one in run.json. "
+                    "The line belongs to another run; delete it."
+                )
+
+    def check_free(self, config: RunConfig) -> None:
+        """Check that a run can be written here: the folder is absent, empty, or holds a part of the same run.
+
+        Raises:
+            RunError: when the folder holds another run, naming what differs, or other files.
+        """
+        if not self.path.exists():
+            return
+        if not self.path.is_dir():
+            raise RunError(f"{self} is a file; a run needs a folder. Choose another with --out.")
+        if not self.holds_run:
+            self._check_empty()
+            return
+        stored = self.config
+        if stored.untitled != config.untitled:
+            raise RunError(
+                f"{self} holds another run: {'; '.join(differences(stored.untitled, config.untitled))}. "
+                "Choose another folder with --out or --name, or delete this one."
+            )
+        if config.title and stored.title != config.title:
+            title = f"is called '{stored.title}'" if stored.title else "has no name"
+            raise RunError(f"the run in {self} {title}; a run keeps the name that it began with. Leave out --name.")
+
+    def write_config(self, config: RunConfig) -> RunConfig:
+        """Write `run.json` unless it is there, and return what it says: a stored run keeps its own title.
+
+        Remains of an earlier write that was killed are removed.
+        """
+        for torn in self.path.glob(".run.json.*"):
+            torn.unlink(missing_ok=True)
+        if not self.holds_run:
+            jsonio.write(self.config_file, jsonio.pretty(config))
+            self.__dict__.pop("config", None)
+        return msgspec.structs.replace(config, title=self.config.title)
+
+    def write(self, name: str, data: bytes) -> None:
+        """Write another file of the run, in one step; ``name`` is relative to the folder."""
+        jsonio.write(self.path / name, data)
+
+    def _check_empty(self) -> None:
+        others = sorted(
+            entry.name
+            for entry in self.path.iterdir()
+            if not any(fnmatch.fnmatchcase(entry.name, pattern) for pattern in _WRITTEN_FIRST)
+        )
+        if others or (self.log_file.exists() and self.log_file.stat().st_size > 0):
+            name = others[0] if others else self.log_file.name
+            raise RunError(f"{self} is not empty and holds no run ({name}). Choose another folder with --out.")
+
+    def _check(self, records: Sequence[TrialRecord]) -> None:
+        for record in records:
+            self.check_origin(record)
+        keys = [record.key for record in records]
+        twice = next((key for key in keys if keys.count(key) > 1), "") if len(set(keys)) < len(keys) else ""
+        if twice:
+            raise RunError(f"{self.log_file}: trial {twice} is there twice. Delete one of the two lines.")
+
+    def _guess(self) -> str:
+        """The run that was probably meant, of those in the same folder."""
+        names = sorted(path.parent.name for path in self.path.parent.glob("*/run.json"))
+        near = difflib.get_close_matches(self.path.name, names, n=1, cutoff=0.5)
+        return f" Did you mean '{self.path.parent / near[0]}'?" if near else ""
+
+
+def _order(record: TrialRecord) -> tuple[int, int]:
+    return record.spec.participant, record.spec.index

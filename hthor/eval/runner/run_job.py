@@ -1,0 +1,94 @@
+"""One run as a job: its configuration, team, humans, tasks, and where everything lies that a worker needs."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+
+from msgspec import Struct
+
+from hthor.eval.config.robot_team import RobotTeam
+from hthor.eval.config.run_config import RunConfig
+from hthor.eval.config.sessions import Session, make_sessions
+from hthor.eval.config.task_selection import TaskSelection
+from hthor.eval.records.run_folder import RunFolder
+from hthor.eval.runner import trial_runner
+from hthor.eval.runner.messages import RunnerFactory
+from hthor.eval.runner.sources import Sources
+from hthor.guest import GuestConfig, Isolation
+from hthor.humans.population.resolve import ParticipantSource
+
+
+def make_sources(
+    team: RobotTeam,
+    *,
+    kind_path: str = "",
+    assets: str = "",
+    houses: Path | None = None,
+    humans: str = "",
+    guests: GuestConfig | None = None,
+) -> Sources:
+    """Where everything is that the trials of this team need.
+
+    Args:
+        kind_path: the file of a user's own task kind.
+        assets: the name of a furniture pack.
+        houses: the folder of the suite's own houses.
+        humans: the word that finds the human population; empty where the name in the trial does.
+        guests: how submitted agents are isolated, and what they are given.
+    """
+    return Sources(
+        agent_paths=team.agent_paths,
+        manifests=team.manifests,
+        robot_paths=team.robot_paths,
+        kind_path=kind_path,
+        assets=assets,
+        houses=str(houses.resolve()) if houses is not None else "",
+        humans=humans,
+        guests=guests or GuestConfig(),
+    )
+
+
+class RunJob(Struct, frozen=True, kw_only=True):
+    """What a run is made of. ``sources`` says where its parts are."""
+
+    config: RunConfig
+    team: RobotTeam
+    population: ParticipantSource
+    tasks: TaskSelection
+    sources: Sources
+
+    @property
+    def sessions(self) -> tuple[Session, ...]:
+        """The sessions of the run, or of its shard."""
+        config = self.config
+        sessions = make_sessions(
+            self.tasks.suite,
+            agent=self.team,
+            human=self.population,
+            seed=config.seed,
+            participants=config.participants,
+            kind_sha256=config.kind.sha256 if config.kind else "",
+            assets_sha256=config.assets.sha256,
+            realtime=bool(config.realtime),
+            step_limit_s=config.step_limit_s or None,
+        )
+        return config.shard.share(sessions) if config.shard else sessions
+
+    @property
+    def make_runner(self) -> RunnerFactory:
+        """Makes, in each worker, what runs a session."""
+        return functools.partial(trial_runner.make_runner, self.sources)
+
+
+class ScheduledRun(RunJob, frozen=True, kw_only=True):
+    """A run that a command will run or resume, and where it is written.
+
+    Attributes:
+        title: what progress messages call it.
+        isolation: how its submitted agents are isolated on this machine; None where all agents are built in.
+    """
+
+    folder: RunFolder
+    title: str
+    isolation: Isolation | None
