@@ -7,9 +7,9 @@ from typing import Any
 import eval_fakes as fakes
 import msgspec
 import pytest
+from episode_fakes import Mind, Stage, trial
 from hypothesis import given
 from hypothesis import strategies as st
-from test_episode import Mind, Stage, trial
 
 from hthor import rules
 from hthor.episode import EpisodeLog, run_episode

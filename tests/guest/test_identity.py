@@ -15,10 +15,10 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import episode_fakes
 import eval_fakes
 import guest_fakes
 import pytest
-import test_episode
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
@@ -419,7 +419,7 @@ class Quick(trial_runner.TrialRunner):
 
     def enter(self, session: Any) -> trial_runner.Participants:
         make = lambda seat: self._mind(seat, None)  # noqa: E731
-        return trial_runner.Participants(test_episode.Mind(), session.trials[0].robots, make)
+        return trial_runner.Participants(episode_fakes.Mind(), session.trials[0].robots, make)
 
     def world(self, trial: Any) -> Any:
         return guest_fakes.Stage(seen=20 + trial.index)

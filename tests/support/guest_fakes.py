@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import episode_fakes
 import eval_fakes as fakes
 import msgspec
-import test_episode
 
 from hthor import guest
 from hthor.episode import run_episode
@@ -33,7 +33,7 @@ class Agent:
 """Says how often it acted, so that a record tells of every act."""
 
 
-class Stage(test_episode.Stage):
+class Stage(episode_fakes.Stage):
     """The apple comes into view at tick ``seen``."""
 
     def snapshot(self) -> Snapshot:
@@ -48,7 +48,7 @@ def player(agent: str, level: str) -> Callable[[Session], Iterator[TrialOutcome]
         return guest.Guest(agent, config=guest.GuestConfig(isolation=level))
 
     def perform(session: Session) -> Iterator[TrialOutcome]:
-        with trial_runner.Participants(test_episode.Mind(), session.trials[0].robots, mind) as company:
+        with trial_runner.Participants(episode_fakes.Mind(), session.trials[0].robots, mind) as company:
             for memory, trial in enumerate(session.trials):
                 task = msgspec.structs.replace(trial.task, kind="object_goal_navigation")
                 stage = Stage(seen=fakes.episode(trial, memory).ticks // 10)

@@ -13,7 +13,6 @@ import pytest
 from hthor import jsonio
 from hthor.errors import RunError, RunLocked
 from hthor.eval.records import trial_log, trial_record
-from hthor.eval.runner import queue
 
 
 def _lines(count: int = 4) -> list[tuple[str, bytes]]:
@@ -115,7 +114,7 @@ def test_what_is_written_is_on_the_disk_within_a_quarter_of_a_second(tmp_path: P
     with trial_log.TrialLog(tmp_path) as book:
         book.append(*_lines()[0])
         while not synced:
-            now[0] += queue.BEAT_S  # how often whoever writes looks whether it is time
+            now[0] += trial_log.BEAT_S  # how often whoever writes looks whether it is time
             book.sync(due=True)
         assert now[0] - 100.0 <= trial_log.SYNC_S + 1e-9
         now[0] += 9.0

@@ -1,4 +1,4 @@
-"""The umpire: one clock, one mailbox, one goal, one event list."""
+"""A trial as a loop over ticks: who is asked, what is said and started, when the goal is met, what is logged."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any, Protocol, TypeVar
+from typing import TypeVar
 
 import msgspec
-from msgspec import Struct
 
 from hthor import plugins, rules, seeds
 from hthor.comms import claims
 from hthor.comms.mailbox import Mailbox
+from hthor.episode.episode_log import EpisodeLog, Fault
+from hthor.episode.goal_progress import GoalProgress
+from hthor.episode.trial_world import TrialWorld
 from hthor.humans.core.behaviour_log import BehaviourRecorder
 from hthor.humans.model import HumanModel
 from hthor.tasks.kind import TaskKind
@@ -21,82 +23,16 @@ from hthor.thinking_time import Decision, Thinking
 from hthor.types import (
     HUMAN,
     Action,
-    BodySpec,
     Briefing,
     Event,
-    HouseSpec,
     Mind,
-    Motion,
     Observation,
-    Outcome,
-    Pose,
     Send,
-    Senses,
-    Snapshot,
-    TaskSpec,
-    ThingState,
     TrialSpec,
     Wait,
 )
 
 _T = TypeVar("_T")
-_LOOK_TICKS = round(1.0 / rules.TICK_S)
-
-
-class TrialWorld(Protocol):
-    """What the umpire asks of a world."""
-
-    @property
-    def seats(self) -> Sequence[str]: ...
-    @property
-    def bodies(self) -> Mapping[str, BodySpec]: ...
-    @property
-    def house(self) -> HouseSpec: ...
-    @property
-    def tick(self) -> int: ...
-    def reset(self, task: TaskSpec, seed: int = 0) -> None: ...
-    def idle(self, seat: str) -> bool: ...
-    def start(self, seat: str, motion: Motion) -> None: ...
-    def outcome(self, seat: str) -> Outcome | None: ...
-    def advance(self) -> tuple[Event, ...]: ...
-    def pose(self, seat: str) -> Pose: ...
-    def holding(self, seat: str) -> str: ...
-    def room(self, seat: str) -> str: ...
-    def senses(self, seat: str) -> Senses: ...
-    def truth(self) -> tuple[ThingState, ...]: ...
-    def snapshot(self) -> Snapshot: ...
-    def frame(self, seat: str) -> Callable[[], Any]: ...
-
-
-class Fault(Struct, frozen=True, kw_only=True):
-    """A robot's mind failed at ``tick``; the trial went on without it. ``detail`` is its traceback or what it did."""
-
-    seat: str
-    kind: str
-    tick: int
-    detail: str
-
-
-class EpisodeLog(Struct, frozen=True, kw_only=True):
-    """What one trial left behind.
-
-    ``paths`` holds, for each seat and every `rules.LOG_EVERY_TICKS` ticks from tick 0, [x, y, yaw] in whole
-    millimetres and milliradians. ``ticks`` is the trial's length; ``trust`` the person's rating, None without a robot.
-    ``progress`` is the share of the goal that is met in the end, from 0 to 1, None where the kind of task counts no
-    parts; whenever it changes there is an event "progress" with its ``value``. ``idle`` says for how many ticks each
-    seat's body carried out no motion, or only waited. ``journal`` is what the person's own recorder holds besides:
-    stick, pitch, attempts, glimpses, choices, as `hthor.humans.core.behaviour_log` lists them.
-    """
-
-    events: tuple[Event, ...]
-    paths: dict[str, list[tuple[int, int, int]]]
-    ticks: int
-    met: bool
-    trust: int | None
-    faults: tuple[Fault, ...]
-    progress: float | None = None
-    idle: dict[str, int] = {}
-    journal: tuple[Event, ...] = ()
 
 
 def run_episode(
@@ -110,16 +46,29 @@ def run_episode(
     """Run one trial from reset to its end.
 
     Args:
-        trial: what to play; its task decides house, start, goal and time limit.
+        trial: its task has the house, the start, the goal and the time limit.
         world: built for the task's house, with a body for every seat of ``robots``.
-        human: the person, who may remember earlier trials of the session.
-        robots: a mind for each robot's seat.
-        clock: what thinking time is measured by [s] in a trial in real time; in lock-step nobody looks at it.
+        human: the human model, which may remember earlier trials of the session.
+        robots: the agent of each robot, by seat.
+        clock: measures thinking time [s] in a real-time trial; not used in lock-step.
+
+    Raises:
+        Exception: whatever the human model or the world raises; an agent's errors become faults of the log.
     """
-    return _Episode(trial, world, human, robots, Thinking(clock) if trial.realtime else None).run()
+    return Episode(trial, world, human, robots, Thinking(clock) if trial.realtime else None).run()
 
 
-class _Episode:
+class Episode:
+    """The state of one trial while it runs; `run_episode` makes one and runs it.
+
+    In every tick, each seat that is free or has mail is asked for an action, and all see the same moment; then messages
+    are passed on and motions started, and the world moves on by a tick.
+
+    Args:
+        trial, world, human, robots: as in `run_episode`.
+        thinking: charges agents for thinking time, None in lock-step.
+    """
+
     def __init__(
         self,
         trial: TrialSpec,
@@ -131,39 +80,40 @@ class _Episode:
         self.thinking = thinking
         self.task, self.world, self.human = trial.task, world, human
         self.seed = seeds.derive(trial.seed, "world", trial.participant, trial.index, trial.task.id)
-        self.minds: dict[str, Mind] = {HUMAN: human, **robots}
+        self.agents: dict[str, Mind] = {HUMAN: human, **robots}
         self.privileges = {robot.seat: robot.agent.privileges for robot in trial.robots}
         self.kind: TaskKind = plugins.load("task kind", self.task.kind)
-        self.advances = _Progress(self.kind, self.task)
+        self.progress = GoalProgress(self.kind, self.task)
         self.limit = round(self.task.time_limit / rules.TICK_S)
         self.mailbox = Mailbox(robots=tuple(robots))
         self.events: list[Event] = []
         self.faults: list[Fault] = []
-        self.paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in self.minds}
-        self.idle = dict.fromkeys(self.minds, 0)
+        self.paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in self.agents}
+        self.idle = dict.fromkeys(self.agents, 0)
         self.recorder = BehaviourRecorder(world.bodies[HUMAN], rules.TICK_S)
-        self.resting: dict[str, int | None] = dict.fromkeys(self.minds, 0)
+        self.resting_since: dict[str, int | None] = dict.fromkeys(self.agents, 0)
 
     def run(self) -> EpisodeLog:
+        """Run the trial to its end."""
         self.world.reset(self.task, seed=self.seed)
         self._trace()
-        self.events.extend(self.advances.look(self.world.snapshot(), self.world.house, news=True))
-        for seat, mind in tuple(self.minds.items()):
-            self._guarded(seat, partial(mind.begin, self._briefing(seat)))
+        self.events.extend(self.progress.update(self.world.snapshot(), self.world.house, has_events=True))
+        for seat, agent in tuple(self.agents.items()):
+            self._guarded(seat, partial(agent.begin, self._briefing(seat)))
         met = False
         while not met and self.world.tick < self.limit:
-            told = len(self.events)
+            events = len(self.events)
             self._tick()
             snapshot = self.world.snapshot()
             met = self.kind.met(self.task, snapshot, self.world.house)
-            if self.advances.value is not None:
-                news = len(self.events) > told
-                self.events.extend(self.advances.look(snapshot, self.world.house, met=met, news=news))
+            if self.progress.value is not None:
+                has_events = len(self.events) > events
+                self.events.extend(self.progress.update(snapshot, self.world.house, met=met, has_events=has_events))
         return self._log(met)
 
     def _log(self, met: bool) -> EpisodeLog:
         ticks = self.world.tick
-        for seat in self.resting:
+        for seat in self.resting_since:
             self._rest(seat, False)
         self.events.append(Event(tick=ticks, seat=HUMAN, kind="success" if met else "timeout"))
         return EpisodeLog(
@@ -173,16 +123,16 @@ class _Episode:
             met=met,
             trust=self.human.rate(met, ticks),
             faults=tuple(self.faults),
-            progress=self.advances.value,
+            progress=self.progress.value,
             idle=self.idle,
             journal=self.recorder.journal(getattr(self.human, "journal", ()), self.events),
         )
 
     def _tick(self) -> None:
-        """Every seat that is asked sees the same moment; only then do their actions take effect."""
+        """All seats that are asked see the same moment; only then do their actions take effect."""
         world, mailbox = self.world, self.mailbox
-        wanted = [seat for seat in self.minds if world.idle(seat) or mailbox.changed(seat)]
-        asked = {seat: self._observe(seat) for seat in wanted if self.thinking is None or not self.thinking.busy(seat)}
+        ready = [seat for seat in self.agents if world.idle(seat) or mailbox.changed(seat)]
+        asked = {seat: self._observe(seat) for seat in ready if self.thinking is None or not self.thinking.busy(seat)}
         if HUMAN in asked and asked[HUMAN].inbox:
             self.events.extend(mailbox.shown(world.tick))
         actions = [(seat, self._ask(seat, observation)) for seat, observation in asked.items()]
@@ -202,7 +152,7 @@ class _Episode:
     def _timely(
         self, thinking: Thinking, actions: Sequence[tuple[str, Action | None]]
     ) -> Sequence[tuple[str, Action | None]]:
-        """In real time: what is decided by now. The rest comes later, and the bodies that wait for it stand still."""
+        """In real time: the actions that are due by now. The bodies that wait for later ones stand still."""
         tick = self.world.tick
         for seat, action in actions:
             late = thinking.late(seat)
@@ -214,18 +164,17 @@ class _Episode:
                 self.events.append(Event(tick=tick, seat=seat, kind="thought", data={"ticks": late}))
                 if free:
                     self._rest(seat, True)
-        due = thinking.due(tick, self.minds)
+        due = thinking.due(tick, self.agents)
         for one in due:
-            if not one.moves and one.action.say is not None:  # who was asked while busy was asked for words alone
+            if not one.moves and one.action.say is not None:  # a seat that is asked while it moves may only speak
                 self._say(one.seat, one.action)
         return [(one.seat, one.action) for one in due if one.moves]
 
     def _ask(self, seat: str, observation: Observation) -> Action | None:
-        """A robot's failure ends its part in the trial, not the trial; a human model's failure is ours to see."""
-        mind = self.minds[seat]
+        agent = self.agents[seat]
         if seat == HUMAN:
-            return _checked(mind.act(observation))
-        act = mind.act if self.thinking is None else partial(self.thinking.ask, seat, mind)
+            return _checked(agent.act(observation))
+        act = agent.act if self.thinking is None else partial(self.thinking.ask, seat, agent)
         return self._guarded(seat, lambda: _checked(act(observation)))
 
     def _observe(self, seat: str) -> Observation:
@@ -247,26 +196,26 @@ class _Episode:
         tick, say = self.world.tick, action.say
         if isinstance(say, Send):
             events = self.mailbox.send(tick, seat, say, self.world.frame(seat))
-            self.events.extend(self._judged(event, say) for event in events)
+            self.events.extend(self._with_claim_error(event, say) for event in events)
         elif say is not None:
             self.events.extend(self.mailbox.reply(tick, seat, say))
 
-    def _judged(self, event: Event, send: Send) -> Event:
-        """The same event; what was sent, with how far it is from the truth."""
+    def _with_claim_error(self, event: Event, send: Send) -> Event:
+        """The same event; that of a sent message with how far its claim is from the truth."""
         if event.kind != "sent":
             return event
         claim = claims.claim_error(send, event.data["position"], self.world.snapshot(), self.world.house)
         return msgspec.structs.replace(event, data={**event.data, **claim})
 
     def _rest(self, seat: str, resting: bool) -> None:
-        """From now on the seat's body carries out a motion, or none but waiting."""
-        tick, since = self.world.tick, self.resting[seat]
+        """Note that the seat's body, from now on, rests (does nothing or waits) or moves; adds up its idle time."""
+        tick, since = self.world.tick, self.resting_since[seat]
         if since is not None and not resting:
             self.idle[seat] += tick - since
-        self.resting[seat] = None if not resting else tick if since is None else since
+        self.resting_since[seat] = None if not resting else tick if since is None else since
 
     def _briefing(self, seat: str) -> Briefing:
-        goal, granted = self.task.goal, self.privileges.get(seat, ())
+        goal, privileges = self.task.goal, self.privileges.get(seat, ())
         return Briefing(
             seat=seat,
             instruction=self.task.instruction,
@@ -276,16 +225,16 @@ class _Episode:
             body=self.world.bodies[seat],
             tick_s=rules.TICK_S,
             time_limit=self.task.time_limit,
-            teammates=tuple(other for other in self.minds if other != seat),
-            privileges=granted,
-            house=self.world.house if "house_map" in granted else None,
+            teammates=tuple(other for other in self.agents if other != seat),
+            privileges=privileges,
+            house=self.world.house if "house_map" in privileges else None,
             kind=self.task.kind,
             jobs=goal.todo,
             crew=dict(self.world.bodies),
         )
 
     def _guarded(self, seat: str, call: Callable[[], _T]) -> _T | None:
-        """A robot's failure ends its part in the trial, not the trial; a human model's failure is ours to see."""
+        """Call an agent. Its failure ends its part in the trial; a human model's failure is a bug of ours."""
         if seat == HUMAN:
             return call()
         try:
@@ -295,13 +244,13 @@ class _Episode:
             return None
 
     def _retire(self, seat: str, error: Exception) -> None:
-        """Take a failed mind out of the trial: its body stays where it is, and what it did wrong is on record."""
+        """Take a failed agent out of the trial: its body stays where it is, and its fault is logged."""
         tick, kind = self.world.tick, str(getattr(error, "kind", type(error).__name__))
         detail = str(getattr(error, "detail", "")) or "".join(traceback.format_exception(error, limit=-4))
         self.faults.append(Fault(seat=seat, kind=kind, tick=tick, detail=detail))
         self.events.append(Event(tick=tick, seat=seat, kind="fault", data={"kind": kind}))
         self._rest(seat, True)
-        del self.minds[seat]
+        del self.agents[seat]
 
     def _trace(self) -> None:
         if self.world.tick % rules.LOG_EVERY_TICKS:
@@ -311,33 +260,6 @@ class _Episode:
             path.append((round(pose.x * 1000), round(pose.y * 1000), round(pose.yaw * 1000)))
             if seat == HUMAN:
                 self.recorder.head(self.world.tick, pose.pitch)
-
-
-class _Progress:
-    """How much of the goal is met, by the kinds of task that count parts; the others cost nothing."""
-
-    def __init__(self, kind: TaskKind, task: TaskSpec) -> None:
-        counts = type(kind).progress is not TaskKind.progress
-        self.value: float | None = 0.0 if counts else None
-        self._kind, self._task, self._last = kind, task, round(task.time_limit / rules.TICK_S)
-        self._things: Mapping[str, ThingState] | None = None
-
-    def look(self, snapshot: Snapshot, house: HouseSpec, *, met: bool = False, news: bool) -> tuple[Event, ...]:
-        """The event "progress" when it changed.
-
-        It is worked out when a thing has changed by a deed or by itself, once a second, and at the end. While the only
-        news is that something is carried along, it can wait.
-        """
-        stirred = snapshot.things is not self._things and (news or not any(snapshot.holding.values()))
-        due = met or stirred or snapshot.tick % _LOOK_TICKS == 0 or snapshot.tick == self._last
-        if self.value is None or not due:
-            return ()
-        self._things = snapshot.things
-        share = 1.0 if met else round(min(1.0, max(0.0, float(self._kind.progress(self._task, snapshot, house)))), 4)
-        if share == self.value:
-            return ()
-        self.value = share
-        return (Event(tick=snapshot.tick, seat=HUMAN, kind="progress", data={"value": share}),)
 
 
 def _checked(action: object) -> Action:
