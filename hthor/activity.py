@@ -1,4 +1,4 @@
-"""What a long piece of work is about at the moment, said to whoever listens; nobody does by default."""
+"""Reporting what a long operation is doing to a listener, if there is one."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ _listener: ContextVar[Callable[[str], None] | None] = ContextVar("listener", def
 
 
 def say(words: str) -> None:
-    """Say what is done now, such as "playing trial 3 of 10"."""
+    """Report the current step, such as "playing trial 3 of 10"."""
     if (listener := _listener.get()) is not None:
         listener(words)
 
 
 @contextmanager
 def heard_by(listener: Callable[[str], None]) -> Iterator[None]:
-    """Have all steps within the block told to ``listener``."""
+    """Report all steps within the block to ``listener``."""
     before = _listener.set(listener)
     try:
         yield

@@ -1,7 +1,6 @@
-"""Reads the JSON files that hthor writes: a typed record, or an error of the caller's class naming file and field.
+"""Reading JSON files as typed records, or raising one error that names the file and the field.
 
-Whatever a damaged file holds, text that is not JSON, bytes that are not UTF-8, nesting too deep, or the wrong record,
-ends in that one error.
+Any damage ends in that error: text that is not JSON, bytes that are not UTF-8, nesting too deep, the wrong record.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ _T = TypeVar("_T")
 
 
 class Unreadable(ValueError):
-    """Bytes that are not the JSON document they should be.
+    """Bytes that are not the expected JSON document.
 
     Args:
         field: where, such as ``tasks[3].goal``; ``$`` for the document as a whole.
@@ -58,8 +57,8 @@ def read(
     try:
         data = path.read_bytes()
     except OSError as problem:
-        said = f"cannot be read: {problem.strerror or problem}"
-        raise error.in_file(shown, WHOLE, _with(said, hint)) from None
+        message = f"cannot be read: {problem.strerror or problem}"
+        raise error.in_file(shown, WHOLE, _with(message, hint)) from None
     return parse(data, kind, error, shown=shown, schema=schema, hint=hint)
 
 
@@ -93,7 +92,7 @@ def schema_of(path: Path) -> str:
 
 @contextmanager
 def reading_errors() -> Iterator[None]:
-    """Turn everything that decoding JSON can raise into `Unreadable`; for those who have a decoder of their own."""
+    """Turn every error of decoding JSON into `Unreadable`; for callers with a decoder of their own."""
     try:
         yield
     except msgspec.ValidationError as error:

@@ -1,4 +1,4 @@
-"""What hthor raises: each error says what was wrong, what was given, what is valid, and what to do next."""
+"""The errors of hthor: each says what was wrong, what was given, what is valid, and what to do next."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _LISTED = 24
 
 
 class HthorError(Exception):
-    """Root of every error that is the user's to mend: the CLI prints no traceback and exits with ``exit_code``."""
+    """Root of all errors that the user can mend: the CLI prints no traceback and exits with ``exit_code``."""
 
     exit_code = 2
 
@@ -40,12 +40,12 @@ class FileError(HthorError):
 
 
 class UnknownName(HthorError):
-    """A name that nothing answers to.
+    """A name that does not exist.
 
     Args:
-        what: the sort of name, such as "suite".
+        what: what it should be the name of, such as "suite".
         given: what the user wrote.
-        valid: every name that would have worked.
+        valid: all names that exist.
         hint: what to do next, a sentence; optional.
     """
 
@@ -68,7 +68,7 @@ class TaskError(FileError):
 
 
 class PopulationError(FileError):
-    """A file of people, a population or a kind, that cannot be used."""
+    """A file of a human population, or of a kind of people, that cannot be used."""
 
 
 class AgentError(HthorError):
@@ -78,17 +78,17 @@ class AgentError(HthorError):
 
 
 KILLED = "killed"
-"""The fault of an agent whose process was ended from outside, which is not its failure until it happens again."""
+"""The fault of an agent whose process was killed from outside; the first time in a run its session is run again."""
 
 
 class AgentKilled(AgentError):
-    """An agent's process was ended from outside before the agent could say what it is."""
+    """An agent's process was killed from outside before the agent could say what it is."""
 
     kind = KILLED
 
 
 class RunError(HthorError):
-    """A run folder that cannot be used: damaged, or of another evaluation."""
+    """A run's folder that cannot be used: it is damaged, or holds another run."""
 
 
 class RunLocked(HthorError):
@@ -109,8 +109,8 @@ class RenderingUnavailable(HthorError):
 
 
 class PhysicsError(HthorError):
-    """The physics engine lost the state of a world; the message names the objects, and the world can go on."""
+    """The physics engine lost the state of a world; the message names the objects, and the world stays usable."""
 
 
 class StaleObservation(RuntimeError):
-    """An observation was read after the tick it was made for; read pictures, scans and detections inside ``act``."""
+    """An observation was read after its tick; read pictures, scans and detections inside ``act``."""

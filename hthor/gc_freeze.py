@@ -1,4 +1,4 @@
-"""Python's garbage collector kept from what is made to stay."""
+"""Keeping Python's garbage collector from scanning objects that stay, such as worlds."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def collection_paused() -> Iterator[None]:
-    """Look for no garbage meanwhile: with several worlds in memory that takes a third of the time to build another."""
+    """Collect no garbage meanwhile: with several worlds in memory, it takes a third of the time to build another."""
     was = gc.isenabled()
     gc.disable()
     try:
@@ -21,10 +21,10 @@ def collection_paused() -> Iterator[None]:
 
 
 def freeze_existing() -> None:
-    """Do not look through what there is by now any more: it will stay as long as its owner, see `release_with`."""
+    """Do not scan the objects that exist now any more; see `unfreeze_after`."""
     gc.freeze()
 
 
 def unfreeze_after(owner: object) -> None:
-    """Look through everything again once ``owner`` is gone."""
+    """Scan everything again once ``owner`` is gone."""
     weakref.finalize(owner, gc.unfreeze).atexit = False

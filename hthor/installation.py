@@ -1,4 +1,4 @@
-"""This installation of hthor: its files as one hash, its versions, and where it keeps what can be made again."""
+"""This installation of hthor: one hash of its files, its versions, and its cache."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PACKAGE = Path(__file__).resolve().parent
 
 @functools.cache
 def sha256() -> str:
-    """Hash of every source file of the package: the same installation, down to the comments."""
+    """Hash of every source file of the package, comments included."""
     digest = hashlib.sha256()
     for path in sorted(PACKAGE.rglob("*.py")):
         data = path.read_bytes()
@@ -26,11 +26,11 @@ def sha256() -> str:
 
 
 def cache() -> Path:
-    """hthor's folder in the user's cache; what lies there can be deleted at any time."""
+    """hthor's folder in the user's cache; its content can be deleted at any time."""
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "hthor"
 
 
 def versions() -> dict[str, str]:
     """Versions of hthor, of Python and of the libraries that compute, without importing them."""
-    found = {name: metadata.version(name) for name in ("mujoco", "dm_control", "numba", "numpy")}
-    return {"hthor": __version__, "python": platform.python_version(), **found}
+    libraries = {name: metadata.version(name) for name in ("mujoco", "dm_control", "numba", "numpy")}
+    return {"hthor": __version__, "python": platform.python_version(), **libraries}

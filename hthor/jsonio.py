@@ -1,4 +1,4 @@
-"""Canonical JSON, content hashes and writes that are all or nothing."""
+"""Canonical JSON, hashes of content, and atomic writes."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _canonical = msgspec.json.Encoder(order="sorted")
 
 
 def canonical(document: Any) -> bytes:
-    """Encode as JSON with sorted keys and no white space: equal documents give equal bytes."""
+    """Encode as JSON with sorted keys and no white space; equal documents give equal bytes."""
     return _canonical.encode(document)
 
 
 def pretty(document: Any) -> bytes:
-    """Encode for people: sorted keys, two spaces, a newline at the end."""
+    """Encode as readable JSON: sorted keys, indented by two spaces, with a newline at the end."""
     return msgspec.json.format(canonical(document), indent=2) + b"\n"
 
 
@@ -30,7 +30,7 @@ def sha256(document: Any) -> str:
 
 
 def is_text(value: str) -> bool:
-    """Whether a text can be written: names of files and escapes in JSON can hold halves of characters, which cannot."""
+    """Whether a text can be encoded; file names and JSON escapes can hold lone surrogates, which cannot."""
     try:
         value.encode()
     except UnicodeEncodeError:
@@ -39,7 +39,7 @@ def is_text(value: str) -> bool:
 
 
 def write(path: Path, data: bytes) -> None:
-    """Replace ``path`` by ``data`` in one step: a reader sees the old file or the new one, never a part."""
+    """Replace a file in one step: a reader sees the old content or the new, never a part."""
     make_folder(path.parent)
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
@@ -51,14 +51,14 @@ def write(path: Path, data: bytes) -> None:
         os.replace(name, path)
     except BaseException as error:
         Path(name).unlink(missing_ok=True)
-        if isinstance(error, OSError) and not error.filename:  # the user is to know where there is no room
+        if isinstance(error, OSError) and not error.filename:  # so that the message names the full disk's file
             error.filename = str(path)
         raise
     sync_folder(path.parent)
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder and those above it, so that not even a loss of power takes them away."""
+    """Make a folder and its parents, durably: they survive a loss of power."""
     above = [*reversed(folder.parents), folder]
     new = [one for one in above if not one.is_dir()]
     folder.mkdir(parents=True, exist_ok=True)
@@ -67,10 +67,10 @@ def make_folder(folder: Path) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Have the disk know the folder's files by name, without which their content is lost with the power."""
+    """Write the folder's list of files to the disk; without it new files can be lost with the power."""
     handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
-        with contextlib.suppress(OSError):  # some network file systems do not know the word
+        with contextlib.suppress(OSError):  # some network file systems do not support it
             os.fsync(handle)
     finally:
         os.close(handle)

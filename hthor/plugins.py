@@ -1,6 +1,6 @@
-"""Finding plug-ins by file name: one file in a package is one plug-in.
+"""Plug-ins: one file in a package is one plug-in, found by its file name.
 
-A plug-in may also be a file of the user's, named by its path. Once loaded it goes by its file name like any other.
+A plug-in may also be a file of the user's, named by its path. Once loaded it is found by its file name like any other.
 """
 
 from __future__ import annotations
@@ -14,9 +14,10 @@ import sys
 import traceback
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, Literal, overload
 
 from hthor.errors import HthorError, UnknownName
+from hthor.types import Mind, RobotSpec
 
 _PACKAGES = {
     "agent": ("hthor.agents", "Agent"),
@@ -27,7 +28,7 @@ _PACKAGES = {
 }
 _SUFFIX = ".py"
 _FILES = {("agent", "none"): "silent"}
-"""Files of plug-ins that are called otherwise than their files; both words are read."""
+"""Plug-ins with another name than their file; both names are accepted."""
 
 
 @functools.cache
@@ -44,7 +45,7 @@ def names(sort: str) -> tuple[str, ...]:
 
 
 def plugin_name(sort: str, file: str) -> str:
-    """What the plug-in in the file of this name is called, mostly the same."""
+    """The name of the plug-in in a file of this name; mostly the same."""
     return next((name for (one, name), stem in _FILES.items() if (one, stem) == (sort, file)), file)
 
 
@@ -54,30 +55,36 @@ def file_stem(sort: str, name: str) -> str:
 
 
 def is_built_in(sort: str, name: str) -> bool:
-    """Whether a plug-in of this name ships with hthor; one of a user's own never has the same name."""
+    """Whether a plug-in of this name ships with hthor; a user's own never has the same name."""
     return plugin_name(sort, name) in names(sort)
 
 
 def package(sort: str) -> str:
-    """The package of the plug-ins that ship with hthor."""
+    """The name of the package of one sort of plug-ins."""
     return _PACKAGES[sort][0]
 
 
 def module_name(sort: str, name: str) -> str:
-    """The module's name of a plug-in that ships with hthor."""
+    """The module of a plug-in that ships with hthor."""
     package, _ = _PACKAGES[sort]
     return f"{package}.{file_stem(sort, name)}"
 
 
+@overload
+def load(sort: Literal["agent"], name: str) -> type[Mind]: ...
+@overload
+def load(sort: Literal["robot"], name: str) -> RobotSpec: ...
+@overload
+def load(sort: str, name: str) -> Any: ...
 def load(sort: str, name: str) -> Any:
-    """The plug-in's class or record.
+    """The plug-in's class or record: what its file defines under the name that its sort asks for.
 
     Args:
         name: its name, or the path of a Python file that defines one.
 
     Raises:
         UnknownName: when no file has that name.
-        HthorError: when the file does not define what its sort asks for, or does not load.
+        HthorError: when the file does not define that, or does not load.
     """
     package, attribute = _PACKAGES[sort]
     known = names(sort)
@@ -85,8 +92,8 @@ def load(sort: str, name: str) -> Any:
         module = importlib.import_module(f"{package}.{file_stem(sort, name)}")
     elif name.endswith(_SUFFIX):
         module = _from_file(sort, Path(name))
-    elif (there := loaded(sort, name)) is not None:
-        module = there
+    elif (user_module := loaded(sort, name)) is not None:
+        module = user_module
     else:
         raise UnknownName(sort, name, known)
     try:
@@ -121,9 +128,9 @@ def sha256(path: str) -> str:
 
 
 def user_error(error: BaseException) -> HthorError | None:
-    """The error as one for the user to mend, where it passed through a plug-in of theirs: file, line, function, words.
+    """The error as one for the user to mend (file, line, function, message), if a plug-in of theirs raised it.
 
-    None when no file of the user's that was loaded had a part in it.
+    None when it did not pass through any file of the user's.
     """
     frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in _own()]
     if not frames:
@@ -133,7 +140,7 @@ def user_error(error: BaseException) -> HthorError | None:
 
 
 def _own() -> set[str]:
-    """The user's files that were loaded as plug-ins."""
+    """The user's files that are loaded as plug-ins."""
     ours, packages = str(Path(__file__).parent), {package for package, _ in _PACKAGES.values()}
     modules = [module for name, module in sys.modules.items() if name.rpartition(".")[0] in packages]
     files = [getattr(module, "__file__", None) or "" for module in modules]
@@ -141,18 +148,18 @@ def _own() -> set[str]:
 
 
 def _from_file(sort: str, path: Path) -> ModuleType:
-    """Load a user's file as if it lay in the package of its sort."""
+    """Load a user's file as if it were in the package of its sort."""
     package, _ = _PACKAGES[sort]
     if not path.is_file():
         raise UnknownName(sort, str(path), names(sort), "A path must lead to a Python file.")
     if plugin_name(sort, path.stem) in names(sort) or not path.stem.isidentifier():
         raise HthorError(f"{path}: a {sort}'s file name must be a Python name that no {sort} of ours has; rename it.")
     name, place = f"{package}.{path.stem}", path.resolve()
-    there = sys.modules.get(name)
-    if there is not None:
-        if there.__file__ == str(place):
-            return there
-        raise HthorError(f"{path}: a {sort} called '{path.stem}' was loaded from {there.__file__}; rename one of them.")
+    known = sys.modules.get(name)
+    if known is not None:
+        if known.__file__ == str(place):
+            return known
+        raise HthorError(f"{path}: a {sort} called '{path.stem}' was loaded from {known.__file__}; rename one of them.")
     spec = importlib.util.spec_from_file_location(name, place)
     assert spec is not None
     assert spec.loader is not None

@@ -1,7 +1,7 @@
-"""Chance by name: a draw depends on what it is for, never on how many draws came before; holds no state.
+"""Random draws by name: a draw depends on what it is for, never on how many draws came before; there is no state.
 
-Two robots therefore meet the same person on the same day: a message that changes the person's path does not shift
-the outcome of anything else.
+Two robots therefore meet the same person on the same day: a message that changes the person's path does not change
+the outcome of any other draw.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def normal(root: int, *names: Name) -> float:
 
 
 def derive(root: int, *names: Name) -> int:
-    """A root for draws of its own, 63 bits."""
+    """A seed for further draws, 63 bits."""
     return _bits(root, names) >> 1
 
 

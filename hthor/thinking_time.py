@@ -1,7 +1,7 @@
-"""Thinking time as time of the trial: decisions come as late as they were made.
+"""Real-time trials: an agent's thinking time is time of the trial, so its actions come later.
 
-Time is measured while the mind decides, without what it takes to draw or scan for it. It adds up in ticks: whoever
-thinks a third of a tick each time is a tick late every third time, so that nothing is rounded away.
+The time is measured while the agent decides, without what its sensors take. It adds up: an agent that thinks for a
+third of a tick each time is one tick late every third time, so that nothing is rounded away.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from msgspec import Struct
 from hthor import rules
 from hthor.types import Action, Mind, Observation
 
-_HAIR = 1e-9
-"""Of a tick: three tenths of a second are three ticks, however they were added up."""
+_TOLERANCE = 1e-9
+"""Tolerance [ticks], so that 0.1 + 0.1 + 0.1 s counts as 3 ticks."""
 
 
 class Decision(Struct, frozen=True, kw_only=True):
-    """What a seat's mind decided on; ``moves`` says whether its body was free, so that the motion counts."""
+    """An action that an agent decided on; ``moves`` says whether its body was free, so that the motion counts."""
 
     seat: str
     action: Action
@@ -29,10 +29,10 @@ class Decision(Struct, frozen=True, kw_only=True):
 
 
 class Thinking:
-    """Holds back what minds decided until their thinking time is over; meanwhile they are not asked again.
+    """Holds actions back until the agents' thinking time is over; meanwhile these agents are not asked again.
 
     Args:
-        clock: seconds of any clock that only goes forward.
+        clock: a monotonic clock [s].
     """
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
@@ -41,11 +41,11 @@ class Thinking:
         self._held: dict[str, tuple[int, Decision]] = {}
 
     def busy(self, seat: str) -> bool:
-        """Whether its mind is still at the last question."""
+        """Whether its last action is still held back."""
         return seat in self._held
 
     def ask(self, seat: str, mind: Mind, observation: Observation) -> Action:
-        """The mind's action; how long it took is kept in mind."""
+        """Ask the agent for an action, and measure how long it takes."""
         senses = Timed(observation.senses, self._clock)
         began = self._clock()
         action = mind.act(msgspec.structs.replace(observation, senses=senses))
@@ -54,38 +54,38 @@ class Thinking:
         return action
 
     def late(self, seat: str) -> int:
-        """How many whole ticks its thinking took, which are then paid for."""
-        ticks = int(self._owed.get(seat, 0.0) / rules.TICK_S + _HAIR)
+        """How many whole ticks late the seat's action is; they are then paid for."""
+        ticks = int(self._owed.get(seat, 0.0) / rules.TICK_S + _TOLERANCE)
         self._owed[seat] = self._owed.get(seat, 0.0) - ticks * rules.TICK_S
         return ticks
 
     def hold(self, decision: Decision, until: int) -> None:
-        """Keep a decision back until a tick."""
+        """Hold an action back until a tick."""
         self._held[decision.seat] = (until, decision)
 
     def due(self, tick: int, seats: Iterable[str]) -> list[Decision]:
-        """The decisions whose time has come, in the order of these seats."""
-        found = [self._held[seat] for seat in seats if seat in self._held]
-        ripe = [decision for until, decision in found if until <= tick]
-        for decision in ripe:
+        """The actions that are due at a tick, in the order of these seats."""
+        held = [self._held[seat] for seat in seats if seat in self._held]
+        due = [decision for until, decision in held if until <= tick]
+        for decision in due:
             del self._held[decision.seat]
-        return ripe
+        return due
 
 
 class Timed:
-    """A body's senses, and how long they took to work: ``spent`` [s]."""
+    """A body's sensors, with the time that reading them took: ``spent`` [s]."""
 
     def __init__(self, senses: Any, clock: Callable[[], float]) -> None:
         self._senses, self._clock, self.spent = senses, clock, 0.0
 
     def timed(self, name: str) -> Callable[..., Any]:
-        """The sense of this name, on the clock."""
-        sense = getattr(self._senses, name)
+        """The sensor of this name, timed."""
+        sensor = getattr(self._senses, name)
 
         def timed(*given: Any) -> Any:
             began = self._clock()
             try:
-                return sense(*given)
+                return sensor(*given)
             finally:
                 self.spent += self._clock() - began
 

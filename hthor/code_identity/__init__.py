@@ -1,10 +1,10 @@
-"""What code does, as a hash over the syntax of modules and of all that they import.
+"""Hashes of what code does: of the syntax of modules and of all that they import.
 
 Comments, docstrings, annotations of functions, white space, and the names and places of modules do not count; every
-other change does. A package or a module that has no part in the course of a trial says so in a line of its own,
-``CODE_PART = "pictures"`` (what robots' cameras show) or ``CODE_PART = "tools"`` (all else: processes, proofs, makers
-of files); what is below a package belongs to the same part. Where trials begin, a module says ``CODE_ROOT = "trial"``,
-where houses and tasks are made, ``CODE_ROOT = "makers"``. Who asks for a hash says which parts count.
+other change does. A module or package that cannot affect a trial says so in a line of its own:
+``CODE_PART = "pictures"`` (what cameras show) or ``CODE_PART = "tools"`` (all else: processes, proofs, file formats);
+a package speaks for everything in it. Modules in which trials begin say ``CODE_ROOT = "trial"``, those that make
+houses and tasks ``CODE_ROOT = "makers"``. Each hash says which parts it covers.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Where numba keeps compiled loops: a folder for exactly this code."""
+"""The folder in which numba caches compiled functions of exactly this code."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from hthor.code_identity.syntax import PICTURES, SIMULATION, TOOLS
 
 
 def compiled() -> Path:
-    """Where compiled loops of exactly this code are kept, in the user's cache.
+    """The folder, in the user's cache, for compiled functions of exactly this code.
 
-    Left to itself the compiler's cache looks only at the file of the loop it is asked for, not at those that the loop
-    calls into: after an update it could run old code, and nothing would tell.
+    By itself, numba's cache checks only the file of a function, not those of the functions that it calls: after an
+    update it could silently run old code.
     """
     kernels = modules_sha256(ours().containing(b"import numba"), (SIMULATION, PICTURES, TOOLS))
     return installation.cache() / f"compiled-{kernels[:16]}"
 
 
 def keep_compiled() -> None:
-    """Have this process, and those that it starts, keep compiled loops in `compiled`, unless the user chose a place.
+    """Make this process and its children cache compiled functions in `compiled`, unless the user chose a folder.
 
-    Whatever plays trials calls this first: without it every process, the agents' too, compiles for 20 s.
+    To be called before trials are run: without it every process, the agents' too, compiles for 20 s.
     """
     if "NUMBA_CACHE_DIR" not in os.environ:
         os.environ["NUMBA_CACHE_DIR"] = str(compiled())

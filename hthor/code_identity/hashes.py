@@ -1,4 +1,4 @@
-"""Hashes of the code that a result depends on: of trials, agents, robots, pictures, and of what makes tasks."""
+"""The hashes of code that a result depends on: of trials, agents, robots, pictures, and of what makes tasks."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ _HEX = 64
 
 
 def code_sha256(model: str, kinds: Iterable[str]) -> str:
-    """Hash of the code that plays trials and measures them: world, episode, people, kinds of task, records, metrics.
+    """Hash of the code that runs and measures trials: world, episode, human model, task kinds, records, metrics.
 
-    What robots bring counts apart: `agent_sha256`, `robot_sha256`, `pictures_sha256`.
+    Robots have hashes of their own: `agent_sha256`, `robot_sha256`, `pictures_sha256`.
 
     Args:
-        model: the human model; one of the user's own may use every one of ours, and so may a kind.
-        kinds: the kinds of task.
+        model: the human model; a user's own may use every one of ours, and so may a task kind.
+        kinds: the task kinds.
     """
     own = [*_modules("human model", model), *(name for kind in set(kinds) for name in _modules("task kind", kind))]
     metrics = [plugins.module_name("metric", name) for name in plugins.names("metric")]
@@ -39,43 +39,42 @@ def robot_sha256(name: str) -> str:
 
 
 def pictures_sha256(pack: str = "") -> str:
-    """Hash of what draws what robots' cameras show: of the code, and of a furniture pack by its own hash."""
+    """Hash of the code that draws what robots' cameras show, and of a furniture pack (by its own hash)."""
     code = modules_sha256(roots(_TRIAL), (SIMULATION, PICTURES))
     return jsonio.sha256([pack, code]) if pack else code
 
 
 def makers_sha256() -> str:
-    """Hash of the code that makes houses and tasks, and proves them sound."""
+    """Hash of the code that makes and checks houses and tasks."""
     kinds = [plugins.module_name("task kind", name) for name in plugins.names("task kind")]
     return modules_sha256([*roots(_MAKERS), *kinds], (SIMULATION, TOOLS))
 
 
 def roots(of: str) -> list[str]:
-    """Names of the modules where something begins, as they say of themselves: ``CODE_ROOT = "trial"``."""
+    """Names of the modules that say ``CODE_ROOT = "OF"``, such as "trial"."""
     return sources.ours().roots(of)
 
 
 def modules_sha256(names: Sequence[str], parts: Sequence[str] = (SIMULATION,)) -> str:
-    """Hash of modules of hthor and of all that they import, as `Sources.sha256` has it.
+    """Hash of modules of hthor and of all that they import, as `Sources.sha256`.
 
-    It is kept for the next time, as reading them takes a second.
-    What is kept goes by the bytes of every source file.
+    It is cached by the bytes of all source files, as computing it takes a second.
     """
     place = installation.cache() / "code" / jsonio.sha256([installation.sha256(), sorted(set(names)), sorted(parts)])
     try:
-        held = place.read_text(encoding="ascii")
+        cached = place.read_text(encoding="ascii")
     except (OSError, UnicodeDecodeError):
-        held = ""
-    if len(held) == _HEX:
-        return held
-    made = sources.ours().sha256(names, parts)
-    with contextlib.suppress(OSError):  # in a home that cannot be written it is worked out again the next time
-        jsonio.write(place, made.encode("ascii"))
-    return made
+        cached = ""
+    if len(cached) == _HEX:
+        return cached
+    digest = sources.ours().sha256(names, parts)
+    with contextlib.suppress(OSError):  # without a writable cache it is computed every time
+        jsonio.write(place, digest.encode("ascii"))
+    return digest
 
 
 def _modules(sort: str, name: str) -> list[str]:
-    """The module of a plug-in; of the user's own, all that it may build on."""
+    """The module of a built-in plug-in; for a user's own, all built-in ones of its sort, which it may build on."""
     return [
         plugins.module_name(sort, one) for one in ([name] if plugins.is_built_in(sort, name) else plugins.names(sort))
     ]

@@ -1,4 +1,4 @@
-"""The modules of a package, and one hash of what some of them do together with all that they import."""
+"""The modules of a package, and one hash of some of them with all that they import."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 
 class Sources:
-    """The modules of a package by their names, read when they are asked for.
+    """The modules of a package by name, read when they are asked for.
 
     Args:
         root: the package's folder.
@@ -32,7 +32,7 @@ class Sources:
         return self._read[name]
 
     def part(self, name: str) -> str:
-        """What a module has to do with trials, as it or the nearest package above it says."""
+        """The part that a module belongs to, as it or the nearest package above it says."""
         while name:
             found = self.module(name)
             if found is not None and found.part:
@@ -41,11 +41,11 @@ class Sources:
         return SIMULATION
 
     def roots(self, of: str) -> list[str]:
-        """Names of the modules that say of themselves that they are where ``of`` begins: ``CODE_ROOT = "trial"``."""
+        """Names of the modules that say ``CODE_ROOT = "OF"``, such as "trial"."""
         return [name for name in self.containing(b"CODE_ROOT") if self._module(name).root == of]
 
     def containing(self, words: bytes) -> list[str]:
-        """Names of the modules in whose source these words stand."""
+        """Names of the modules whose source contains these bytes."""
         if words not in self._containing:
             paths = [path for path in sorted(self._root.rglob("*.py")) if words in path.read_bytes()]
             parts = [path.relative_to(self._root.parent).with_suffix("").parts for path in paths]
@@ -53,16 +53,16 @@ class Sources:
         return self._containing[words]
 
     def sha256(self, roots: Iterable[str], parts: Sequence[str] = (SIMULATION,), files: Iterable[Path] = ()) -> str:
-        """Hash of what these modules do, with all that they import of the ``parts`` that count.
+        """Hash of these modules with all that they import.
 
         Args:
             roots: names of modules.
-            parts: a module of another part counts only where it is a root.
-            files: somebody else's, of which only what they import of ours counts.
+            parts: the parts that count; a module of another part counts only if it is a root.
+            files: files outside the package, of which only what they import from it counts.
 
         Raises:
             ValueError: when the package has no such module.
-            SyntaxError: when one of the files is no Python.
+            SyntaxError: when one of the files is not Python.
         """
         names = sorted({*roots, *(name for path in files for name in parse("", path, self._path).imports)})
         if missing := [name for name in names if self.module(name) is None]:
@@ -97,14 +97,14 @@ class Sources:
 
 @functools.cache
 def ours() -> Sources:
-    """hthor's own modules, as they were when this process first asked."""
+    """hthor's own modules, as they were when this process first called this."""
     return Sources()
 
 
 def _rings(roots: Sequence[str], needed: Callable[[str], Iterable[str]]) -> list[tuple[str, ...]]:
-    """The modules that these need, in groups that import one another in a circle, whatever a group needs before it.
+    """The modules that these need, in groups that import one another in a circle, dependencies first.
 
-    (Tarjan's algorithm; most groups are a single module.)
+    Tarjan's algorithm for strongly connected components; most groups are a single module.
     """
     found: list[tuple[str, ...]] = []
     order: dict[str, int] = {}
@@ -132,10 +132,10 @@ def _rings(roots: Sequence[str], needed: Callable[[str], Iterable[str]]) -> list
 
 
 def _hashes(ring: Sequence[Module], known: Mapping[str, str]) -> dict[str, str]:
-    """Hashes of modules that import one another, from those of all else that they import.
+    """Hashes of modules that import one another, from the hashes of all others that they import.
 
-    A module that does not count stands as "apart", one of the same circle as "here": within a circle, modules are told
-    apart by what else they say.
+    An imported module that does not count appears as "apart", one of the same circle as "here"; within a circle,
+    modules are told apart by the rest of their syntax.
     """
     inside = {module.name for module in ring}
 

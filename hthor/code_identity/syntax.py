@@ -1,4 +1,4 @@
-"""One module's syntax as tokens that stay the same however the module is spelled, documented, named or placed."""
+"""A module's syntax as tokens, independent of its layout, documentation, name and place."""
 
 from __future__ import annotations
 
@@ -17,11 +17,13 @@ _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
 class Module(Struct, frozen=True, kw_only=True):
-    """A module as its source says it.
+    """A module, read from its source.
 
-    ``tokens`` is its syntax, with a ``Bound`` where a name stands that an import of ours binds. ``imports`` are the
-    modules of ours that it imports, wherever in it, but for what only type checkers read. ``data`` is the hash of
-    each data file beside a module that knows where it lies. ``part`` and ``root`` are empty where it does not say.
+    Attributes:
+        tokens: its syntax, with a ``Bound`` for each name that an import from the package binds.
+        imports: the modules of the package that it imports anywhere, except for type checkers only.
+        data: hashes of the data files beside it, if it uses its own ``__file__``.
+        part: its ``CODE_PART``, and ``root`` its ``CODE_ROOT``; empty where it has none.
     """
 
     name: str
@@ -33,7 +35,7 @@ class Module(Struct, frozen=True, kw_only=True):
 
 
 class Bound(Struct, frozen=True):
-    """A name that stands for modules of ours, or for something in them: pairs of a module and an attribute."""
+    """A name for modules of the package or for something in them: pairs of a module and an attribute."""
 
     targets: tuple[tuple[str, str], ...]
 
@@ -48,7 +50,7 @@ def is_python(path: Path) -> bool:
 
 
 def parse(name: str, path: Path, find: Callable[[str], Path | None], text: bytes | None = None) -> Module:
-    """A module read from its file, or from another ``text`` in its place."""
+    """A module, read from its file or from ``text`` instead."""
     tree = ast.parse(path.read_bytes() if text is None else text)
     reader = _Reader(_bindings(tree, find))
     reader.read(tree)
@@ -67,25 +69,25 @@ def parse(name: str, path: Path, find: Callable[[str], Path | None], text: bytes
 
 
 def _bindings(tree: ast.Module, find: Callable[[str], Path | None]) -> dict[str, Bound]:
-    """What of ours the names stand for that a file's imports bind, but for what only type checkers read."""
-    found: dict[str, set[tuple[str, str]]] = {}
+    """What the names that a file's imports bind stand for, except for type checkers only."""
+    targets_of: dict[str, set[tuple[str, str]]] = {}
     for node in _executed(tree):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 if find(alias.name) is not None:
-                    found.setdefault(alias.asname or alias.name.partition(".")[0], set()).add((alias.name, ""))
+                    targets_of.setdefault(alias.asname or alias.name.partition(".")[0], set()).add((alias.name, ""))
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
             for alias in node.names:
-                own, held = f"{node.module}.{alias.name}", alias.asname or alias.name
-                if find(own) is not None:
-                    found.setdefault(held, set()).add((own, ""))
+                module, name = f"{node.module}.{alias.name}", alias.asname or alias.name
+                if find(module) is not None:
+                    targets_of.setdefault(name, set()).add((module, ""))
                 elif find(node.module) is not None:
-                    found.setdefault(held, set()).add((node.module, alias.name))
-    return {name: Bound(tuple(sorted(targets))) for name, targets in found.items()}
+                    targets_of.setdefault(name, set()).add((node.module, alias.name))
+    return {name: Bound(tuple(sorted(targets))) for name, targets in targets_of.items()}
 
 
 def _executed(tree: ast.AST) -> Iterator[ast.AST]:
-    """Every node below, but for what only type checkers read."""
+    """Every node below, except what only type checkers read."""
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
             continue
@@ -94,7 +96,7 @@ def _executed(tree: ast.AST) -> Iterator[ast.AST]:
 
 
 class _Reader:
-    """Turns syntax into tokens that are the same for every spelling, and in every version of Python."""
+    """Turns syntax into tokens that are the same for every layout and every version of Python."""
 
     def __init__(self, bound: dict[str, Bound]) -> None:
         self.bound = bound
@@ -130,7 +132,7 @@ class _Reader:
             self.tokens.append(f"{type(value).__name__} {value!r}")
 
     def _is_only_typed(self, node: ast.AST, field: str) -> bool:
-        """Annotations of functions and in them do nothing; those of classes are the fields of records."""
+        """Whether a field is an annotation without effect: in functions, not in classes, where it defines a record."""
         if field in ("kind", "type_comment", "type_params", "ctx"):
             return True
         if isinstance(node, ast.AnnAssign):
@@ -138,7 +140,7 @@ class _Reader:
         return (isinstance(node, ast.arg) and field == "annotation") or field == "returns"
 
     def _foreign(self, node: ast.Import | ast.ImportFrom) -> None:
-        """An import of somebody else's; one of ours counts by the names that it binds."""
+        """An import from elsewhere; one from the package counts by the names that it binds."""
         module = getattr(node, "module", None) or ""
         for alias in node.names:
             if (alias.asname or alias.name.partition(".")[0]) not in self.bound:
@@ -157,7 +159,7 @@ def _statements(body: Sequence[ast.stmt]) -> list[ast.stmt]:
 
 
 def _mark(node: ast.stmt) -> tuple[str, str] | None:
-    """The name and the value of a statement that says what part its module has in trials; None for other statements."""
+    """The name and the value of a ``CODE_PART`` or ``CODE_ROOT`` statement; None for other statements."""
     if not isinstance(node, ast.Assign) or not isinstance(node.value, ast.Constant):
         return None
     names = [target.id for target in node.targets if isinstance(target, ast.Name)]

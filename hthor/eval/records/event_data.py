@@ -1,6 +1,6 @@
-"""What the data of a log's events must be for those who score and draw them; docs/logs.md lists the kinds of events.
+"""Checking the data of a log's events, before they are scored or drawn; docs/files.md lists the kinds of events.
 
-An event's data is free in its form, as kinds of tasks and models of people add their own. What is read later is typed.
+Task kinds and human models may add data of any form; the fields that are read later have types.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class _Data(Struct):
 
 
 def check_events(events: Sequence[Event]) -> None:
-    """See that all data can be read.
+    """Check that the data of all events can be read.
 
     Raises:
         Unreadable: names the event, by its number from 0, and the field.

@@ -1,4 +1,4 @@
-"""The run's log, `trials.jsonl`: append-only, one writer, whole lines."""
+"""A run's log, `trials.jsonl`: append-only, with one writer, in whole lines."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ SYNC_S = 0.25
 """The longest time [s] that a written record waits for the disk, if `TrialLog.sync` is called every `BEAT_S`."""
 _BLOCK = 1 << 16
 _UNSYNCED = 1 << 22
-"""More than is ever written between two syncs."""
+"""More bytes than are ever written between two syncs."""
 
 
 class Place(NamedTuple):
-    """Where a line lies: file, first byte and number of bytes. Logs of any length are handled by these."""
+    """Where a line is: file, first byte and number of bytes, so that long logs need not be in memory."""
 
     path: Path
     start: int
@@ -36,7 +36,7 @@ class Place(NamedTuple):
 
 
 def read(path: Path) -> Iterator[tuple[bytes, TrialRecord]]:
-    """Every whole line of a log and its record; a torn last line, which has no newline, is passed over.
+    """Every whole line of a log and its record; a torn last line, which has no newline, is skipped.
 
     Raises:
         RunError: for a damaged line, naming file, line and field.
@@ -65,7 +65,7 @@ def places(path: Path) -> Iterator[tuple[Place, bytes, TrialRecord]]:
 
 
 def fetch(wanted: Iterable[Place]) -> Iterator[bytes]:
-    """The lines at these places, in their order, one in memory at a time."""
+    """The lines at these places, in this order, one in memory at a time."""
     with contextlib.ExitStack() as stack:
         files = {}
         for place in wanted:
@@ -76,9 +76,9 @@ def fetch(wanted: Iterable[Place]) -> Iterator[bytes]:
 
 
 class TrialLog:
-    """The one writer of a run's log. Use as a context manager. ``key in log`` says whether a trial is there.
+    """The one writer of a run's log, a context manager. ``key in log`` says whether a trial is there.
 
-    Of what is written only keys and checksums are kept in memory.
+    Only keys and checksums are kept in memory.
 
     Args:
         folder: the run's folder, made when absent.
@@ -118,18 +118,18 @@ class TrialLog:
         return len(self._checks)
 
     def agrees(self, key: str, line: bytes) -> bool:
-        """Whether the line that is there for this trial is this one."""
+        """Whether the log's line for this trial is this one."""
         return self._checks.get(key) == trial_record.checksum(line)
 
     def append(self, key: str, line: bytes) -> bool:
-        """Write a trial's line once; says whether it was new."""
+        """Write a trial's line unless the trial is there; whether it was new."""
         if key in self._checks:
             return False
         written = 0
         try:
             while written < len(line):
                 written += os.write(self._file, line[written:])
-        except OSError as error:  # a full disk; what the cut leaves, the next command cuts
+        except OSError as error:  # a full disk; if the cut fails, the next command does it
             with contextlib.suppress(OSError):
                 os.ftruncate(self._file, self._size)
             raise self._unwritten(error) from None
@@ -141,7 +141,7 @@ class TrialLog:
         return True
 
     def sync(self, *, due: bool = False) -> None:
-        """Put what was written on the disk; with ``due`` only what could else wait for more than `SYNC_S`."""
+        """Write everything to the disk; with ``due`` only if it could otherwise wait for longer than `SYNC_S`."""
         if self._dirty_since is None or (due and time.monotonic() - self._dirty_since < SYNC_S - BEAT_S):
             return
         try:
@@ -151,7 +151,7 @@ class TrialLog:
         self._dirty_since = None
 
     def close(self) -> None:
-        """Put everything on the disk and let others write."""
+        """Write everything to the disk and release the lock."""
         try:
             self.sync()
         finally:
@@ -166,7 +166,7 @@ class TrialLog:
 
 
 def lock(folder: Path) -> int:
-    """Hold the folder's lock until the descriptor is closed, which the end of the process does as well."""
+    """Lock the folder until the descriptor is closed, or the process ends."""
     handle = os.open(folder / ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -176,17 +176,17 @@ def lock(folder: Path) -> int:
         raise RunLocked(
             f"{folder} is being written by {owner}. Wait for it, stop it, or choose another folder with --out."
         ) from None
-    with contextlib.suppress(OSError):  # on a full disk the lock holds as well, but without its owner's name
+    with contextlib.suppress(OSError):  # on a full disk the lock works too, without its owner's name
         os.ftruncate(handle, 0)
         os.pwrite(handle, f"process {os.getpid()} on {socket.gethostname()}".encode(), 0)
     return handle
 
 
 def cut_torn_lines(path: Path) -> int:
-    """Cut what a killed writer or machine left after the last whole line; the number of bytes that were cut.
+    """Cut what a killed writer or machine left after the last whole line; returns the number of bytes cut.
 
-    A machine that loses power may leave a hole of zeros where blocks did not reach the disk, and later lines after it.
-    No record has a zero byte. What is cut had not been promised, and is played again.
+    A loss of power may leave a hole of zeros where blocks did not reach the disk, with later lines after it; no record
+    has a zero byte. Trials that are cut are run again.
     """
     if not path.exists():
         return 0

@@ -1,4 +1,4 @@
-"""One trial as one line of JSON, the same bytes wherever and whenever it is written."""
+"""One trial as one line of JSON; the same trial gives the same bytes everywhere."""
 
 from __future__ import annotations
 
@@ -17,17 +17,20 @@ from hthor.types import Event, TrialSpec
 
 CODE_ROOT = "trial"
 
-_DIGITS = 4  # metres, radians and seconds in events: a tenth of a millimetre
+_DIGITS = 4
+"""Decimals of metres, radians and seconds in events: a tenth of a millimetre."""
 _encoder = msgspec.json.Encoder(order="deterministic")
 _CHECK = b',"check":"%08x"}\n'
 _CHECK_LENGTH = len(_CHECK % 0)
 
 
 class TrialRecord(Struct, frozen=True, kw_only=True):
-    """A trial's specification, everything that happened in it, and its metrics. ``key`` is the hash of ``spec``.
+    """A trial's specification, everything that happened in it, and its metrics; one line of `trials.jsonl`.
 
-    ``files`` has, by seat, what an agent opened of its own that ``agents`` in `run.json` does not list; it is there
-    only where there is such.
+    Attributes:
+        key: hash of ``spec``, see `key`.
+        files: by seat, the agent's own files that it opened and that ``agents`` in `run.json` does not list.
+        All others are as in `hthor.episode.EpisodeLog`.
     """
 
     key: str
@@ -46,7 +49,7 @@ class TrialRecord(Struct, frozen=True, kw_only=True):
 
     @property
     def log(self) -> EpisodeLog:
-        """What the umpire left behind, for drawing and for scoring again."""
+        """The episode's log, for drawing and for scoring again."""
         return EpisodeLog(**{name: getattr(self, name) for name in EpisodeLog.__struct_fields__})
 
 
@@ -54,18 +57,18 @@ _decoder = msgspec.json.Decoder(TrialRecord)
 
 
 Damaged = documents.Unreadable
-"""A line that is not the record it was. ``field`` names the place, ``problem`` what is wrong there."""
+"""A line that was changed after it was written. ``field`` names the place, ``problem`` what is wrong there."""
 
 
 def key(spec: TrialSpec) -> str:
-    """The trial's name: 16 hexadecimal digits that everything that decides its course goes into."""
+    """The trial's name: the first 16 hexadecimal digits of the hash of everything that decides the trial."""
     return jsonio.sha256(spec)[:16]
 
 
 def make_record(spec: TrialSpec, log: EpisodeLog) -> TrialRecord:
-    """The record of a trial that was played."""
+    """The record of a trial that was run. Metrics are computed from what is written, after rounding."""
     events, journal = (_all_rounded(some) for some in (log.events, log.journal))
-    kept = msgspec.structs.replace(log, events=events, journal=journal)  # what is measured is what is written
+    kept = msgspec.structs.replace(log, events=events, journal=journal)
     fields = {name: getattr(kept, name) for name in EpisodeLog.__struct_fields__}
     return TrialRecord(key=key(spec), spec=spec, metrics=measure(spec, kept), **fields)
 
@@ -77,7 +80,7 @@ def encode(record: TrialRecord) -> bytes:
 
 
 def checksum(line: bytes) -> int:
-    """The checksum that a line carries."""
+    """The checksum in a line."""
     return int(line[-_CHECK_LENGTH:][10:18], 16)
 
 

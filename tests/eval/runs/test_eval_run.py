@@ -284,7 +284,7 @@ def test_what_does_not_repeat_itself_is_told(tmp_path: Path):
     path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))
     watch = Notes()
     _run(tmp_path, fakes.forgetful_player, count=10, watch=watch)
-    assert "9 trials went otherwise" in watch.notes[0]
+    assert "9 re-run trials differ from the log" in watch.notes[0]
 
 
 def _start(folder: Path, seconds: float = 0.02) -> subprocess.Popen[str]:

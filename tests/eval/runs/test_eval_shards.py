@@ -10,7 +10,7 @@ from pathlib import Path
 import eval_fakes as fakes
 import msgspec
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner, Result
 
@@ -53,6 +53,7 @@ def _result(folder: Path) -> dict[str, object]:
     return document
 
 
+@settings(deadline=None)
 @given(st.integers(1, 90), st.integers(1, 40), st.integers(1, 40))
 def test_shards_are_a_partition_and_know_their_size(tasks: int, people: int, of: int):
     plan, _ = fakes.run_of(10)
@@ -127,7 +128,7 @@ def test_the_command_says_what_is_missing_and_ends_with_one(shards: Sequence[Pat
     assert part.exit_code == 1
     assert f"47 of {COUNT} trials are in" in part.stderr
     assert "shard 4/4 is missing: hthor eval --agent helper.py" in part.stderr
-    assert "helper.py is the agent's file: name it by its path." in part.stderr
+    assert "Replace helper.py by the path of the agent's file." in part.stderr
     assert part.stdout == ""
     whole = said(*shards, "--json")
     assert whole.exit_code == 0
