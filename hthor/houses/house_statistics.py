@@ -1,4 +1,4 @@
-"""Figures of houses that can be set side by side: rooms, doors, things, ways; judges nothing and knows no engine."""
+"""Statistics of houses for comparison: rooms, doors, things, free floor, distances."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class HouseFigures(Struct, frozen=True, kw_only=True):
     """What one house measures.
 
     ``rooms`` holds kind, area [m2], doors, things and things on the floor or a wall of each room; a door counts for
-    both its rooms, and an opening without a wall is none. ``doors`` counts the passable ones of the house. ``ways``
+    both its rooms, and openings without a wall do not count. ``doors`` counts the passable ones of the house. ``ways``
     [m] are the shortest from the start to where one can stand at each receptacle, ``free`` the share of the floor that
     a body's axis can come to.
     """

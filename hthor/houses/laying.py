@@ -1,8 +1,8 @@
-"""Small things laid on the surfaces that they lie on: one arrangement of a house for its tasks, checks and worlds.
+"""Puts the small things of a house exactly on the surfaces below them, when the house is loaded.
 
-A house file gives heights measured on furniture of other shapes than ours, so a cup of it would hang above the table or
-stand in the shelf. Whoever loads a house gets it laid down. What lies in a way that no real thing could (deeper than
-`SUNK_M` in its neighbour or in the ceiling, or over no surface at all) stays where the file puts it and does not move.
+A house file gives heights measured on furniture of other shapes than ours, so a cup would hang above its table or be
+inside a shelf. A thing that cannot be put down so stays where the file puts it and does not move: one that would be
+deeper than `SUNK_M` in a neighbour or the ceiling, or that is over no surface.
 """
 
 from __future__ import annotations

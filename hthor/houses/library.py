@@ -75,5 +75,5 @@ def load(name_or_path: str | Path, assets: Path | None = None) -> HouseSpec:
 
 
 def names(group: Literal["scenes", "unseen"] = "scenes") -> tuple[str, ...]:
-    """The houses that come with hthor: the benchmark's ten scenes, or the ``unseen`` ones that stand beside them."""
+    """The houses that come with hthor: the benchmark's ten scenes, or the ten ``unseen`` ones."""
     return tuple(sorted(path.stem for path in _OWN[group].glob("*.json")))

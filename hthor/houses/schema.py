@@ -38,7 +38,7 @@ class Hole(Struct, frozen=True):
 
 
 class Position(Struct, frozen=True):
-    """A point of which all three coordinates count."""
+    """A point with three coordinates."""
 
     x: float
     y: float

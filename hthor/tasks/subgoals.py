@@ -4,7 +4,7 @@ A job is done when its object is in nobody's hands and rests where one of its ``
 of that id, on or in a thing of that kind, or in the room of that id; and, where ``place`` says where exactly, within
 `PLACE_M` of it on the plan, or `TOGETHER_M` for what it takes several to carry.
 
-T* of a team is a time that no team can beat, whoever is in it and wherever its robots start: that of the longest job,
+T* of a team is a time that no team can beat, whatever its robots and their starts: that of the longest job,
 done by somebody who happens to stand next to its object. It is a walk at `rules.PACE_M_S` along the shortest path of
 the avatar from a cell within the avatar's reach of the object to one within reach of the nearest thing that will do
 (into the room that will do), less the slack of the grid, plus `rules.HANDLING_S` each to pick, to place, and to open
@@ -171,7 +171,7 @@ def _edge(mask: Bools) -> Bools:
 
 @functools.lru_cache(maxsize=64)
 def _way(house: HouseSpec, relation: str, destinations: tuple[str, ...], place: Vec3 | None) -> tuple[Bools, Walk]:
-    """Where whoever carries an object may stand when it is done, and the walk there."""
+    """Where the carrier of an object may stand when the job is done, and the walk there."""
     ground = ReachableFloor.of(house)
     mask = np.zeros(ground.space.free.shape, dtype=bool)
     if relation == "at" and place is not None:

@@ -1,6 +1,6 @@
-"""Can every task of a suite be run? All that is wrong, by task and field, as far as the floor plan says.
+"""Checks every task of a suite against its kind, its house and the catalogue, without the physics engine.
 
-What only an engine can tell, `hthor tasks check` proves.
+`hthor tasks check` also proves tasks in the simulated world.
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ def _goal(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
         return
     ids = [placement.id for placement in task.objects]
     if task.goal.target not in ids:
-        yield "goal.target", f"'{task.goal.target}' is none of the task's objects; valid: {', '.join(ids)}"
+        yield "goal.target", f"'{task.goal.target}' is not one of the task's objects; valid: {', '.join(ids)}"
         return
     try:
         objection = kind.objection(task.goal, house)

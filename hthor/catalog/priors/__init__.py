@@ -3,7 +3,7 @@
 Each of the 65 triplets (target, relation, reference) has two parts: the ``frequency`` with which the target is seen so
 in 195 hand-made AI2-THOR scenes, which stands for what people know, and the ``similarity`` of the two names to a BERT-
 family encoder, which stands for what texts know. `weighed` makes weights of them. ``table.json`` ships computed;
-`hthor.catalog.priors.making` computes it anew.
+`hthor.catalog.priors.making` computes it.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Triplet(Struct, frozen=True, kw_only=True):
 
     ``optional`` says that not every house has the reference. ``frequency`` is ``seen`` / ``of``: of all objects of the
     target's type, those in this relation. ``similarity`` is a cosine, in [-1, 1]. The weights of a target's triplets
-    add up to 1, but for rounding; `weights` gives them exactly.
+    add up to 1 up to rounding; `weights` gives them exactly.
     """
 
     target: str
@@ -100,7 +100,7 @@ def triplets_of(target: str) -> tuple[Triplet, ...]:
     """The triplets of one target.
 
     Raises:
-        UnknownName: when ``target`` is none of the six.
+        UnknownName: when ``target`` is not one of the six.
     """
     rows = tuple(row for row in triplets() if row.target == target)
     if not rows:
@@ -112,7 +112,7 @@ def weights(target: str) -> dict[tuple[str, str], float]:
     """Weight of each (relation, reference) of a target; they add up to 1.
 
     Raises:
-        UnknownName: when ``target`` is none of the six.
+        UnknownName: when ``target`` is not one of the six.
     """
     rows = triplets_of(target)
     total = sum(row.weight for row in rows)

@@ -25,7 +25,7 @@ Encoder = Callable[[Sequence[str]], "NDArray[Any]"]
 
 
 def make_table(seen: scenes.Scenes, encode: Encoder, encoder: Origin) -> Table:
-    """The table anew.
+    """Compute the table.
 
     Args:
         seen: where things lie.

@@ -94,7 +94,7 @@ def _installed() -> tuple[str, bytes]:
         package = importlib.metadata.distribution(PACKAGE)
         return package.version, Path(str(package.locate_file(FILE))).read_bytes()
     except (importlib.metadata.PackageNotFoundError, FileNotFoundError):
-        raise MissingExtra("computing the scene priors anew", "priors") from None
+        raise MissingExtra("computing the scene priors", "priors") from None
 
 
 def _of_wheel(wheel: Path) -> tuple[str, bytes]:
@@ -109,7 +109,7 @@ def _of_wheel(wheel: Path) -> tuple[str, bytes]:
 
 
 def types(kind: str) -> tuple[str, ...]:
-    """AI2-THOR's object types that our kind stands for."""
+    """The object types of AI2-THOR that a kind of ours represents."""
     return (*(kind_of for kind_of, ours in KIND_OF.items() if ours == kind), *_BASINS.get(kind, ()))
 
 

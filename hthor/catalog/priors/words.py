@@ -32,7 +32,7 @@ def need() -> None:
         MissingExtra: then.
     """
     if any(importlib.util.find_spec(name) is None for name in _NEEDED):
-        raise MissingExtra("computing the scene priors anew", "priors")
+        raise MissingExtra("computing the scene priors", "priors")
 
 
 def phrase(kind: str) -> str:

@@ -123,10 +123,9 @@ def _present(house: HouseSpec) -> Iterator[Finding]:
 
 
 def _objects(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Finding]:
-    """``object-visible``: what lies about must be seen, unhidden, from floor within `rules.FIND_RANGE_M` of it.
+    """``object-visible``: every small thing must be visible from some floor within `rules.FIND_RANGE_M` of it.
 
-    On the plan, that is, but for the benchmark's target kinds: a search for one of these ends only when it is so near
-    to the eyes.
+    The range is measured on the plan; for the benchmark's target kinds from the eyes, as a search requires.
     """
     things, sight, places = {thing.id: thing for thing in house.things}, with_all_open(house), space.centres(reached)
     for thing in house.things:

@@ -55,7 +55,7 @@ def _narrowest(polygon: tuple[Vec2, ...]) -> float:
 
 
 def check_doors(house: HouseSpec, height: float) -> Iterator[Finding]:
-    """``door-clear``: a doorway with less than `CLEAR_M` between its jambs and whatever stands near it."""
+    """``door-clear``: a doorway with less than `CLEAR_M` between its jambs and the furniture near it."""
     pieces = [
         (thing, slab) for thing, slab in solids.furniture_slabs(house) if slab.low < height and slab.high > STEP_M
     ]

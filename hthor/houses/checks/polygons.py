@@ -62,7 +62,7 @@ def _on(side: tuple[Vec2, Vec2], point: Vec2) -> bool:
 
 
 def find_crossing(polygon: Polygon) -> tuple[int, int] | None:
-    """Indices of two sides that cross, touch or fold back on each other, but for a common corner; None for none."""
+    """Indices of two sides that cross, touch (other than in a common corner) or fold back on each other, or None."""
     sides = edges(polygon)
     count = len(sides)
     for i in range(count):

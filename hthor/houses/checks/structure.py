@@ -1,6 +1,6 @@
-"""What a house file must keep to beyond its structure: names that agree, plans that fit.
+"""Consistency of a house file beyond its schema: ids that agree, polygons that fit.
 
-The navigability of a house is judged elsewhere (``check``).
+Whether a body can live in the house is checked in `house_checks`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ OVERLAP_M2 = 0.01
 OUTSIDE_M = 1.0
 """How far the middle of an object may lie outside of every room, above the ceiling or below the floor.
 
-Things on walls sit a little beyond the floor, and real houses may hold some put down badly; `check` tells of them.
+Things on walls reach a little beyond the floor, and foreign houses may have misplaced things; `house_checks` reports
+those.
 """
 _SLACK_M = 0.02
 _HOLE_M = 0.1

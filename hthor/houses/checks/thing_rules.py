@@ -16,7 +16,7 @@ from hthor.types import HouseSpec, Joint, Part, Thing, Vec2
 CODE_PART = "tools"
 
 _DEEP_M = 0.15
-"""How far a thing of a foreign house may reach into a wall before it is worth a word."""
+"""How far a thing of a foreign house may reach into a wall without a finding."""
 FLOAT_M = 0.01
 """How far above or below the floor or its support a thing may be."""
 HANG_M = 0.02

@@ -1,4 +1,4 @@
-"""The ten houses beside the ten scenes, for tasks in homes that are new to an agent.
+"""The ten unseen houses, for tasks in homes that are new to an agent.
 
 Each is what its seed gives, as it comes: `RECIPES` holds ten seeds in a row, none left out. There are as many houses
 of 4, 5, 6 and 7 rooms as among the scenes, so that new houses differ from seen ones in nothing but in being new.

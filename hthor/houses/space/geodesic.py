@@ -1,6 +1,6 @@
 """Exact shortest paths of a body's axis through the free cells of a grid.
 
-Free cells are open squares, so a shortest path is straight but for bends at the corners of blocked cells. The graph
+Free cells are open squares, so a shortest path is straight except for bends at the corners of blocked cells. The graph
 joins those corners that see one another and where a taut string could bend; a query adds its two ends.
 """
 
@@ -24,7 +24,7 @@ Ints = NDArray[np.int64]
 class Geodesics:
     """Shortest paths in one free space.
 
-    A place that is not free is reached by nothing; ask ``FreeSpace.nearest_free`` first. Lengths are exact but for
+    A place that is not free cannot be reached; use ``FreeSpace.nearest_free`` first. Lengths are exact up to
     rounding, so ``distance(a, b)`` and ``distance(b, a)`` may differ in the last digits.
     """
 

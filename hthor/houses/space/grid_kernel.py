@@ -1,7 +1,7 @@
 """Compiled walks over a grid of free and blocked cells.
 
 Coordinates are in cells unless a parameter says otherwise: cell (i, j) is the square from (i, j) to (i + 1, j + 1), and
-``free[j, i]`` says whether it is free; whatever lies off the grid is not. A cell's edge belongs to both its sides.
+``free[j, i]`` says whether it is free; off the grid nothing is free. A cell's edge belongs to both its sides.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Making a model of one size look right at another: what may be stretched, and how.
 
 A model is stretched along its three axes to fill the thing's box, piece by piece, so that the level place where things
-lie on it is exactly where the kind's own surface is: whatever rests there neither floats nor sinks.
+lie on it is exactly where the kind's own surface is: things that rest there neither float nor sink.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def _ends(place: Surface, axis: int) -> tuple[float, float]:
 
 
 def supports(kind: str, size: Vec3 | None = None) -> tuple[Surface, ...]:
-    """The kind's places where things can lie, lowest first, but for those behind doors and in drawers."""
+    """The kind's places where things can lie, lowest first, except behind doors and in drawers."""
     return tuple(place for place in catalog.kind(kind).surfaces(size) if not place.inside and not place.moves)
 
 

@@ -25,7 +25,7 @@ TRIANGLES = 4000
 PIXELS = 512
 _QUALITY = 85
 _CLEAR = 0.02
-"""A picture of which more than this share is see-through needs cut-outs, which nothing here can draw."""
+"""A picture with a larger transparent share than this needs cut-outs, which are not supported."""
 _SOFT = ("bed", "sofa", "armchair", "chair")
 
 
@@ -37,7 +37,7 @@ class ModelSkipped(NamedTuple):
 
 
 class ConvertedModel(NamedTuple):
-    """What came of a build."""
+    """The result of a conversion."""
 
     pack: Pack
     skipped: tuple[ModelSkipped, ...]

@@ -1,10 +1,10 @@
 """Where common sense puts each target, as data: belongs, acceptable or out of place.
 
-``judgement.json`` judges each target on or in each kind of thing that can bear it. A row's ``share`` is the number that
-its verdict follows from: of the target's in and on relations in the scene priors the share that this kind has or,
-where the priors do not name the kind, of all places where the target lies in 195 hand-made AI2-THOR scenes. A kind with
-`BELONGS` or more is where the target belongs, one with `ACCEPTABLE` or more will do, and on any other it is out of
-place: a remote control in the sink, a book in the fridge. Food in the sink will do, because people wash it.
+``judgement.json`` has a row for each target and each kind of thing that can support it. The verdict follows from the
+row's ``share``: of the target's "in" and "on" relations in the scene priors, the share of this kind; where the priors
+do not name the kind, its share of the target's places in 195 hand-made AI2-THOR scenes. With `BELONGS` or more the
+target belongs there, with `ACCEPTABLE` or more it is acceptable, otherwise it is out of place, like a book in the
+fridge. Food in the sink is acceptable, because people wash it.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def places_of(target: str) -> dict[str, CommonsensePlace]:
     """The judgements of a target by the kind of thing that it lies on or in.
 
     Raises:
-        UnknownName: when nothing is judged of ``target``.
+        UnknownName: when the file has no row for ``target``.
     """
     found = {row.kind: row for row in all_places() if row.target == target}
     if not found:
@@ -68,6 +68,6 @@ def usual_places(target: str) -> tuple[str, ...]:
 
 
 def is_misplaced(target: str, kind: str) -> bool:
-    """Whether common sense finds the target out of place on or in a thing of that kind, and has reason to."""
+    """Whether the target is out of place on or in a thing of that kind, by evidence from either source."""
     row = places_of(target).get(kind)
     return row is not None and row.verdict == "out" and row.basis != "none"

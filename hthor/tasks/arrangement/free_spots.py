@@ -78,10 +78,10 @@ def is_within_reach(house: HouseSpec, placement: Placement) -> bool:
 def find_floor_spot(
     house: HouseSpec, id: str, kind: str, room: Room, clear: float, root: int, near: Thing | None = None
 ) -> Placement | None:
-    """A place on the floor of a room with ``clear`` [m] free all round the object's middle, None where there is none.
+    """A place on a room's floor with ``clear`` [m] free all round the object's middle, or None.
 
     Args:
-        near: what it is to stand beside: the places nearest to it, rather than any.
+        near: a thing to stand next to: only the places nearest to it are used.
     """
     cells = _room_floor(house, room, clear)
     if not len(cells):
@@ -101,7 +101,7 @@ def room_of(house: HouseSpec, thing_id: str) -> str:
 
 
 def unique_things(house: HouseSpec, kinds: Iterable[str]) -> tuple[Thing, ...]:
-    """The things of these kinds of which the house has just one, so that "the" says which."""
+    """The things of those kinds that occur only once in the house, so that "the" is unambiguous."""
     rows = [[thing for thing in house.things if thing.kind == kind] for kind in kinds]
     return tuple(row[0] for row in rows if len(row) == 1)
 

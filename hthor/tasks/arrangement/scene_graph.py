@@ -22,7 +22,7 @@ def applicable_triplets(target: str, kinds: Set[str]) -> tuple[Triplet, ...]:
     """The triplets of a target whose reference is among ``kinds``, in the table's order.
 
     Raises:
-        UnknownName: when ``target`` is none of the six.
+        UnknownName: when ``target`` is not one of the six.
     """
     return tuple(row for row in _rows(target).values() if row.reference in kinds)
 
@@ -31,7 +31,7 @@ def draw_triplet(target: str, kinds: Set[str], root: int) -> Triplet:
     """One triplet of a target, by weight among those whose reference is among ``kinds``.
 
     Raises:
-        UnknownName: when ``target`` is none of the six.
+        UnknownName: when ``target`` is not one of the six.
         ValueError: when no reference of the target is there.
     """
     first = next(triplets_in_random_order(target, kinds, root), None)
@@ -41,9 +41,7 @@ def draw_triplet(target: str, kinds: Set[str], root: int) -> Triplet:
 
 
 def triplets_in_random_order(target: str, kinds: Set[str], root: int) -> Iterator[Triplet]:
-    """The triplets of a target in the order in which they are drawn by weight, none twice: the sample, then what to
-    turn to where that has no room.
-    """
+    """The triplets of a target, drawn by weight without replacement: the first is the sample, the rest fallbacks."""
     rows, weights = _rows(target), {edge: weight for edge, weight in priors.weights(target).items() if weight > 0.0}
     while weights:
         edges = list(weights)
@@ -54,7 +52,7 @@ def triplets_in_random_order(target: str, kinds: Set[str], root: int) -> Iterato
 
 
 def sample_graph(kinds: Set[str], root: int, fixed: Triplet | None = None) -> dict[str, Triplet]:
-    """A scene graph: a triplet for each target, by weight; ``fixed`` is that of its target, whatever its weight."""
+    """A scene graph: a triplet for each target, drawn by weight; ``fixed`` replaces that of its target."""
     graph = {target: draw_triplet(target, kinds, seeds.derive(root, target)) for target in catalog.TARGETS}
     return graph if fixed is None else {**graph, fixed.target: fixed}
 
@@ -62,7 +60,7 @@ def sample_graph(kinds: Set[str], root: int, fixed: Triplet | None = None) -> di
 def placement_order(graph: Mapping[str, Triplet], root: int) -> list[str]:
     """The targets in an order in which each comes after what it is near, where the graph lets it, mixed otherwise.
 
-    Of a ring of targets that are near one another some one comes first; the last then has to be near both.
+    In a ring of targets that are near one another, one comes first and the last has to be near both neighbours.
     """
     left = [catalog.TARGETS[number] for number in seeds.shuffled(len(catalog.TARGETS), root, "order")]
     done: list[str] = []
@@ -77,7 +75,7 @@ def find_triplet(target: str, relation: str, reference: str) -> Triplet:
     """The row of the table.
 
     Raises:
-        KeyError: when the table has no such row. UnknownName: when ``target`` is none of the six.
+        KeyError: when the table has no such row. UnknownName: when ``target`` is not one of the six.
     """
     return _rows(target)[relation, reference]
 

@@ -1,7 +1,4 @@
-"""Suites of one's own: tasks of some kinds, drawn in a given house; plays nothing, and writes nothing.
-
-Equal recipes and houses give equal tasks.
-"""
+"""Custom suites: tasks of some kinds, generated in a given house. Equal recipes and houses give equal tasks."""
 
 from __future__ import annotations
 
@@ -25,12 +22,12 @@ SEARCHES = 0.26
 """The share of searches where no kind is given, as in the suite ``standard``."""
 _ROOT = 4
 _LAPS = 10
-"""How often a task is drawn before its goal counts as hopeless in its house."""
+"""How often a task is drawn before its goal is given up in its house."""
 
 
 class Recipe(Struct, frozen=True, kw_only=True):
-    """What a suite is to be: its name, ``tasks`` in each house, of which ``kinds`` (by name; none: searches and
-    deliveries as in ``standard``), of which difficulty if any, every draw from ``seed``.
+    """A custom suite to be made: its name, how many ``tasks`` in each house, their ``kinds`` by name (none: searches
+    and deliveries as in ``standard``), their difficulty (empty: any), and the seed of all random draws.
     """
 
     name: str
@@ -87,7 +84,7 @@ class _House:
         self.done: list[TaskSpec] = []
 
     def add(self, order: TaskOrder) -> None:
-        """One more task. Where its goal cannot be met here, say for want of room on the desk, another one is taken.
+        """Make one more task, with another goal where the ordered one cannot be met in this house.
 
         Raises:
             HthorError: when no goal gives a task.
@@ -113,7 +110,7 @@ class _House:
         raise HthorError(f"{named}: {reason}. Ask for fewer or for others.")
 
     def _goals(self, order: TaskOrder) -> list[Goal | None]:
-        """The order's goal, then the others of its kind, without those that came to nothing before."""
+        """The ordered goal, then the others of its kind, without those that were given up before."""
         if order.goal is None:
             return [None]
         known = plugins.load("task kind", order.kind).goals(self._house)

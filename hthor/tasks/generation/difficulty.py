@@ -1,4 +1,4 @@
-"""How difficult a task is, by the task alone: how far it is at least, and how much there is to search on the way."""
+"""How difficult a task is: its least time, and how many likelier places there are to search before the target's."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ much as the success of people without a robot says."""
 MEDIUM_S, HARD_S = 22.0, 29.0
 """Where medium and hard begin: about a third of all tasks of `navigation` and `manipulation` lie in each stratum."""
 _PACE_M_S, _LOOK_S = 0.4, 5.0
-"""How fast the searcher walks, and what a look at a place takes once they are there."""
+"""Speed of the searcher, and how long [s] it takes to look at a place: our choice."""
 
 
 class Difficulty(Struct, frozen=True, kw_only=True):
@@ -59,10 +59,9 @@ def measure_difficulty(task: TaskSpec, house: HouseSpec, kind: TaskKind | None =
 
 
 def _before(task: TaskSpec, target: Placement, house: HouseSpec) -> float:
-    """The share of the mass of all places that are worth a look before the target's, those worth as much by half.
+    """The share [0, 1] of the prior mass that a sensible searcher looks at before the target's place.
 
-    A place is worth its mass for the time that it takes to walk there from the start and to look: who searches by
-    common sense goes first where the object is most likely for the least time.
+    Places are searched by mass per second of walking there from the start and looking; ties count by half.
     """
     mass = prior_mass(house, target.kind)
     ways = _ways(house, (task.human_start.x, task.human_start.y))
@@ -80,7 +79,7 @@ def prior_mass(house: HouseSpec, kind: str) -> dict[str, float]:
     """By id of a house's things, how much of the priors' mass of a kind of object lies there.
 
     The weight of a triplet is shared among the things of its reference's kind; what is near another target is where
-    that one is *on* or *in*. Kinds that the priors do not know are anywhere alike.
+    that one is *on* or *in*. For kinds without priors all surfaces count the same.
     """
     if kind not in catalog.TARGETS:
         return {thing.id: 1.0 for thing in house.things if catalog.kind(thing.kind).rests(thing.size)}

@@ -1,4 +1,4 @@
-"""Tasks like those of a suite that nobody can know: the same recipe with another root; plays nothing."""
+"""New tasks like those of a suite: made by the same specification from another root, so nobody can know them."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ ArePossible = Callable[[Sequence[TaskSpec]], Sequence[bool]]
 def make_fresh_suite(name: str, root: int, count: int, possible: ArePossible) -> Suite:
     """A suite of so many tasks by the recipe of one of hthor's own, which shares no draw with it.
 
-    The houses, the kinds of task and their shares, the goals and how hard tasks are aimed to be are the recipe's; what
-    lies where, and where everybody starts, is drawn anew. A task that cannot be done is drawn again.
+    Houses, kinds of task, goals and difficulty follow the specification; arrangements and starts are new. A task that
+    cannot be done is drawn again.
 
     Args:
         name: of a suite of hthor's own. root: what everything is drawn from.

@@ -1,6 +1,6 @@
 """Making tasks and suites of them: goals, arrangements and starts, drawn by name.
 
-``python -m hthor.tasks.generation.generate smoke`` writes ``suites/smoke.json`` anew, byte for byte the same as
+``python -m hthor.tasks.generation.generate smoke`` writes ``suites/data/smoke.json`` again, byte for byte the same as
 long as the houses, the catalogue, the rules and this code are. A second argument names another file to write.
 """
 
@@ -50,7 +50,7 @@ def house_tasks(plan: SuiteSpec, house: HouseSpec) -> tuple[TaskSpec, ...]:
 
 
 def make_ordered_task(plan: SuiteSpec, house: HouseSpec, order: TaskOrder) -> TaskSpec:
-    """One task of a plan, whatever the others are."""
+    """One task of a suite, independent of its other tasks."""
     lap = dict(plan.redrawn).get(order.name, 0)
     return make_task(
         house,
@@ -95,9 +95,9 @@ def make_task(
         robots: for how many robots there are starts.
         looks: of how many arrangements the one whose time is nearest to that is taken, unless one is near enough.
         level: the stratum of difficulty that it must be of, if any.
-        split: whether the house is one of the ten scenes; empty when the suite does not tell.
+        split: whether the house is one of the ten scenes; empty when the suite does not say.
         serial: as `hthor.tasks.arrangement.target_arrangement.arrange` has it.
-        told: whether the task tells how difficult it is.
+        told: whether the task records its difficulty.
 
     Raises:
         HthorError: when the house has no room for it: no arrangement, or no place to start from.

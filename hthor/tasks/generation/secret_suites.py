@@ -1,7 +1,7 @@
-"""Suites from a secret salt, in houses that nobody has seen.
+"""Suites made from a secret salt, in newly generated houses.
 
-Everything comes of the salt and the suite's name: each house of a root of its own, its tasks of another, and the ids of
-both are words that tell nothing. So the same salt gives the same bytes, and one house tells nothing of the next.
+Everything is derived from the salt and the suite's name: each house and its tasks from roots of their own, under ids
+that reveal nothing. So the same salt gives the same bytes, and knowing one house does not help to predict the next.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _TRIES = 40
 
 
 class SuiteOrder(Struct, frozen=True, kw_only=True):
-    """What a suite is to be: its name, how many houses, and how many tasks over all of them."""
+    """A suite to be made: its name, and the numbers of houses and of tasks in all of them."""
 
     name: str
     houses: int
@@ -53,7 +53,7 @@ class SuiteOrder(Struct, frozen=True, kw_only=True):
 
 
 MapHouses = Callable[[Callable[["HouseOrder"], "HouseTasks"], Iterable["HouseOrder"]], Iterable["HouseTasks"]]
-"""Does something to each, in order, as `map` does: in this process or in several."""
+"""Works like `map`, in this process or in several."""
 
 
 class Proof(Struct, frozen=True, kw_only=True):
@@ -64,7 +64,7 @@ class Proof(Struct, frozen=True, kw_only=True):
 
 
 class HouseOrder(Struct, frozen=True, kw_only=True):
-    """One house to be made: its opaque id, roots to try for it and for its tasks, and how many tasks of each kind."""
+    """One house to be made: its opaque id, pairs of roots to try (house, tasks), and how many tasks of each kind."""
 
     suite: str
     house: str
@@ -110,7 +110,7 @@ def make_files(order: SuiteOrder, salt: Salt, proof: Proof, each: MapHouses = ma
     """The files of a suite by their path in its folder: ``suite.json`` and ``houses/*.json``.
 
     Raises:
-        HthorError: when the order is none that can be met.
+        HthorError: when the order cannot be met.
     """
     parts = list(each(functools.partial(make_house_tasks, proof=proof), house_orders(order, salt)))
     columns = [[_named(task, order, salt, number) for number, task in enumerate(one.tasks)] for one in parts]
@@ -119,7 +119,7 @@ def make_files(order: SuiteOrder, salt: Salt, proof: Proof, each: MapHouses = ma
 
 
 def house_orders(order: SuiteOrder, salt: Salt) -> tuple[HouseOrder, ...]:
-    """What is to be made for an order, with all that is drawn from the salt.
+    """The houses to be made for an order, with their ids and roots derived from the salt.
 
     Raises:
         HthorError: when the order cannot be met.
@@ -144,7 +144,7 @@ def house_orders(order: SuiteOrder, salt: Salt) -> tuple[HouseOrder, ...]:
 
 
 def make_house_tasks(lot: HouseOrder, proof: Proof) -> HouseTasks:
-    """One house and its tasks: of the first root that gives a sound house with room for all of them.
+    """One house and its tasks, from the first root that gives a valid house with room for all of them.
 
     Raises:
         HthorError: when no root does.
@@ -161,11 +161,11 @@ def make_house_tasks(lot: HouseOrder, proof: Proof) -> HouseTasks:
             return HouseTasks(house=lot.house, file=file, tasks=tasks)
         except (AttemptFailed, HthorError) as error:
             problem = str(error)
-    raise HthorError(f"no house of {lot.rooms} rooms came of {len(lot.roots)} roots; of the last: {problem}")
+    raise HthorError(f"none of {len(lot.roots)} roots gave a house of {lot.rooms} rooms; the last failed: {problem}")
 
 
 def _document(rooms: int, dice: Dice) -> dict[str, Any]:
-    """A house file's document, which tells the generator's version and not what it was made from."""
+    """A house file's document; it names the generator's version, but not the root."""
     return attempt.build_document(
         choose_spec(rooms, dice, None), draw_requirements(None, dice.of("wants")), dice, {"version": generator.VERSION}
     )
@@ -174,7 +174,7 @@ def _document(rooms: int, dice: Dice) -> dict[str, Any]:
 def differences(
     folder: Path, held: Commitment, salt: Salt, proof: Proof, each: MapHouses = map
 ) -> Iterator[tuple[str, str]]:
-    """What in a suite's folder is not what the salt gives: pairs of a file and a problem. Everything is made again."""
+    """Make a suite again from its salt and compare: pairs of a file and a problem."""
     if salt.commitment() != held.salt:
         yield COMMITMENT, f"commits to another salt: {held.salt[:10]}..., this one's is {salt.commitment()[:10]}..."
         return
@@ -183,25 +183,25 @@ def differences(
     for path in sorted(digests.keys() | held.files.keys()):
         there = (folder / path).read_bytes() if (folder / path).is_file() else b""
         if path not in held.files:
-            yield path, "comes of the salt, and is not in the commitment"
+            yield path, "is made from the salt, but is not in the commitment"
         elif path not in made:
-            yield path, "is in the commitment, and does not come of the salt"
+            yield path, "is in the commitment, but is not made from the salt"
         elif digests[path] != held.files[path]:
-            yield path, "comes out otherwise than it was committed to" + (_first(there, made[path]) if there else "")
+            yield path, "made again, differs from what was committed to" + (_first(there, made[path]) if there else "")
     suite = msgspec.json.decode(made[SUITE], type=SuiteFile).sha256
     if suite != held.suite_sha256:
         yield COMMITMENT, f"suite_sha256 is {held.suite_sha256[:10]}..., the salt gives {suite[:10]}..."
 
 
 def _first(there: bytes, made: bytes) -> str:
-    """Where two files part."""
+    """The first line in which two files differ."""
     lines = itertools.zip_longest(there.splitlines(), made.splitlines())
     number = next((number for number, (one, two) in enumerate(lines, 1) if one != two), 0)
     return f": line {number} is the first that differs" if number else ""
 
 
 def _named(task: TaskSpec, order: SuiteOrder, salt: Salt, number: int) -> TaskSpec:
-    """The task under an id that tells nothing, not even its kind or its place among the others."""
+    """The task under an opaque id, which shows neither its kind nor its position."""
     word = salt.word(12, order.name, "task id", task.house, number)
     return msgspec.structs.replace(task, id=f"{order.name}/{task.house}/{word}")
 
@@ -216,20 +216,20 @@ def _check(order: SuiteOrder) -> None:
 
 
 def check_name(name: str) -> None:
-    """See that no suite of hthor's own has the name.
+    """Check that no suite of hthor's own has the name.
 
     Raises:
-        HthorError: when one has.
+        HthorError: when one has it.
     """
     if name in library.suite_names():
         raise HthorError(f"'{name}' is a suite of hthor's own; choose another name, such as official-2027a.")
 
 
 def check_salt_outside(path: Path, folder: Path) -> None:
-    """See that a salt does not lie in the folder that will be published.
+    """Check that a salt is not in the folder that will be published.
 
     Raises:
-        TaskError: when it does.
+        TaskError: when it is.
     """
     if path.resolve().is_relative_to(folder.resolve()):
         raise TaskError(str(path), "$", f"the salt lies in {folder}, which will be published; keep it elsewhere")

@@ -1,7 +1,7 @@
-"""The suite ``standard``: 2000 tasks in the ten scenes and ten houses beside them.
+"""The suite ``standard``: 2000 tasks in the ten scenes and the ten unseen houses.
 
-``python -m hthor.tasks.generation.standard`` writes ``suites/standard.json`` anew, byte for byte the same as long as
-the houses, the catalogue, the rules and the makers of tasks are. An argument names another file to write.
+``python -m hthor.tasks.generation.standard`` writes ``suites/data/standard.json`` again, byte for byte the
+same while houses, catalogue, rules and task generation are the same. An argument names another file to write.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ REDRAWN = {
     "standard/spruce/manipulation-26": 1,
     "standard/willow/manipulation-72": 1,
 }
-"""How many draws of a task are passed over, for ``hthor tasks check`` found that they could not be done."""
+"""How many draws of a task are skipped because ``hthor tasks check`` found that they cannot be done."""
 
 SPEC = SuiteSpec(
     name="standard",
@@ -52,7 +52,7 @@ IsPossible = Callable[[TaskSpec, HouseSpec], bool]
 
 
 def accept_any(_task: TaskSpec, _house: HouseSpec) -> bool:
-    """Whether a task can be done, for who takes them unproved."""
+    """Whether a task can be done, when that is not checked: always."""
     return True
 
 

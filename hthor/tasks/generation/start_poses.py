@@ -1,4 +1,4 @@
-"""Where a task begins: places for all, the least time as wished."""
+"""Start poses of the person and the robots, chosen so that the least time is near a wanted one."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _STARTS = 400
 
 
 class StartPoses(Struct, frozen=True, kw_only=True):
-    """Where everybody starts, the person first, and the least time [s] from there."""
+    """All start poses, the person's first, and the least time [s] from there."""
 
     least: float
     poses: tuple[Pose, ...]
@@ -86,7 +86,7 @@ def _possible(
 
 
 def _away(house: HouseSpec, target: Placement, places: Floats) -> Floats:
-    """Those of the places that are `AWAY_M` from the target: whoever gets within reach of it passes the rim."""
+    """Those of the places that are `AWAY_M` from the target, by way of a cell where its reach begins."""
     ground = ReachableFloor.of(house)
     reach = ground.space.centres(entry_cells(ground.touching(target), ground.space.free))
     rest = np.hypot(reach[:, 0] - target.position[0], reach[:, 1] - target.position[1])

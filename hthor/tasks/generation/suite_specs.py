@@ -1,6 +1,6 @@
-"""What each suite is made of: how many tasks of which kind, or each that there can be.
+"""Specifications of suites: how many tasks of which kinds in which houses.
 
-A plan gives a list of orders for each house, and an order all that decides a task but chance.
+A suite specification lists task orders for each house; an order determines a task except for the random draws.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ class SuiteSpec(Struct, frozen=True, kw_only=True):
 
     ``orders`` lists a house's tasks. ``robots`` is how many of them a task has starts for, ``looks`` how many
     arrangements are compared for how hard they are. ``serial`` as
-    `hthor.tasks.arrangement.target_arrangement.arrange` has it. ``told`` says whether the tasks tell how difficult
-    they are. ``redrawn`` says how often a task was drawn again, because ``hthor tasks check`` found that nobody can
-    do it: in the real world small things hide the target, or the way takes too long.
+    `hthor.tasks.arrangement.target_arrangement.arrange` has it. ``told`` says whether tasks record their
+    difficulty. ``redrawn`` says how often a task was drawn again because ``hthor tasks check`` found that it cannot be
+    done in the simulated world: small things hide the target, or the way takes too long.
     """
 
     name: str
@@ -64,7 +64,7 @@ class SuiteSpec(Struct, frozen=True, kw_only=True):
 
 
 def by_count(*counts: tuple[str, int]) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
-    """So many tasks of each kind in a house, the kinds spread evenly over the list."""
+    """Orders for so many tasks of each kind in a house, the kinds spread evenly over the list."""
 
     def orders(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
         shelves: list[tuple[float, int, TaskOrder]] = []
@@ -83,7 +83,7 @@ def by_count(*counts: tuple[str, int]) -> Callable[[SuiteSpec, HouseSpec], list[
 
 
 def by_kind(kind: str, count: int) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
-    """So many tasks in a house of a kind that draws its goals with their objects."""
+    """Orders for so many tasks in a house, of a kind that draws goals and arrangements itself."""
 
     def orders(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
         names = [f"{plan.name}/{house.id}/{number + 1:02d}" for number in range(count)]
@@ -124,7 +124,7 @@ def each_triplet(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
 
 
 def each_template(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
-    """Each template from each place where its target can be, but for the place where it is to go."""
+    """Each template from each place where its target can be, except its destination."""
     kind: TaskKind = plugins.load("task kind", MOVE)
     kinds = scene_graph.kinds_present(house)
     return [

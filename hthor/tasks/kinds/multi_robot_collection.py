@@ -7,12 +7,12 @@ The goal's jobs, one for each of the objects ``apple``, ``apple_2`` and ``apple_
 where the destination is the id of a thing of whose kind the house has just one. Progress is the share of the apples
 that rest there; the goal is met when all three do.
 
-In half of the tasks one apple is in the closed fridge: whoever cannot open it has to ask somebody who can. The apples
+In half of the tasks one apple is in the closed fridge: a robot that cannot open it has to ask for help. The apples
 lie in different rooms, and so far apart that an all-knowing person who walks at `PACE_M_S` cannot bring all three in
 time (`alone`), while a person and a robot with hands who share them well can with time to spare (`team`).
 """
 
-# ruff: noqa: ARG002 - the sentence does not tell where the apples are; the signatures are those of every kind
+# ruff: noqa: ARG002 - the instruction does not say where the apples are; the signatures are those of every kind
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def alone(task: TaskSpec, house: HouseSpec) -> float:
 
 
 def team(task: TaskSpec, house: HouseSpec) -> float:
-    """The time [s] of a person who is told, and of the first robot, when each fetches what it had better fetch."""
+    """The time [s] of a guided person and of the first robot with the best division of the apples between them."""
     carried, every = ways(house, task.objects, task.goal), range(len(task.objects))
     person = _first_ways(task, house, task.human_start)
     robot = _first_ways(task, house, task.robot_starts[0])

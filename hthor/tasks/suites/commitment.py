@@ -1,7 +1,7 @@
-"""What is published of a suite from a secret salt, first and last.
+"""What is published about a suite made from a secret salt.
 
-``commitment.json`` fixes the salt and every file of the suite by hashes that tell nothing of either. It can be
-published alone, before anybody is evaluated. ``revealed.json`` holds the salt, when the season is over.
+``commitment.json`` fixes the salt and every file of the suite by hashes that reveal neither. It can be published before
+anybody is evaluated. ``revealed.json`` holds the salt, once the season is over.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _COMMITTED, _PUBLISHED = "hthor.commitment/1", "hthor.revealed/1"
 
 
 class Commitment(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a suite is fixed by. It bears no date: the same salt gives the same bytes.
+    """Fixes a suite by hashes. It has no date: the same salt gives the same bytes.
 
     ``salt`` is `Salt.commitment`; ``houses`` and ``tasks`` are how many there are; ``suite_sha256`` is the hash that
     results name; ``files`` holds the SHA-256 of every file by its path in the suite's folder; ``made_with`` the
@@ -55,7 +55,7 @@ def load_commitment(path: Path) -> Commitment:
     """A commitment from its file.
 
     Raises:
-        TaskError: when it cannot be read, or is none.
+        TaskError: when it cannot be read, or is not a commitment.
     """
     return documents.read(path, Commitment, TaskError, schema=_COMMITTED, hint="'hthor suite make' writes one")
 
@@ -99,4 +99,4 @@ def find_changes(folder: Path, held: Commitment) -> Iterator[tuple[str, str]]:
             yield path, "was changed after it was committed to"
     for there in sorted((folder / "houses").glob("*")):
         if (path := there.relative_to(folder).as_posix()) not in held.files:
-            yield path, "is none of the files that were committed to"
+            yield path, "is not among the files that were committed to"

@@ -1,8 +1,8 @@
-"""A secret salt: made, read, judged, committed to and turned into roots.
+"""A secret salt: created, read, checked, committed to, and turned into roots of random draws.
 
-The commitment is SHA-256 over a name of its own and the salt: nobody finds a salt of 128 bits or more from it, and
-nobody finds a second salt with the same commitment. What is drawn comes from HMAC-SHA256 with the salt as the key, 128
-bits a purpose: whoever knows one root, or all that came of it.
+The commitment is SHA-256 over a fixed prefix and the salt: it neither reveals a salt of 128 bits or more, nor can a
+second salt with the same commitment be found. Roots come from HMAC-SHA256 with the salt as the key, 128 bits for each
+purpose: somebody who knows one root, or everything made from it, learns nothing about the salt or other roots.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Salt:
     __slots__ = ("_bytes",)
 
     def __init__(self, text: str) -> None:
-        """Take a salt as it is, without judging it; `read_salt` judges."""
+        """Take a salt as it is; only `read_salt` checks its strength."""
         self._bytes = text.encode("ascii")
 
     def __repr__(self) -> str:
@@ -43,7 +43,7 @@ class Salt:
         raise TypeError("a salt stays in the process that read it; pass on the roots that are drawn from it")
 
     def commitment(self) -> str:
-        """What may be published now, 64 hexadecimal digits: it fixes the salt and does not tell it."""
+        """A hash that fixes the salt without revealing it, 64 hexadecimal digits."""
         return hashlib.sha256(_COMMITTED + self._bytes).hexdigest()
 
     def root(self, *purpose: Name) -> int:
@@ -51,7 +51,7 @@ class Salt:
         return int.from_bytes(self._mac(purpose)[:16], "little", signed=True)
 
     def word(self, digits: int, *purpose: Name) -> str:
-        """So many hexadecimal digits for one purpose: an id that tells nothing."""
+        """So many hexadecimal digits for one purpose: an opaque id."""
         return self._mac(purpose).hex()[:digits]
 
     def reveal(self) -> str:
@@ -105,7 +105,7 @@ def read_salt(path: Path) -> Salt:
 def estimate_bits(text: str) -> float:
     """How much a text seems to hold [bit], by its letters' frequencies and by how far it can be packed.
 
-    It finds blunders, such as one letter repeated; it cannot tell a line of a poem from a draw of lots.
+    It finds blunders, such as one letter repeated, but takes a line of a poem for random text.
     """
     data = text.encode("ascii")
     letters = -sum(count * math.log2(count / len(data)) for count in Counter(data).values())

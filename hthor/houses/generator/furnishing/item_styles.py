@@ -70,7 +70,7 @@ class ItemStyler:
         bottom: float = 0.0,
         size: tuple[int, int, int] | None = None,
     ) -> Piece:
-        """A thing of that kind; ``names`` tell its draws apart, ``size`` [cm] settles its size."""
+        """A thing of that kind; ``names`` key its random draws, ``size`` [cm] fixes its size."""
         dice = self._dice.of(kind, *names) if kind in _VARIED else self._dice.of(kind)
         options = SIZES.get(kind, ())
         extent = size or (dice.pick(options, "size") if options else None)

@@ -43,7 +43,7 @@ def draw_requirements(needs: Iterable[str] | None, dice: Dice) -> Requirements:
     """What is asked for, or a draw of it when nothing is.
 
     Raises:
-        UnknownName: for a need that is none of the optional kinds.
+        UnknownName: for a need that is not an optional kind.
     """
     if needs is None:
         return Requirements(frozenset(kind for kind in OPTIONAL if dice.chance(_SHARE.get(kind, 0.6), kind)))
