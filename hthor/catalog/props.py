@@ -167,10 +167,7 @@ def mirror(size: Vec3, *, frame: Rgba, glass: Rgba) -> Form:
     """A pane in a frame."""
     w, d, h = size
     x, z = 0.06 * min(w, h), 0.06 * min(w, h)
-    parts = (
-        box(size, ZERO, (w, 0.7 * d, h), frame),
-        box(size, (x, 0.7 * d, z), (w - x, d, h - z), glass),
-    )
+    parts = (box(size, ZERO, (w, 0.7 * d, h), frame), box(size, (x, 0.7 * d, z), (w - x, d, h - z), glass))
     return Form(parts=parts)
 
 

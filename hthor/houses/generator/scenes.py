@@ -45,11 +45,7 @@ SCENES = (
     ),
     Scene("juniper", 28, 4, "4-room", ("bowl", "bread", "dresser", "laptop", "pillow", "television")),
     Scene(
-        "linden",
-        12,
-        5,
-        "5-room-parlour",
-        ("armchair", "bowl", "coffee_machine", "laptop", "pillow", "plate", "shelf"),
+        "linden", 12, 5, "5-room-parlour", ("armchair", "bowl", "coffee_machine", "laptop", "pillow", "plate", "shelf")
     ),
     Scene(
         "maple",

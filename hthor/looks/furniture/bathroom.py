@@ -177,10 +177,7 @@ def towel(draft: Draft) -> list[Piece]:
     back = front * (1.0, -0.9, 1.0) + (0.0, -0.04 * d, 0.0)
     uv = np.stack([front[..., 0], -front[..., 2]], -1)
     coat = materials.cloth(draft.color(0), "terry")
-    sheets = [
-        sweeps.sheet(front[::-1].copy(), uv[::-1], 0.006),
-        sweeps.sheet(back, uv, 0.006),
-    ]
+    sheets = [sweeps.sheet(front[::-1].copy(), uv[::-1], 0.006), sweeps.sheet(back, uv, 0.006)]
     stripe = front[::-1, 11:13] + (0.0, 0.0012, 0.0)
     pale = materials.cloth(
         (

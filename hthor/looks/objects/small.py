@@ -29,15 +29,7 @@ def alarm_clock(draft: Draft) -> list[Piece]:
     ]
     for s in (-1.0, 1.0):
         bell = shaping.turned(
-            solids.lathe(
-                [
-                    (0.40 * r, 0.0),
-                    (0.38 * r, 0.12 * r),
-                    (0.2 * r, 0.26 * r),
-                    (0.0, 0.3 * r),
-                ],
-                14,
-            ),
+            solids.lathe([(0.40 * r, 0.0), (0.38 * r, 0.12 * r), (0.2 * r, 0.26 * r), (0.0, 0.3 * r)], 14),
             "y",
             s * 0.55,
         )

@@ -262,6 +262,5 @@ def spoon(draft: Draft) -> list[Piece]:
     bowl = solids.ball((0.0, 0.5 * d - 0.42 * w * 1.4, 0.4 * h), (w / 2, 0.7 * w, 0.4 * h), 16)
     path = np.array([(0.0, -d / 2, 0.4 * h), (0.0, 0.0, 0.5 * h), (0.0, 0.5 * d - w, 0.5 * h)])
     return filled(
-        [materials.piece(shape, materials.wood(draft.color(0))) for shape in (bowl, sweeps.tube(path, 0.006, 8))],
-        draft,
+        [materials.piece(shape, materials.wood(draft.color(0))) for shape in (bowl, sweeps.tube(path, 0.006, 8))], draft
     )

@@ -28,12 +28,7 @@ _TRIES = 60
 
 
 def find_spot(
-    house: HouseSpec,
-    id: str,
-    kind: str,
-    weigh: Callable[[Thing], float],
-    root: int,
-    done: Sequence[Placement] = (),
+    house: HouseSpec, id: str, kind: str, weigh: Callable[[Thing], float], root: int, done: Sequence[Placement] = ()
 ) -> Placement | None:
     """A place on or in furniture, clear of ``done`` and of everything else, None when none was found.
 

@@ -140,12 +140,7 @@ def _scene(
 
 
 def _spec(
-    house: HouseSpec,
-    kind: TaskKind,
-    name: str,
-    start: StartPoses,
-    goal: Goal,
-    objects: tuple[Placement, ...],
+    house: HouseSpec, kind: TaskKind, name: str, start: StartPoses, goal: Goal, objects: tuple[Placement, ...]
 ) -> TaskSpec:
     return TaskSpec(
         id=name,
