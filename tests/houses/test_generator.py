@@ -20,7 +20,7 @@ from hthor.geometry.plane import signed_area
 from hthor.houses import generator, loader
 from hthor.houses.checks.findings import is_sound
 from hthor.houses.checks.house_checks import check
-from hthor.houses.generator import document, scenes, validity
+from hthor.houses.generator import document, shipped, validity
 from hthor.houses.generator.attempt import AttemptFailed
 from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.floorplan import boundary, doors, growth, layout, room_specs
@@ -227,15 +227,15 @@ PRESENCE = {
 }
 
 
-@pytest.mark.parametrize("scene", scenes.SCENES[:10:5], ids=lambda scene: scene.name)
-def test_the_committed_scenes_are_what_their_rows_make(scene: scenes.Scene) -> None:
+@pytest.mark.parametrize("scene", shipped.SCENES[:10:5], ids=lambda scene: scene.name)
+def test_the_committed_scenes_are_what_their_rows_make(scene: shipped.Recipe) -> None:
     path = Path(houses.__file__).parent / "data" / f"{scene.name}.json"
-    assert path.read_bytes() == jsonio.pretty(scenes.make_scene(scene))
+    assert path.read_bytes() == jsonio.pretty(shipped.make_house(scene))
 
 
 def test_the_ten_scenes_have_the_optional_references_that_the_priors_count_on() -> None:
-    assert houses.names() == tuple(sorted(scene.name for scene in scenes.SCENES))
-    specs_ = [houses.load(scene.name) for scene in scenes.SCENES]
+    assert houses.names() == tuple(sorted(scene.name for scene in shipped.SCENES))
+    specs_ = [houses.load(scene.name) for scene in shipped.SCENES]
     kinds = [{thing.kind for thing in spec.things} for spec in specs_]
     assert {kind: sum(kind in had for had in kinds) for kind in PRESENCE} == PRESENCE
     assert set(PRESENCE) == set(generator.OPTIONAL)

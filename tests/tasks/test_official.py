@@ -219,7 +219,9 @@ def test_a_house_that_is_unsound_or_too_small_is_drawn_again(monkeypatch: pytest
     assert len(set(seen)) == 2
     assert made.tasks[0].house_sha256 == seen[1] == jsonio.sha256(json.loads(made.file))
     bad = msgspec.structs.replace(lot, roots=lot.roots[:1])
-    with pytest.raises(HthorError, match=r"none of 1 roots gave a house of 4 rooms; the last failed: .*bad \(start-free\)"):
+    with pytest.raises(
+        HthorError, match=r"none of 1 roots gave a house of 4 rooms; the last failed: .*bad \(start-free\)"
+    ):
         secret_suites.make_house_tasks(
             bad, Proof(house=lambda house: (error("start-free", house.id, "bad"),), task=PROOF.task)
         )

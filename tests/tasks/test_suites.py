@@ -12,7 +12,7 @@ import pytest
 from hthor import catalog, houses, jsonio, tasks
 from hthor.catalog import priors
 from hthor.houses import names
-from hthor.houses.generator import scenes, unseen
+from hthor.houses.generator import shipped
 from hthor.tasks.generation import standard
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
 from hthor.tasks.suite import encode_suite
@@ -34,17 +34,17 @@ KINDS = {house.id: {thing.id: thing.kind for thing in house.things} for house in
 
 def test_the_unseen_houses_stand_beside_the_scenes_and_are_none_of_them():
     own = houses.names("unseen")
-    assert own == standard.UNSEEN == tuple(recipe.name for recipe in unseen.RECIPES)
+    assert own == standard.UNSEEN == tuple(recipe.name for recipe in shipped.UNSEEN)
     assert len(own) == len(set(own) - set(houses.names())) == 10
     assert len(houses.names()) == 10
     assert len({house.sha256 for house in HOUSES}) == len({house.rooms for house in HOUSES}) == 20
 
 
 def test_they_differ_from_the_scenes_in_nothing_but_in_being_new():
-    assert Counter(recipe.rooms for recipe in unseen.RECIPES) == Counter(scene.rooms for scene in scenes.SCENES)
-    seeds = [recipe.seed for recipe in unseen.RECIPES]
+    assert Counter(recipe.rooms for recipe in shipped.UNSEEN) == Counter(scene.rooms for scene in shipped.SCENES)
+    seeds = [recipe.seed for recipe in shipped.UNSEEN]
     assert seeds == list(range(seeds[0], seeds[0] + 10))  # in a row: none was picked out
-    for recipe in unseen.RECIPES:
+    for recipe in shipped.UNSEEN:
         house = houses.load(recipe.name)
         assert len(house.rooms) == recipe.rooms
         kinds = {thing.kind for thing in house.things}
@@ -58,14 +58,15 @@ def test_each_is_sound(name):
 
 
 def test_one_is_made_again_byte_for_byte():
-    recipe = unseen.RECIPES[3]
+    recipe = shipped.UNSEEN[3]
     file = Path(houses.__file__).parent / "unseen" / f"{recipe.name}.json"
-    assert jsonio.pretty(unseen.make_unseen(recipe)) == file.read_bytes()
+    assert jsonio.pretty(shipped.make_house(recipe)) == file.read_bytes()
 
 
 def test_the_others_are_written_where_one_says(tmp_path: Path, capsys, monkeypatch):
-    monkeypatch.setattr(unseen, "RECIPES", unseen.RECIPES[:1])
-    unseen.main([str(tmp_path)])
+    monkeypatch.setattr(shipped, "SCENES", ())
+    monkeypatch.setattr(shipped, "UNSEEN", shipped.UNSEEN[:1])
+    shipped.main([str(tmp_path)])
     assert capsys.readouterr().out == f"{tmp_path / 'aspen'}.json\n"
     assert houses.load(tmp_path / "aspen.json").sha256 == houses.load("aspen").sha256
 
@@ -190,7 +191,7 @@ def test_the_page_tells_what_can_be_counted():
     total = [sum(task.difficulty == level for task in SUITE.tasks) for level in LEVELS]
     assert f"| both | both | {' | '.join(map(str, total))} | 2000 |" in PAGE
     assert SUITE.sha256[:10] in PAGE
-    for recipe in unseen.RECIPES:
+    for recipe in shipped.UNSEEN:
         house = houses.load(recipe.name)
         assert f"| {recipe.name} | {recipe.seed} | {recipe.rooms} |" in PAGE
         assert f"| {len(house.things)} |" in PAGE

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import msgspec
+import numpy as np
 
 from hthor.houses import loader
-from hthor.houses.generator import document, starts, validity
+from hthor.houses.generator import document, validity
 from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.finishes import Finish
 from hthor.houses.generator.floorplan import doors, growth, layout
@@ -23,16 +24,19 @@ from hthor.houses.generator.furnishing.item_styles import ItemStyler
 from hthor.houses.generator.furnishing.pieces import Piece
 from hthor.houses.generator.furnishing.requirements import Requirements
 from hthor.houses.generator.furnishing.wall_items import WallDecorator
-from hthor.houses.space.free_space import FreeSpace
+from hthor.houses.space.free_space import Bools, FreeSpace
 from hthor.types import HouseSpec
 
 _OUTLINES, _DIVISIONS, _DOORINGS = 40, 60, 10
 _PASSAGE = 0.2
 """What a door to a living room adds to a plan's quality."""
+_START_GRID_M, _START_CLEAR_M = 0.25, 0.45
+"""Start places lie on this grid, with so much free floor all round."""
+_START_WEIGHTS = {"living_room": 4.0, "kitchen": 3.0, "bedroom": 2.0, "bathroom": 0.4}
 
 
 class AttemptFailed(Exception):
-    """Why an attempt came to nothing: the ``rule`` that it broke, and how."""
+    """Why an attempt failed: the ``rule`` that it broke, and how."""
 
     def __init__(self, rule: str, problem: str) -> None:
         self.rule, self.problem = rule, problem
@@ -97,7 +101,7 @@ def _judged(shell: dict[str, Any], spec: RoomSpec, dice: Dice, record: dict[str,
     house = loader.house_from_document(shell, "house")
     space, free = validity.floor(house)
     walkable = validity.reached(free)
-    start = starts.choose_start(house, space, walkable, dice.of("start"))
+    start = _start(house, space, walkable, dice.of("start"))
     if start is None:
         raise AttemptFailed("start-free", "no floor is roomy enough to start on")
     shell["metadata"] = document.metadata(spec.name, start, record)
@@ -151,3 +155,28 @@ def _laid(rooms: list[RoomSpace], wants: Requirements, maker: ItemStyler, dice: 
     if missing := clutter.place_clutter(tables, wants, maker, dice):
         raise AttemptFailed("clutter-place", f"no place was found for the {missing.replace('_', ' ')}")
     return [msgspec.structs.replace(table.piece, children=tuple(table.children)) for table in tables]
+
+
+def _start(house: HouseSpec, space: FreeSpace, reached: Bools, dice: Dice) -> tuple[float, float, int] | None:
+    """A place (x, y) [m] on the quarter-metre grid and quarter turns clockwise from +y; None when no place is roomy."""
+    weights = [_START_WEIGHTS[room.kind] for room in house.rooms]
+    for attempt in range(20):
+        room = dice.weighted(house.rooms, weights, "room", attempt)
+        spots = _start_places(space, reached & space.room_mask(room))
+        if len(spots):
+            x, y = spots[dice.whole(0, len(spots) - 1, "spot", attempt)]
+            return float(x), float(y), dice.whole(0, 3, "turn", attempt)
+    return None
+
+
+def _start_places(space: FreeSpace, floor: Bools) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+    """(N, 2) places of the quarter-metre grid with free floor all round."""
+    reach = round((_START_CLEAR_M - space.radius) / space.cell)
+    roomy = floor.copy()
+    for shift in range(1, reach + 1):
+        roomy[shift:, :] &= floor[:-shift, :]
+        roomy[:-shift, :] &= floor[shift:, :]
+        roomy[:, shift:] &= floor[:, :-shift]
+        roomy[:, :-shift] &= floor[:, shift:]
+    places = np.unique(np.round(space.centres(roomy) / _START_GRID_M), axis=0) * _START_GRID_M
+    return np.array([place for place in places if roomy[space.cell_of(place[0], place[1])]]).reshape(-1, 2)
