@@ -1,7 +1,7 @@
 """Houses from a seed, after ProcTHOR's published stages.
 
-A house's rooms are grown on a grid, joined by doors, furnished in groups, hung and laid with small things, and checked
-by rules with names. The same arguments give the same bytes.
+Rooms are grown on a grid, joined by doors and furnished in groups; things are hung on walls and put on surfaces, and
+the house is checked by named rules. The same arguments give the same bytes. Begin with `attempt.build_document`.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ TRIES = 20
 
 
 class GeneratorError(HthorError):
-    """No attempt gave a sound house. ``reasons`` are the rules broken, by attempt."""
+    """No attempt gave a valid house. ``reasons`` are the rules broken, by attempt."""
 
     def __init__(self, seed: int, rooms: int, reasons: tuple[tuple[str, str], ...]) -> None:
         self.reasons = reasons
         listed = "; ".join(f"attempt {number}: {problem} ({rule})" for number, (rule, problem) in enumerate(reasons))
         super().__init__(
-            f"no sound house of {rooms} rooms came of seed {seed} in {len(reasons)} attempts: {listed}. "
+            f"seed {seed} gave no valid house of {rooms} rooms in {len(reasons)} attempts: {listed}. "
             "Take another seed, or allow more tries."
         )
 
@@ -56,7 +56,7 @@ def generate(
         seed: any whole number.
         rooms: 4 to 7.
         spec: the name of one of `SPECS`; None draws one with so many rooms.
-        tries: how many attempts are made, each with draws of its own; metadata says which one came to be.
+        tries: how many attempts are made, each with draws of its own; the metadata name the one that succeeded.
         needs: the `OPTIONAL` kinds that the house has, and it has none of the others; None draws them.
         first: the attempt to begin with, to go on after one that was refused elsewhere.
 

@@ -47,7 +47,7 @@ def build_document(spec: RoomSpec, wants: Requirements, dice: Dice, record: dict
     """A house file's document; ``record`` is written into its metadata.
 
     Raises:
-        Flaw: when the attempt fails.
+        AttemptFailed: naming the rule that is broken.
     """
     plan, found = _floor_plan(spec, dice)
     finish, maker = Finish(plan, dice.of("finish")), ItemStyler(dice.of("maker"))
@@ -86,7 +86,7 @@ def build_document(spec: RoomSpec, wants: Requirements, dice: Dice, record: dict
         pieces = document.without(pieces, hidden)
         shell["objects"] = document.objects(pieces)
         if gone := next(iter(sorted(wants.must - _kinds(pieces))), ""):
-            raise AttemptFailed("object-visible", f"the only {gone.replace('_', ' ')} is where nobody sees it")
+            raise AttemptFailed("object-visible", f"the only {gone.replace('_', ' ')} cannot be seen from the floor")
         if _judged(shell, spec, dice, record):
             raise AttemptFailed("object-visible", "things came to be hidden when others were taken away")
     return shell
@@ -97,7 +97,7 @@ def _kinds(pieces: list[Piece]) -> set[str]:
 
 
 def _judged(shell: dict[str, Any], spec: RoomSpec, dice: Dice, record: dict[str, Any]) -> set[str]:
-    """Give the document its start; ids of the small things that nobody can see, when nothing else is wrong."""
+    """Set the document's start; return the ids of small things that cannot be seen, when nothing else is wrong."""
     house = loader.house_from_document(shell, "house")
     space, free = validity.floor(house)
     walkable = validity.reached(free)

@@ -1,4 +1,4 @@
-"""Writing a house down in ProcTHOR's schema 1.0.0.
+"""A generated house as a document in ProcTHOR's schema 1.0.0.
 
 The house frame's (x, y, z) becomes Unity's (x, z, y), and its counter-clockwise yaw a clockwise one in degrees.
 """

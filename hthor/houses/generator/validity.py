@@ -1,4 +1,4 @@
-"""Is a generated house one that people can live in? The first thing that is wrong, by name."""
+"""The rules that a generated house must meet, each violation with the name of its rule."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ class Door(Struct, frozen=True):
 
 
 def choose_doors(tree: RoomGroup, plan: FloorPlan, dice: Dice) -> list[tuple[int, int]] | None:
-    """Pairs of rooms to join so that all hang together; None when walls do not allow it.
+    """Pairs of rooms to join so that all are connected; None when walls do not allow it.
 
     At each level the parts are joined one by one, bathrooms last and never as a way through; a bathroom within a part
     is private to it.
@@ -116,7 +116,7 @@ def _wish(plan: FloorPlan, one: int, two: int) -> float:
 
 
 def place(pairs: list[tuple[int, int]], plan: FloorPlan, dice: Dice) -> list[Door] | None:
-    """A doorway for each pair, and the front door; None when a door is in another one's way."""
+    """A doorway for each pair, and the front door; None when doors would collide."""
     doors: list[Door] = []
     for one, two in pairs:
         door = _inner(one, two, plan, dice.of(one, two), doors)
@@ -239,7 +239,7 @@ def _strip(door: Door, room: int, beside: float, depth: float) -> tuple[float, f
 
 
 def apart(one: Door, two: Door) -> bool:
-    """Whether neither door is in the other one's way."""
+    """Whether neither door blocks the other."""
     for room, x0, y0, x1, y1 in zones(one):
         for other, u0, v0, u1, v1 in zones(two):
             if room == other and min(x1, u1) - max(x0, u0) > 0.0 and min(y1, v1) - max(y0, v0) > 0.0:

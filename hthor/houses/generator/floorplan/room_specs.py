@@ -27,7 +27,7 @@ class RoomGroup(Struct, frozen=True):
 
 
 class RoomSpec(Struct, frozen=True):
-    """A programme of rooms by ``name``; ``weight`` is how often it is drawn among those of as many rooms."""
+    """A named set of rooms; ``weight`` is its share of the draws among those with as many rooms."""
 
     name: str
     weight: float

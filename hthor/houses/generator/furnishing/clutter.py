@@ -31,7 +31,7 @@ Floats = NDArray[np.float64]
 GAP_M, EDGE_M = 0.014, 0.014
 """Least gap between things on a surface, and between them and a target; least distance from its edge."""
 _SLACK_M = 0.002
-"""How much less will do when a finished house is judged."""
+"""How much less is accepted when a finished house is checked."""
 _STEP_M = 0.04
 _COVER = 0.45
 """The share of a surface that small things may cover."""
@@ -171,7 +171,7 @@ def all_fit(surface: Surface, laid: Sequence[Sequence[float]], *, strict: bool =
 
 
 def place_clutter(tables: Sequence[Table], wants: Requirements, maker: ItemStyler, dice: Dice) -> str:
-    """Lay all tables; the first needed kind that found no place, empty when all is well."""
+    """Put small things on all tables; returns the first required kind without a place, or an empty string."""
     count: Counter[str] = Counter()
     for kind, homes in USUAL_PLACES.items():
         if kind in wants.must and not _need(kind, homes, tables, maker, dice.of("need", kind)):

@@ -27,7 +27,7 @@ Bools = NDArray[np.bool_]
 GAP_M = 0.02
 """Least gap between furniture, and between furniture and a wall's face."""
 RADIUS_M = 0.30
-"""Whoever is this wide [m] must still get about."""
+"""Radius [m] of the body that must still be able to walk everywhere."""
 _STEP_M = 0.1
 _DOOR_M = 0.35
 _HIGH_M = 3.0
@@ -127,7 +127,7 @@ class RoomSpace:
         return True
 
     def spread(self, piece: Piece, near: Vec2, within: float, dice: Dice) -> bool:
-        """Lay a flat thing on free floor as near to a place as may be, ``within`` [m]; it is in nobody's way."""
+        """Lay a flat thing on free floor as near to a place as may be, ``within`` [m]; it blocks nothing."""
         origins, turns = self._middles(0.1)
         w, d, _ = piece.size
         boxes = _placed((-w / 2 - GAP_M, -d / 2 - GAP_M, w / 2 + GAP_M, d / 2 + GAP_M), origins, turns)

@@ -1,4 +1,4 @@
-"""What furniture goes into which room, the needful before the pleasant."""
+"""Chooses the furniture of each room, what is required first."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _WALLS = ("wall", "corner")
 
 
 def furnish_rooms(rooms: Sequence[RoomSpace], wants: Requirements, maker: ItemStyler, dice: Dice) -> str:
-    """Put furniture into all rooms; the first thing that found no place, empty when all is well."""
+    """Furnish all rooms; returns the kind of the first required thing without a place, or an empty string."""
     by_kind = {
         kind: [room for room in rooms if room.room.kind == kind] for kind in (KITCHEN, LIVING, BEDROOM, BATHROOM)
     }

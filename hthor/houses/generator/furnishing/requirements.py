@@ -30,7 +30,7 @@ _SHARE = {
 
 
 class Requirements(Struct, frozen=True):
-    """``must``: optional kinds that the house has; all other optional kinds it has not."""
+    """``must`` are the optional kinds that the house has; it has no others."""
 
     must: frozenset[str]
 
@@ -40,7 +40,7 @@ class Requirements(Struct, frozen=True):
 
 
 def draw_requirements(needs: Iterable[str] | None, dice: Dice) -> Requirements:
-    """What is asked for, or a draw of it when nothing is.
+    """The requirements asked for, or random ones when none are given.
 
     Raises:
         UnknownName: for a need that is not an optional kind.
