@@ -1,8 +1,18 @@
-"""A submitted agent, in a process of its own.
+"""A submitted agent runs in processes of its own and is never imported by the evaluation. Begin with `host.guest`.
 
-The agent is never imported here: what it is called, which privileges it asks for and every action come over a wire as
-typed, bounded messages: docs/wire.md. The process is a clean start with a small environment; it dies with its parent.
-How strongly it is held is a level, from a mere process to namespaces of its own: docs/isolation.md.
+Packages are named by the process that their files run in::
+
+    evaluation (host)                    starts a guest, asks for actions, judges answers
+      |
+    guard                                ends everything when the host or the supervisor has ended (L1 and L2;
+      |                                  at L3 bubblewrap does that)
+    supervisor                           trusted, confined; imports libraries, forks and watches trial processes
+      |-- trial process (client)         confined; imports the agent's file, runs one trial, and ends
+      `-- spare (client)                 forked and confined in advance, waits to become the next trial process
+
+`host` and `supervisor` do not import each other; `supervisor` imports `client` to run it in the processes that it
+forks. Below them are `protocol` (messages and pipes, docs/wire.md), `agent` (what an agent consists of),
+`process_tools`, and `confinement` (levels of isolation, docs/isolation.md).
 """
 
 from __future__ import annotations

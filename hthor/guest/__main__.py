@@ -1,4 +1,4 @@
-"""The guest's side: ``python -m hthor.guest TELL PARENT``."""
+"""Starts a guest's supervisor: ``python -m hthor.guest SOCKET PARENT``."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What our robots share: exploring, routes, manipulation, carrying, messages and task allocation."""
+"""What built-in agents share: exploring, moving, carrying, telling the person, sharing out jobs, making way."""

@@ -1,1 +1,1 @@
-"""What a submitted agent consists of: its files, arguments and manifest."""
+"""What a submitted agent consists of: its reference, files, arguments and manifest."""

@@ -1,1 +1,1 @@
-"""The agent's side of the wire: what runs in the guest's process."""
+"""What runs in a trial's process, or in ``hthor agent serve``: loads the agent and runs trials with it."""

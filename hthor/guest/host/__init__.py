@@ -1,1 +1,1 @@
-"""hthor's side of the wire: starting a guest, asking it, judging its answers."""
+"""The evaluation's side: starts a guest, asks it for actions and judges its answers. Begin with `guest.Guest`."""

@@ -1,1 +1,1 @@
-"""The wire between host and guest: messages, transport, shared frames."""
+"""Messages, pipes and shared memory between host and guest. Begin with `wire`."""

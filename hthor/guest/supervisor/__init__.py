@@ -1,1 +1,1 @@
-"""The process between host and agent: it forks a fresh process for each trial and watches it."""
+"""The trusted process between host and agent: forks a new process for each trial and watches it."""
