@@ -1,4 +1,4 @@
-"""The frontier robot of the paper: explores with a detector for what is near, and tells."""
+"""The frontier robot of the paper: explores with a short-range detector, and tells the person what it finds."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class Agent:
     """Frontier exploration with an ideal detector within 1.5 m.
 
-    Says once where the target is when it sees it, and once more ten seconds after being turned down. Then it watches
-    the target from where it stands in nobody's way.
+    When it sees the target it says once where that is, and once more ten seconds after the message was declined. Then
+    it watches the target from a place where it blocks nobody.
     """
 
     privileges = ("ideal_detector",)
@@ -45,7 +45,7 @@ class Agent:
         self.kinds: dict[str, str] = {}
 
     def act(self, observation: Observation) -> Action:
-        """Look, tell, and go on."""
+        """Update the map, tell the person what is in view, and move on."""
         if self.multi_object is not None:
             return self.multi_object.act(observation)
         self.explorer.see(observation)
@@ -63,14 +63,14 @@ class Agent:
         return Action(motion=self._watch(observation) if self.target else self.explorer.motion(observation), say=say)
 
     def _say(self, observation: Observation, seen: Detection | None) -> Send | None:
-        """The message, when the target is in view, not in the person's hand, and it is time to speak."""
+        """A message, when the target is in view, the person does not hold it, and a message is due."""
         if seen is None or seen.held_by == HUMAN or not self.timing.due(observation.tick, observation.receipt):
             return None
         self.timing.note(observation.tick)
         return Send(text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position)
 
     def _watch(self, observation: Observation) -> Motion:
-        """Wait where it is in nobody's way, facing the target; come back when there is reason to speak again."""
+        """Wait where it blocks nobody, facing the target; come back when another message is due."""
         from hthor.navigation.path_follower import face
 
         assert self.target is not None

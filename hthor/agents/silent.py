@@ -6,7 +6,7 @@ from hthor.types import Action, Briefing, Observation, Wait
 
 
 class Agent:
-    """No robot. The person does the task alone."""
+    """No robot: the person does the task alone."""
 
     absent = True
     privileges: tuple[str, ...] = ()
@@ -15,5 +15,5 @@ class Agent:
         """Nothing to prepare."""
 
     def act(self, observation: Observation) -> Action:  # noqa: ARG002
-        """Stand still, for the case that a body is there after all."""
+        """Stand still, should there be a body."""
         return Action(motion=Wait(seconds=1.0))

@@ -1,6 +1,7 @@
-"""What a mind may use to map, plan, find frontiers and walk.
+"""Mapping, planning, frontiers and walking, for agents and human models. Begin with `planner`.
 
-Names are imported on first use, because the compiled parts take a moment to load.
+All positions and lengths are in metres in the house frame. Names are imported on first use, because the compiled parts
+take a moment to load.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Shortest ways from one place of a map, worked out only as far as they are asked for."""
+"""Shortest paths from one place of a map, computed only as far as they are asked for."""
 
 from __future__ import annotations
 
@@ -80,14 +80,14 @@ class Field:
         return tuple(self._nearest(group, cells) for group, cells in zip(groups, spots, strict=True))
 
     def _nearest(self, points: Sequence[Vec2], spots: Sequence[int]) -> tuple[float, int]:
-        """Of the ``spots`` of these points the nearest that was reached; those of no spot count when none was."""
+        """The nearest of the ``spots`` of these points that was reached; points without a spot if none was."""
         assert self.window is not None
         reached = [(self.metres(spot), k) for k, spot in enumerate(spots) if spot >= 0 and self.window.settled(spot)]
         least = min(reached or ((self.distance(point), k) for k, point in enumerate(points)), default=(math.inf, -1))
         return least if math.isfinite(least[0]) else (math.inf, -1)
 
     def path(self, b: Vec2, within: float = 0.0) -> tuple[Vec2, ...] | None:
-        """Way points [m] as `Planner.path` gives them. Ask before the map grows; afterwards None is given."""
+        """Way points [m] as from `Planner.path`; None when there is no path, or the map has grown since."""
         flat, grid = self._best(b, within), self._grid
         if flat < 0 or self.window is None or self._frame != (grid.left, grid.bottom, *grid.cells.shape):
             return None
@@ -95,13 +95,13 @@ class Field:
         return self._pull(self.window, flat, exact)
 
     def metres(self, flat: int) -> float:
-        """Length [m] of the way to a cell of the window that was reached."""
+        """Length [m] of the path to a cell of the window that was reached."""
         assert self.window is not None
         return int(self.window.cost[flat]) / grid_search_kernel.STEP * CELL_M
 
     @property
     def reached(self) -> float:
-        """All that is less far [m] was reached."""
+        """Everything closer than this was reached [m]."""
         return 0.0 if self.window is None else self.window.reached / grid_search_kernel.STEP * CELL_M
 
     def _cell(self, b: Vec2) -> tuple[int, int]:
@@ -114,7 +114,7 @@ class Field:
         return self.window.flat(row, column) if self.window.holds(row, column) else -1
 
     def _spot(self, b: Vec2) -> int:
-        """The cell where `distance` will end if there is a way to it; -1 when there is none close by."""
+        """The cell where `distance` ends if there is a path to it; -1 when none is close by."""
         assert self.window is not None
         flat = self._index(b)
         if flat >= 0 and self.window.open(flat):
@@ -122,7 +122,7 @@ class Field:
         return self._pick(b, 0.0, False)
 
     def _best(self, b: Vec2, within: float) -> int:
-        """The reached cell that serves ``b``: the cheapest within reach, or else the nearest to it; -1 for none."""
+        """The reached cell for ``b``: the cheapest within reach, or else the nearest to it; -1 for none."""
         window = self.window
         if window is None:
             return -1

@@ -1,4 +1,4 @@
-"""Where a map could be extended, and what on it was never seen from close by."""
+"""Frontiers: where a map could be extended, and furniture that was never seen from close by."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ _EDGE, _UNVISITED = 1, 2
 
 
 class Frontier(Struct, frozen=True, kw_only=True):
-    """A group of neighbouring places worth going to.
+    """A group of neighbouring cells worth going to.
 
-    ``centre`` [m] is the member nearest to the group's middle, a place where the body can stand. ``size`` [m] is the
-    number of cells times their width, ``distance`` [m] the way to the nearest member. ``is_edge``: the members are
-    free cells next to unknown ones; else they are cells along furniture that were never looked at from close by, see
-    `GridMap.near`.
+    Attributes:
+        centre: the cell nearest to the group's mean [m], where the body can stand.
+        size: number of cells times their width [m]. distance: length of the path to the nearest cell [m].
+        is_edge: whether these are free cells next to unknown ones; else they lie along furniture that was never
+            looked at from close by, see `GridMap.near`.
     """
 
     centre: Vec2
@@ -36,7 +37,7 @@ class Frontier(Struct, frozen=True, kw_only=True):
 
 
 class _Group(Struct, frozen=True):
-    """A group before it is known whether there is a way to it; ``cell`` is its centre's row and column."""
+    """A group before it is known whether it can be reached; ``cell`` is its centre's row and column."""
 
     cell: tuple[int, int]
     size: int
@@ -44,10 +45,10 @@ class _Group(Struct, frozen=True):
 
 
 class Survey:
-    """Every place worth going to, by one search that goes only as far as it must, with the ways there."""
+    """All groups of cells worth going to, with paths there, by one search that goes only as far as necessary."""
 
     def __init__(self, grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> None:
-        """Groups of at least ``least`` [m] are listed."""
+        """Only groups of at least ``least`` [m] are listed."""
         self._field = _known(planner, pose)
         self._frame = (grid.left, grid.bottom)
         self._groups: list[_Group] = []
@@ -68,16 +69,16 @@ class Survey:
 
     @property
     def frontiers(self) -> list[Frontier]:
-        """Groups of reachable free cells next to unknown ones, in order of their place."""
+        """Groups of reachable free cells next to unknown ones, in map order."""
         return self._all(is_edge=True)
 
     @property
     def unvisited(self) -> list[Frontier]:
-        """Groups of reachable free cells along furniture that were never looked at from close by, in order of place."""
+        """Groups of reachable free cells along furniture never looked at from close by, in map order."""
         return self._all(is_edge=False)
 
     def ranked(self, extra: Callable[[Vec2], float]) -> Iterator[Frontier]:
-        """Every place, the one with the least ``distance + extra(centre)`` [m] first."""
+        """All groups, by increasing ``distance + extra(centre)`` [m]."""
         more = {number: extra(self._centre(group)) for number, group in enumerate(self._groups, 1)}
         waiting: list[tuple[float, Vec2, int]] = []
         while True:
@@ -93,7 +94,7 @@ class Survey:
                 return
 
     def path(self, place: Frontier) -> tuple[Vec2, ...] | None:
-        """The way to a place, through what is known to be free; ask before the map grows."""
+        """The path [m] to a group through cells known to be free; None when the map has grown since."""
         window = self._field.window
         if window is not None:
             column, row = (round(metres / CELL_M - 0.5) for metres in place.centre)
@@ -105,7 +106,7 @@ class Survey:
     def _gather(
         self, grid: GridMap, mask: NDArray[np.uint8], marked: NDArray[np.int32], bit: int, least: float
     ) -> None:
-        """List the groups of marked cells that are large enough, and have the search stop at them."""
+        """List the groups of marked cells that are large enough, and let the search stop at them."""
         window = self._field.window
         assert window is not None
         out: NDArray[np.int64] = np.empty((_MOST, 4), dtype=np.int64)
@@ -120,7 +121,7 @@ class Survey:
             self._groups.append(_Group((row, column), last - first, bit == _EDGE))
 
     def _reach(self, goal: int = -1) -> bool:
-        """Go on to the next group, or to a member of one; False when there is no way to any more of them."""
+        """Search on to the next group, or to the cell ``goal``; False when no more can be reached."""
         window = self._field.window
         if window is None:
             return False
@@ -151,17 +152,17 @@ class Survey:
 
 
 def frontiers(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> list[Frontier]:
-    """Groups of at least ``least`` [m] of reachable free cells next to unknown ones, in order of their place."""
+    """Groups of at least ``least`` [m] of reachable free cells next to unknown ones, in map order."""
     return Survey(grid, planner, pose, least).frontiers
 
 
 def unvisited(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.3) -> list[Frontier]:
-    """Groups of reachable free cells along furniture that were never looked at from close by, see `GridMap.near`."""
+    """Groups of reachable free cells along furniture never looked at from close by, see `GridMap.near`."""
     return Survey(grid, planner, pose, least).unvisited
 
 
 def _known(planner: Planner, pose: Pose) -> Field:
-    """Ways through what is known to be free, whatever the planner thinks of the unknown."""
+    """Paths through cells known to be free, also for an optimistic planner."""
     hopeful, planner.optimistic = planner.optimistic, False
     try:
         return planner.field((pose.x, pose.y))

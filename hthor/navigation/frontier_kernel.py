@@ -10,7 +10,7 @@ import numpy as np
 from hthor.navigation.grid_search_kernel import _DX, _DY, FAR, WATCHED, spread
 
 _STRETCH = 32
-"""So many cells are looked at together for whether any of them is marked: few are."""
+"""Number of cells that are checked for marks at once; few are marked."""
 
 
 @numba.njit(
@@ -111,7 +111,7 @@ def watch_groups(
     names: Any,
     number: int,
 ) -> int:
-    """Have a search stop at the members of the large groups, which it then finds under their numbers in ``names``.
+    """Let a search stop at the members of the large groups, whose numbers are written to ``names``.
 
     Args:
         groups: as `clusters` gives them, ``count`` of them; the large ones move to the front.
@@ -156,7 +156,7 @@ def reach_group(
     item: Any,
     memo: Any,
 ) -> int:
-    """Spread (see `searching.spread`) to the watched cell ``goal`` or one of a group not yet ``known``; -1 for none."""
+    """Spread (see `grid_search_kernel.spread`) to the cell ``goal`` or one of a group not ``known``; -1 for none."""
     while True:
         here = spread(state, cost, came, width, 1, FAR, heads, chain, item, memo)
         if here < 0 or here == goal or not (known[names[0, here]] and known[names[1, here]]):

@@ -1,4 +1,4 @@
-"""A map that grows as range scans come in."""
+"""A grid map that grows with every range scan."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hthor.types import Scan, Vec2
 CELL_M = 0.05
 UNKNOWN, FREE, OCCUPIED = 0, 1, 2
 LOW_M = 2.1
-"""What is lower than this is furniture, not a wall, and may have something on it or in it."""
+"""Obstacles lower than this are furniture, with things on or in them; the others are walls [m]."""
 _BESIDE_CELLS = 8
 _CHUNK = 64
 
@@ -25,17 +25,17 @@ class GridMap:
     Attributes:
         cells: (ny, nx) uint8, row = y. Replaced by a larger array when the map grows.
         near: (ny, nx) uint8, 1 where a free cell was looked at from close by (see `integrate`).
-        beside: (ny, nx) uint8, 1 within 0.4 m of furniture; everything that a scan without ``tops`` met counts as such.
+        beside: (ny, nx) uint8, 1 within 0.4 m of furniture; for scans without ``tops``, of any obstacle.
         left, bottom: lattice index of column 0 and row 0; cell (row, column) has its centre at
             ``((left + column + 0.5) * 0.05, (bottom + row + 0.5) * 0.05)`` metres.
         bounds: (4,) int64, first and last known column, first and last known row.
         version: grows with every change.
 
-    Occupied cells stay occupied: furniture does not walk, and bodies are not in range scans.
+    Occupied cells stay occupied: furniture does not move, and range scans do not show bodies.
     """
 
     def __init__(self, x: float = 0.0, y: float = 0.0, extent_m: float = 12.8) -> None:
-        """Start around (``x``, ``y``) [m] with ``extent_m`` metres either way in all; the map grows when needed."""
+        """Start around (``x``, ``y``) [m] with a side of ``extent_m`` metres; the map grows when needed."""
         half = math.ceil(extent_m / CELL_M / 2.0)
         self.left, self.bottom = math.floor(x / CELL_M) - half, math.floor(y / CELL_M) - half
         self.cells: NDArray[np.uint8] = np.zeros((2 * half, 2 * half), dtype=np.uint8)
@@ -49,22 +49,22 @@ class GridMap:
 
     @property
     def obstacles(self) -> NDArray[np.int32]:
-        """(N, 3) x and y index of the occupied cells as they were found, and 1 for furniture; only appended to."""
+        """(N, 3) x and y index of the occupied cells in order of detection, and 1 for furniture; only appended to."""
         return self._obstacles[: self._count]
 
     def integrate(self, scan: Scan, look_m: float = 1.1, look_rad: float = math.pi) -> None:
-        """Add what a range scan shows.
+        """Add a range scan.
 
         Args:
-            scan: bearings must run upwards.
-            look_m: free cells within this distance count as looked at from close by.
-            look_rad: and within this angle either side of the heading.
+            scan: with increasing bearings.
+            look_m: free cells within this distance [m] count as looked at from close by,
+            look_rad: if they are within this angle [rad] of the heading.
         """
         origin, margin = scan.origin, scan.limit + 0.2
         self._cover(origin.x - margin, origin.y - margin, origin.x + margin, origin.y + margin)
         self._reserve(16 * len(scan.ranges) + 64)
         first = self._count
-        ranges = np.array(scan.ranges, dtype=np.float64)  # a copy: what came over a wire is read-only
+        ranges = np.array(scan.ranges, dtype=np.float64)  # a copy: arrays from another process are read-only
         bearings = self._as_bearings(scan.bearings)
         tops = np.zeros(len(ranges)) if scan.tops is None else np.array(scan.tops, dtype=np.float64)
         self._count = scan_kernel.integrate(
@@ -107,7 +107,7 @@ class GridMap:
         self.version += 1
 
     def mark_blocked(self, x: float, y: float) -> None:
-        """Make the cell at (``x``, ``y``) [m] occupied: something stopped the body there that no scan showed."""
+        """Mark the cell at (``x``, ``y``) [m] as occupied, for an obstacle that no scan showed."""
         self._cover(x, y, x, y)
         self._reserve(1)
         column, row = self._index(x, y)
@@ -129,15 +129,15 @@ class GridMap:
         return int(self.cells[row, column])
 
     def seen(self, a: Vec2, b: Vec2) -> bool:
-        """Whether the floor from ``a`` to ``b`` [m] is known to be free, as far as a look every 0.2 m tells."""
+        """Whether the floor from ``a`` to ``b`` [m] is known to be free; one cell every 0.2 m is checked."""
         count = max(1, math.ceil(math.dist(a, b) / (4.0 * CELL_M)))
         line = self.left, self.bottom, CELL_M, *a, *b
         return bool(scan_kernel.along(self.cells, *line, 0, count, 1.0, float(count), FREE, True))
 
     def meets(self, a: Vec2, b: Vec2, margin: float) -> bool:
-        """Whether something occupied is on the line from ``a`` [m] to ``margin`` [m] before ``b``, past the first cell.
+        """Whether an occupied cell is on the line from ``a`` [m] to ``margin`` [m] before ``b``, after the first cell.
 
-        Not more than every 5 cm is looked at.
+        One cell every 5 cm is checked.
         """
         apart = math.dist(a, b)
         line = self.left, self.bottom, CELL_M, *a, *b
@@ -151,11 +151,11 @@ class GridMap:
         return inside and bool(self.near[row, column])
 
     def forget_near(self) -> None:
-        """Count every cell as not yet looked at from close by."""
+        """Mark every cell as not looked at from close by."""
         self.near[:] = 0
 
     def _as_bearings(self, bearings: Any) -> NDArray[np.float64]:
-        """The bearings as compiled loops want them; a sensor gives the same ones every time."""
+        """The bearings as an array for compiled loops; cached, since a sensor always has the same ones."""
         if bearings is not self._given:
             self._given, self._bearings = bearings, np.array(bearings, dtype=np.float64)
         return self._bearings

@@ -1,4 +1,4 @@
-"""Compiled: shortest paths on a grid of cells and levels (see `marching`).
+"""Compiled: shortest paths on a grid of cells and levels (see `scan_kernel`).
 
 Costs are whole numbers, 100 for a step of one clear cell, so that paths do not depend on rounding. A search works on a
 window of the map with a closed border of one cell, laid out flat, so that no step has to look where the map ends.
@@ -19,9 +19,9 @@ FAR = 1 << 30
 BUCKETS = 512
 _LAST = BUCKETS - 1
 _SLACK = 108.24
-"""Of a straight line's length in cells, the most that its way along the lattice costs."""
+"""Largest cost of a path along the lattice per cell of the straight distance."""
 CLOSED, CLEAR, CLOSE, WATCHED = 0, 1, 2, 4
-"""States of a window's cells: no way or done, else the level plus one; and whether it is news that it was reached."""
+"""States of a window's cells: impassable or done, else the level plus one; and a flag to stop there."""
 
 _DX = np.array([1, 0, -1, 0, 1, -1, -1, 1], dtype=np.int64)
 _DY = np.array([0, 1, 0, -1, 1, 1, -1, -1], dtype=np.int64)

@@ -1,4 +1,4 @@
-"""From a path to motions that a body may make."""
+"""Turns a path into motions of a body."""
 
 from __future__ import annotations
 
@@ -9,12 +9,17 @@ from hthor.geometry.plane import turn, wrap
 from hthor.types import Motion, Move, Pose, Rotate, Vec2, Vec3
 
 TURN_RAD = math.radians(25.0)
-"""Heading error from which on a body turns before it goes."""
+"""Heading error above which a body turns before it moves [rad]."""
 _ARRIVED_M = 0.04
 
 
 class Follower:
-    """Walks a path one motion at a time: turn towards the next way point, then go at most ``step`` metres."""
+    """Walks a path one motion at a time: turns towards the next way point, then moves.
+
+    Args:
+        step: longest move [m]. turn_rad: heading error above which it turns first [rad].
+        arrived_m: distance at which a way point counts as reached [m].
+    """
 
     def __init__(self, step: float = 0.5, turn_rad: float = TURN_RAD, arrived_m: float = _ARRIVED_M) -> None:
         self.step, self.turn_rad, self.arrived_m = step, turn_rad, arrived_m
@@ -22,7 +27,7 @@ class Follower:
         self._next = 0
 
     def take(self, path: Sequence[Vec2] | None) -> None:
-        """Follow ``path`` [m] from its beginning; None or an empty path means: stay."""
+        """Follow ``path`` [m] from its beginning; None or an empty path means to stay."""
         self.path, self._next = tuple(path or ()), 0
 
     @property
@@ -50,7 +55,7 @@ class Follower:
 
 
 def toward(pose: Pose, point: Vec2, step: float = 0.5, turn_rad: float = TURN_RAD) -> Motion:
-    """Turn to ``point`` [m] when it lies more than ``turn_rad`` off the heading, else go there, ``step`` m at most."""
+    """Turn to ``point`` [m] if the heading error is above ``turn_rad``, else move there, at most ``step`` metres."""
     dx, dy = point[0] - pose.x, point[1] - pose.y
     apart = math.hypot(dx, dy)
     error = wrap(math.atan2(dy, dx) - pose.yaw) if apart > 1e-9 else 0.0
@@ -60,7 +65,7 @@ def toward(pose: Pose, point: Vec2, step: float = 0.5, turn_rad: float = TURN_RA
 
 
 def shift(pose: Pose, point: Vec2, step: float = 0.5) -> Move:
-    """Go straight to ``point`` [m] without turning, at most ``step`` metres of the way."""
+    """Move straight to ``point`` [m] without turning, at most ``step`` metres."""
     dx, dy = point[0] - pose.x, point[1] - pose.y
     apart = math.hypot(dx, dy)
     share = min(1.0, step / apart) if apart > 0.0 else 0.0
@@ -69,9 +74,10 @@ def shift(pose: Pose, point: Vec2, step: float = 0.5) -> Move:
 
 
 def face(pose: Pose, point: Vec3, eye_height: float, pitch_limit: float = math.pi / 2.0) -> Rotate | None:
-    """The turn that puts ``point`` [m] in the middle of the picture; None when it is there, within 2 degrees.
+    """The turn that centres ``point`` [m] in the picture; None when it is centred within 2 degrees.
 
-    ``eye_height`` [m] is the camera's, ``pitch_limit`` [rad] bounds its pitch either way.
+    Args:
+        eye_height: height of the camera [m]. pitch_limit: largest pitch of the camera either way [rad].
     """
     dx, dy = point[0] - pose.x, point[1] - pose.y
     apart = math.hypot(dx, dy)

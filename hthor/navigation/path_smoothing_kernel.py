@@ -1,4 +1,4 @@
-"""Compiled: lattice paths pulled tight like strings (see `marching`, `searching`)."""
+"""Compiled: smooths lattice paths (see `grid_search_kernel`)."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def pull_string(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any
     error_model="numpy",
 )
 def straighten(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep: Any) -> int:
-    """Pull the string from both ends, and take the cheapest way over the bends of both; as `pull`."""
+    """Pull the string from both ends, and take the cheapest path over the bends of both; like `pull_string`."""
     n = len(points)
     forth, back = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
     n_forth = pull_string(cells, level, optimistic, points, cost, forth)
@@ -109,9 +109,9 @@ def straighten(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any,
 
 @numba.njit("int64(uint8[:,::1], uint8[:,::1], boolean, float64[:,::1], int64)", cache=True)
 def tighten(cells: Any, level: Any, optimistic: bool, points: Any, n: int) -> int:
-    """Move every bend of a way towards the line between its neighbours while that costs less; drop needless ones.
+    """Move every bend of a path towards the line between its neighbours while that costs less; drop needless ones.
 
-    ``points`` (N, 2) [cells] is changed in place, its first ``n`` rows are the way; returns how many are left.
+    ``points`` (N, 2) [cells] is changed in place, its first ``n`` rows are the path; returns how many are left.
     """
     for _ in range(6):
         changed = False

@@ -1,4 +1,4 @@
-"""Shortest paths of a round body on a map that is still being made."""
+"""Shortest paths of a round body on a map that still grows."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from hthor.navigation.search_window import ESCAPE_CELLS, SearchWindow, path_cost
 from hthor.types import Vec2
 
 _HARD_M = 0.026
-"""Kept between the body and the middle of an occupied cell: less, and it would scrape along walls."""
+"""Clearance between the body and the centre of an occupied cell [m]: with less it would scrape along walls."""
 _SOFT_M = 0.10
-"""A path avoids coming this close where there is room: it costs a fifth more."""
+"""A path that comes closer than this [m] costs a fifth more."""
 _BORDER_CELLS = 12
 
 
@@ -37,13 +37,13 @@ class Planner:
         self._allocate()
 
     def path(self, a: Vec2, b: Vec2, within: float = 0.0, most: float = math.inf) -> tuple[Vec2, ...] | None:
-        """Way points [m] from ``a`` to ``b``, both included, or None when there is no way.
+        """Way points [m] from ``a`` to ``b``, both included, or None when there is no path.
 
         Args:
-            a: where the body is. When it stands too close to something it first leaves by the nearest free cell.
-            b: where to go. A place that the body cannot stand on is replaced by the nearest one within 0.7 m.
-            within: [m] being this close to ``b`` is enough; the path then ends where that is first so.
-            most: [m] longer ways along the lattice, with their costs, do not count.
+            a: where the body is [m]. If it stands too close to something it first goes to the nearest free cell.
+            b: where to go [m]. A place where the body cannot stand is replaced by the nearest one within 0.7 m.
+            within: the path ends as soon as it is this close to ``b`` [m].
+            most: ignore paths whose cost on the lattice is above that of so many clear metres.
         """
         self._follow()
         start, escape = self._enter(a)
@@ -68,7 +68,7 @@ class Planner:
         return math.inf if way is None else path_length(way)
 
     def field(self, a: Vec2, cover: Sequence[Vec2] = ()) -> Field:
-        """Shortest ways from ``a`` to every cell of the known map and of the box around ``cover`` [m]."""
+        """Shortest paths from ``a`` to every cell of the known map and of the box around ``cover`` [m]."""
         self._follow()
         start, escape = self._enter(a)
         edges = self._window(start, (a, *cover))
@@ -76,22 +76,22 @@ class Planner:
         return Field(self.grid, window, lambda window, end, b: self._pulled(window, end, a, b, escape))
 
     def distances(self, a: Vec2, points: Sequence[Vec2], most: float = math.inf) -> tuple[float, ...]:
-        """Walking distance [m] from ``a`` to each point; infinite where there is no way, or none up to ``most`` metres.
+        """Walking distance [m] from ``a`` to each point; infinite without a path, or without one up to ``most`` metres.
 
-        One search serves all points, and goes no farther than it must. Distances follow the lattice and the costs: up
-        to 8 % longer than the way walked.
+        One search serves all points, and goes no farther than necessary. Distances follow the lattice and its costs:
+        up to 8 % longer than the path walked.
         """
         return self.field(a, points).distances(points, most)
 
     def nearest(self, a: Vec2, groups: Sequence[Sequence[Vec2]]) -> tuple[tuple[float, int], ...]:
         """For each group of points the walking distance [m] to the nearest of them, as `distances`, and which it is.
 
-        Infinite and -1 where there is no way to any. One search serves all groups, and ends once each is reached.
+        Infinite and -1 where there is no path to any. One search serves all groups, and ends once each is reached.
         """
         return self.field(a, [point for group in groups for point in group]).nearest(groups)
 
     def fits(self, x: float, y: float) -> bool:
-        """Whether the body may stand at (``x``, ``y``) [m], as far as the map tells."""
+        """Whether the body may stand at (``x``, ``y``) [m], according to the map."""
         self._follow()
         row, column = self._row_column((x, y))
         ny, nx = self._cells.shape
@@ -99,14 +99,14 @@ class Planner:
         return inside and bool(grid_search_kernel.passable(self._cells, self._level, self.optimistic, row, column))
 
     def straight(self, a: Vec2, b: Vec2) -> bool:
-        """Whether the body can go straight from ``a`` to ``b``; where it stands now does not count."""
+        """Whether the body can go straight from ``a`` to ``b`` [m]; its present cell is not checked."""
         self._follow()
         ax, ay = self._cell(a)
         bx, by = self._cell(b)
         return bool(path_smoothing_kernel.line_cost(self._cells, self._level, self.optimistic, ax, ay, bx, by) >= 0.0)
 
     def clear(self, points: Sequence[Vec2]) -> bool:
-        """Whether the body can go straight from each point [m] to the next; where it stands now does not count."""
+        """Whether the body can go straight from each point [m] to the next; its present cell is not checked."""
         self._follow()
         known, ends = (self._cells, self._level, self.optimistic), [self._cell(point) for point in points]
         return all(path_smoothing_kernel.line_cost(*known, *a, *b) >= 0.0 for a, b in pairwise(ends))
@@ -118,7 +118,7 @@ class Planner:
         return self._level
 
     def _follow(self) -> None:
-        """Take over what the map has learnt since."""
+        """Update from the map."""
         grid = self.grid
         if self._version == grid.version:
             return
@@ -131,7 +131,7 @@ class Planner:
         self._version = grid.version
 
     def _grow(self) -> None:
-        """The map has grown: levels move to a larger array. What stands by the old edges now reaches beyond them."""
+        """The map has grown: move levels to a larger array, and inflate obstacles at the old edges again."""
         (left, bottom, ny, nx), level, stamped = self._frame, self._level, self._stamped
         self._allocate()
         column, row = left - self.grid.left, bottom - self.grid.bottom
@@ -184,12 +184,12 @@ class Planner:
         return None if flat < 0 else divmod(int(flat), self._cells.shape[1])
 
     def _enter(self, a: Vec2) -> tuple[tuple[int, int] | None, bool]:
-        """The cell where a path from ``a`` begins, and whether that is a way out of a too tight spot."""
+        """The cell where a path from ``a`` begins, and whether the body must first leave a tight spot for it."""
         start = self._nearest(a)
         return start, start is not None and start != self._row_column(a)
 
     def _pulled(self, window: SearchWindow, end: int, a: Vec2, b: Vec2 | None, escape: bool) -> tuple[Vec2, ...]:
-        """The way that a search found to its cell ``end``, pulled tight like a string, from ``a`` and to ``b`` exactly.
+        """The path [m] that a search found to its cell ``end``, smoothed, from ``a`` and to ``b`` exactly.
 
         With ``escape`` it first leads from ``a`` to the cell where the search began.
         """
@@ -213,7 +213,7 @@ class Planner:
 
 
 def path_length(way: Sequence[Vec2]) -> float:
-    """Length [m] of a way."""
+    """Length [m] of a path."""
     return math.fsum(math.dist(way[k], way[k + 1]) for k in range(len(way) - 1))
 
 

@@ -48,10 +48,10 @@ def _fill(
 
 @numba.njit("void(uint8[:,::1], float64, float64, float64, float64, int64, int64[::1])", cache=True)
 def _sweep(cells: Any, x: float, y: float, ux: float, uy: float, count: int, bounds: Any) -> None:
-    """Make so many cells along a beam free, from (x, y) on in steps of (ux, uy) cells.
+    """Mark ``count`` cells along a beam as free, from (x, y) on in steps of (ux, uy) cells.
 
-    The map reaches farther than any beam, so that no place is below 0. Places are kept as whole numbers, a cell being
-    `_ONE`, so that a step is one addition and a cell's index one shift.
+    The map reaches farther than any beam, so that no coordinate is negative. Coordinates are fixed-point integers, a
+    cell being `_ONE`, so that a step is one addition and a cell's index one shift.
     """
     fx, fy, dx, dy = int(x * _ONE), int(y * _ONE), int(ux * _ONE), int(uy * _ONE)
     for _ in range(count):
@@ -121,9 +121,9 @@ def integrate(
     found: Any,
     count: int,
 ) -> int:
-    """March every beam, and beams between neighbours so that no cell is skipped; returns the count of obstacles.
+    """Trace every beam, and beams between neighbours so that no cell is skipped; returns the number of obstacles.
 
-    ``tops`` are the heights [m] of what the beams met; what is lower than ``low`` is noted as such.
+    ``tops`` are the heights [m] of what the beams hit; obstacles lower than ``low`` are marked as such.
     """
     px, py = x / cell - left, y / cell - bottom
     row, column = math.floor(py), math.floor(px)

@@ -1,4 +1,4 @@
-"""One search over a window of a map, and what it found."""
+"""One search over a window of a map, and its result."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def path_cost(metres: float) -> int:
 
 
 class SearchWindow:
-    """The cheapest ways from one cell through a window of a map.
+    """The cheapest paths from one cell through a window of a map.
 
     Rows and columns are the map's; ``flat`` indices are the window's own, which has a border of one cell.
 
     Attributes:
-        state, cost, came: flat arrays, see `searching.prepare`. start: flat index of the cell where all ways begin.
+        state, cost, came: flat arrays, see `grid_search_kernel.prepare`. start: flat index of the first cell.
         edges: (4,) first and last column, first and last row. width: columns of the bordered window.
     """
 
@@ -39,7 +39,7 @@ class SearchWindow:
         start: tuple[int, int],
         key: int = 0,
     ) -> None:
-        """``start`` is a row and a column, ``key`` the least that the way to the goal costs."""
+        """``start`` is a row and a column, ``key`` the least possible cost of the path to the goal."""
         x0, x1, y0, y1 = self.edges = edges
         self.left, self.bottom, self.width = x0 - 1, y0 - 1, x1 - x0 + 3
         size = self.width * (y1 - y0 + 3)
@@ -70,7 +70,7 @@ class SearchWindow:
         return x0 <= column <= x1 and y0 <= row <= y1
 
     def seek(self, x: float, y: float, within: float, most: int = grid_search_kernel.FAR) -> int:
-        """Where the way to within ``within`` cells of (``x``, ``y``) [cells] ends, flat.
+        """The flat index where the path to within ``within`` cells of (``x``, ``y``) [cells] ends.
 
         -1 when there is none that costs ``most`` or less.
         """
@@ -78,40 +78,40 @@ class SearchWindow:
         return int(grid_search_kernel.seek(*arrays, x, y, within, most, *self._queue))
 
     def watch(self, flat: int) -> bool:
-        """Stop at this cell when it is reached; says whether that is news: it can be, and was not watched yet."""
+        """Stop at this cell when it is reached; False if it is closed or watched already."""
         news = grid_search_kernel.CLOSED < int(self.state[flat]) < grid_search_kernel.WATCHED
         if news:
             self.state[flat] |= grid_search_kernel.WATCHED
         return news
 
     def ignore(self, flat: int) -> None:
-        """Do not stop at this cell any more."""
+        """Do not stop at this cell any longer."""
         self.state[flat] &= ~np.uint8(grid_search_kernel.WATCHED)
 
     def spread(self, watched: int, most: int = grid_search_kernel.FAR) -> int:
-        """Go on until so many watched cells are reached, or all that costs at most ``most`` is; the last one, or -1."""
+        """Search on until so many watched cells, or all cells up to cost ``most``, are reached; the last one, or -1."""
         return int(grid_search_kernel.spread(self.state, self.cost, self.came, self.width, watched, most, *self._queue))
 
     def reach(self, names: NDArray[np.int16], known: NDArray[np.uint8], goal: int) -> int:
-        """Go on to the watched cell ``goal``, or to one of a group not ``known``, see `grouping.reach`; -1 for none."""
+        """Search on to the watched cell ``goal``, or to one of a group that is not ``known``; -1 for none."""
         arrays = self.state, self.cost, self.came, self.width
         return int(frontier_kernel.reach_group(names, known, goal, *arrays, *self._queue))
 
     def open(self, flat: int) -> bool:
-        """Whether there could be a way to this cell."""
+        """Whether there may be a path to this cell."""
         return bool(self.state[flat] != grid_search_kernel.CLOSED or self.cost[flat] < grid_search_kernel.FAR)
 
     def settled(self, flat: int) -> bool:
-        """Whether the cheapest way to this cell is known."""
+        """Whether the cheapest path to this cell is known."""
         return bool(self.state[flat] == grid_search_kernel.CLOSED and self.cost[flat] < grid_search_kernel.FAR)
 
     @property
     def reached(self) -> int:
-        """All that costs less was reached."""
+        """Every cell with a lower cost was reached."""
         return int(self._queue[3][0])
 
     def trace(self, end: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Cell centres (N, 2) [cells of the map] and costs (N,) on the way to the cell ``end``."""
+        """Cell centres (N, 2) [cells of the map] and costs (N,) on the path to the cell ``end``."""
         count = grid_search_kernel.steps(self.came, self.width, self.start, end, min(self.cost.size, _LONGEST))
         points, costs = np.empty((count, 2), dtype=np.float64), np.empty(count, dtype=np.float64)
         grid_search_kernel.trace(self.came, self.cost, self.width, end, self.left, self.bottom, points, costs)

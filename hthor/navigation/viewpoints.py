@@ -1,4 +1,4 @@
-"""Which of many places a body can stand at with a clear way to what it faces."""
+"""At which of many places a body can stand with nothing between it and what it faces."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from hthor.navigation.planner import Planner
 from hthor.types import Vec2
 
 NO, MAYBE, YES = 0, 1, 2
-"""Not usable; usable if what is not known there is free; known to be free."""
+"""Not usable; usable if unknown cells are free; known to be free."""
 
 
 def usable(grid: GridMap, planner: Planner, spots: Sequence[Vec2], facing: Sequence[Vec2], margin: float) -> list[int]:

@@ -1,4 +1,4 @@
-"""Making way for the person."""
+"""Makes way for the person."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from hthor.navigation.path_follower import shift
 from hthor.types import HUMAN, BodySpec, Detection, Motion, Observation, Vec2, Wait
 
 NEAR_M = 0.9
-"""A person closer than this in front has the right of way."""
+"""A person in front closer than this has the right of way [m]."""
 PATIENCE_S = 2.0
-"""How long to stand aside before going on."""
+"""How long to stand aside before going on [s]."""
 _PAUSE_S = 0.5
 _STEP_M = 0.5
 _FRONT_RAD = math.radians(70.0)
@@ -20,17 +20,20 @@ _DIRECTIONS = 16
 
 
 class Courtesy:
-    """Makes room when the person is in the way, for up to two seconds at a time, then goes on."""
+    """Makes room when the person is in the way, for up to two seconds at a time, then goes on.
+
+    Args:
+        fits: ``fits(a, b)`` says whether the body can go straight from ``a`` to ``b`` [m].
+    """
 
     def __init__(self, body: BodySpec, fits: Callable[[Vec2, Vec2], bool]) -> None:
-        """``fits(a, b)`` says whether the body can go straight from ``a`` to ``b`` [m]."""
         self.body, self.fits = body, fits
         self._seen, self._stepped = False, False
         self._until = -1.0
         self._rest = -1.0
 
     def motion(self, observation: Observation, seconds: float) -> Motion | None:
-        """What courtesy asks for now, or None to carry on.
+        """A motion that makes room, or None to carry on.
 
         Args:
             observation: of this body; its detections are read.
@@ -53,9 +56,9 @@ class Courtesy:
         return self._make_room(observation, person)
 
     def _make_room(self, observation: Observation, person: Vec2 | None) -> Motion:
-        """A step away, as long as the person is near or was not seen at all yet; else wait.
+        """A step away while the person is near or has not been seen yet; else wait.
 
-        In a passage this goes on, step by step, ahead of a person who follows, until there is room to pass.
+        In a passage it steps back ahead of a person who follows, until there is room to pass.
         """
         pose = observation.pose
         aside = self._aside((pose.x, pose.y), person) if person is not None or not self._stepped else None

@@ -1,7 +1,7 @@
-"""Carrying what is too heavy for one, with whoever takes the other end.
+"""Carries a thing that is too heavy for one, together with another robot or the person.
 
-Several hold such a thing by its handles, at the ends of its length; once they are strong enough together, whoever goes
-draws it and the others along, like a trailer. Whoever lets go puts it down.
+They hold it by the handles at its ends. Once they are strong enough together, the one who moves pulls the thing and the
+others along like a trailer. It is put down as soon as one lets go.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from hthor.navigation.path_follower import Follower, face, shift
 from hthor.types import HUMAN, Briefing, Drop, Job, Motion, Observation, Pick, ThingState, Vec2, Vec3, Wait
 
 _THERE_M = 0.45
-"""This close to its place it is put down."""
+"""It is put down this close to its place [m]."""
 _ENOUGH_M = 0.7
-"""And this close when it does not come closer."""
+"""The same when it does not get closer [m]."""
 _PAST_M = (0.9, 0.6, 0.3, 0.0)
-"""How far past the place the leader goes, so that what hangs behind comes to lie there."""
+"""How far past the place the leader goes [m], so that the thing behind it ends up there."""
 _BESIDE_M, _BY_M, _ASIDE_M = 0.12, 1.4, 1.2
 _AIMS = 24
 _STUCK = 4
-"""After so many moves in a row that were stopped, somebody else may lead for a while."""
+"""After so many blocked moves in a row, another one may lead for a while."""
 _REST_S = 6.0
 
 
 class TowingRoutes(Routes, Protocol):
-    """Ways for whoever draws something along."""
+    """Routes that also serve a body that pulls something along."""
 
     def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]: ...
 
 
 class Carrier:
-    """One body's part in carrying one thing; ``waits`` says whether it lets a person take hold first."""
+    """One body's part in carrying one thing; with ``waits`` it lets a person take hold first."""
 
     def __init__(
         self,
@@ -60,7 +60,7 @@ class Carrier:
         self._stuck, self._until, self._number = 0, -1, 0
 
     def is_close(self, observation: Observation, knowledge: Knowledge, job: Job) -> bool:
-        """Whether it holds the thing, or stands by it: then whoever is near is there to help, and nobody gives way."""
+        """Whether the body holds the thing or is near it; then others come to help, and nobody makes way."""
         here, place = (observation.pose.x, observation.pose.y), knowledge.states[job.target].position
         return observation.holding == job.target or math.dist(here, place[:2]) < _BY_M
 
@@ -78,7 +78,7 @@ class Carrier:
         return self._lead(observation, state, place)
 
     def _look(self, observation: Observation, job: Job) -> None:
-        """Which way it lies."""
+        """Note the orientation and length of the thing."""
         for seen in observation.detections:
             if seen.id == job.target:
                 self._yaw, self._half = seen.yaw, seen.size[0] / 2
@@ -86,9 +86,9 @@ class Carrier:
     # --------------------------------------------------------------------------------------------------- taking hold
 
     def _approach(self, observation: Observation, state: ThingState, job: Job) -> Motion:
-        """Go to a handle and take it, from where it is in front and the thing behind it if that can be.
+        """Go to a handle and take it, if possible from the outer side of the thing.
 
-        A person is let choose their end first: standing at one, a robot might be in their way.
+        A person chooses an end first: a robot at that end might block them.
         """
         if self._waits and not state.bearers and self._counts_on_person(state, job):
             return self._await(observation, state)
@@ -104,14 +104,14 @@ class Carrier:
         return self.manipulator.pursue(observation, pick) or Wait(seconds=0.3)
 
     def _counts_on_person(self, state: ThingState, job: Job) -> bool:
-        """Whether it takes the person, as there are not enough robots with hands."""
+        """Whether the person is needed because there are too few robots with arms."""
         robots = [
             seat for seat, body in self.allocation.bodies.items() if seat != HUMAN and can_do(body, state.kind, job)
         ]
         return HUMAN in self.allocation.bodies and len(robots) < job.hands
 
     def _await(self, observation: Observation, state: ThingState) -> Motion:
-        """Come near, then wait where it is in nobody's way, facing the thing."""
+        """Come near, then wait where it blocks nobody, facing the thing."""
         here, place = (observation.pose.x, observation.pose.y), state.position
         goal = ("await", round(place[0], 1), round(place[1], 1))
         outcome = observation.outcome
@@ -129,7 +129,7 @@ class Carrier:
         return step or self._attend(observation, state)
 
     def _handle(self, state: ThingState) -> Vec3:
-        """The free handle, of two the one that the person gets to last; the middle until one sees how it lies."""
+        """The free handle, of two the one that the person reaches last; the middle until its orientation is seen."""
         if self._yaw is None:
             return state.position
         ends = [plane.to_house((side * self._half, 0.0, 0.0), state.position, self._yaw) for side in (1.0, -1.0)]
@@ -148,12 +148,12 @@ class Carrier:
     # -------------------------------------------------------------------------------------------------- on the way
 
     def _led_by(self, state: ThingState) -> str:
-        """Who goes first: of the robots the one whose seat comes first; they know the way."""
+        """Who leads: the robot whose seat comes first, or else the person."""
         robots = [seat for seat in state.bearers if seat != HUMAN]
         return min(robots, key=seat_order, default=HUMAN)
 
     def _lead(self, observation: Observation, state: ThingState, place: Vec3) -> Motion:
-        """Draw it to its place and put it down there."""
+        """Pull the thing to its place and put it down there."""
         here, outcome = (observation.pose.x, observation.pose.y), observation.outcome
         apart = math.dist(state.position[:2], place[:2])
         if apart < _THERE_M:
@@ -178,7 +178,7 @@ class Carrier:
         return self.follower.next(observation.pose) or Wait(seconds=0.3)
 
     def _course(self, here: Vec2, state: ThingState, place: Vec3) -> tuple[Vec2, ...]:
-        """The way to the place and past it; seen from the thing at first, from other sides when that did not do."""
+        """The path to the place and past it, in line with the thing at first, from other sides if that failed."""
         way = self.routes.broad(here, place[:2])
         before = way[-2] if len(way) > 1 and self._number == 0 else state.position[:2]
         angle = math.atan2(place[1] - before[1], place[0] - before[0]) + _swing(self._number)
@@ -189,7 +189,7 @@ class Carrier:
         return way
 
     def _free(self, observation: Observation, state: ThingState, place: Vec3) -> Motion:
-        """Something is in the way of one of us: swing out to a side; after several tries, let the others lead."""
+        """After a blocked move: swing to a side; after several tries, let the others lead."""
         here = (observation.pose.x, observation.pose.y)
         if self._stuck >= _STUCK:
             self._stuck = 0
@@ -203,7 +203,7 @@ class Carrier:
         return shift(observation.pose, spot, 0.3)
 
     def _room(self, knowledge: Knowledge, job: Job, state: ThingState) -> Vec3 | None:
-        """The middle of the room that it belongs in, where no place is told."""
+        """The middle of the room that it belongs in, for a job without a place."""
         rooms = [knowledge.rooms[name] for name in job.destinations if name in knowledge.rooms]
         if not rooms:
             return None

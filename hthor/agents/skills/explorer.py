@@ -1,4 +1,4 @@
-"""Exploring a house with a map of one's own."""
+"""Exploration of an unknown house with a map that grows."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from hthor.navigation.waiting_spots import retreat
 from hthor.types import BodySpec, Motion, Observation, Pose, Rotate, Vec2
 
 CLOSE_M = 1.15
-"""From this far what lies near the edge of a table or a counter is within the detector's range."""
+"""From this far [m] objects near the edge of a table or a counter are within the detector's range."""
 _TURN_M_RAD = 1.5
-"""What a radian of turning costs, in metres."""
+"""Cost of turning [m/rad]."""
 _LEAST_M = 0.5
 _TURN_RAD = 0.8
-"""A body may go sideways: turning less costs less."""
+"""Largest heading error at which the body moves without turning first: moving sideways saves time."""
 _THINK_M = 1.0
-"""A place that is seen to be worth nothing any more on the way there is gone to on so far before it thinks again."""
+"""Distance [m] that it moves before it drops a place that has become uninteresting."""
 _TRIES = 4
 _LOW_M, _HIGH_M, _ASIDE_M = 0.4, 1.1, 1.0
 
 
 class Explorer:
-    """Looks around, then goes to the cheapest of frontiers and places never seen from close by."""
+    """Looks around, then goes to the cheapest of the frontiers and of the places never seen from close by."""
 
     def __init__(self, body: BodySpec) -> None:
         self.body = body
@@ -70,7 +70,7 @@ class Explorer:
         return self.planner.straight(a, b)
 
     def retreat(self, pose: Pose, point: Vec2, apart_m: float) -> None:
-        """Set out for a spot where it is in nobody's way, ``apart_m`` metres from ``point``; `follower` leads there."""
+        """Set out for a spot where it blocks nobody, ``apart_m`` metres from ``point``; `follower` leads there."""
         assert self.grid is not None
         self.drop()
         self.follower.take(retreat(self.grid, self.planner, (pose.x, pose.y), point, apart_m))
@@ -85,7 +85,7 @@ class Explorer:
         return Rotate(yaw=0.9 * self.body.fov[0], pitch=exploring_pitch(self.body) - pose.pitch)
 
     def _has_moved(self, pose: Pose) -> bool:
-        """Whether it has come so far since its last choice that it pays to think again."""
+        """Whether it has moved far enough since its last choice to choose again."""
         x, y = self._chose
         return math.hypot(pose.x - x, pose.y - y) >= _THINK_M
 
@@ -113,11 +113,11 @@ class Explorer:
                 self._place = place
                 self.follower.take(path)
                 return
-        self.grid.forget_near()  # all seen: go round once more
+        self.grid.forget_near()  # everything was seen: start again
         self._tries.clear()
 
     def _bumped(self, pose: Pose, by: str) -> None:
-        """What the scan does not show closes the cell in front; a body in the way makes another place look better."""
+        """After a stop: block the cell in front, which no scan showed, or give up a place that a body stands before."""
         assert self.grid is not None
         goal = self.follower.ahead
         if _is_seat(by):

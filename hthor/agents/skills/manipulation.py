@@ -1,4 +1,4 @@
-"""Fetching objects and putting them where they belong, motion by motion."""
+"""Fetches objects and puts them where they belong, motion by motion."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from hthor.navigation.path_follower import Follower, face
 from hthor.types import BodySpec, Job, Motion, Observation, Open, Pick, Place, Thing, Vec2, Vec3, Wait
 
 AGAIN_S = 10.0
-"""How long something that failed several times is left alone."""
+"""How long an object that failed several times is left alone [s]."""
 _REACHES = ((0.85, 0.12), (0.985, 0.045))
-"""Shares of the arm's length and how finely [m] to look: near at first, at a stretch when that did not do."""
+"""Shares of the arm's length, and the grid [m] of spots to consider: close first, then at full reach."""
 _TRIES = 6
 _PAUSE_S = 0.5
 _TURN_RAD = 0.7
-"""A body may go, and reach, a little sideways: turning less costs less."""
+"""Largest heading error at which the body moves or reaches without turning first."""
 _MOVED_M = 0.1
 _AT_M = 0.2
-"""How close one comes to a spot where one ought to stand."""
+"""Tolerance of a required standing position [m]."""
 
 
 class ManipulationGoal(Struct, frozen=True):
@@ -43,9 +43,9 @@ class ManipulationGoal(Struct, frozen=True):
 
 
 class Manipulator:
-    """Carries one object after the other. What fails several times is left alone for a while.
+    """Carries one object after the other; leaves alone for a while what failed several times.
 
-    ``follower`` holds the way that it is on.
+    ``follower`` has the path that it is on.
     """
 
     def __init__(self, body: BodySpec, routes: Routes, yielding: Yielding, tick_s: float) -> None:
@@ -57,7 +57,7 @@ class Manipulator:
         self._misses: list[Vec2] = []
 
     def can_try(self, name: str, tick: int) -> bool:
-        """Whether an object, or an object and a thing to put it on, was not given up just now."""
+        """Whether an object, or an object with a thing to put it on, may be tried now."""
         return self._left_alone.get(name, 0) <= tick
 
     def leave(self, name: str, until: int) -> None:
@@ -65,7 +65,7 @@ class Manipulator:
         self._left_alone[name] = until
 
     def motion(self, observation: Observation, knowledge: Knowledge, job: Job) -> Motion | None:
-        """The next motion of this job, None when nothing can be done about it now."""
+        """The next motion of this job, None when nothing can be done for it now."""
         if observation.holding == job.target:
             goal = self._delivery(observation, knowledge, job)
         else:
@@ -105,7 +105,7 @@ class Manipulator:
         return ManipulationGoal(_at(job, thing), points, act, thing)
 
     def _bearer(self, observation: Observation, knowledge: Knowledge, job: Job) -> Thing | None:
-        """What to put it on: what one is going to already, or else the nearest that was not given up."""
+        """What to put it on: where the body is going already, or else the nearest that may be tried."""
         able = [
             thing
             for thing in knowledge.bearers(job)
@@ -123,11 +123,11 @@ class Manipulator:
         )
 
     def _in_reach(self, thing: Thing, inset_m: float) -> tuple[Vec3, ...]:
-        """Points of the thing's surfaces at heights that the arm gets to."""
+        """Points on the thing's surfaces at heights within the arm's reach."""
         return _between(thing, inset_m, self.body.reach_low, self.body.reach_high - 0.1)
 
     def _room_for(self, job: Job, thing: Thing, knowledge: Knowledge) -> tuple[Vec3, ...]:
-        """Where on the thing the object fits beside what is known to lie there; anywhere when that is nowhere."""
+        """Where on the thing the object fits next to what is known to lie there; anywhere if it fits nowhere."""
         states = knowledge.states
         wide = _wide(states[job.target].kind)
         points = self._in_reach(thing, wide)
@@ -158,7 +158,7 @@ class Manipulator:
         return turn if turn is not None and abs(turn.yaw) > _TURN_RAD else goal.act
 
     def _recover(self, observation: Observation, goal: ManipulationGoal) -> bool:
-        """After a failure: from another spot, or out of a tight corner first. False when all was tried."""
+        """After a failure: try another spot, or leave a tight corner first. False when everything was tried."""
         outcome, here = observation.outcome, (observation.pose.x, observation.pose.y)
         assert outcome is not None
         if outcome.motion != "move":
@@ -189,7 +189,7 @@ class Manipulator:
         return bool(way)
 
     def _set_out(self, here: Vec2, goal: ManipulationGoal) -> bool:
-        """Take the way to a spot; False when there is none."""
+        """Take the path to a spot; False when there is none."""
         if goal.stand is not None:
             way = viewpoints.path_to_reach(
                 self.routes, here, (goal.stand,), _AT_M, but=self._misses, grid_m=_AT_M / 3.0
@@ -214,13 +214,13 @@ class Manipulator:
 
 
 def whole_tick_move(body: BodySpec, tick_s: float) -> float:
-    """The longest move [m] of an action that takes whole ticks at full speed: none of its time is lost."""
+    """The longest move [m] that takes a whole number of ticks at full speed, so that no time is lost."""
     tick_m = body.speed * tick_s
     return tick_m * math.floor(rules.MOVE_MAX_M / tick_m + 1e-9) if tick_m < rules.MOVE_MAX_M else rules.MOVE_MAX_M
 
 
 def _wide(kind: str) -> float:
-    """How far an object of this kind reaches from its middle along a side [m]."""
+    """Half the longer side of an object of this kind [m]."""
     return max(catalog.kind(kind).size[:2]) / 2
 
 

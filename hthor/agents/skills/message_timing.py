@@ -1,4 +1,4 @@
-"""When to speak, again or not at all, and in which words."""
+"""When to send a message, again or not at all, and its text."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ from collections.abc import Mapping, Sequence
 from hthor.types import Briefing, Detection, Observation, Receipt
 
 AGAIN_S = 10.0
-"""How long to leave the person alone after a message was declined or covered."""
+"""Pause after a message that was declined or replaced by a newer one [s]."""
 ASIDE_M = 2.0
-"""So far from it a robot waits: whoever opens a fridge and reaches into it needs the floor before it."""
+"""How far from furniture a robot waits [m]: a person who opens a fridge needs the floor in front of it."""
 APART_M = 1.3
-"""How far from the target a robot waits: out of the person's way, and close enough to see it."""
+"""How far from the target a robot waits [m]: out of the person's way, and close enough to see it."""
 _HOLLOW = ("bathtub", "fridge", "garbage_can", "sink")
 
 
 class MessageTiming:
-    """Counts what was said about one thing: once, and again some time after it was turned down."""
+    """Decides when to send messages about one thing: once, and again some time after one was declined."""
 
     def __init__(self, briefing: Briefing, most: int) -> None:
-        """``most`` messages are sent at the very most."""
+        """``most`` is the largest number of messages."""
         self.most, self.sent = most, 0
         self._again = round(AGAIN_S / briefing.tick_s)
         self._mark = 0
 
     def due(self, tick: int, receipt: Receipt | None) -> bool:
-        """Whether to speak now."""
+        """Whether a message is due, given the receipt of the last one."""
         if self.sent == 0:
             return True
         if self.sent >= self.most or tick < self._mark + self._again or receipt is None:
@@ -43,12 +43,12 @@ def kind_title(kind: str) -> str:
 
 
 def place_phrase(kind: str) -> str:
-    """Where something is that rests on or in a thing of this kind, such as "on the dining table"."""
+    """Where something is that lies on or in a thing of this kind, such as "on the dining table"."""
     return f"{'in' if kind in _HOLLOW else 'on'} {kind_title(kind)}"
 
 
 def sighting_text(seen: Detection, kinds: Mapping[str, str]) -> str:
-    """What a robot says of an object in its view; ``kinds`` gives the kind of each piece of furniture it knows."""
+    """The text about an object in view; ``kinds`` gives the kind of each piece of furniture the robot knows."""
     where = f" {place_phrase(kinds[seen.support])}" if seen.support in kinds else ""
     return f"I found {kind_title(seen.kind)}{where} in front of me."
 
@@ -59,11 +59,11 @@ def find_detection(observation: Observation, name: str) -> Detection | None:
 
 
 def look_inside_text(kind: str, wanted: Sequence[str]) -> str:
-    """What a robot without a hand for doors says in front of a closed one, such as of a "fridge"; ``wanted`` kinds."""
+    """The request of a robot that cannot open the thing of this ``kind``, to look inside for ``wanted`` kinds."""
     things = " and ".join(dict.fromkeys(kind_title(name) for name in wanted))
     return f"I cannot open {kind_title(kind)} in front of me. Please look inside for {things}."
 
 
 def help_carry_text(kind: str, held: bool) -> str:
-    """What a robot says of a thing of this kind, which is too heavy for it; ``held``: it has one end already."""
+    """The request to help carry a thing of this kind; ``held``: the robot has one end already."""
     return f"Please help me carry {kind_title(kind)}: {'I have one end' if held else 'take one end, I take the other'}."

@@ -1,4 +1,4 @@
-"""Showing the person where things are: goes where they come into view, then tells."""
+"""Shows the person where things are: goes where it can see them, then sends a message."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ if TYPE_CHECKING:
     from hthor.navigation.path_follower import Follower
 
 _LOOKS = 3
-"""Spots to look from before saying that the target must be in there: over the rim of a sink, a low eye sees nothing."""
+"""Places to look from before saying that the target must be in there: a low camera cannot see into a sink."""
 _MOST = {"target": 3, "destination": 1, "help": 4, "done": 1}
 _UNANSWERED_S, _CONFIRMED_S = 8.0, 20.0
-"""How long to stay with an object that was told of, while no answer comes, and while the person may be on the way."""
+"""How long to stay with an object after a message [s]: without an answer, and once the person has accepted."""
 
 
 class Messenger:
-    """Tells of one job at a time: of the object, and once the person has it in hand, of where it belongs.
+    """Tells the person about one job at a time: about the object, and once they hold it, about its destination.
 
-    Speaks only when close enough to detect. Behind a closed door it cannot detect: it says so in front of the door.
+    It speaks only when close enough to detect. Behind a closed door it cannot detect, and says so in front of it.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class Messenger:
         knowledge: Knowledge,
         yielding: Yielding | None,
     ) -> None:
-        """``yielding`` is None where there is one job and no other robot, as in the paper."""
+        """``yielding`` is None for a single job, as in the paper."""
         self.briefing, self.routes, self.follower = briefing, routes, follower
         self.knowledge, self.yielding, self.several = knowledge, yielding, yielding is not None
         self.kinds = {thing.id: thing.kind for thing in knowledge.things.values()}
@@ -56,35 +56,35 @@ class Messenger:
         self.spoken_about = ("", "")
         self.target = ""
         self._looked: dict[str, tuple[Vec3, list[Vec2]]] = {}
-        self._anew()
+        self._forget_goal()
 
-    def _anew(self) -> None:
+    def _forget_goal(self) -> None:
         self.goal: Vec3 | None = None
         self.misses: list[Vec2] = []
         self.aside = ""
 
     def take(self, job: Job) -> None:
-        """Turn to a job; nothing changes when it is the one at hand."""
+        """Turn to a job, unless it is the current one."""
         if job.target != self.target:
             if self.goal is not None:
                 self._looked[self.target] = (self.goal, self.misses)
             self.target = job.target
-            self._anew()
+            self._forget_goal()
             self.follower.take(None)
 
     def timing(self, job: Job, topic: str) -> MessageTiming:
-        """What was said of the job's "target" or "destination"."""
+        """When to speak about the job's "target", "destination", "help" or "done"."""
         return self._timings.setdefault((job.target, topic), MessageTiming(self.briefing, most=_MOST[topic]))
 
     # ------------------------------------------------------------------------------------------------ what to tell of
 
     def hear(self, observation: Observation) -> None:
-        """Keep the answer to what was said last."""
+        """Keep the answer to the last message."""
         if self.several and observation.receipt is not None:
             self._answers[self.spoken_about] = observation.receipt
 
     def waits(self, observation: Observation, job: Job) -> bool:
-        """Whether the person may still act on what they were told of this job, or was not told yet."""
+        """Whether the person may still act on the message about this job, or has not had one."""
         if self.timing(job, "target").sent == 0:
             return True
         answer = self._answers.get((job.target, "target"))
@@ -94,13 +94,13 @@ class Messenger:
         return observation.tick < answer.tick + patience / self.briefing.tick_s
 
     def is_due(self, observation: Observation, job: Job, topic: str = "target") -> bool:
-        """Whether there is reason to speak of the job, again or for the first time."""
+        """Whether a message about the job is due."""
         key = (job.target, topic)
         receipt = observation.receipt if self.spoken_about == key else self._answers.get(key)
         return self.timing(job, topic).due(observation.tick, receipt)
 
     def is_exhausted(self, job: Job) -> bool:
-        """Whether the object was spoken of as often as it may be."""
+        """Whether the largest number of messages about the object was sent."""
         return self.timing(job, "target").sent >= _MOST["target"]
 
     def topic(self, job: Job) -> tuple[str, Vec3]:
@@ -113,7 +113,7 @@ class Messenger:
         return "target", target.position
 
     def _belongs(self, job: Job, target: ThingState) -> tuple[Thing, Vec3] | None:
-        """The thing to bring the object to that is nearest to it by the floor, and the spot to show."""
+        """The destination nearest to the object by walking distance, and the point to show [m]."""
         things = self.knowledge.bearers(job)
         if not things:
             return None
@@ -124,7 +124,7 @@ class Messenger:
     # ------------------------------------------------------------------------------------------------------- speaking
 
     def say(self, observation: Observation, job: Job) -> Send | None:
-        """The message about the job at hand, when it is time and the thing in question is near."""
+        """A message about the current job, when one is due and the thing in question is near."""
         topic, where = self.topic(job)
         if not self.is_due(observation, job, topic):
             return None
@@ -136,7 +136,7 @@ class Messenger:
         return self._note(observation, job, topic, message)
 
     def in_view(self, observation: Observation, jobs: Sequence[Job]) -> list[Job]:
-        """Those jobs whose objects are in view, in nobody's hand, and worth a word now."""
+        """The jobs whose objects are in view and in nobody's hand, and about which a message is due."""
         seen = {thing.id for thing in observation.detections if thing.family == "object" and not thing.held_by}
         return [job for job in jobs if job.target in seen and self.is_due(observation, job)]
 
@@ -148,7 +148,7 @@ class Messenger:
         return self._note(observation, job, "target", message)
 
     def ask_for_help(self, observation: Observation, job: Job) -> Send | None:
-        """A request to take the other end of what is too heavy for one."""
+        """A request to take the other end of a thing that is too heavy for one."""
         state = self.knowledge.states[job.target]
         if not self.is_due(observation, job, "help"):
             return None
@@ -156,7 +156,7 @@ class Messenger:
         return self._note(observation, job, "help", message)
 
     def report(self, observation: Observation, job: Job) -> Send | None:
-        """Word that an object is where it belongs, so that nobody looks for it any longer."""
+        """A report that an object is where it belongs, so that nobody searches for it."""
         state = self.knowledge.states[job.target]
         thing = self.knowledge.things.get(state.support)
         if thing is None or not self.is_due(observation, job, "done"):
@@ -207,7 +207,7 @@ class Messenger:
     # --------------------------------------------------------------------------------------------------------- walking
 
     def motion(self, observation: Observation, job: Job) -> Motion:
-        """Walk to where the place is in range, face it, then stand aside; try another spot when it is not seen."""
+        """Walk to where the place is in range, face it, then stand aside; try another spot if it is not seen."""
         from hthor.navigation.path_follower import face
 
         topic, where = self.topic(job)
@@ -239,7 +239,7 @@ class Messenger:
         self.follower.take(self.routes.to_view(here, where, self.misses))
 
     def _reroute(self, observation: Observation, where: Vec3) -> None:
-        """Stopped on the way: go round whoever stands there, or step back from a corner that was cut too close."""
+        """After a stop on the way: go round the body that stands there, or back off from a tight corner."""
         here, goal = (observation.pose.x, observation.pose.y), self.follower.goal
         if self.yielding is not None and goal is not None:
             way = self.yielding.around(observation, goal)
@@ -251,7 +251,7 @@ class Messenger:
         self.follower.take((via, *self.routes.to_view(via, where, self.misses)))
 
     def stand_aside(self, observation: Observation, where: Vec3, topic: str) -> Motion:
-        """Go where it is in nobody's way, once."""
+        """Go, once, where it blocks nobody."""
         if self.aside == topic:
             return Wait(seconds=0.5)
         self.aside = topic

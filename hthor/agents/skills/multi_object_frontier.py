@@ -1,4 +1,4 @@
-"""The frontier robot where there is more to do than to find: explores, carries what it can, tells the rest."""
+"""The frontier robot with more to do than to find one object: explores, carries what it can, tells the rest."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _LATER_S = 15.0
 
 
 class MultiObjectFrontier:
-    """One robot's mind for one trial."""
+    """One robot's policy for one trial."""
 
     def __init__(self, briefing: Briefing) -> None:
         self.briefing, self.jobs = briefing, briefing.todo
@@ -47,7 +47,7 @@ class MultiObjectFrontier:
         self._spoken = ""
 
     def act(self, observation: Observation) -> Action:
-        """Look, tell, and go on."""
+        """The next motion and message; as `hthor.types.Mind.act`."""
         self.explorer.see(observation)
         self.seen.note(observation)
         self.allocation.see(observation, self.seen)
@@ -90,7 +90,7 @@ class MultiObjectFrontier:
     # ------------------------------------------------------------------------------------------------------- carrying
 
     def _own(self, observation: Observation) -> Job | None:
-        """What it does itself now: what it holds, or the first of what it knows of and knows where to bring."""
+        """The job it does itself now: that of the object it holds, or the first with a known object and destination."""
         holding = next((job for job in self.jobs if job.target == observation.holding), None)
         if holding is not None:
             return holding
@@ -108,12 +108,12 @@ class MultiObjectFrontier:
         return can_do(self.briefing.body, state.kind, job, shut) and (job.hands > 1 or bool(self.seen.bearers(job)))
 
     def _waits(self, job: Job) -> ThingState | None:
-        """The object, when it was seen, in nobody's hand and not where it belongs."""
+        """The object, when it was seen, nobody holds it, and it is not where it belongs."""
         state = self.seen.states.get(job.target)
         return None if state is None or state.held_by or self.seen.is_done(job) else state
 
     def _look_back(self, observation: Observation) -> None:
-        """How the last motion went: what was put down and still is not right can wait, what was not there is gone."""
+        """After the last motion: leave alone what was misplaced, and forget what was not there."""
         job, outcome, placed = self.mine, observation.outcome, self.placing
         if job is None or outcome is None:
             return
@@ -125,20 +125,20 @@ class MultiObjectFrontier:
             self.seen.forget(job.target)
 
     def _open(self, observation: Observation) -> Motion | None:
-        """Look into what is shut, while something is still missing."""
+        """Open furniture while an object is still missing."""
         return next(
             (motion for thing in self.seen.shut() if (motion := self.manipulator.open(observation, thing)) is not None),
             None,
         )
 
     def _missing(self) -> list[Job]:
-        """The jobs whose objects were never seen."""
+        """The jobs whose objects have never been seen."""
         return [job for job in self.jobs if job.target not in self.seen.states]
 
     # -------------------------------------------------------------------------------------------------------- telling
 
     def _say(self, observation: Observation) -> Send | None:
-        """A word about an object in view that it does not carry itself, or about a door that it cannot open."""
+        """A message about an object in view that it does not carry itself, or about a door that it cannot open."""
         if any(state.held_by == HUMAN for state in self.seen.states.values()):
             return None
         if self.mine is not None and self.mine.hands > 1:
@@ -154,14 +154,14 @@ class MultiObjectFrontier:
         return self._ask(observation)
 
     def _ask_for_help(self, observation: Observation, job: Job) -> Send | None:
-        """Somebody has to take the other end, as long as the thing is not off the floor."""
+        """Ask for somebody to take the other end, until the thing is lifted."""
         state, name = self.seen.states[job.target], f"help {job.target}"
         if observation.holding != job.target or state.held_by or not self._is_due(observation, name):
             return None
         return self._note(observation, name, help_carry_text(state.kind, held=True), job.target, state.position)
 
     def _ask(self, observation: Observation) -> Send | None:
-        """Please look inside: in front of a closed door that it cannot open, while something is missing."""
+        """Ask the person to look inside, in front of a closed door that it cannot open, while an object is missing."""
         missing = self._missing()
         if not missing or "open" in self.briefing.body.capabilities:
             return None

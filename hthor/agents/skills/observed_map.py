@@ -1,4 +1,4 @@
-"""What a robot has seen of a house on its way, kept as knowledge and as a map."""
+"""What a robot has seen of a house: objects and furniture, and routes on its own map."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ObservedKnowledge(Knowledge):
         self.states = self._known
 
     def note(self, observation: Observation) -> None:
-        """Take over what is in view."""
+        """Update from what is in view."""
         for seen in observation.detections:
             if seen.family == "object":
                 self._known[seen.id] = ThingState(
@@ -38,33 +38,33 @@ class ObservedKnowledge(Knowledge):
                     )
 
     def put(self, object: str, place: Place) -> None:
-        """One's own hand has put an object down there, in view or not."""
+        """Note that the robot itself has put an object down there, in view or not."""
         state = self._known.get(object)
         if state is not None:
             position = place.position or state.position
             self._known[object] = ThingState(id=object, kind=state.kind, position=position, support=place.on)
 
     def forget(self, object: str) -> None:
-        """It is not where it was."""
+        """Forget an object that is not where it was."""
         self._known.pop(object, None)
 
     def shut(self) -> list[Thing]:
-        """Furniture whose inside was not seen yet, because its door is closed."""
+        """Furniture whose inside is hidden by a closed door."""
         return [thing for thing in self.things.values() if has_door(thing) and self.is_shut(thing.id)]
 
 
 class ObservedRoutes:
-    """The ways of a robot through what it knows of a house, for `hthor.agents.skills.viewpoints`."""
+    """Routes of a robot through the part of a house that it has seen."""
 
     def __init__(self, explorer: Explorer) -> None:
         self.explorer = explorer
 
     def stands(self, spot: Vec2) -> bool:
-        """Whether the body may be here, as far as the map tells."""
+        """Whether the body may stand here, according to the map."""
         return self.explorer.planner.fits(*spot)
 
     def standing(self, spots: Sequence[Vec2]) -> list[Vec2]:
-        """Those of the spots where the body may be, as far as the map tells."""
+        """Those of the spots where the body may stand, according to the map."""
         return [spot for spot in spots if self.explorer.planner.fits(*spot)]
 
     def fits(self, a: Vec2, b: Vec2) -> bool:
@@ -72,28 +72,28 @@ class ObservedRoutes:
         return self.explorer.fits(a, b)
 
     def lengths(self, here: Vec2, spots: Sequence[Vec2]) -> Sequence[float]:
-        """Walking distances [m]; inf where no way is known."""
+        """Walking distances [m]; inf where no path is known."""
         return self.explorer.planner.distances(here, spots)
 
     def way(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
-        """The shortest way known, () for none."""
+        """The shortest known path, () for none."""
         return self.explorer.planner.path(here, spot) or ()
 
     def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
-        """The shortest way known: on a map of one's own no other is worth telling apart."""
+        """The shortest known path: a robot's own map is too coarse to prefer broad ones."""
         return self.way(here, spot)
 
     def retreat(self, here: Vec2, point: Vec2, apart_m: float) -> tuple[Vec2, ...]:
-        """The way to a spot where the body is in nobody's way, ``apart_m`` metres from ``point``; () to stay."""
+        """The path to a spot where the body blocks nobody, ``apart_m`` metres from ``point``; () to stay."""
         explorer = self.explorer
         return () if explorer.grid is None else retreat(explorer.grid, explorer.planner, here, point, apart_m) or ()
 
     def loose(self, here: Vec2) -> Vec2:
-        """Where to go first when something stops the body here: ways on a map begin with that anyway."""
+        """Where to go first when the body is stopped here: paths on a map begin with that anyway."""
         return here
 
     def sees(self, spot: Vec2, point: Vec3) -> bool:  # noqa: ARG002
-        """It has to try."""
+        """Always True: without a model of the house it has to try."""
         return True
 
     def open_to(self, spot: Vec2, edge: Vec2) -> bool:

@@ -1,4 +1,4 @@
-"""Shortest ways through a known house to where a place comes into view."""
+"""Shortest paths of a body through a known house."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hthor.agents.skills.viewpoints import keeps_clear
 from hthor.geometry import plane
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import house_geodesics
@@ -23,22 +24,14 @@ _BESIDE_M = 0.2
 _BROAD_M = 0.38
 
 
-def _passes(a: Vec2, b: Vec2, point: Vec2, radius: float) -> bool:
-    """Whether the way from ``a`` straight to ``b`` keeps ``radius`` [m] from a point, or at least leads away."""
-    ex, ey = b[0] - a[0], b[1] - a[1]
-    along = ((point[0] - a[0]) * ex + (point[1] - a[1]) * ey) / max(ex * ex + ey * ey, 1e-12)
-    share = max(0.0, min(1.0, along))
-    return along <= 0.0 or math.dist((a[0] + share * ex, a[1] + share * ey), point) >= radius
-
-
 @functools.lru_cache(maxsize=8)
 def _sight(house: HouseSpec) -> LinesOfSight:
-    """Lines of sight through a house, worked out once a process."""
+    """Lines of sight through a house, computed once per process."""
     return with_all_open(house)
 
 
 class HouseRoutes:
-    """Ways of one body through one house."""
+    """Routes of one body through a house that it has a map of."""
 
     def __init__(self, house: HouseSpec, body: BodySpec) -> None:
         self.house, self.body = house, body
@@ -62,16 +55,16 @@ class HouseRoutes:
         return list(itertools.compress(spots, are_free_points(self.space.free, places).tolist()))
 
     def lengths(self, here: Vec2, spots: Sequence[Vec2]) -> list[float]:
-        """Lengths [m] of the shortest ways to free spots; inf where there is none."""
+        """Lengths [m] of the shortest paths to free spots; inf where there is none."""
         lengths: list[float] = self.geodesics.distances(self.space.nearest_free(*here), spots).tolist()
         return lengths
 
     def way(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
-        """The shortest way from where the body stands to a free spot; () when there is none."""
+        """The shortest path from the body to a free spot; () when there is none."""
         return self.geodesics.path(self.space.nearest_free(*here), spot)
 
     def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
-        """A short way with room for something broad to be drawn along, or else the shortest way; () for none."""
+        """A short path with room to pull something broad along, or else the shortest path; () for none."""
         space = FreeSpace.of(self.house, max(self.body.radius, _BROAD_M), self.body.height)
         a, b = space.nearest_free(*here), space.nearest_free(*spot)
         if max(math.dist(a, here), math.dist(b, spot)) < _BROAD_M:
@@ -81,7 +74,7 @@ class HouseRoutes:
         return self.way(here, self.space.nearest_free(*spot))
 
     def loose(self, here: Vec2) -> Vec2:
-        """Where to go first when something stops the body here."""
+        """Where to go first when the body is stopped here."""
         return self.clear(here)
 
     def sees(self, spot: Vec2, point: Vec3) -> bool:
@@ -94,7 +87,7 @@ class HouseRoutes:
         return self.same_room(spot, (*edge, 0.0))
 
     def apart(self, here: Vec2, place: Vec3) -> float:
-        """The same as `near`, quick for few places and bodies that come from ever different sides."""
+        """Like `near`; faster for few places and many starting points."""
         return self.geodesics.distance(self._beside(place[0], place[1]), self.space.nearest_free(*here))
 
     def near(self, a: Vec2, place: Vec3) -> float:
@@ -122,28 +115,28 @@ class HouseRoutes:
         return best
 
     def around(self, here: Vec2, place: Vec3, people: Sequence[Vec3]) -> Vec2:
-        """A spot beside the nearest person from which the way to ``place`` is shortest; ``here`` when none is free."""
+        """A spot next to the nearest person with the shortest path to ``place``; ``here`` when none is free."""
         person = min(people, key=lambda other: math.dist(other[:2], here))
         radius = 2.0 * self.body.radius + _BESIDE_M
         spots = []
         for k in range(16):
             angle = 2.0 * math.pi * k / 16
             spot = (person[0] + radius * math.cos(angle), person[1] + radius * math.sin(angle))
-            if self.space.segment_free(here, spot) and _passes(here, spot, (person[0], person[1]), radius - 0.1):
+            if self.space.segment_free(here, spot) and keeps_clear(here, spot, (person[0], person[1]), radius - 0.1):
                 spots.append(spot)
         goal = self.space.nearest_free(place[0], place[1])
         return min(spots, key=lambda spot: math.dist(here, spot) + self.geodesics.distance(goal, spot), default=here)
 
     def retreat(self, here: Vec2, point: Vec2, apart_m: float) -> tuple[Vec2, ...]:
-        """The way to a spot where the body is in nobody's way, ``apart_m`` metres from ``point``; () to stay."""
+        """The path to a spot where the body blocks nobody, ``apart_m`` metres from ``point``; () to stay."""
         spot = park(self.space.free, self.space.origin, self.space.cell, here, point, apart_m)
         return () if spot is None else self.geodesics.path(here, spot)
 
     def to_view(self, here: Vec2, place: Vec3, but: Sequence[Vec2] = ()) -> tuple[Vec2, ...]:
-        """The shortest way to a spot from which ``place`` is within range in the same room, () when there is none.
+        """The shortest path to a spot from which ``place`` is within range in the same room; () when there is none.
 
         Args:
-            but: spots that turned out to be no good; nothing within 0.4 m of them is proposed.
+            but: spots that failed; nothing within 0.4 m of them is proposed.
         """
         spots = self._spots(place, but)
         if not len(spots):
@@ -155,7 +148,7 @@ class HouseRoutes:
         return self.geodesics.path(here, (float(spots[best][0]), float(spots[best][1])))
 
     def _spots(self, place: Vec3, but: Sequence[Vec2]) -> np.ndarray:
-        """(N, 2) middles of free cells from which the eye is within range; the nearest ones when none is."""
+        """(N, 2) centres [m] of free cells within the camera's range; the nearest ones when none is."""
         cells = self.space.centres(self.space.free)
         room = self._room((place[0], place[1]))
         if room is not None:

@@ -1,4 +1,4 @@
-"""What there is to do and what of it is done, as far as one knows."""
+"""What a robot knows about objects and furniture, and which jobs are done."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from hthor.types import Job, Room, Thing, ThingState, Vec3
 PAPER_KINDS = ("", "mobile_manipulation", "object_goal_navigation")
 """The two kinds of the paper, in which robots say and do what the paper's robots did; "" is an unnamed kind."""
 CLOSE_M, TOGETHER_M = 0.25, 0.7
-"""An object this close to where it belongs is left alone, and one that takes several to carry."""
+"""Distances to its place [m] at which an object counts as done, and one that takes several to carry."""
 
 _STEP_M = 0.15
 
 
 class Knowledge:
-    """Furniture and objects that a mind knows of.
+    """Furniture and objects that an agent knows.
 
-    ``things`` are pieces of furniture and ``states`` objects and what opens, both by id. ``rooms`` is empty for a mind
-    without a map.
+    Attributes:
+        things: furniture by id. states: objects, and furniture that opens, by id. rooms: empty without a map.
     """
 
     def __init__(self, things: Iterable[Thing] = (), rooms: Iterable[Room] = ()) -> None:
@@ -30,7 +30,7 @@ class Knowledge:
         self.states: Mapping[str, ThingState] = {}
 
     def is_done(self, job: Job) -> bool:
-        """Whether the object lies where it belongs; a search is never done."""
+        """Whether the object is where it belongs; a search is never done."""
         state = self.states.get(job.target)
         if state is None or state.held_by or state.bearers or job.relation == "find":
             return False
@@ -60,12 +60,12 @@ class Knowledge:
 
 
 def has_door(thing: Thing) -> bool:
-    """Whether it must be opened before one sees what lies in it."""
+    """Whether it must be opened before its inside can be seen."""
     return catalog.kind(thing.kind).hides
 
 
 def resting_points(thing: Thing, inset_m: float) -> tuple[Vec3, ...]:
-    """Points [m] all over its surfaces where an object that reaches ``inset_m`` from its middle could lie."""
+    """Points [m] on its surfaces where an object of half width ``inset_m`` could lie."""
     points = []
     for surface in catalog.kind(thing.kind).rests(thing.size):
         (x, y, z), (w, d) = surface.centre, surface.half
@@ -75,7 +75,7 @@ def resting_points(thing: Thing, inset_m: float) -> tuple[Vec3, ...]:
 
 
 def _steps(half: float) -> list[float]:
-    """Evenly from one end to the other of a line that is twice ``half`` [m] long."""
+    """Evenly spaced coordinates on a line that is twice ``half`` [m] long."""
     if half <= 0.0:
         return [0.0]
     count = math.ceil(2.0 * half / _STEP_M)

@@ -1,4 +1,4 @@
-"""Who is where, and who had best do which job, worked out alike by everyone."""
+"""Task allocation that every robot computes identically from the same observations."""
 
 from __future__ import annotations
 
@@ -10,21 +10,22 @@ from hthor.agents.skills.subgoals import Knowledge
 from hthor.types import HUMAN, BodySpec, Briefing, Job, Observation, Vec2, Vec3
 
 UNKNOWING_M = 4.0
-"""A person has to find an object first: as if it lay this much farther from them."""
+"""Extra distance of a person to any object [m], since they have to find it first."""
 DOOR_M = 2.0
-"""Opening a door first is worth this long a walk."""
+"""Extra distance for opening a door [m]."""
 AT_HAND_M = 2.0
-"""What lies this close to the person is left to them."""
+"""Objects this close to the person are left to them [m]."""
 _REVIEW_S = 2.0
 
 WalkingDistance = Callable[[Vec2, Vec3], float]
-"""Walking distance [m] from a place to the floor beside a point."""
+"""Walking distance [m] from a place to the floor next to a point."""
 
 
 class TaskAllocation:
-    """Everybody in the trial, and where they were seen last; who was never seen is taken to be at one's own start.
+    """Who does which job best, by where everybody is; bodies never seen are assumed at the robot's own start.
 
-    ``now`` holds where those are [m] of whom one knows at this moment, ``places`` also where the others were.
+    Attributes:
+        now: positions [m] known at this moment, by seat. places: also the last known positions of the others.
     """
 
     def __init__(self, briefing: Briefing, apart: WalkingDistance) -> None:
@@ -41,7 +42,7 @@ class TaskAllocation:
         self._ways: dict[tuple[Vec2, Vec2], float] = {}
 
     def see(self, observation: Observation, knowledge: Knowledge) -> None:
-        """Note where everybody is that can be seen, or that holds an object of which one knows where it is."""
+        """Update the positions of bodies that are in view, or that hold an object whose position is known."""
         here, self.tick = (observation.pose.x, observation.pose.y), observation.tick
         self._start = self._start or here
         self.now = {}
@@ -55,10 +56,9 @@ class TaskAllocation:
         self.places.update(self.now)
 
     def share(self, jobs: Sequence[Job], knowledge: Knowledge) -> dict[str, Job]:
-        """The job that each seat does best next: the shortest ways first, nobody gets two, a job as many as it takes.
+        """The next job of each seat: shortest paths first, one job a seat, as many seats a job as it takes.
 
-        Whoever holds something has their hands full and gets none. Worked out anew when jobs or hands have changed, and
-        every other second.
+        Seats that hold something get none. Recomputed when jobs or hands have changed, and every two seconds.
         """
         busy = {state.held_by for state in knowledge.states.values()}
         moment = (tuple(job.target for job in jobs), frozenset(busy), self.tick // self._period)
@@ -80,10 +80,10 @@ class TaskAllocation:
         return given
 
     def reserved(self, jobs: Sequence[Job], knowledge: Knowledge) -> str:
-        """The object that is left to the person where a robot without hands is there to tell them of it; "" for none.
+        """The object that is left to the person where a robot without an arm can tell them about it; "" for none.
 
-        It is the one with the least way to where it belongs; what is behind a door counts as nearer, as the person can
-        open it. All who know where everything is come to the same answer.
+        It is the one with the shortest way to its destination; behind a door it counts as nearer, since the person can
+        open doors. All robots that know where everything is get the same answer.
         """
         tellers = [seat for seat in self.seats if seat != HUMAN and "pick" not in self.bodies[seat].capabilities]
         todo = [job for job in jobs if job.hands == 1 and job.relation != "find"]
@@ -92,14 +92,14 @@ class TaskAllocation:
         return min(todo, key=lambda job: (round(self._carry(job, knowledge), 2), job.target)).target
 
     def _carry(self, job: Job, knowledge: Knowledge) -> float:
-        """The way [m] from an object to where it belongs."""
+        """Distance [m] from an object to its nearest destination."""
         state = knowledge.states[job.target]
         ends = [job.place] if job.place is not None else [thing.centre for thing in knowledge.bearers(job)]
         way = min((math.dist(state.position[:2], end[:2]) for end in ends), default=0.0)
         return way - (DOOR_M if knowledge.is_shut(state.support) else 0.0)
 
     def cost(self, seat: str, job: Job, knowledge: Knowledge) -> float:
-        """The way [m] from a seat to an object, with what comes on top; infinite for who cannot take it."""
+        """Walking distance [m] from a seat to an object plus surcharges; infinite for a body that cannot take it."""
         state = knowledge.states[job.target]
         shut = knowledge.is_shut(state.support)
         if not can_do(self.bodies[seat], state.kind, job, shut):
@@ -108,7 +108,7 @@ class TaskAllocation:
         return way + UNKNOWING_M if seat == HUMAN else way + (DOOR_M if shut else 0.0) - self._later(job, knowledge)
 
     def _later(self, job: Job, knowledge: Knowledge) -> float:
-        """The way [m] to an object from where another job ends: what is far from there is best fetched first."""
+        """Distance [m] to an object from the nearest end of another job; if that is far, fetch it first."""
         object, ways = knowledge.states[job.target].position, [math.inf]
         for other in self.jobs:
             ends = (other.place,) if other.place is not None else tuple(one.centre for one in knowledge.bearers(other))
@@ -124,11 +124,11 @@ class TaskAllocation:
         return self._ways[key]
 
     def place(self, seat: str) -> Vec2:
-        """Where a seat's body is [m], or was last, or may have begun."""
+        """Position [m] of a seat's body: current, last known, or assumed at the start."""
         return self.places.get(seat) or self._start or (0.0, 0.0)
 
     def leaves_to_person(self, job: Job, knowledge: Knowledge) -> bool:
-        """Whether the person is seen beside the object, with a free hand."""
+        """Whether the person is seen next to the object, with a free hand."""
         state = knowledge.states[job.target]
         if any(other.held_by == HUMAN for other in knowledge.states.values()) or HUMAN not in self.now:
             return False
@@ -136,7 +136,7 @@ class TaskAllocation:
 
 
 def can_do(body: BodySpec, kind: str, job: Job, shut: bool = False) -> bool:
-    """Whether a body can take its part of a job with an object of this kind: alone, or with one hand of several."""
+    """Whether a body can do its part of a job with an object of this kind, alone or with others."""
     if "pick" not in body.capabilities or (shut and "open" not in body.capabilities):
         return False
     return job.hands > 1 or catalog.kind(kind).mass <= body.strength

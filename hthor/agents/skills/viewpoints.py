@@ -1,4 +1,4 @@
-"""Where a body can stand to have something in reach, and the shortest way there."""
+"""Where a body can stand to have something in reach, and the shortest path there."""
 
 from __future__ import annotations
 
@@ -19,11 +19,16 @@ Floats = NDArray[np.float64]
 
 _MISS_M, _GRID_M = 0.3, 0.12
 _SLACK_M = 1e-6
-"""Lengths that differ by less may be the same one, added up otherwise."""
+"""Lengths that differ by less may be equal but for rounding [m]."""
 
 
 class Routes(Protocol):
-    """A house as one body knows it."""
+    """Paths of one body through a house, as far as it knows it; positions and lengths in metres.
+
+    `stands` and `standing` say where the body may stand, `fits` whether it can go straight, `lengths` and `way` give
+    shortest paths (inf and () for none), `retreat` one to where it blocks nobody, `loose` where to go first when it is
+    stopped, `open_to` whether no wall is between a spot and an edge, and `sees` whether the camera would see a point.
+    """
 
     def stands(self, spot: Vec2) -> bool: ...
     def standing(self, spots: Sequence[Vec2]) -> list[Vec2]: ...
@@ -46,13 +51,13 @@ def path_to_reach(
     but: Sequence[Vec2] = (),
     grid_m: float = _GRID_M,
 ) -> tuple[Vec2, ...]:
-    """The shortest way to a spot from which one of the points is at most ``reach`` [m] away; () when there is none.
+    """The shortest path to a spot from which one of the points is at most ``reach`` [m] away; () when there is none.
 
     Args:
         holder: the furniture that the points belong to: no wall may be between it and the spot.
         front: the spot must lie in front of the holder, where its door is.
-        but: spots that turned out to be no good; nothing within 0.3 m of them is proposed.
-        grid_m: how far the spots that are looked at lie apart [m].
+        but: spots that failed; nothing within 0.3 m of them is proposed.
+        grid_m: distance between the spots that are considered [m].
     """
     spots = [
         spot
@@ -68,7 +73,7 @@ def closest_thing(
 ) -> Thing:
     """The thing with the shortest `route` to points ``over`` it; of equals, or when there is no way, by id.
 
-    Who is farther off as the crow flies than the best way is long is not looked at any closer.
+    Things farther away in a straight line than the best path is long are skipped.
     """
     looked = []
     for thing in things:
@@ -88,14 +93,14 @@ def closest_thing(
 
 
 def path_length(way: Sequence[Vec2]) -> float:
-    """Length [m] of a way."""
+    """Length [m] of a path."""
     return math.fsum(math.dist(a, b) for a, b in itertools.pairwise(way))
 
 
 def _first(
     routes: Routes, here: Vec2, spots: Sequence[Vec2], points: Sequence[Vec3], holder: Thing | None
 ) -> tuple[Vec2, ...]:
-    """The way to the nearest spot from which the point nearest to it can be got at; () when there is none."""
+    """The path to the nearest spot from which the nearest point is accessible; () when there is none."""
     lengths = routes.lengths(here, spots) if spots else ()
     plan = np.array([point[:2] for point in points])
     order = sorted((round(length, 6), number) for number, length in enumerate(lengths) if math.isfinite(length))
@@ -115,7 +120,7 @@ def nearest_point(points: Sequence[Vec3], spot: Vec2) -> Vec3:
 
 
 def _few(points: Sequence[Vec3], plan: Floats, spot: Vec2) -> Sequence[Vec3]:
-    """Those of the points, on the plan (N, 2), that may be the nearest to a spot: to compare all exactly is slow."""
+    """Those of the points, on the plan (N, 2), that may be nearest to a spot: comparing all exactly is slow."""
     apart = np.hypot(plan[:, 0] - spot[0], plan[:, 1] - spot[1])
     return list(itertools.compress(points, (apart <= apart.min() + 10.0 * _SLACK_M).tolist()))
 
@@ -133,8 +138,16 @@ def outline_distance(thing: Thing, spot: Vec2) -> float:
     return plane.distance_to_rectangle(spot, thing.centre[:2], thing.size[:2], thing.yaw)
 
 
+def keeps_clear(a: Vec2, b: Vec2, point: Vec2, radius: float) -> bool:
+    """Whether a straight path keeps ``radius`` [m] from a point, or leads away from it."""
+    ex, ey = b[0] - a[0], b[1] - a[1]
+    along = ((point[0] - a[0]) * ex + (point[1] - a[1]) * ey) / max(ex * ex + ey * ey, 1e-12)
+    share = max(0.0, min(1.0, along))
+    return along <= 0.0 or math.dist((a[0] + share * ex, a[1] + share * ey), point) >= radius
+
+
 def _least(here: Vec2, spots: Sequence[Vec2]) -> float:
-    """Distance [m] to the nearest of the spots as the crow flies."""
+    """Straight distance [m] to the nearest of the spots."""
     return min((math.dist(here, spot) for spot in spots), default=math.inf)
 
 
@@ -149,6 +162,6 @@ def _lattice(points: tuple[Vec3, ...], reach: float, grid_m: float) -> tuple[Vec
 
 
 def _in_front(thing: Thing, spot: Vec2, reach: float) -> bool:
-    """Whether the door is straight ahead: from the side an open leaf is in the way."""
+    """Whether the door is straight ahead: from the side an open leaf would block the way."""
     u, v, _ = plane.to_local((*spot, 0.0), (*thing.centre[:2], 0.0), thing.yaw)
     return v > thing.size[1] / 2 and abs(u) < min(thing.size[0] / 2, 0.4 * reach)

@@ -1,4 +1,4 @@
-"""Getting past other bodies: who makes room, and which way round."""
+"""Getting past other robots: which one makes room, and which way round."""
 
 from __future__ import annotations
 
@@ -6,27 +6,27 @@ import math
 from collections.abc import Mapping
 
 from hthor.agents.skills.task_allocation import seat_order
-from hthor.agents.skills.viewpoints import Routes
+from hthor.agents.skills.viewpoints import Routes, keeps_clear
 from hthor.geometry.plane import turn
 from hthor.navigation.path_follower import Follower, shift
 from hthor.types import HUMAN, Briefing, Motion, Move, Observation, Vec2, Wait
 
 _YIELD_S, _REST_S = 3.0, 2.0
-"""How long to keep out of another's way, and then not to be asked again."""
+"""How long to make way for another [s], and then not to make way again [s]."""
 _OFTEN_S, _BUMPS, _REFUGE_S, _APART_M = 8.0, 2, 4.0, 1.2
-"""So many meetings with the person within this time send a robot this far away, for so long."""
+"""Two collisions with the person within 8 s send the robot 1.2 m away, for 4 s."""
 _STEP_M = 0.4
 _ELBOW_M = 0.45
 _BESIDE_M = 0.15
 _SIDEWAYS = 1.5
-"""A step to the side is worth so much more than one straight back."""
+"""Weight of a step to the side relative to one straight back."""
 _DIRECTIONS = 16
 
 
 class Yielding:
-    """What to do about a robot that one has run into: one of the two makes room, the other goes round it.
+    """What to do after running into a robot: one of the two makes room, the other goes round it.
 
-    Who has hands goes first, and of equals whose seat comes first. The person is not meant: see
+    A robot with an arm goes first, and of equals the one whose seat comes first. For the person see
     `hthor.navigation.yielding`.
     """
 
@@ -42,7 +42,7 @@ class Yielding:
         self._waited = -1.0
 
     def note(self, observation: Observation, motion: Motion) -> None:
-        """What one sets out to do now; by that one tells where somebody stands whom one runs into unseen."""
+        """Note the motion that begins now; it tells where an unseen body stands that the robot runs into."""
         if isinstance(motion, Move):
             self._along = turn((motion.forward, motion.left), observation.pose.yaw)
 
@@ -62,7 +62,7 @@ class Yielding:
         return Wait(seconds=0.3) if aside is None else shift(observation.pose, aside, _STEP_M)
 
     def refuge(self, observation: Observation) -> Motion | None:
-        """After running into the person again and again: out of the passage, and wait; None to carry on."""
+        """After running into the person repeatedly: leave the passage and wait; None to carry on."""
         seconds = observation.tick * self.tick_s
         if seconds < self._waited and seat_bumped(observation):
             self._follower.take(None)  # no way out: stand still until they are past
@@ -77,9 +77,9 @@ class Yielding:
         return self._follower.next(observation.pose) or Wait(seconds=0.3)
 
     def give_way(self, observation: Observation, places: Mapping[str, Vec2]) -> Motion | None:
-        """A step away from a robot that comes close, for who has nothing to do; None when none does, or no step helps.
+        """A step away from a robot that comes close, for a robot without a job; None if none comes or no step helps.
 
-        ``places`` [m] tells where the other robots are.
+        ``places`` are the positions of the other robots [m].
         """
         here = _here(observation)
         for seat in sorted(places, key=seat_order):
@@ -90,7 +90,7 @@ class Yielding:
         return None
 
     def place(self, observation: Observation, seat: str) -> Vec2 | None:
-        """Where somebody is whom one sees, or has just run into."""
+        """Position [m] of a body that is in view, or that the robot has just run into."""
         for seen in observation.detections:
             if seen.id == seat:
                 return seen.position[:2]
@@ -115,7 +115,7 @@ class Yielding:
         return self._touching(seat) + _ELBOW_M
 
     def around(self, observation: Observation, goal: Vec2) -> tuple[Vec2, ...]:
-        """A way to ``goal`` past the body that is in the way; () when there is none."""
+        """A path to ``goal`` past the body that is in the way; () when there is none."""
         here, by = _here(observation), seat_bumped(observation)
         other = self.place(observation, by)
         if other is None:
@@ -126,7 +126,7 @@ class Yielding:
             for spot in (*_ring(other, apart), *_ring(other, 1.5 * apart))
             if self.routes.stands(spot)
             and self.routes.fits(here, spot)
-            and _misses(here, spot, other, apart - _BESIDE_M)
+            and keeps_clear(here, spot, other, apart - _BESIDE_M)
         ]
         if not spots:
             return ()
@@ -135,13 +135,13 @@ class Yielding:
         return (spots[best], *self.routes.way(spots[best], goal)) if math.isfinite(left[best]) else ()
 
     def is_taken(self, observation: Observation, spot: Vec2) -> bool:
-        """Whether the body that is in the way stands where one wants to."""
+        """Whether the body that is in the way stands at this spot."""
         by = seat_bumped(observation)
         other = self.place(observation, by)
         return other is not None and math.dist(other, spot) < self._touching(by)
 
     def _aside(self, here: Vec2, other: Vec2) -> Vec2 | None:
-        """The spot a step away that leaves the other most room, rather to the side than back; None when none does."""
+        """The spot a step away that leaves the other most room, rather to the side than back; None if none does."""
         apart = max(math.dist(here, other), 1e-6)
         ux, uy = (here[0] - other[0]) / apart, (here[1] - other[1]) / apart
         best, most = None, apart + 0.05
@@ -168,11 +168,3 @@ def _here(observation: Observation) -> Vec2:
 def _ring(centre: Vec2, radius: float) -> list[Vec2]:
     angles = (2.0 * math.pi * k / _DIRECTIONS for k in range(_DIRECTIONS))
     return [(centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)) for angle in angles]
-
-
-def _misses(a: Vec2, b: Vec2, point: Vec2, radius: float) -> bool:
-    """Whether the straight way keeps ``radius`` [m] from a point, or leads away from it."""
-    ex, ey = b[0] - a[0], b[1] - a[1]
-    along = ((point[0] - a[0]) * ex + (point[1] - a[1]) * ey) / max(ex * ex + ey * ey, 1e-12)
-    share = max(0.0, min(1.0, along))
-    return along <= 0.0 or math.dist((a[0] + share * ex, a[1] + share * ey), point) >= radius

@@ -71,7 +71,7 @@ def install_filter(me: int, word: bytes = b"", *, driven: bool = False) -> None:
 
 
 def install_supervisor_filter(*, execute: bool) -> None:
-    """Filter the calls of whoever starts and watches held processes. It starts no program but as one of them.
+    """Filter the calls of the supervisor, which starts and watches confined processes. It starts no program itself.
 
     Raises:
         Refused: when it cannot be.

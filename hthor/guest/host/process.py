@@ -34,7 +34,7 @@ _LAST_S = 10.0
 _INSIDE = "/tmp/hthor-guest"
 """The scratch folder of a guest with a file system of its own (L3)."""
 _HOME = "home"
-"""The scratch folder elsewhere, within a folder that is made for the guest: its supervisor may have to make it anew."""
+"""The scratch folder elsewhere, within a folder that is made for the guest: the supervisor may have to replace it."""
 
 
 class GuestProcess:
