@@ -8,17 +8,14 @@ from typing import TYPE_CHECKING
 
 from matplotlib import patheffects
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from matplotlib.transforms import blended_transform_factory
 
 from hthor import rules
 from hthor.episode import EpisodeLog, Fault
-from hthor.report.drawing import floor_plan, lettering, text_fit, trial_timeline, trial_trace
+from hthor.report.drawing import floor_plan, lettering, text_fit, trial_legend, trial_timeline, trial_trace
 from hthor.types import Event, HouseSpec, TrialSpec, Vec2
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 _CORNERS, _CROWDED_M = ((1, 1), (-1, -1), (-1, 1), (1, -1)), 1.5
@@ -56,7 +53,9 @@ def trial_figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
     _draw_acts(above, log)
     title = headline(spec, log, _WIDE_IN - 2 * _EDGE_IN, HEAD_PT)
     sheet.suptitle(title, x=_EDGE_IN / _WIDE_IN, ha="left", fontsize=HEAD_PT, color=trial_trace.INK)
-    _legend(sheet, legend_entries(spec, log, house))
+    text_fit.legend(
+        sheet, trial_legend.legend_entries(spec, log, house), _COLUMNS, loc="outside lower left", handlelength=1.6
+    )
     trial_timeline.draw_timeline(below, spec, log)
     for ax in rest:
         _write_words(ax, words)
@@ -249,57 +248,6 @@ def headline(spec: TrialSpec, log: EpisodeLog, inches: float, size: float) -> st
             whose = f"{robot.seat}'s agent" if len(spec.robots) > 1 else "the agent"
             lines.append(f"{whose} failed at {fault.tick * rules.TICK_S:.1f} s ({fault.kind}) and did nothing more")
     return "\n".join(text_fit.wrapped(line, inches, size) for line in lines)
-
-
-def _legend(sheet: Figure, entries: list[Artist]) -> None:
-    text_fit.legend(sheet, entries, _COLUMNS, loc="outside lower left", handlelength=1.6)
-
-
-def legend_entries(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool = False) -> list[Artist]:
-    """The legend's entries: everybody and everything that is drawn of this trial.
-
-    Args:
-        moving: whether it is for a film, which has no marks for starts, ends, deeds and messages.
-    """
-    found: list[Artist] = [_line(trial_trace.PERSON, "person")]
-    found += [_line(trial_trace.seat_colour(robot.seat), trial_trace.robot_words(robot)) for robot in spec.robots]
-    if not moving:
-        found += [_mark("o", "white", "start", edge="#555555"), _mark("o", "#555555", "end")]
-    found.append(_mark("*", trial_trace.TARGET, "target at the start", size=9))
-    if any(job.place is not None for job in spec.task.goal.todo) and not moving:
-        found.append(_mark("*", "white", "where it belongs", edge=trial_trace.TARGET, size=8))
-    if trial_trace.destinations(spec, house):
-        found.append(_mark("s", floor_plan.MARKED, "destination", edge=floor_plan.MARKED_EDGE))
-    if moving and trial_trace.messages(log):
-        found.append(_mark("o", "none", "where a message says it is", edge=trial_trace.MESSAGE, size=9))
-    if log.faults:
-        found.append(_mark("X", trial_trace.FAILED, "the agent failed", size=8))
-    if any(floor_plan.is_flat(thing) for thing in house.things):
-        found.append(
-            Patch(
-                facecolor=floor_plan.RUG, edgecolor=floor_plan.RUG_EDGE, hatch=floor_plan.RUG_HATCH, label="rug, flat"
-            )
-        )
-    return found if moving else [*found, *_marks(log)]
-
-
-def _marks(log: EpisodeLog) -> list[Artist]:
-    """What stands for messages and deeds."""
-    shades = set(trial_trace.message_colours(log).values())
-    words = {trial_trace.MESSAGE: "confirmed", trial_trace.IDLE_MESSAGE: "not confirmed"}
-    found: list[Artist] = [_mark("o", shade, f"message, {words[shade]}", size=7) for shade in words if shade in shades]
-    present = {event.kind for event in log.events}
-    return found + [_mark(mark, "#555555", verb) for kind, (mark, verb) in trial_trace.ACTS.items() if kind in present]
-
-
-def _line(shade: str, label: str) -> Line2D:
-    return Line2D([], [], color=shade, lw=2, label=label)
-
-
-def _mark(marker: str, face: str, label: str, *, edge: str = "white", size: float = 6.5) -> Line2D:
-    return Line2D(
-        [], [], ls="", marker=marker, markersize=size, markerfacecolor=face, markeredgecolor=edge, label=label
-    )
 
 
 def _size(house: HouseSpec) -> tuple[float, float]:

@@ -23,7 +23,7 @@ from tqdm import tqdm
 from hthor import rules
 from hthor.episode import EpisodeLog
 from hthor.errors import HthorError
-from hthor.report.drawing import floor_plan, lettering, text_fit, trial_figure, trial_trace
+from hthor.report.drawing import floor_plan, lettering, text_fit, trial_figure, trial_legend, trial_trace
 from hthor.types import HouseSpec, TrialSpec
 
 SPEED = 4
@@ -104,7 +104,7 @@ class _Stage:
         words = trial_figure.headline(spec, log, _TITLE_IN, _TITLE_PT)
         size = _TITLE_PT * min(1.0, _TITLE_LINES / (words.count("\n") + 1))
         sheet.text(0.015, 0.985, words, fontsize=size, color=trial_trace.INK, va="top")
-        handles = trial_figure.legend_entries(spec, log, house, moving=True)
+        handles = trial_legend.legend_entries(spec, log, house, moving=True)
         text_fit.legend(sheet, handles, 6, size=8.0, loc="lower left", columnspacing=1.2)
         canvas.draw()
         self.empty: Any = cv2.cvtColor(np.asarray(canvas.buffer_rgba()), cv2.COLOR_RGBA2BGR)
