@@ -1,1 +1,1 @@
-"""Pages and figures for people: their look, what they are made of, and those that tell of runs; plays nothing."""
+"""What people read about runs: `analysis` computes, `drawing` and `html` draw, `page` and `terminal` present."""

@@ -1,4 +1,4 @@
-"""What every agent has to keep to, checked one by one on a real agent in real trials; prints nothing.
+"""Checks an agent against its contract in short real trials.
 
 Each finding says what was wrong and what to do next. What is broken would cost the agent trials; a warning only says
 what its author would want to know.
@@ -84,7 +84,7 @@ def check_agent(
     if not first.faults:
         with Guest(agent, config=guests) as guest:
             again, other, last = rehearsal.play(guest, [rehearsal.a, rehearsal.b, rehearsal.a])
-        if not other.faults:  # only from the second trial on it has to be imported anew
+        if not other.faults:  # only from the second trial on it has to be imported again
             findings[2], figures["begin_s"] = criteria.check_trial(other, agent)[0], other.begin_s
         findings += [
             criteria.check_same("deterministic", first, again, "the same trial twice", criteria.VARIES),

@@ -12,7 +12,7 @@ from hthor.episode import EpisodeLog
 from hthor.types import Event
 
 _SPOT_M = 0.25
-"""Who stays within this distance is on one spot, whether turning or not."""
+"""A robot that stays within this distance [m] is on one spot, turning or not."""
 
 
 def longest_on_one_spot_s(log: EpisodeLog, seat: str) -> float:

@@ -1,4 +1,4 @@
-"""The points of an agent's contract, each judged by what came of its trials; plays nothing."""
+"""The points of an agent's contract, each judged by the results of its probe trials."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ VARIES = (
     "Draw chance from random.Random(0) or numpy.random.default_rng(0) made in begin, look at no clock, and let threads "
     "decide nothing."
 )
-LEAKS = "Make everything anew in begin: what is kept at the class or the module, or in a file, lasts for other trials."
+LEAKS = "Reset everything in begin: what a class, a module or a file keeps lasts into other trials."
 
 
 def check_same(name: str, one: ProbeResult, other: ProbeResult, what: str, advice: str) -> Finding:

@@ -1,4 +1,4 @@
-"""Short real trials with one submitted agent, closely watched: what it did, saw and took; judges nothing of it."""
+"""Runs short real trials with one submitted agent and records what it did, saw and spent."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ class _Senses(Timed):
 
 
 class _Noted(RecordedAgent):
-    """A guest with a stopwatch beside it."""
+    """A guest whose time and memory are measured."""
 
     def __init__(self, guest: Guest) -> None:
         super().__init__(guest, last=None)

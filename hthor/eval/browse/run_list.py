@@ -1,4 +1,4 @@
-"""The runs below a folder, each in one record: how far it is and what came of it; plays and writes nothing."""
+"""The runs below a folder, each with its progress and its success rate."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class RunList(Struct, frozen=True, kw_only=True):
 
 
 def list_runs(folder: Path) -> RunList:
-    """Every run in and below a folder. One that cannot be read is there too, and says why."""
+    """Every run in and below a folder; a run that cannot be read is listed with the reason."""
     found = [_seen(run, folder) for run in _folders(folder, _DEPTH)]
     found.sort(key=lambda one: one.folder)
     return RunList(runs=tuple(sorted(found, key=lambda one: one.when, reverse=True)))

@@ -1,4 +1,4 @@
-"""One run for somebody who looks at it: its result, its trials one by one, and what to do next; plays nothing."""
+"""One run: its result, its trials one by one, and commands that continue from it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SCHEMA = "hthor.run-view/1"
 
 
 class TrialFilter(Struct, frozen=True, kw_only=True):
-    """Which trials are meant; an empty or None field takes all."""
+    """Which trials to list; an empty or None field takes all."""
 
     task: str = ""
     kind: str = ""
@@ -31,7 +31,7 @@ class TrialFilter(Struct, frozen=True, kw_only=True):
     faulty: bool | None = None
 
     def fits(self, record: TrialRecord) -> bool:
-        """Whether a trial is meant."""
+        """Whether the filter takes a trial."""
         task = record.spec.task
         return (
             (not self.task or self.task in (task.id, task.goal.target))
@@ -73,7 +73,7 @@ class RunView(Struct, frozen=True, kw_only=True):
 
 
 def view_run(folder: Path, wanted: TrialFilter) -> tuple[RunView, RunResult | None]:
-    """A run, and its result so far, which is no result yet where trials are missing.
+    """A run, and its result so far, which is preliminary while trials are missing.
 
     Raises:
         RunError: when the folder holds no run, or the run cannot be read.
@@ -116,7 +116,7 @@ def _line(number: int, record: TrialRecord) -> TrialLine:
 
 
 def _next(folder: Path, plan: RunConfig, records: Sequence[TrialRecord], *, whole: bool) -> Iterator[str]:
-    """Commands that go on from here."""
+    """Commands that continue from here."""
     run = shlex.quote(str(folder))
     if not whole:
         yield cli_command.resume_command(folder, plan)

@@ -1,4 +1,4 @@
-"""Two or more runs against each other, trial by trial: who is better, by how much, where; plays nothing."""
+"""Two or more runs compared trial by trial: which is better, by how much, and in which kinds of trials."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class WinCounts(Struct, frozen=True, kw_only=True):
 
 
 class ComparedRun(Struct, frozen=True, kw_only=True):
-    """One of the runs: its name, its folder's name, how many of its trials it has, and the hash of it all."""
+    """One of the runs: its name, its folder's name, its trials so far and planned, and its configuration's hash."""
 
     name: str
     folder: str
@@ -50,7 +50,7 @@ class ComparedRun(Struct, frozen=True, kw_only=True):
 
 
 class Comparison(Struct, frozen=True, kw_only=True):
-    """The second run against the first.
+    """The second run compared with the first.
 
     Attributes:
         n: trials that both have; ``dropped`` of the first and of the second have no partner.
@@ -105,7 +105,7 @@ class Comparisons(Struct, frozen=True, kw_only=True):
 
 
 class LoadedRun(Struct, frozen=True, kw_only=True):
-    """A run as it lies in its folder. ``name`` sets it apart from the others."""
+    """A run read from its folder, with a name that no other run here has."""
 
     name: str
     folder: Path
@@ -155,7 +155,7 @@ def compare_pairs(read_: Sequence[LoadedRun]) -> tuple[Comparison, ...]:
 
 
 def load_runs(folders: Sequence[Path]) -> tuple[LoadedRun, ...]:
-    """The runs in these folders, scored anew from their events, with a name each."""
+    """The runs in these folders, with metrics measured again from their events, and a distinct name each."""
     held = [(folder, *aggregate.load_measured(folder)) for folder in folders]
     names = [plan.label for _, plan, _ in held]
     distinct = _names(names, folders)

@@ -1,4 +1,4 @@
-"""The document of one `hthor eval` command, of the same shape however many agents and peoples it had."""
+"""The JSON document of one `hthor eval` command, the same for one run and for many."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class EvaluatedRun(Struct, frozen=True, kw_only=True):
 
 
 class Evaluation(Struct, frozen=True, kw_only=True):
-    """All runs of a command, peoples in turn and in these the agents in the order in which they were named.
+    """All runs of a command, by population and then by agent in the order of the command line.
 
-    ``peoples`` compares them where there were several peoples, else it is null.
+    ``peoples`` compares the human populations if there were several, else it is null.
     """
 
     schema: str = SCHEMA

@@ -1,4 +1,4 @@
-"""Agents with several peoples: every score, and with whom each agent fares worst."""
+"""Agents evaluated with several human populations: every score, and the worst population for each agent."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SCHEMA = "hthor.peoples/2"
 
 
 class Cell(Struct, frozen=True, kw_only=True):
-    """One agent with one people: success, time-weighted success and adoption, as fractions."""
+    """One agent with one population: success, time-weighted success and adoption, as fractions."""
 
     sr: Estimate
     twsr: Estimate
@@ -26,9 +26,9 @@ class Cell(Struct, frozen=True, kw_only=True):
 
 
 class WorstPopulation(Struct, frozen=True, kw_only=True):
-    """With whom an agent succeeds least, and by how much less [fraction] than with the ``base``, the first people.
+    """The populations with which an agent succeeds least, several if they are equal.
 
-    ``peoples`` are several where they are equally bad.
+    ``behind`` is how much less [fraction] it succeeds than with the first population, ``base``.
     """
 
     peoples: tuple[str, ...]
@@ -38,14 +38,13 @@ class WorstPopulation(Struct, frozen=True, kw_only=True):
 
 
 class PopulationMatrix(Struct, frozen=True, kw_only=True):
-    """What several peoples in one evaluation say together.
+    """The results of one evaluation with several human populations.
 
     Attributes:
-        trials: with each people.
-        cells: by the people's name, and in there by the agent's.
-        worst: by the agent's name; the extremes of the bracket do not count, as nobody is like them.
-        conclusions: what is said of any two agents, and what becomes of it at the ends of the bracket; empty where the
-            bracket is not whole.
+        trials: with each population. peoples: the populations.
+        cells: by the population's name, then by the agent's.
+        worst: by the agent's name; the extreme models do not count.
+        conclusions: about every two agents, and whether the extreme models agree; empty unless both were run.
     """
 
     schema: str = SCHEMA
@@ -60,16 +59,16 @@ class PopulationMatrix(Struct, frozen=True, kw_only=True):
 
 
 def make_matrix(results: Sequence[RunResult]) -> PopulationMatrix:
-    """What the runs of one evaluation say together: every people with every agent, peoples in turn."""
-    whom = {result.humans.name: result.humans for result in results}
-    by_people = {name: [result for result in results if result.humans.name == name] for name in whom}
+    """The matrix of an evaluation's results, which are ordered by population, then by agent."""
+    populations = {result.humans.name: result.humans for result in results}
+    by_people = {name: [result for result in results if result.humans.name == name] for name in populations}
     first = results[0]
     return PopulationMatrix(
         suite=first.suite,
         seed=first.seed,
         trials=first.counts.trials,
         agents=tuple(dict.fromkeys(result.name for result in results)),
-        peoples=tuple(whom.values()),
+        peoples=tuple(populations.values()),
         cells={name: {result.name: _cell(result) for result in held} for name, held in by_people.items()},
         worst=_worst(results),
         conclusions=_conclusions(by_people),
@@ -81,7 +80,7 @@ def _cell(result: RunResult) -> Cell:
 
 
 def _worst(results: Sequence[RunResult]) -> dict[str, WorstPopulation]:
-    """Of those whom somebody may be like; nobody where there is only one such people."""
+    """For each agent, the populations with the lowest success, without the extremes; empty with one other only."""
     found: dict[str, WorstPopulation] = {}
     for agent in dict.fromkeys(result.name for result in results):
         held = [
@@ -102,7 +101,7 @@ def _worst(results: Sequence[RunResult]) -> dict[str, WorstPopulation]:
 
 
 def _conclusions(by_people: dict[str, list[RunResult]]) -> tuple[Conclusion, ...]:
-    """Where both extremes are there, and somebody between them: what of it holds for all."""
+    """The conclusions, if both extreme models and another one were run."""
     models = {held[0].humans.model for held in by_people.values()}
     whole = models.issuperset(human_populations.EXTREMES) and len(models) > len(human_populations.EXTREMES)
     return robustness.draw_conclusions(by_people) if whole else ()

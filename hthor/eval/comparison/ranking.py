@@ -1,4 +1,4 @@
-"""Agents in order, with what chance leaves of it: ranks, their intervals, and who ties with whom; reads no files.
+"""Ranks of agents, with intervals of the ranks and ties.
 
 All agents have played the same trials. An agent's rank is one more than the number of agents that are significantly
 better, as `hthor compare` finds it: paired, over tasks and people, adjusted by Holm for all pairs at once.
@@ -84,7 +84,7 @@ def adjusted_p_values(versus: Sequence[MeanSpread]) -> np.ndarray:
 def _excluded(
     versus: Sequence[MeanSpread], outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """For each agent, how many are better than it, and how many worse, all of which hold together."""
+    """For each agent, how many others are simultaneously certain to be better, and how many to be worse."""
     count = len(outcomes)
     drawn = bootstrap.bootstrap_means(outcomes, tasks, people, name=STREAM)
     off = drawn - outcomes.mean(axis=1)[:, None]

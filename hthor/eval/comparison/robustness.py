@@ -1,9 +1,8 @@
-"""Whether what an evaluation says of robots holds for people at both ends: greedy and random ones; plays nothing.
+"""Whether conclusions about robots hold for the two extreme human models, greedy and random.
 
-A greedy person confirms every message and searches without plan or doubt, a random one never confirms: whatever real
-people do is taken to lie between (`hthor.humans.models.greedy`, `hthor.humans.models.random`). A conclusion, such as
-"oracle is better than frontier", that has another sign at one of the ends rests on how the people in the middle were
-modelled, and is flagged.
+A greedy human accepts every message and searches without a plan, a random one never accepts: real participants are
+assumed to lie between them (`hthor.humans.models.greedy`, `hthor.humans.models.random`). A conclusion, such as "oracle
+is better than frontier", that changes its sign at one extreme depends on how humans are modelled, and is flagged.
 """
 
 from __future__ import annotations
@@ -21,17 +20,17 @@ from hthor.eval.results.result_file import RunResult
 from hthor.eval.statistics.intervals import Estimate
 
 ENDS = ("greedy", "random")
-"""The human models at the ends."""
+"""The extreme human models."""
 METRICS = ("sr", "twsr")
 """The metrics that conclusions are drawn from."""
 Verdict = Literal["holds", "vanishes", "flips"]
 
 
 class PopulationGap(Struct, frozen=True, kw_only=True):
-    """How much better the one robot did than the other, as a fraction, with these people.
+    """How much better one robot did than the other with a human population, as a fraction.
 
-    ``ci95`` is a cautious 95 % interval: both runs' own intervals put together as if they had nothing in common
-    (Newcombe's, which stays within -1 and 1). They share people and tasks, so the true one is narrower.
+    ``ci95`` is a conservative 95 % interval: Newcombe's, from both runs' own intervals, as if the runs were unrelated.
+    They share participants and tasks, so the true interval is narrower.
     """
 
     people: str
@@ -46,16 +45,16 @@ class PopulationGap(Struct, frozen=True, kw_only=True):
 
     @property
     def beyond_noise(self) -> bool:
-        """Whether chance alone would hardly give such a difference."""
+        """Whether the interval excludes 0."""
         return self.ci95[0] > 0.0 or self.ci95[1] < 0.0
 
 
 class Conclusion(Struct, frozen=True, kw_only=True):
-    """What the population says of two robots in one metric, and what becomes of it at the ends.
+    """What a population says about two robots in one metric, and whether the extremes agree.
 
-    ``verdict``: it "holds" when both ends say the same, "flips" when one of them says the opposite, and "vanishes" when
-    one of them sees no difference at all. ``helps`` says that the other robot is none: the claim is that a robot helps.
-    ``gaps`` are of the population first, then of the ends.
+    ``verdict``: "holds" if both extremes agree, "flips" if one says the opposite, "vanishes" if one shows no difference
+    at all. ``helps`` says that the worse run has no robot, so that the claim is that a robot helps. ``gaps`` has the
+    population first, then the extremes.
     """
 
     better: str
@@ -68,14 +67,14 @@ class Conclusion(Struct, frozen=True, kw_only=True):
 
 
 def draw_conclusions(results: Mapping[str, Sequence[RunResult]]) -> tuple[Conclusion, ...]:
-    """Everything that the population's results say of any two robots, in the robots' order.
+    """The conclusions about every two robots, in the robots' order.
 
     Args:
-        results: by people: some of the model "greedy", some of the model "random" and at least one population; of each
-            the results of the same robots in the same order, over the same tasks and seed.
+        results: by population, with the models "greedy" and "random" and at least one other; for each the results of
+            the same robots in the same order, over the same tasks and seed.
 
     Raises:
-        HthorError: when they are not that.
+        HthorError: when one is missing, or they differ in robots, suite, seed or trials.
     """
     _check(results)
     ends = [name for model in ENDS for name, runs in results.items() if runs[0].humans.model == model]

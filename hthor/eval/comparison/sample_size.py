@@ -1,4 +1,4 @@
-"""How large a study must be, from what the user knows: two rates, or two runs; works nothing out itself."""
+"""How large a study must be, from two success rates or from two runs."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ USUAL = 0.5
 
 
 class StudyPlan(Struct, frozen=True, kw_only=True):
-    """What it takes to see a difference of two success rates: the same people at the same tasks, and others.
+    """What it takes to detect a difference of two success rates, paired (same participants and tasks) and unpaired.
 
-    Of two runs, ``shared`` is how many trials they share, and ``more`` how many more tasks would show the difference,
-    as `hthor compare` says it too; None where two rates were given.
+    For two runs, ``shared`` is how many trials they share, and ``more`` how many more tasks would show the difference,
+    as in `hthor compare`; None if two rates were given.
     """
 
     schema: str = SCHEMA

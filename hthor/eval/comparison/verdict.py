@@ -1,4 +1,4 @@
-"""Which of two robots is better, for any number of comparisons at once: the one rule of every verdict in words.
+"""The rule by which one robot is called better than another, for any number of comparisons at once.
 
 `hthor compare` and `hthor report` judge with it; ranks use the same test and the same adjustment.
 """

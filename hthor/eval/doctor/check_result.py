@@ -1,4 +1,4 @@
-"""What was found of one thing, and all of it together; looks at nothing itself."""
+"""The result of one check, and of all checks."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ SCHEMA = "hthor.doctor/1"
 
 
 class CheckResult(Struct, frozen=True, kw_only=True):
-    """One thing: ``fail`` where evaluations do not work or cannot be trusted, ``warn`` where something is amiss.
+    """One check: ``fail`` if evaluations do not work or cannot be trusted, ``warn`` if something is unusual.
 
     ``fix`` is what to do about it, a command wherever there is one; empty where all is well.
     """
@@ -22,7 +22,7 @@ class CheckResult(Struct, frozen=True, kw_only=True):
 
 
 class DoctorReport(Struct, frozen=True, kw_only=True):
-    """All that was found; ``well`` when nothing failed."""
+    """All checks; ``well`` if none failed."""
 
     schema: str = SCHEMA
     well: bool

@@ -25,7 +25,7 @@ class RenderingProbe(Struct, frozen=True, kw_only=True):
 
 
 def check_rendering(drawn: RenderingProbe | str) -> list[CheckResult]:
-    """Judge what the process drew."""
+    """Judge what the process rendered."""
     if isinstance(drawn, str):
         says = f"the process that draws a frame failed: {drawn}"
         return [CheckResult(name="pictures", status="fail", says=says, fix=f"{_CURE}; or MUJOCO_GL=osmesa")]

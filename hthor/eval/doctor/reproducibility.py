@@ -1,4 +1,4 @@
-"""Whether a trial goes here as it went where the reference was made; run as a script it plays that trial.
+"""Whether a reference trial gives the same bytes here; run as a script, it runs that trial.
 
 What is compared is the trial's course, not the code's hash: a change that moves nothing needs no new reference, and one
 that moves anything does. `hthor doctor --write-reference` writes it.

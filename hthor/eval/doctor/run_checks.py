@@ -1,4 +1,4 @@
-"""Everything that is looked at, in one order; judges nothing itself."""
+"""Runs all checks of the machine in one order."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hthor.eval.doctor.check_result import DoctorReport
 
 
 def run_checks(runs: Path, required: str = "L1") -> DoctorReport:
-    """Look at everything.
+    """Check everything.
 
     Args:
         runs: the folder that runs are to be written to; it need not be there.

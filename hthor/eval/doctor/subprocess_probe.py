@@ -1,4 +1,4 @@
-"""Trying something out in a process of its own, so that what crashes or hangs is found out."""
+"""Tries something in a process of its own, so that a crash or a hang is a result."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def start_probe(module: str) -> Iterator[Probe]:
     """Run a module as a script, in the environment that workers have; it ends with the block."""
     environment = {**os.environ, **worker.ONE_THREAD, "PYTHONHASHSEED": "0"}
     environment.setdefault("NUMBA_CACHE_DIR", str(code_identity.compiled()))
-    paths = [str(code_identity.PACKAGE.parent), os.environ.get("PYTHONPATH", "")]  # whatever folder it is run in
+    paths = [str(code_identity.PACKAGE.parent), os.environ.get("PYTHONPATH", "")]  # also in another working folder
     environment["PYTHONPATH"] = os.pathsep.join(filter(None, paths))
     command = [sys.executable, "-m", module]
     process = subprocess.Popen(

@@ -86,7 +86,7 @@ class Metric(Struct, frozen=True):
 
     @property
     def bounds(self) -> Range:
-        """The least and the greatest value, whatever the time limit."""
+        """The least and the greatest value, time limits aside."""
         return self.limits or self.unit.limits
 
     @property

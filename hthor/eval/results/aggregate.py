@@ -33,10 +33,10 @@ def make_result(
     isolation: Isolation | None = None,
     replays: int = 0,
 ) -> RunResult:
-    """The result of the records of a run, whole or not.
+    """The result of a run's records, complete or not.
 
     Args:
-        replays: how many sessions were played again because an agent's process was killed.
+        lines: the log's lines, for their hash. replays: sessions that began again as an agent's process was killed.
     """
     trials = hashlib.sha256()
     for line in lines:
@@ -130,10 +130,10 @@ def estimate_metric(records: Sequence[TrialRecord], metric: Metric, seat: str = 
 
 
 def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
-    """Score a run again from its log alone: its configuration, the new result, and the stored one if there is any.
+    """Score a run again from its log: its configuration, the new result, and the stored result if there is one.
 
-    Every trial's metrics are worked out anew from its events. The stored effort is kept, as no log has it. A stored
-    result of another version of the format counts as none: the log has all that it takes.
+    Every trial's metrics are measured again from its events. The effort is taken from the stored result, as the log
+    does not have it. A stored result in another version of the format is ignored.
     """
     run = RunFolder(folder)
     plan = run.config
@@ -149,7 +149,7 @@ def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
 
 
 def load_measured(folder: Path) -> tuple[RunConfig, list[TrialRecord]]:
-    """A run's configuration and its records, every trial's metrics worked out anew from its events."""
+    """A run's configuration and its records, with every trial's metrics measured again from its events."""
     run = RunFolder(folder)
     return run.config, _measured(run.records())
 

@@ -1,4 +1,4 @@
-"""The control of a run: the same people at the same tasks without a robot, found by what it is; plays nothing."""
+"""Finds the baseline of a run: the run of the same participants at the same tasks without a robot."""
 
 from __future__ import annotations
 
@@ -18,39 +18,39 @@ from hthor.eval.results import pairing, result_file, uplift
 from hthor.eval.results.uplift import StoredUplift, Uplift
 
 FOLDER = "control"
-"""Where a run keeps a control of its own."""
+"""The folder in which a run keeps its own baseline."""
 
 
 def uplift_or_stored(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> StoredUplift | None:
-    """What the run in a folder adds over its control.
+    """The uplift of the run in a folder over its baseline.
 
-    Where no control is at hand, as in a folder that was copied elsewhere, what the run's result has recorded is kept,
-    with a note. None where that has nothing either, or the run has no robot.
+    If no baseline is found, as in a folder that was copied elsewhere, the uplift in the run's stored result is used,
+    with a note. None if that has none either, or the run has no robot.
     """
     return uplift.to_stored(measure_uplift(folder, plan, records)) or _recorded(folder, plan)
 
 
 def measure_uplift(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> Uplift | None:
-    """What the run adds, worked out from its control's log; None where it has no robot or no whole control is found."""
+    """The uplift from the baseline's log; None if the run has no robot or no complete baseline is found."""
     found = next(_whole(folder, plan, _anywhere(folder)), None)
     return None if found is None else uplift.make_uplift(found[2], records, run=found[1].sha256)
 
 
 def find_baseline(folder: Path, plan: RunConfig) -> tuple[RunConfig, list[TrialRecord]] | None:
-    """The control of a run and its records: in the run's own folder, or the first in order of names that lies beside.
+    """The configuration and records of a run's baseline: in the run's folder, or the first by name next to it.
 
-    It counts only when it is whole; its metrics are worked out again from its events.
+    It must be complete; its metrics are measured again from its events.
     """
     return next(((there, kept) for _, there, kept in _whole(folder, plan, _near(folder))), None)
 
 
 def baseline_folder(folder: Path, plan: RunConfig) -> Path | None:
-    """Where the control of a run lies: in its folder, beside it, or anywhere else where runs usually are."""
+    """The folder of a run's baseline: in its own folder, next to it, or wherever runs usually are."""
     return next((candidate for candidate, _, _ in _whole(folder, plan, _anywhere(folder))), None)
 
 
 def _recorded(folder: Path, plan: RunConfig) -> StoredUplift | None:
-    """The uplift that stands in the run's result already."""
+    """The uplift in the run's stored result."""
     if not plan.seats:
         return None
     known = result_file.stored_uplift(folder, run=plan.sha256)
@@ -60,7 +60,7 @@ def _recorded(folder: Path, plan: RunConfig) -> StoredUplift | None:
 def _whole(
     folder: Path, plan: RunConfig, candidates: Iterable[Path]
 ) -> Iterator[tuple[Path, RunConfig, list[TrialRecord]]]:
-    """Every whole control of a run among these folders: the one that its result names first."""
+    """Every complete baseline of a run among these folders, the one named in its result first."""
     if not plan.seats:
         return
     fitting = [(candidate, there) for candidate in candidates if (there := _fits(candidate, plan)) is not None]
@@ -73,7 +73,7 @@ def _whole(
 
 
 def _fits(candidate: Path, plan: RunConfig) -> RunConfig | None:
-    """The configuration of a run that is a control by what it is: same people, suite, seed, rules and code."""
+    """The configuration of a folder's run if it is a baseline: no robot, same humans, suite, seed, rules and code."""
     try:
         there = RunFolder(candidate).config
     except RunError:  # of another version, or damaged
@@ -83,13 +83,13 @@ def _fits(candidate: Path, plan: RunConfig) -> RunConfig | None:
 
 
 def _near(folder: Path) -> Iterator[Path]:
-    """Folders of runs in this one and beside it."""
+    """Folders of runs in this one and next to it."""
     yield from (path for path in (folder / FOLDER,) if (path / "run.json").is_file())
     yield from _runs_in(folder.resolve().parent, ("*",), but=folder.resolve())
 
 
 def _anywhere(folder: Path) -> Iterator[Path]:
-    """These, then controls of the runs beside, then runs around its folder, and where runs usually are."""
+    """These, then baselines of the runs next to it, runs around its folder, and runs in the usual places."""
     above, seen = folder.resolve().parent, set()
     places = (
         _near(folder),
@@ -104,7 +104,7 @@ def _anywhere(folder: Path) -> Iterator[Path]:
 
 
 def _runs_in(place: Path, patterns: Sequence[str], *, but: Path) -> Iterator[Path]:
-    """Folders below a place that hold runs, in order of their names."""
+    """Folders below a place that hold runs, by name."""
     for pattern in patterns:
         yield from sorted(path.parent for path in place.glob(f"{pattern}/run.json") if path.parent.resolve() != but)
 
@@ -118,6 +118,6 @@ def _records(folder: Path) -> list[TrialRecord]:
 
 
 def _slim(record: TrialRecord) -> TrialRecord:
-    """The record with its metrics worked out anew, and without what only drawing needs."""
+    """The record with its metrics measured again, without what only drawings need."""
     fresh = trial_metrics.measure(record.spec, record.log)
     return msgspec.structs.replace(record, metrics=fresh, paths={}, journal=())

@@ -1,4 +1,4 @@
-"""The difference of two robots in one metric over the same trials, with what chance leaves of it; reads no files."""
+"""The difference of two runs in one metric over the same trials: interval, p-value and detectable difference."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ _DIGITS = 6
 
 
 class Difference(Struct, frozen=True, kw_only=True):
-    """How much more the second robot has of a metric than the first, over ``n`` trials that both played.
+    """The second run's mean of a metric less the first's, over ``n`` trials that both have.
 
     Attributes:
         first, second: the means over these trials. difference: the second less the first.
-        ci95: for new tasks and new people. p: two-sided, of no difference, as the interval has it.
-        mde80: the smallest true difference that so many such trials would have seen in four of five cases.
-        correlation: of the two robots' values of the same trial; None where one of them never varies.
-        gain: how many times fewer trials it takes because both robots met the same occasions: the variance of a trial's
-            difference if they had not, over what it is; None where there is no difference in any trial.
+        ci95: for new tasks and new participants. p: two-sided, of no difference, consistent with the interval.
+        mde80: the smallest true difference that so many trials would detect with a power of 80 %.
+        correlation: of the two runs' values in the same trial; None if one of them never varies.
+        gain: how many times fewer trials pairing needs: the variance of a difference between unpaired trials over that
+            between paired ones; None if no trial differs.
         more_tasks: about how many more tasks, done once each, would show a difference of this size with a power of
-            80 %; 0 when these were enough, None when no number would do, because there is none.
+            80 %; 0 if these are enough, None if there is no difference to show.
     """
 
     n: int
@@ -45,21 +45,21 @@ class Difference(Struct, frozen=True, kw_only=True):
 
     @property
     def separated(self) -> bool:
-        """Whether chance alone would hardly give such a difference."""
+        """Whether the difference is significant at 5 %."""
         return self.p is not None and self.p < 1.0 - intervals.LEVEL
 
 
 class Noise(Struct, frozen=True, kw_only=True):
-    """What two runs tell of how single trials vary: of their differences, and of two runs that share nothing."""
+    """How much single trials of two runs vary: their paired differences, and differences of unpaired trials."""
 
     paired: power.Scatter
     unpaired: power.Scatter
 
 
 class McNemar(Struct, frozen=True, kw_only=True):
-    """Trials in which only the first robot's person succeeded, and only the second's; the exact two-sided p of that.
+    """Trials that only the first run solved, and only the second; the exact two-sided p of McNemar's test.
 
-    It takes trials for independent, which those of one person are not quite.
+    The test assumes independent trials, which those of one participant are not quite.
     """
 
     only_first: int
@@ -122,12 +122,11 @@ def difference_of_values(
 
 
 def difference_spread(gaps: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, share: bool) -> MeanSpread:
-    """The spread of the mean of differences, (..., N), as all comparisons take it.
+    """The spread of the mean of differences, (..., N), as all comparisons use it.
 
     Args:
-        share: whether they are differences of shares. Their mean's variance is then never below that of two trials in
-            which one robot failed wholly and the other did not at all: two robots that never differed in sixty trials
-            are not equal beyond doubt.
+        share: whether they are differences of shares. The variance of their mean is then never below that of two trials
+            with a difference of 1: two robots that never differed in sixty trials are not certainly equal.
     """
     found, count = variance_components.two_way_spread(gaps, tasks, people, differences=True), gaps.shape[-1]
     if not share:
@@ -137,10 +136,10 @@ def difference_spread(gaps: np.ndarray, tasks: np.ndarray, people: np.ndarray, *
 
 
 def null_variance(found: MeanSpread, *, share: bool) -> np.ndarray:
-    """The variance that a mean difference would have if there were none.
+    """The variance of a mean difference under the hypothesis of no difference.
 
-    For shares it counts the squares about zero instead of about the mean, so that a few trials that all speak for one
-    robot do not look surer than they are (a score test; McNemar's, where trials are independent).
+    For shares it is taken about zero instead of about the mean, so that a few trials in favour of one robot do not look
+    more certain than they are (a score test; McNemar's, if trials are independent).
     """
     return found.variance * (1.0 + found.mean**2 / found.single) if share else found.variance
 
@@ -181,7 +180,7 @@ def _inside(
 
 
 def p_value(centre: float, variance: float, freedom: float) -> float:
-    """Two-sided, of a mean of 0, by Student's t."""
+    """Two-sided p of a mean of 0, by Student's t."""
     if variance <= 0.0:
         return 1.0 if centre == 0.0 else 0.0
     from scipy import special  # comes with the core: scikit-image needs it
@@ -215,7 +214,7 @@ def holm_adjusted(p: Sequence[float]) -> list[float]:
 
 
 def trial_noise(pairs: Sequence[Pair], metric: str) -> Noise:
-    """How much single trials of these pairs vary in a metric that all of them have."""
+    """How much single trials of these pairs vary in a metric that all have."""
     values = np.array([[one.metrics[metric] for one in (pair.one, pair.other)] for pair in pairs], dtype=float)
     tasks = variance_components.group_codes([pair.one.spec.task.id for pair in pairs])
     people = variance_components.group_codes([pair.one.spec.participant for pair in pairs])

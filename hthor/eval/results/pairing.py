@@ -1,4 +1,4 @@
-"""Which trials of two runs are the same but for the robots."""
+"""Pairs the trials of two runs that are the same except for the robots."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from hthor.types import TrialSpec
 _SAME = {
     "suite.sha256": "other tasks",
     "kind.sha256": "another file of the kind of task",
-    "humans.sha256": "other people",
-    "seed": "other people at other tasks",
+    "humans.sha256": "other human models",
+    "seed": "other participants and tasks",
     "rules_sha256": "other rules of the benchmark",
     "code_sha256": "another version of hthor",
 }
 
 
 class Pair(Struct, frozen=True, kw_only=True):
-    """What two runs made of the same occasion."""
+    """The records of one trial in two runs with different robots."""
 
     one: TrialRecord
     other: TrialRecord
 
 
 class PairedTrials(Struct, frozen=True, kw_only=True):
-    """Two runs' trials side by side, in the order of people and their trials, and how many have no partner."""
+    """Two runs' trials in pairs, ordered by participant and trial, and how many trials have no partner."""
 
     pairs: tuple[Pair, ...]
     only_one: int
@@ -40,25 +40,25 @@ class PairedTrials(Struct, frozen=True, kw_only=True):
 
 
 def pairing_key(spec: TrialSpec) -> str:
-    """The name of what a trial was but for the robots: this person, on this day, at this task.
+    """The key that a trial shares with the same trial with other robots: the same participant, day and task.
 
-    It is the key of the trial without a robot. Equal occasions meet equal draws of chance. A furniture pack is left
-    out, because only robots see its pictures, and so are real time and an action's deadline, which are theirs alone.
+    It is the key of the trial without a robot; trials with equal keys meet equal random draws. Settings that only
+    robots notice are left out: the furniture pack (only they see its pictures), real time, an action's deadline.
     """
     of_robots = {"realtime": msgspec.UNSET, "step_limit_s": msgspec.UNSET}
     return trial_record.key(msgspec.structs.replace(spec, robots=(), assets_sha256="", **of_robots))
 
 
 def differing_field(one: RunConfig, other: RunConfig) -> str:
-    """The first field in which two runs differ so that their trials cannot be paired; empty when they can."""
+    """The first field whose difference keeps two runs' trials from being paired; empty when they can be paired."""
     return next((field for field in _SAME if _value(one, field) != _value(other, field)), "")
 
 
 def check_comparable(one: tuple[Path, RunConfig], other: tuple[Path, RunConfig]) -> None:
-    """See that two runs can be compared.
+    """Raise an error unless two runs can be compared.
 
     Raises:
-        RunError: when they cannot, naming the field.
+        RunError: names the field in which they differ.
     """
     field = differing_field(one[1], other[1])
     if not field:
@@ -71,7 +71,7 @@ def check_comparable(one: tuple[Path, RunConfig], other: tuple[Path, RunConfig])
 
 
 def pair_trials(one: Sequence[TrialRecord], other: Sequence[TrialRecord]) -> PairedTrials:
-    """The trials that both have."""
+    """The trials that both runs have, in pairs."""
     first, second = ({pairing_key(found.spec): found for found in some} for some in (one, other))
     return PairedTrials(
         pairs=tuple(Pair(one=found, other=second[name]) for name, found in first.items() if name in second),

@@ -1,4 +1,4 @@
-"""A run's `result.json`: what stands in it, and reading and writing it."""
+"""A run's `result.json`: its contents, reading and writing."""
 
 from __future__ import annotations
 
@@ -55,11 +55,10 @@ if not TYPE_CHECKING:
 
 
 class Counts(Struct, frozen=True, kw_only=True):
-    """How much there is: trials, distinct tasks, successes, messages sent by robots, and trials with a fault.
+    """Counts of trials, distinct tasks, successes, robots' messages, and trials with a fault.
 
-    ``faults_by_seat`` counts the trials in which the robot of each seat failed, ``faults_by_kind`` all faults by what
-    they were. ``replays`` counts sessions that were played again because an agent's process was killed, as if from
-    outside: each gave the agent another try.
+    ``faults_by_seat`` counts the trials in which each seat's robot failed, ``faults_by_kind`` all faults by kind.
+    ``replays`` counts sessions that began again because an agent's process was killed: each gave the agent another try.
     """
 
     trials: int
@@ -73,9 +72,9 @@ class Counts(Struct, frozen=True, kw_only=True):
 
 
 class Hashes(Struct, frozen=True, kw_only=True):
-    """Hashes of what decides the records, and of the records themselves, whatever their order in the log.
+    """Hashes of what determines the records, and of the records themselves in order of participant and trial.
 
-    ``code`` covers everything that ships with hthor; the hashes of a user's own files are with the robots and the kind.
+    ``code`` covers hthor's own code; hashes of a user's own files are with the robots and the kind of task.
     """
 
     run: str
@@ -86,9 +85,9 @@ class Hashes(Struct, frozen=True, kw_only=True):
 
 
 class Effort(Struct, frozen=True, kw_only=True):
-    """What it took the command that finished the run: time on the wall, CPU time, and how many trials it played.
+    """What the command that finished the run spent: wall-clock time, CPU time, and trials.
 
-    ``replays`` counts sessions that began again, as a worker or an agent's process was ended from outside.
+    ``replays`` counts sessions that began again because a worker or an agent's process was ended from outside.
     """
 
     wall_s: float
@@ -100,10 +99,10 @@ class Effort(Struct, frozen=True, kw_only=True):
 class RunResult(Struct, frozen=True, kw_only=True):
     """The run's `result.json`.
 
-    ``trust_by_trial`` is the rating after the first, second, ... trial of a person's session, empty without a robot.
-    ``uplift`` is None where no whole run without a robot was ever found for this one. ``mode`` is "realtime" where
-    thinking took time of the trials, which no second run repeats byte for byte, else "lockstep". ``agents`` lists the
-    files of every agent that is not built in, those included that it opened only while it played.
+    ``trust_by_trial`` is the rating after the first, second, ... trial of a session, empty without a robot. ``uplift``
+    is None if no complete run without a robot was ever found. ``mode`` is "realtime" if thinking took time in trials,
+    so that no second run gives the same bytes, else "lockstep". ``agents`` lists the files of every agent that is not
+    built in, including those that it opened only during trials.
     """
 
     schema: str = SCHEMA
@@ -129,7 +128,7 @@ class RunResult(Struct, frozen=True, kw_only=True):
 
     @property
     def label(self) -> str:
-        """What to call the run in tables and sentences."""
+        """The run's name in tables and sentences."""
         return robot_team.display_name(self.name, self.robots)
 
 
@@ -151,14 +150,14 @@ class _Named(Struct, frozen=True):
 
 
 class _Gained(Struct, frozen=True):
-    """The part of a result that `uplift` reads, whatever the version of the rest."""
+    """The part of a result that `stored_uplift` reads, in every version of the format."""
 
     hashes: _Named = _Named()
     uplift: StoredUplift | None = None
 
 
 def stored_uplift(folder: Path, *, run: str) -> StoredUplift | None:
-    """The uplift that a run's result has recorded, whatever its version; None where it has none for this run's hash."""
+    """The uplift in a run's stored result of any version; None if it has none for this run's hash."""
     try:
         held = documents.decode((folder / "result.json").read_bytes(), _Gained)
     except (OSError, documents.Unreadable):

@@ -1,4 +1,4 @@
-"""What the robots of a run add to people who do the same tasks without one; reads no files."""
+"""What the robots of a run add over its baseline: the same participants at the same tasks without a robot."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from hthor.eval.results.paired_difference import Difference
 
 METRICS = ("sr", "twsr", "time_s")
 """The metrics that an uplift is given in."""
-RECORDED = "the control's log was not at hand; these are the numbers that were recorded when it was"
+RECORDED = "the log of the run without a robot was not found; these numbers were recorded when it was there"
 
 
 class Uplift(Struct, frozen=True, kw_only=True):
-    """The run less its control, trial by trial: the same people, on the same days, at the same tasks.
+    """Differences from the baseline, trial by trial: the same participants, days and tasks.
 
-    ``control`` is the hash of the control's configuration, as its result has it in ``hashes.run``.
+    ``control`` is the hash of the baseline's configuration, ``hashes.run`` in its result.
     """
 
     control: str
@@ -29,24 +29,24 @@ class Uplift(Struct, frozen=True, kw_only=True):
 
 
 class StoredUplift(Uplift, frozen=True, kw_only=True):
-    """An uplift as a run's result has it.
+    """An uplift as it stands in a run's result.
 
-    ``note`` is there only where the control's log was not at hand when the run was scored, so that the numbers are the
-    recorded ones.
+    ``note`` is present only if the baseline's log was not found when the run was scored; the numbers are then those of
+    an earlier scoring.
     """
 
     note: str | msgspec.UnsetType = msgspec.UNSET
 
 
 def to_stored(one: Uplift | None) -> StoredUplift | None:
-    """The same as a result has it."""
+    """The uplift as it stands in a result."""
     if one is None or isinstance(one, StoredUplift):
         return one
     return StoredUplift(control=one.control, sr=one.sr, twsr=one.twsr, time_s=one.time_s)
 
 
 def make_uplift(control: Sequence[TrialRecord], records: Sequence[TrialRecord], *, run: str) -> Uplift | None:
-    """The uplift of ``records`` over those of a control whose hash is ``run``; None without a trial in common."""
+    """The uplift of ``records`` over a baseline whose hash is ``run``; None without a trial in common."""
     pairs = pairing.pair_trials(control, records).pairs
     sr, twsr, time_s = (paired_difference.paired_difference(pairs, metric) for metric in METRICS)
     if sr is None or twsr is None or time_s is None:

@@ -1,4 +1,4 @@
-"""The two-way "pigeonhole" bootstrap: tasks and people drawn anew, each on its own.
+"""The two-way "pigeonhole" bootstrap: tasks and participants are resampled independently.
 
 For what has no formula, such as a rank. All rows of values meet the same samples, so that pairing is kept.
 """

@@ -1,4 +1,4 @@
-"""How many trials it takes to see a difference, and how small a difference so many can see; reads no files."""
+"""How many trials it takes to detect a difference of two rates."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def trials_needed(difference: float, scatter: Scatter, *, power: float = interva
 
 
 def rounded_count(number: int) -> str:
-    """A forecast in words: two figures are as many as it has."""
+    """A predicted count with two significant figures."""
     digits = len(str(number)) - 2
     return str(round(number, -digits)) if digits > 0 else str(number)
 

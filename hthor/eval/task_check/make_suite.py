@@ -1,4 +1,4 @@
-"""Drawing and proving the tasks of a suite of one's own, in worker processes; writes nothing."""
+"""Draws the tasks of a user's own suite and checks that they can be solved, in worker processes."""
 
 from __future__ import annotations
 

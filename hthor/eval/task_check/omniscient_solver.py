@@ -33,7 +33,7 @@ PACE_M_S = 0.4
 _SURE = 0.98
 """Share of a range within which they trust that it will do."""
 _SPOTS, _LOOKS, _APART_M = 6, 200, 0.2
-"""How many spots are tried for one deed, how many places are looked at for each, and how far apart they are."""
+"""How many spots are tried for one action, how many places are looked at for each, and how far apart they are."""
 _POINTS, _EDGE_M, _OFF_M = 3, 0.12, 0.03
 """How many points of a surface are tried from one spot, how far from its edge and above it."""
 _TURN_RAD, _EPS = 1e-3, 1e-9

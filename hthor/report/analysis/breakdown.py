@@ -1,4 +1,4 @@
-"""Success within parts of the trials: by difficulty, kind of task, split, scene and kind of person; draws nothing."""
+"""Success within parts of the trials: by difficulty, kind of task, split, scene and kind of person."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _KINDS = "kind of task"
 
 
 def all_splits(runs: Sequence[Run]) -> tuple[Split, ...]:
-    """Every way to part the trials that leaves more than one part, and more than a trial in some of them."""
+    """Every breakdown of the trials with more than one group, and more than a single trial in some group."""
     found = (
         _split("difficulty", runs, lambda one: one.spec.task.difficulty, _LEVELS),
         _split(_KINDS, runs, lambda one: one.spec.task.kind.replace("_", " ")),
@@ -27,12 +27,12 @@ def all_splits(runs: Sequence[Run]) -> tuple[Split, ...]:
 
 
 def _tells(split: Split) -> bool:
-    """Whether any part has more than a single trial."""
+    """Whether any group has more than a single trial."""
     return any(one.n > 1 for group in split.groups for one in group.sr.values())
 
 
 def split_by_population(runs: Sequence[Run]) -> Split | None:
-    """Success with each people, in the order in which they come; None where there is only one."""
+    """Success with each human population, in their order; None if there is only one."""
     names = list(dict.fromkeys(run.plan.humans.name for run in runs))
     groups = tuple(
         Group(name=name, sr={run.label: success_rate(run.records) for run in runs if run.plan.humans.name == name})

@@ -1,4 +1,4 @@
-"""Everything that several runs say together, worked out of their trials; reads and draws nothing."""
+"""Builds a report's document from runs."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _STUDIED = {"object_goal_navigation", "mobile_manipulation"}
 
 
 def build_findings(runs: Sequence[Run], published: Published | None = None) -> Findings:
-    """The document; the people of most of it are those of the first run.
+    """The document; most of it is about the human population of the first run.
 
     Args:
-        runs: that belong together, as `hthor.report.analysis.load_runs` sees to.
-        published: figures of a study to stand beside them, where the tasks are of the kinds that it had.
+        runs: as `hthor.report.analysis.load_runs` reads them.
+        published: figures of a study to compare with, used if the tasks are of its kinds.
     """
     people = runs[0].plan.humans.name
     own = [run for run in runs if run.plan.humans.name == people]

@@ -30,7 +30,7 @@ def compare_labelled(
 
 
 def uplift_by_population(runs: Sequence[Run]) -> dict[str, tuple[Comparison, ...]]:
-    """For each of several peoples what the robots change against no robot."""
+    """For each human population, what the robots change against no robot."""
     found: dict[str, tuple[Comparison, ...]] = {}
     names = list(dict.fromkeys(run.plan.humans.name for run in runs))
     for name in names if len(names) > 1 else ():

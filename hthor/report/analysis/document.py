@@ -1,4 +1,4 @@
-"""What several runs say together, as one document: every number that the report shows; draws and computes nothing.
+"""A report as one document: every number that the page shows.
 
 Fractions are fractions, times are seconds, trust is 1 to 7.
 """
@@ -123,10 +123,10 @@ class Split(Struct, frozen=True, kw_only=True):
 class Findings(Struct, frozen=True, kw_only=True):
     """The whole document.
 
-    ``people`` are those whom most of the report is of; ``by_people`` has all. ``baseline`` is the label of the run
-    without a robot, empty where there is none. ``comparisons`` are of runs with these people, by label, the one
-    without a robot first; ``apart`` are the pairs that cannot be compared. ``people_uplift`` has the comparisons with
-    no robot for each people of ``by_people``.
+    ``people`` is the human population of most of the report; ``by_people`` has all. ``baseline`` is the label of the
+    run without a robot, empty if there is none. ``comparisons`` are of this population's runs, by label, the baseline
+    first; ``apart`` are the pairs that cannot be compared. ``people_uplift`` has the comparisons with the baseline for
+    each population.
     """
 
     schema: str = SCHEMA

@@ -1,4 +1,4 @@
-"""Several runs read from their folders, checked, and seen to belong together; computes nothing of them."""
+"""Reads several runs from their folders and checks that they belong together."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class Run(Struct, frozen=True, kw_only=True, eq=False):
     """One run: its configuration, its trials in order with freshly measured metrics, and what to call it.
 
     ``name`` is what its folder is called, with the folder above where that tells it apart. ``sha256`` is the hash
-    of its log as `hthor.eval.results.aggregate` has it. ``beside`` says that nobody named it: it was found as the
-    control of another.
+    of its log as `hthor.eval.results.aggregate` has it. ``beside`` says that the user did not name it: it was
+    found as the baseline of another.
     """
 
     folder: Path
@@ -65,7 +65,7 @@ def load_runs(folders: Sequence[Path]) -> list[Run]:
 
 
 def with_baselines(found: Sequence[Run]) -> list[Run]:
-    """The same runs; where nobody of some people is without a robot, their control first, if it lies beside."""
+    """The runs, preceded by a baseline for each human population that has none, if one is found next to them."""
     whole: list[Run] = []
     for one in found:
         people = one.plan.humans.name

@@ -31,7 +31,7 @@ class Platform(Struct, frozen=True, kw_only=True):
 class Provenance(Struct, frozen=True, kw_only=True):
     """One run's.
 
-    ``name`` is that of its folder. ``beside`` says that the report found it there by itself, as the control of another.
+    ``name`` is that of its folder. ``beside`` says that the report found it by itself, as the baseline of another run.
     ``isolation`` is None where all agents are built in; ``platforms`` is empty where the run did not note them.
     ``command`` plays the run again, ``alone`` the same people at the same tasks without a robot. ``mode`` is
     lockstep, or realtime where robots' thinking took time of the trials.
@@ -67,7 +67,7 @@ def run_provenance(run: Run) -> Provenance:
     """Where a run came from.
 
     Raises:
-        RunError: when what was noted beside its log cannot be read.
+        RunError: when a file next to its log cannot be read.
     """
     plan = run.plan
     return Provenance(

@@ -1,4 +1,4 @@
-"""Which trials of a run are worth a map: those in which its robots helped most and least; draws nothing."""
+"""Selects the trials of a run that get a map: those in which its robots helped most and least."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What went on in a person's mind in one trial, as a figure; simulates nothing and knows nothing of how it was heard.
+"""What the simulated human believed, saw and chose in one trial, as a figure.
 
 Above, the house at some moments of choice: how likely the person thought each place, how well they had searched it,
 and where they chose to go. Below, the same trial along the clock.

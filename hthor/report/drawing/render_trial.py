@@ -1,4 +1,4 @@
-"""A logged trial as a picture or a film in a file; simulates nothing."""
+"""A logged trial as a picture or a film in a file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A task as a picture: the house from above, what is where, who starts where, and the walk; simulates no trial."""
+"""A task as a figure: the house from above, the objects, the start poses and the shortest walk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One trial as a figure: the house from above, both paths, the messages and what came of them; simulates nothing."""
+"""One trial as a figure: the house from above, the paths, the messages and their outcomes, and a timeline."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def trial_figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
 def draw_path(ax: Axes, log: EpisodeLog, seat: str, *, words: bool = True) -> None:
     """Draw a seat's way: a line that darkens with time, a dot every ten seconds, rings at start and end.
 
-    Where its mind failed there is a cross instead of an end: from then on it only stood there.
+    A robot whose agent failed stands still from then on: a cross marks the place instead of an end.
     """
     way, shade = trial_trace.points(log, seat), trial_trace.seat_colour(seat)
     fault = trial_trace.first_fault(log, seat)
@@ -87,7 +87,7 @@ def draw_path(ax: Axes, log: EpisodeLog, seat: str, *, words: bool = True) -> No
 
 
 def _draw_fault(ax: Axes, place: Vec2, fault: Fault, *, words: bool) -> None:
-    """A cross where a mind failed, with what and when."""
+    """A cross where an agent failed, with the fault and its time."""
     ax.scatter(*place, s=74, marker="X", facecolor=trial_trace.FAILED, edgecolor="white", linewidths=0.9, zorder=13)
     if words:
         told = f"{fault.kind} at {fault.tick * rules.TICK_S:.1f} s"
@@ -232,7 +232,7 @@ def _draw_acts(ax: Axes, log: EpisodeLog) -> None:
 
 
 def headline(spec: TrialSpec, log: EpisodeLog, inches: float, size: float) -> str:
-    """What was asked, by whom it was helped, and how it ended, in lines.
+    """The instruction, the agents, and how the trial ended, in lines.
 
     Args:
         inches: that a line is wide at most. size: of its letters [pt].

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def legend_entries(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving: bool = False) -> list[Artist]:
-    """The legend's entries: everybody and everything that is drawn of this trial.
+    """The legend's entries.
 
     Args:
-        moving: whether it is for a film, which has no marks for starts, ends, deeds and messages.
+        moving: whether it is for a video, which has no marks for starts, ends, actions and messages.
     """
     found: list[Artist] = [_line(trial_trace.PERSON, "person")]
     found += [_line(trial_trace.seat_colour(robot.seat), trial_trace.robot_words(robot)) for robot in spec.robots]
@@ -44,7 +44,7 @@ def legend_entries(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving
 
 
 def _marks(log: EpisodeLog) -> list[Artist]:
-    """What stands for messages and deeds."""
+    """The marks of messages and actions."""
     shades = set(trial_trace.message_colours(log).values())
     words = {trial_trace.MESSAGE: "confirmed", trial_trace.IDLE_MESSAGE: "not confirmed"}
     found: list[Artist] = [_mark("o", shade, f"message, {words[shade]}", size=7) for shade in words if shade in shades]

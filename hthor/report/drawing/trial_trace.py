@@ -1,4 +1,4 @@
-"""Reading one trial's log for drawing: where a seat was, what was said and what came of it; draws nothing."""
+"""Reads a trial's log for drawing: paths, messages and their outcomes, targets and colours."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ ACTS = {
     "opened": ("D", "opens"),
     "closed": ("s", "closes"),
 }
-"""Marker and verb of each deed that is drawn."""
+"""Marker and verb of each action that is drawn."""
 _THERE_M = 0.3
 _PARTS, _ROUND, _PADDED = 2, 3, 1.6
 """Parts of a group of numbers that are written out; from how many letters on it is no disc; letters of its edges."""
 GONE = "#9aa0a6"
-"""Of what a robot whose mind failed leaves behind."""
+"""The colour of a robot whose agent failed."""
 _MARKED = 8
 """Places that will do are marked up to so many; more would mark half the house."""
 
@@ -68,7 +68,7 @@ def destinations(spec: TrialSpec, house: HouseSpec) -> list[str]:
 
 
 def robot_words(robot: RobotSeat) -> str:
-    """A robot's seat, body and mind in words."""
+    """A robot's seat, body and agent in words."""
     return f"{robot.seat}: {robot.robot} ({robot.agent.name})"
 
 
@@ -110,13 +110,13 @@ def messages(log: EpisodeLog) -> list[Event]:
 
 
 def outcome_of(log: EpisodeLog, message: int) -> str:
-    """What became of a message: confirmed, declined, covered, shown or sent."""
+    """A message's last event: confirmed, declined, covered, shown or sent."""
     kinds = {event.kind for event in log.events if event.data.get("message") == message}
     return next((kind for kind in ("confirmed", "declined", "covered", "shown") if kind in kinds), "sent")
 
 
 def message_colour(log: EpisodeLog, event: Event) -> str:
-    """The colour of a message: strong when the person confirmed it, pale when not."""
+    """The colour of a message: strong if the human accepted it, else pale."""
     return message_colours(log)[event.data["message"]]
 
 
@@ -128,7 +128,7 @@ def message_colours(log: EpisodeLog) -> dict[int, str]:
 
 
 def first_fault(log: EpisodeLog, seat: str) -> Fault | None:
-    """The first fault of a seat's mind; from then on the trial went on without it."""
+    """The first fault of a seat's agent, after which the trial went on without it."""
     return next((fault for fault in log.faults if fault.seat == seat), None)
 
 
@@ -138,7 +138,7 @@ _Joined = tuple[list[_Mark], str]
 
 
 class MessageGroup(Struct, frozen=True, kw_only=True):
-    """Messages that are drawn as one, as they would hide one another: their numbers in words, one place, one colour."""
+    """Messages that share a badge because they would hide one another."""
 
     words: str
     place: Vec2

@@ -1,4 +1,4 @@
-"""One trial as a film, seen from above, at several times real speed; simulates nothing.
+"""One trial as a video from above, at several times real speed.
 
 Films are VP8 in WebM, which browsers play and OpenCV's own FFmpeg writes. The same trial gives the same bytes.
 """
@@ -142,7 +142,7 @@ class _Stage:
         return frame
 
     def _draw_seat(self, frame: Any, log: EpisodeLog, index: int, seat: str) -> None:
-        """A seat's way so far and where it looks; a robot whose mind failed stays behind as a cross."""
+        """A seat's path so far and where it looks; a robot whose agent failed is a cross."""
         fault = trial_trace.first_fault(log, seat)
         failed = fault is not None and fault.tick <= index * rules.LOG_EVERY_TICKS
         last = min(index, fault.tick // rules.LOG_EVERY_TICKS) if fault is not None else index

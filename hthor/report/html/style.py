@@ -75,7 +75,7 @@ summary{cursor:pointer;color:var(--oracle);font-size:.9rem}
 
 
 def css(more: str = "") -> str:
-    """The whole sheet, with a page's own rules ``more``. Paper is light in print, whatever the screen is."""
+    """The whole sheet, with a page's own rules ``more``. Paper is always light in print."""
     light = "".join(f"--{name}:{colour};" for colour, name in matplotlib_svg.VARIABLES.items())
     dark = "".join(f"--{name}:{matplotlib_svg.DARK[colour]};" for colour, name in matplotlib_svg.VARIABLES.items())
     return (

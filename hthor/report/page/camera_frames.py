@@ -32,7 +32,7 @@ Views = dict[int, dict[str, Any]]
 
 
 class CameraFrames:
-    """A world that keeps what its seats see at some ticks, and is otherwise the one that it is given."""
+    """A world that also keeps what its seats see at some ticks."""
 
     def __init__(self, world: Any, ticks: Collection[int], profile: str) -> None:
         self._world, self._ticks, self._profile = world, frozenset(ticks), profile
@@ -112,6 +112,6 @@ def _averaged(picture: Any) -> Any:
 
 
 def _course(done: TrialRecord) -> bytes:
-    """Everything that happened, but for the words of a fault, which are the agent's own."""
+    """Everything that happened, without the words of a fault, which are the agent's own."""
     plain = tuple(msgspec.structs.replace(fault, detail="") for fault in done.faults)
     return trial_record.encode(msgspec.structs.replace(done, faults=plain))

@@ -37,7 +37,7 @@ def draw_figures(found: Findings, scenes: Sequence[MapScene]) -> Iterator[NamedF
     """The figures in the page's order; those that would be empty are left out.
 
     Args:
-        scenes: of ``found.shown``, one each in that order; none where houses are not at hand.
+        scenes: of ``found.shown``, one each in that order; none if the houses are not available.
     """
     yield from _of_runs(found)
     yield from _of_parts(found)

@@ -1,4 +1,4 @@
-"""The page's first sentence: what was compared, which robot is better and by how much, or that nobody can tell."""
+"""The page's first sentence: what was compared, which robot is better and by how much, or that it cannot be told."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _of_the_best(found: Findings) -> list[Comparison]:
 
 
 def _better(found: Findings, pairs: Sequence[Comparison]) -> list[str]:
-    """Who is better than whom, the best first."""
+    """Which robots are better than which, the best first."""
     rates = {arm.label: arm.scores["sr"].mean or 0.0 for arm in found.arms}
     said = []
     for name in sorted(rates, key=lambda label: -rates[label]):
@@ -77,7 +77,7 @@ def _better(found: Findings, pairs: Sequence[Comparison]) -> list[str]:
 
 
 def _unsure(pairs: Sequence[Comparison]) -> list[str]:
-    """Who cannot be told from whom."""
+    """Which robots cannot be separated."""
     each: list[str] = []
     for pair in pairs:
         if not pair.better:

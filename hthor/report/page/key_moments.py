@@ -1,4 +1,4 @@
-"""The moments of a trial that are worth a look: a robot speaks, the person answers and acts, the end; draws nothing."""
+"""The moments of a trial that a case study shows: a robot speaks, the human answers and acts, the end."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def key_moments(record: TrialRecord, house: HouseSpec | None = None) -> list[Mom
     """Up to `MANY` moments in order, the last of them the end.
 
     First come the sending of the first message that the person confirmed (else of the first), the answer to it, and the
-    first deed of the person's hands. What is left is filled with looks into the longest waits; where ``house`` is
+    first action of the human's hands. What is left is filled with looks into the longest waits; where ``house`` is
     given, they say in which room the person is.
     """
     found = [Moment(tick=record.ticks, words="done" if record.met else "time is up")]

@@ -1,4 +1,4 @@
-"""A report as one page that needs nothing else: no network, no script; computes and draws nothing."""
+"""A report as one page without network access or scripts."""
 
 from __future__ import annotations
 

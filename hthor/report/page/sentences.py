@@ -1,4 +1,4 @@
-"""What the findings say, as sentences made from the numbers; holds no result, and claims none that they do not show."""
+"""Sentences about a report's numbers."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ _APART = {
     "": "they have no trial in common yet; finish both",
     "suite.sha256": "they have other tasks",
     "kind.sha256": "their kind of task comes from different files",
-    "humans.sha256": "they have other people",
-    "seed": "their seeds differ, so other people did other tasks",
+    "humans.sha256": "they have other human models",
+    "seed": "their seeds differ, so the participants and tasks do",
     "rules_sha256": "they were played under other rules",
     "code_sha256": "they were played by different versions of the code",
 }
@@ -44,10 +44,10 @@ def page_facts(found: Findings) -> str:
 
 
 def without_baseline(found: Findings) -> str:
-    """That nothing can be said about help."""
+    """That whether the robots help is unknown, and the command that would show it."""
     return (
-        "There is no run without a robot among these or beside them, so whether the robots help cannot be said. This "
-        f"makes one: {found.origins[0].alone}"
+        "There is no run without a robot among these or next to them, so it is unknown whether the robots "
+        f"help. This makes one: {found.origins[0].alone}"
     )
 
 
@@ -62,7 +62,7 @@ def comparison_sentence(pair: Comparison) -> str:
 
 
 def published_figures(found: Findings) -> str:
-    """What the article's figures are, and whether these runs can be set against them."""
+    """What the article's figures are, and whether these runs can be compared with them."""
     study = found.published
     if study is None:
         return ""
@@ -106,7 +106,7 @@ def _trend(curve: TrustCurve) -> str:
 
 
 def messages(arms: Sequence[Arm]) -> str:
-    """How much robots said, and how much of it was taken."""
+    """How much robots said, and how much of it was accepted."""
     said = []
     for arm in arms:
         sent, taken, useful = (arm.scores[name] for name in ("sent", "accepted", "first_useful_s"))
@@ -115,7 +115,7 @@ def messages(arms: Sequence[Arm]) -> str:
             continue
         share = 100.0 * (taken.mean or 0.0) / sent.mean
         when = f", the first useful one after {useful.mean:.1f} s" if useful.mean is not None else ""
-        said.append(f"Of {sent.mean:.2f} messages a trial from {arm.label} people confirmed {share:.0f} %{when}.")
+        said.append(f"Of {sent.mean:.2f} messages a trial from {arm.label} participants accepted {share:.0f} %{when}.")
     return " ".join(said)
 
 

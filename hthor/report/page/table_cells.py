@@ -26,7 +26,7 @@ def estimate(one: Estimate, unit: Unit = SHARE, decimals: int = 1) -> Piece:
 
 
 def difference(one: Difference | None, metric: Metric) -> Piece:
-    """How much better, with its sign: less of a metric of which less is better."""
+    """An improvement with its sign: for a metric that is better lower, how much lower."""
     if one is None:
         return "–"
     scale = metric.sign * metric.unit.scale

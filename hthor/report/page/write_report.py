@@ -1,4 +1,4 @@
-"""A report's files from the folders of runs: `report.html`, `report.json`, and the figures as SVG; plays nothing."""
+"""A report's files from the folders of runs: `report.html`, `report.json`, and the figures as SVG."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A comparison of two runs as tables and lines for people; computes nothing."""
+"""A comparison of two runs as terminal tables and lines."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _HEADINGS = ("difference", "95 % interval", "could have seen", "p", "trials")
 
 
 def comparison_table(pair: Comparison) -> Table:
-    """A row a metric."""
+    """A row for each metric."""
     title = f"{pair.second} against {pair.first}: {pair.tasks} tasks, {pair.people} people"
     table = new_table(title, pair.first, pair.second, *_HEADINGS)
     for name, difference in pair.differences.items():

@@ -1,4 +1,4 @@
-"""Results as tables for people; computes nothing but differences of what is already known."""
+"""Results as terminal tables."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Row = tuple[str, Unit, Estimate]
 
 
 def result_table(result: RunResult, *, everything: bool = False) -> Table:
-    """One run: a row a metric.
+    """One run: a row for each metric.
 
     Args:
         everything: with all that is counted, not only the main metrics.
@@ -46,7 +46,7 @@ def result_table(result: RunResult, *, everything: bool = False) -> Table:
 
 
 def result_notes(results: Iterable[RunResult]) -> Iterator[str]:
-    """What a reader of these results' tables has to know beside their numbers, each thing once."""
+    """What a reader of these results' tables has to know besides their numbers, each note once."""
     held = list(results)
     outside = dict.fromkeys(note for result in held for note in result.humans.notes)
     if outside:
@@ -60,7 +60,7 @@ def result_notes(results: Iterable[RunResult]) -> Iterator[str]:
 
 
 def kinds_table(result: RunResult) -> Table:
-    """One run of several kinds of task: a column a kind, the main metrics with their intervals below."""
+    """One run of several kinds of task: a column each, the main metrics with their intervals below."""
     kinds = [kind.replace("_", " ") for kind in result.by_kind]
     table = new_table(f"{result.label}: by kind of task (95 % interval)", *kinds)
     _add_main_rows(table, list(result.by_kind.values()))
@@ -68,7 +68,7 @@ def kinds_table(result: RunResult) -> Table:
 
 
 def comparison_table(results: Sequence[RunResult]) -> Table:
-    """Several runs: a column a run, the mean with its interval below."""
+    """Several runs: a column each, the mean with its interval below."""
     first = results[0]
     title = f"{first.suite.name}, {first.counts.trials} trials, {first.humans.name} people (95 % interval)"
     table = new_table(title, *(result.label for result in results))
@@ -81,7 +81,7 @@ def comparison_table(results: Sequence[RunResult]) -> Table:
 
 
 def population_table(matrix: PopulationMatrix) -> Table:
-    """Agents with several peoples: a row a people, three columns an agent, the worst of each agent marked."""
+    """A row for each human population, three columns for each agent; an agent's worst population is marked."""
     headings = [
         heading
         for agent in map(_called, matrix.agents)
@@ -99,7 +99,7 @@ def population_table(matrix: PopulationMatrix) -> Table:
 
 
 def worst_population_lines(matrix: PopulationMatrix) -> Iterator[str]:
-    """With whom each agent fares worst, a line an agent."""
+    """The worst population of each agent, a line each."""
     for name, worst in matrix.worst.items():
         agent = _called(name)
         rate, behind = f"{worst.sr * 100.0:.1f} %", f"{worst.behind * 100.0:.1f} points"

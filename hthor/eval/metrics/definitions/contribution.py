@@ -32,7 +32,7 @@ def shares(spec: TrialSpec, log: EpisodeLog) -> Credit | None:
     - the openings before it of what the object was taken out of or put into.
 
     An action that several seats did together counts in equal parts for them. A find is credited to the human, who has
-    to see the target, and to whoever opened what it was in. A fall of the progress takes back the latest credit.
+    to see the target, and to the seat that opened what it was in. A fall of the progress takes back the latest credit.
     """
     ledger: list[tuple[float, Credit]] = []
     for tick, rise in _steps(log):
@@ -49,7 +49,7 @@ def shares(spec: TrialSpec, log: EpisodeLog) -> Credit | None:
 
 
 def _steps(log: EpisodeLog) -> Iterator[tuple[int, float]]:
-    """Ticks at which the progress changed, and by how much; what there was at the start is nobody's doing."""
+    """Ticks at which the progress changed, and by how much; progress at the start is credited to nobody."""
     if log.progress is None:
         if log.met:
             yield log.ticks, 1.0
@@ -71,7 +71,7 @@ def _take_back(ledger: list[tuple[float, Credit]], fall: float) -> None:
 
 
 def _credit(spec: TrialSpec, log: EpisodeLog, tick: int) -> Credit:
-    """Who brought about what was achieved at ``tick``; empty when nobody did anything before it."""
+    """The seats that brought about what was achieved at ``tick``; empty when nobody had acted before."""
     past = [event for event in log.events if event.tick <= tick]
     if all(job.relation == "find" for job in spec.task.goal.todo):
         parts = [(HUMAN,), *_openers(past, [_start(spec, job.target) for job in spec.task.goal.todo])]
@@ -85,7 +85,7 @@ def _credit(spec: TrialSpec, log: EpisodeLog, tick: int) -> Credit:
 
 
 def _chain(spec: TrialSpec, past: Sequence[Event]) -> list[tuple[str, ...]]:
-    """Those who did each deed that the last one needed, itself included."""
+    """The seats that did the last action and each one that it needed."""
     load = next((event for event in reversed(past) if event.kind in ("lifted", "lowered")), None)
     last = next((event for kinds in (_FINISH, _TAKE) for event in reversed(past) if event.kind in kinds), None)
     if load is not None and load.kind == "lifted":
@@ -108,7 +108,7 @@ def _chain(spec: TrialSpec, past: Sequence[Event]) -> list[tuple[str, ...]]:
 
 
 def _openers(past: Sequence[Event], things: Sequence[str]) -> list[tuple[str, ...]]:
-    """Those who opened each of the things, the last time that it was opened."""
+    """The seats that opened each of the things, the last time that it was opened."""
     opened = {event.data.get("thing"): _doers(event) for event in past if event.kind == "opened"}
     return [opened[thing] for thing in dict.fromkeys(things) if thing in opened]
 

@@ -1,4 +1,4 @@
-"""The robots' messages as a channel, and what it costs to have robots around."""
+"""The robots' messages, and how much bodies are in each other's way."""
 
 from __future__ import annotations
 

@@ -25,7 +25,11 @@ def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
         elements.table(
             ("", *(one.name for one in found.origins)), rows, f"{said}same bytes.", words=range(len(found.origins) + 1)
         ),
-        elements.paragraph(f"{', '.join(beside)} was not named, but found beside as a control.") if beside else "",
+        elements.paragraph(
+            f"{', '.join(beside)} was not named, but found next to the others as the run without a robot."
+        )
+        if beside
+        else "",
         elements.paragraph(f"The commands that play these runs again{_own(found)}:"),
         elements.block("\n".join(one.command for one in found.origins)),
     ]
